@@ -1,0 +1,138 @@
+#pragma once
+// One declaration per parameter: what parses it, checks it, documents it, echoes it, writes it out and stores it.
+//
+// A struct that takes part has `static constexpr auto fields()` returning a std::tuple of the descriptions below.  The value
+// a default-constructed struct holds is the fallback of its optional fields, so no default is written twice.
+#include <cmath>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <tuple>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+/// The values a number may take, and how to say so.
+struct Range {
+  Real low = -std::numeric_limits<Real>::infinity();
+  Real high = std::numeric_limits<Real>::infinity();
+  bool low_allowed = false, high_allowed = false;
+  constexpr bool holds(Real x) const noexcept
+  {
+    return (low_allowed ? x >= low : x > low) && (high_allowed ? x <= high : x < high);  // false for NaN
+  }
+};
+inline constexpr Range any{};
+inline constexpr Range positive{.low = 0};
+inline constexpr Range non_negative{.low = 0, .low_allowed = true};
+/// (low, high)
+constexpr Range between(Real low, Real high) { return {.low = low, .high = high}; }
+/// [low, high]
+constexpr Range within(Real low, Real high) { return {.low = low, .high = high, .low_allowed = true, .high_allowed = true}; }
+/// [low, high)
+constexpr Range from_to_below(Real low, Real high) { return {.low = low, .high = high, .low_allowed = true}; }
+constexpr Range at_least(Real low) { return {.low = low, .low_allowed = true}; }
+/// "[0, 90)", "> 0", "any"
+std::string to_string(const Range& range);
+
+enum class Need : std::uint8_t { required, optional };
+
+/// A parameter: number, integer, bool, word, vector of numbers, path.  Units are "-" where there is none.
+template <class Owner, class Value>
+struct Parameter {
+  std::string_view key;
+  Value Owner::* member;
+  Need need;
+  Range range;
+  std::string_view unit, meaning;
+};
+
+/// One of a few named words.  `Value` is an enum with `constexpr auto words(Value) -> std::array<std::string_view, N>`, found by
+/// argument-dependent lookup, listing the words in the order of the enumerators.
+template <class Owner, class Value>
+struct Choice {
+  std::string_view key;
+  Value Owner::* member;
+  Need need;
+  std::string_view meaning;
+};
+
+/// A nested mapping.  Optional when the member is a std::optional, required otherwise.
+template <class Owner, class Value>
+struct Group {
+  std::string_view key;
+  Value Owner::* member;
+  std::string_view meaning;
+};
+
+/// A list of mappings: the member is a std::vector of a struct with fields(), or of a std::variant of such structs, each with
+/// `static constexpr std::string_view name`; for variants the key `type` (laws: `law`) chooses.
+template <class Owner, class Item>
+struct List {
+  std::string_view key;
+  std::vector<Item> Owner::* member;
+  Need need;
+  std::string_view meaning;
+};
+
+/// A history variable of a law: output, checkpoint.  Value is Real or Sym3.
+template <class Owner, class Value>
+struct History {
+  std::string_view key;
+  Value Owner::* member;
+  std::string_view unit, meaning;
+};
+
+template <class Owner, class Value>
+constexpr auto required(std::string_view key, Value Owner::* member, Range range, std::string_view unit, std::string_view meaning)
+{
+  return Parameter<Owner, Value>{key, member, Need::required, range, unit, meaning};
+}
+template <class Owner, class Value>
+constexpr auto optional(std::string_view key, Value Owner::* member, Range range, std::string_view unit, std::string_view meaning)
+{
+  return Parameter<Owner, Value>{key, member, Need::optional, range, unit, meaning};
+}
+template <class Owner, class Value>
+constexpr auto required_choice(std::string_view key, Value Owner::* member, std::string_view meaning)
+{
+  return Choice<Owner, Value>{key, member, Need::required, meaning};
+}
+template <class Owner, class Value>
+constexpr auto optional_choice(std::string_view key, Value Owner::* member, std::string_view meaning)
+{
+  return Choice<Owner, Value>{key, member, Need::optional, meaning};
+}
+template <class Owner, class Value>
+constexpr auto group(std::string_view key, Value Owner::* member, std::string_view meaning)
+{
+  return Group<Owner, Value>{key, member, meaning};
+}
+template <class Owner, class Item>
+constexpr auto required_list(std::string_view key, std::vector<Item> Owner::* member, std::string_view meaning)
+{
+  return List<Owner, Item>{key, member, Need::required, meaning};
+}
+template <class Owner, class Item>
+constexpr auto optional_list(std::string_view key, std::vector<Item> Owner::* member, std::string_view meaning)
+{
+  return List<Owner, Item>{key, member, Need::optional, meaning};
+}
+template <class Owner, class Value>
+constexpr auto history(std::string_view key, Value Owner::* member, std::string_view unit, std::string_view meaning)
+{
+  return History<Owner, Value>{key, member, unit, meaning};
+}
+
+/// f(field) for every field of T, in order of declaration.
+template <class T, class F>
+constexpr void for_each_field(F&& f)
+{
+  std::apply([&](const auto&... field) { (f(field), ...); }, T::fields());
+}
+
+}  // namespace talus

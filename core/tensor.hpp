@@ -1,0 +1,50 @@
+#pragma once
+// Small-tensor algebra that Eigen does not name: packing, deviators, Lame constants, embedding of plane tensors.
+#include "core/types.hpp"
+
+namespace talus {
+
+inline Sym3 pack(const Mat3& a) noexcept
+{
+  Sym3 s;
+  s << a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2);
+  return s;
+}
+inline Mat3 unpack(const Sym3& s) noexcept
+{
+  Mat3 a;
+  a << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
+  return a;
+}
+
+inline Mat3 sym(const Mat3& a) noexcept { return 0.5 * (a + a.transpose()); }
+inline Mat3 skew(const Mat3& a) noexcept { return 0.5 * (a - a.transpose()); }
+inline Mat3 dev(const Mat3& a) noexcept { return a - (a.trace() / 3) * Mat3::Identity(); }
+
+/// J2 = s:s/2 of the deviator of a; sqrt(J2) is the shear measure tau of the Drucker-Prager law.
+inline Real second_invariant(const Mat3& a) noexcept { return 0.5 * dev(a).squaredNorm(); }
+inline Real von_mises(const Mat3& a) noexcept { return std::sqrt(3 * second_invariant(a)); }
+
+/// A plane tensor in 3-D: zeros out of plane (plane strain for a velocity gradient).
+template <int D>
+Mat3 embed(const Mat<D>& a) noexcept
+{
+  if constexpr (D == 3) {
+    return a;
+  } else {
+    Mat3 b = Mat3::Zero();
+    b.template topLeftCorner<D, D>() = a;
+    return b;
+  }
+}
+
+struct Lame {
+  Real lambda, mu;  ///< Pa
+};
+/// From Young's modulus [Pa] and Poisson's ratio in (-1, 0.5).
+constexpr Lame lame(Real youngs_modulus, Real poisson_ratio) noexcept
+{
+  return {youngs_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)), youngs_modulus / (2 * (1 + poisson_ratio))};
+}
+
+}  // namespace talus

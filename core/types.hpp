@@ -1,0 +1,40 @@
+#pragma once
+// Numbers, small vectors and small tensors: the vocabulary of every other folder.
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace talus {
+
+using Real = double;
+using Index = std::int32_t;  ///< local numbers of nodes, cells, particles; ids that outlive a sort are std::int64_t
+
+/// "No such cell, facet or node" inside lists; interfaces use std::optional instead.
+inline constexpr Index none = -1;
+
+template <int D>
+using Vec = Eigen::Matrix<Real, D, 1, Eigen::DontAlign>;
+template <int D>
+using Mat = Eigen::Matrix<Real, D, D, Eigen::DontAlign>;
+using Vec3 = Vec<3>;
+using Mat3 = Mat<3>;
+/// The six entries xx, yy, zz, xy, yz, xz of a symmetric 3x3 tensor.
+using Sym3 = Eigen::Matrix<Real, 6, 1, Eigen::DontAlign>;
+
+/// Compressed rows: row i holds item[begin[i]] .. item[begin[i+1]-1].
+struct Csr {
+  std::vector<Index> begin{0};
+  std::vector<Index> item;
+  Index size() const noexcept { return static_cast<Index>(begin.size()) - 1; }
+  std::span<const Index> operator[](Index i) const noexcept
+  {
+    const auto first = static_cast<std::size_t>(begin[static_cast<std::size_t>(i)]);
+    const auto last = static_cast<std::size_t>(begin[static_cast<std::size_t>(i) + 1]);
+    return {item.data() + first, last - first};
+  }
+};
+
+}  // namespace talus

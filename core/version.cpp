@@ -1,0 +1,17 @@
+// The only file that sees the generated header, so that a new commit recompiles nothing else.
+#include "core/version.hpp"
+
+#include <fmt/format.h>
+
+#include "talus_version.hpp"
+
+namespace talus {
+
+Version version() noexcept { return {TALUS_VERSION, TALUS_COMMIT, TALUS_COMPILER, TALUS_BUILD_TYPE, TALUS_FLAGS}; }
+
+std::string describe(const Version& v)
+{
+  return fmt::format("talus {} ({}), {}, {}: {}", v.number, v.commit, v.compiler, v.build_type, v.flags);
+}
+
+}  // namespace talus

@@ -1,0 +1,44 @@
+#pragma once
+// What a constitutive law is: a small value that knows no mesh, no kernel and no dimension.
+#include <concepts>
+#include <string_view>
+#include <tuple>
+
+#include "core/fields.hpp"
+#include "core/tensor.hpp"
+
+namespace talus {
+
+/// What a law is told about one step of one particle.
+struct Increment {
+  const Mat3& F;       ///< deformation gradient at the end of the step, relative to the stress-free start [-]
+  const Mat3& L;       ///< velocity gradient of the step [1/s]; F = (I + dt L) F_old
+  const Mat3& stress;  ///< Cauchy stress at its beginning [Pa], tension positive
+  Real dt;             ///< [s]
+  bool elastic;        ///< true in a stage that suspends yielding: answer elastically, leave hardening variables alone
+};
+
+/// History of a law that has none.
+struct NoHistory {
+  static constexpr auto fields() { return std::tuple{}; }
+};
+
+/// A law.  `update` returns the Cauchy stress [Pa] at the end of the step and changes the history; it never throws, prints or
+/// allocates, and answers NaN where it has no answer (for instance det F <= 0).  `wave_speed` [m/s] is an upper bound of the
+/// speed of sound in the state F.  Optional members, found by `requires`:
+///   void check(std::vector<std::string>& problems) const            rules between parameters, in words
+///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
+///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
+/// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
+template <class L>
+concept Law = requires(const L law, const Increment& in, typename L::State& state) {
+  { L::name } -> std::convertible_to<std::string_view>;
+  { L::summary } -> std::convertible_to<std::string_view>;  // one sentence with the source, for the manual
+  L::fields();
+  L::State::fields();
+  { law.density } -> std::convertible_to<Real>;  // kg/m^3 at rest
+  { law.update(in, state) } noexcept -> std::same_as<Mat3>;
+  { law.wave_speed(in.F) } noexcept -> std::same_as<Real>;
+};
+
+}  // namespace talus
