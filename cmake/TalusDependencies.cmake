@@ -1,0 +1,21 @@
+# Everything is required, nothing is a switch. Packages of Debian: tools/debian-packages.txt; licences: THIRD_PARTY.md.
+set(TALUS_VTK_RENDER
+  VTK::CommonCore VTK::CommonColor VTK::CommonDataModel VTK::CommonExecutionModel VTK::CommonMath VTK::CommonTransforms
+  VTK::FiltersCore VTK::FiltersGeneral VTK::FiltersGeometry VTK::FiltersSources VTK::ImagingCore VTK::IOImage VTK::IOXML
+  VTK::RenderingCore VTK::RenderingOpenGL2 VTK::RenderingAnnotation VTK::RenderingFreeType)
+list(TRANSFORM TALUS_VTK_RENDER REPLACE "VTK::" "" OUTPUT_VARIABLE vtk_components)
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(fmt 9 REQUIRED)
+find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(yaml-cpp 0.7 REQUIRED)
+find_package(Gmsh 4.8 REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(VTK 9.1 REQUIRED QUIET COMPONENTS IOCore ${vtk_components})
+find_package(CLI11 2.1 REQUIRED)
+find_package(spdlog 1.10 REQUIRED)
+if(NOT DEFINED BUILD_TESTING OR BUILD_TESTING)
+  find_package(GTest 1.12 REQUIRED)
+  find_package(benchmark 1.7 REQUIRED)
+  find_program(TALUS_PYTHON python3 HINTS /usr/bin REQUIRED)   # the one that has Debian's numpy
+endif()

@@ -1,0 +1,61 @@
+# talus_library(name [FOLDER folder] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
+# makes the static library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
+# render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library.
+function(talus_library name)
+  cmake_parse_arguments(arg "" "FOLDER" "EXCLUDE;ONLY;LINKS;PRIVATE" ${ARGN})
+  if(NOT arg_FOLDER)
+    set(arg_FOLDER ${name})
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_FOLDER}/*.cpp)
+  foreach(stem ${arg_EXCLUDE})
+    list(FILTER sources EXCLUDE REGEX "/${stem}[^/]*\\.cpp$")
+  endforeach()
+  foreach(stem ${arg_ONLY})
+    list(FILTER sources INCLUDE REGEX "/${stem}[^/]*\\.cpp$")
+  endforeach()
+
+  if(sources)
+    add_library(talus_${name} STATIC ${sources})
+    target_link_libraries(talus_${name} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
+    talus_use_pch(talus_${name} talus_pch)
+  else()
+    add_library(talus_${name} INTERFACE)
+    target_link_libraries(talus_${name} INTERFACE ${arg_LINKS})
+  endif()
+endfunction()
+
+function(talus_executable name source library)
+  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${source})
+    message(STATUS "${name} is left out: there is no ${source}")
+    return()
+  endif()
+  add_executable(${name} ${source})
+  target_link_libraries(${name} PRIVATE ${library})
+  talus_use_pch(${name} talus_pch)
+endfunction()
+
+# VTK's factories must be told, in the library that draws, which rendering back end to make.
+function(talus_render_modules)
+  get_target_property(type talus_render TYPE)
+  if(NOT type STREQUAL INTERFACE_LIBRARY)
+    vtk_module_autoinit(TARGETS talus_render MODULES ${ARGN})
+  endif()
+endfunction()
+
+# The version header is asked for at every build and rewritten only when its text changes. Only `source` sees it.
+function(talus_version source)
+  if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${source})
+    return()
+  endif()
+  set(header ${PROJECT_BINARY_DIR}/generated/talus_version.hpp)
+  string(TOUPPER "${CMAKE_BUILD_TYPE}" config)
+  string(JOIN " " flags ${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${config}} ${TALUS_COMPILE_OPTIONS})
+  add_custom_target(talus_version_header
+    COMMAND ${CMAKE_COMMAND} -D header=${header} -D source_dir=${PROJECT_SOURCE_DIR} -D version=${PROJECT_VERSION}
+            -D "compiler=${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}" -D build_type=${CMAKE_BUILD_TYPE} -D "flags=${flags}"
+            -P ${PROJECT_SOURCE_DIR}/cmake/WriteVersion.cmake
+    BYPRODUCTS ${header} COMMENT "Version of the sources" VERBATIM)
+  add_dependencies(talus_core talus_version_header)
+  set_source_files_properties(${PROJECT_SOURCE_DIR}/${source} PROPERTIES
+    INCLUDE_DIRECTORIES ${PROJECT_BINARY_DIR}/generated OBJECT_DEPENDS ${header})
+endfunction()

@@ -1,0 +1,24 @@
+# Flags of every target alike: the precompiled header is shared, and mixed flags would make two meanings of one inline function.
+
+# Never -ffast-math: it removes the NaN checks that diagnose a failing run. These two change no result and let loops vectorise.
+set(TALUS_COMPILE_OPTIONS -fno-math-errno -fno-trapping-math)
+if(TALUS_NATIVE)
+  list(APPEND TALUS_COMPILE_OPTIONS -march=native)
+endif()
+set(TALUS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+if(TALUS_WERROR)
+  list(APPEND TALUS_WARNINGS -Werror)
+endif()
+add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${TALUS_COMPILE_OPTIONS};${TALUS_WARNINGS}>")
+add_compile_definitions($<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
+include_directories(${PROJECT_SOURCE_DIR})
+
+find_program(TALUS_CCACHE ccache)
+mark_as_advanced(TALUS_CCACHE)
+if(TALUS_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  # Without these two ccache refuses every file that uses a precompiled header.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${TALUS_CCACHE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+    add_compile_options($<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+  endif()
+endif()
