@@ -1,17 +1,16 @@
-// What this program was built from and how: shown by `talus info`, stored in reports and checkpoints.
 #pragma once
+// What this program was built from and how: shown by `talus info`, stored in reports and checkpoints.
 
 #include <string>
 #include <string_view>
 
 namespace talus {
 
-struct Version
-{
-  std::string_view number, commit, compiler, build_type, flags;   // commit: "unknown" outside a git checkout, "-dirty" at the end if edited
+struct Version {
+  std::string_view number, commit, compiler, build_type, flags;  ///< commit: "unknown" outside a git checkout, "-dirty" at the end if edited
 };
 
 Version version() noexcept;
-std::string describe(const Version&);   // one line: talus 0.1.0 (0123456789ab), GNU 12.2.0, Release: -O3 ...
+std::string describe(const Version&);  ///< one line: talus 0.1.0 (0123456789ab), GNU 12.2.0, Release: -O3 ...
 
 }  // namespace talus

@@ -1,0 +1,53 @@
+# Everything a user or a developer types. Plain `make` lists it.
+SHELL       := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+MAKEFLAGS   += --no-print-directory
+JOBS        ?= $(shell nproc)
+SCENE       ?= scenes/slope_failure_3d/scene.yaml
+RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build run test check format bench verify docs clean
+
+help:  ## this list
+	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
+	@echo "  variables: JOBS=$(JOBS)  SCENE=$(SCENE)  RUN=$(RUN)"
+
+setup:  ## install the Debian packages that are missing (tools/debian-packages.txt)
+	@tools/install_packages.sh
+
+build: setup  ## compile build/talus and build/talus-render, at full speed
+	@cmake --preset release -Wno-dev >/dev/null
+	@cmake --build build/release -j $(JOBS)
+	@for program in talus talus-render; do if [ -e build/release/$$program ]; then ln -sfn release/$$program build/$$program; fi; done
+
+run: build  ## build, run SCENE into RUN, draw its pictures
+	build/talus run $(SCENE) --out $(RUN)
+	build/talus render $(RUN)
+	@echo; echo "Results in $(RUN):"; find $(RUN) \( -name '*.png' -o -name 'summary.json' -o -name 'report.html' \) | sort | sed 's/^/  /'
+
+test: setup  ## compile with all warnings and asserts, run every test but the nightly ones
+	@cmake --preset dev -Wno-dev >/dev/null
+	@cmake --build build/dev -j $(JOBS)
+	@ctest --test-dir build/dev --output-on-failure --label-exclude nightly -j $(JOBS)
+
+check:  ## format, layers, text, spelling, shell scripts, cppcheck, clang-tidy
+	@tools/ci.sh lint
+
+format:  ## rewrite the sources as .clang-format says
+	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
+
+bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus bench)
+	@if [ -x build/release/talus_speed ]; then build/release/talus_speed; fi
+	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
+
+verify: build  ## run the benchmarks against their reference solutions (long)
+	@tools/verify.sh
+
+docs: build  ## write docs/reference/scene.md out of the program
+	@mkdir -p docs/reference
+	@build/talus manual > build/scene.md && mv build/scene.md docs/reference/scene.md
+	@tools/ci.sh docs
+
+clean:  ## remove everything built; runs/ stays
+	@rm -rf build

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# The checks of a change: tools/ci.sh <stage>... runs them one by one, `all` what .ci/run wants, `lint` those that build nothing.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+jobs=${JOBS:-$(nproc)}
+python=/usr/bin/python3
+[ -x "$python" ] || python=python3
+folders=(core mesh kernels materials solver io app)
+lint_stages=(format layers text spelling shell cppcheck tidy)
+all_stages=(setup "${lint_stages[@]}" dev release docs test)
+
+cxx_files() { git ls-files -- '*.hpp' '*.cpp'; }
+
+stage_setup() { tools/install_packages.sh; }
+
+stage_format() { cxx_files | xargs -r clang-format --dry-run --Werror --ferror-limit=3; }
+
+stage_layers() { "$python" tools/check_layers.py; }
+
+stage_text() { "$python" tools/check_text.py; }
+
+stage_spelling() { git ls-files -z -- ':!LICENSE' ':!*.svg' ':!*.msh' ':!*.csv' ':!*.png' | xargs -0 -r codespell --ignore-words tools/codespell-ignore.txt; }
+
+stage_shell() { git ls-files -z -- '*.sh' .ci/run | xargs -0 -r shellcheck; }
+
+stage_cppcheck() {
+  cppcheck -j "$jobs" --quiet --language=c++ --std=c++20 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \
+    --suppressions-list=tools/cppcheck-suppressions.txt -I . "${folders[@]}"
+}
+
+# Without the precompiled header: that is gcc's own format. omp.h is looked for where gcc keeps it, after everything of clang's.
+stage_tidy() {
+  cmake --preset lint -Wno-dev >/dev/null
+  git ls-files -- "${folders[@]/%//*.cpp}" | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
+    --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option 2> >(grep -v 'warnings\? generated' >&2)
+}
+
+stage_dev() {
+  cmake --preset dev -Wno-dev >/dev/null
+  cmake --build build/dev -j "$jobs"
+}
+
+stage_release() { make build JOBS="$jobs"; }
+
+# The scene reference is written by the program: it must be the one in the tree.
+stage_docs() {
+  build/talus manual | diff -u docs/reference/scene.md - || {
+    echo "docs/reference/scene.md is stale: make docs" >&2
+    return 1
+  }
+}
+
+stage_test() { make test JOBS="$jobs"; }
+
+stage_asan() {
+  cmake --preset asan -Wno-dev >/dev/null
+  cmake --build build/asan -j "$jobs"
+  ctest --preset asan -j "$jobs" --label-exclude 'nightly|scenes-run'
+}
+
+stage_bench() { make bench JOBS="$jobs"; }
+
+run_stage() {
+  local start=$SECONDS
+  echo "==> $1"
+  "stage_$1"
+  times+="$1 $((SECONDS - start)) s, "
+  echo "<== $1: $((SECONDS - start)) s"
+}
+
+stages=()
+for name in "$@"; do
+  case $name in
+    all) stages+=("${all_stages[@]}") ;;
+    lint) stages+=("${lint_stages[@]}") ;;
+    *) declare -F "stage_$name" >/dev/null || {
+      echo "no stage '$name': all, lint, ${all_stages[*]}, asan, bench" >&2
+      exit 2
+    }
+      stages+=("$name") ;;
+  esac
+done
+if [ ${#stages[@]} -eq 0 ]; then
+  echo "usage: tools/ci.sh <stage>...   all, lint, ${all_stages[*]}, asan, bench" >&2
+  exit 2
+fi
+
+times=""
+last=${stages[-1]}
+unset 'stages[-1]'
+for name in "${stages[@]}"; do
+  run_stage "$name"
+done
+[ -z "$times" ] || echo "seconds: ${times%, }"
+# The last stage has the last word: after `test` nothing may follow the lines of ctest.
+echo "==> $last"
+"stage_$last"
