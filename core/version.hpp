@@ -7,7 +7,9 @@
 namespace talus {
 
 struct Version {
-  std::string_view number, commit, compiler, build_type, flags;  ///< commit: "unknown" outside a git checkout, "-dirty" at the end if edited
+  std::string_view number;
+  std::string_view commit;  ///< "unknown" outside a git checkout, "-dirty" at the end if files differ from it
+  std::string_view compiler, build_type, flags;
 };
 
 Version version() noexcept;
