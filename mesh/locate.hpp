@@ -1,10 +1,14 @@
 #pragma once
-// Which cell holds a point: a walk across facets from a hint, a search in bins when the walk loses its way.
+// Which cell holds a point: a walk across facets from a hint, a search in a tree of boxes when the walk loses its way.
 #include <optional>
 
+#include "mesh/box_tree.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
+
+/// How far outside a cell a point may be and still count as inside: round-off, relative to the longest edge of the cell.
+inline constexpr Real location_tolerance = 1e-10;
 
 /// Where a point is.  On a facet, edge or node shared by cells the lowest cell number wins, whatever the hint was.
 template <int D>
@@ -16,7 +20,8 @@ class Locator {
   /// The usual case, x still inside cell `hint`, costs one barycentric map.  `hint` may be `none`.
   std::optional<Index> operator()(const Mesh<D>& mesh, const Vec<D>& x, Index hint) const noexcept;
 
-  /// The point of the mesh nearest to x and its cell, for x outside: the projection on the nearest boundary facet.
+  /// The point of the mesh boundary nearest to x and its cell, for x outside: the projection on the nearest boundary facet.
+  /// x must be finite.
   struct Nearest {
     Vec<D> x;
     Index cell;
@@ -25,9 +30,10 @@ class Locator {
   Nearest nearest(const Mesh<D>& mesh, const Vec<D>& x) const noexcept;
 
  private:
-  Vec<D> low_, bin_size_;
-  std::array<Index, D> bins_{};
-  Csr cells_of_bin_, facets_of_bin_;
+  std::optional<Index> search(const Mesh<D>& mesh, const Vec<D>& x) const noexcept;
+
+  Real margin_;  // a point this deep [m] inside a cell is within the tolerance of no other
+  BoxTree<D> cells_, facets_;
 };
 
 extern template class Locator<2>;

@@ -31,6 +31,8 @@ struct MeshData {
 
 /// Immutable simplex mesh.  Cells are renumbered along a space-filling curve and nodes by first use, so that neighbours in
 /// number are neighbours in space.  Degenerate or broken data throw std::invalid_argument saying which cell or node, where.
+///
+/// Nodes that no cell uses are dropped, also from the sets that name them.  Messages use the numbers of the data.
 template <int D>
 class Mesh {
  public:
@@ -42,6 +44,8 @@ class Mesh {
   Index n_cells() const noexcept { return static_cast<Index>(cells_.size()); }
   std::span<const Vec<D>> nodes() const noexcept { return nodes_; }
   std::span<const Cell> cells() const noexcept { return cells_; }
+  /// Coordinates [m] of the corners of cell c, positively oriented (see simplex.hpp).
+  std::array<Vec<D>, D + 1> corners(Index c) const noexcept;
   const Vec<D>& node(Index n) const noexcept { return nodes_[static_cast<std::size_t>(n)]; }
   const Cell& cell(Index c) const noexcept { return cells_[static_cast<std::size_t>(c)]; }
 
@@ -58,7 +62,7 @@ class Mesh {
   std::span<const Facet> boundary_facets() const noexcept { return boundary_facets_; }
   bool on_boundary(Index n) const noexcept { return on_boundary_[static_cast<std::size_t>(n)] != 0; }
 
-  std::array<Index, D> nodes_of(Facet f) const noexcept;
+  std::array<Index, D> nodes_of(Facet f) const noexcept;  ///< in the order that turns the normal outwards of f.cell
   Vec<D> area_vector(Facet f) const noexcept;  ///< outward normal of f.cell times length or area [m^(D-1)]
 
   /// Barycentric coordinates of x in cell c (sum to one; all >= 0 inside).
@@ -68,13 +72,19 @@ class Mesh {
 
   /// Nodes of a named group of any dimension (nodes of its facets or cells), ascending; nothing if there is no such group.
   std::optional<std::vector<Index>> node_set(std::string_view name) const;
-  std::optional<std::vector<Facet>> facet_set(std::string_view name) const;  ///< boundary side first if both sides exist
+  /// Each facet once: those on the boundary first, then interior ones, seen from the lower numbered of their two cells.
+  std::optional<std::vector<Facet>> facet_set(std::string_view name) const;
   std::optional<std::vector<Index>> cell_set(std::string_view name) const;   ///< ascending
   std::vector<std::string> node_set_names() const;                           ///< every name node_set() knows, sorted
   std::vector<std::string> facet_set_names() const;
   std::vector<std::string> cell_set_names() const;
 
  private:
+  std::vector<Index> take_cells(const MeshData<D>& data, std::span<const Index> old_cells);
+  void find_boundary();
+  void measure();
+  void take_sets(const MeshData<D>& data, std::span<const Index> new_cell, std::span<const Index> new_node);
+
   std::vector<Vec<D>> nodes_;
   std::vector<Cell> cells_;
   std::vector<Real> volume_, altitude_, node_size_;
