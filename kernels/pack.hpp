@@ -1,0 +1,24 @@
+#pragma once
+// Arithmetic on packs (core/lanes.hpp) that the loops over a stencil need; the same bits on every processor.
+#include <cmath>
+
+#include "core/lanes.hpp"
+
+namespace talus {
+
+inline Pack square_root(const Pack& a) noexcept { return Pack{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
+/// max(a, 0), and 0 for NaN.
+inline Pack positive_part(const Pack& a) noexcept { return a > 0 ? a : Pack{}; }
+
+/// {sum of a, sum of b, sum of c, sum of d}
+inline Pack sums(const Pack& a, const Pack& b, const Pack& c, const Pack& d) noexcept
+{
+  using Lanes = std::int64_t __attribute__((vector_size(sizeof(Pack))));
+  const Pack ab = __builtin_shuffle(a, b, Lanes{0, 4, 2, 6}) + __builtin_shuffle(a, b, Lanes{1, 5, 3, 7});
+  const Pack cd = __builtin_shuffle(c, d, Lanes{0, 4, 2, 6}) + __builtin_shuffle(c, d, Lanes{1, 5, 3, 7});
+  return __builtin_shuffle(ab, cd, Lanes{0, 1, 4, 5}) + __builtin_shuffle(ab, cd, Lanes{2, 3, 6, 7});
+}
+
+static_assert(pack_size == 4);
+
+}  // namespace talus

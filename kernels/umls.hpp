@@ -1,0 +1,75 @@
+#pragma once
+// Unstructured moving least squares (Cao et al., arXiv 2312.10338): weights over the one-ring of a cell's vertices.
+#include "kernels/kernel.hpp"
+
+namespace talus {
+
+/// Moving least squares with sample weights W_v(x) = eta_v(x) d(|x_v - x| / R(x)).
+///
+/// eta_v = sum of the barycentric coordinates of those vertices of the cell that are adjacent to v (or are v): it fades a node out
+/// before the particle enters a cell that does not see it.  d is the quadratic B-spline of support 1.5 R and R(x) interpolates
+/// a radius R_v per vertex.  Values and gradients are the least-squares estimate of a linear field and of its slope at x, in the
+/// centred form: with r_v = x_v - x,
+///
+///     W0 = sum W_v     c = sum W_v r_v / W0     S = sum W_v (r_v - c)(r_v - c)^T
+///     G_v = W_v S^-1 (r_v - c)                  w_v = W_v / W0 - c . G_v
+///
+/// R_v = h_v (mean length of the edges at v), times 1.25 or 1.5 for vertices of cells with a badly conditioned S, decided once.
+/// Where S is unusable even so, the particle takes the hats of its cell.  Linear fields are exact either way.
+template <int D>
+class Umls {
+ public:
+  static constexpr std::string_view name = "umls";
+  static constexpr std::string_view summary = "moving least squares over the one-ring; gradient continuous between cells";
+  static constexpr int max_nodes = D == 2 ? 48 : 128;
+
+  struct Cell : StencilCell<D, max_nodes> {
+    Vec<D> origin;                                ///< vertex 0 of the cell [m]
+    Real slope[D + 1][D];                         ///< gradients of the barycentric coordinates [1/m]
+    Real radius, radius_slope[D];                 ///< R at vertex 0 [m], grad R [-]
+    alignas(64) Real adjacent[D + 1][max_nodes];  ///< 1 where the node is adjacent to the vertex, else 0; padding 0
+  };
+
+  /// Throws std::invalid_argument if the stencil of a cell has more than max_nodes nodes.
+  explicit Umls(const Mesh<D>& mesh);
+
+  Claims claims() const noexcept
+  {
+    return {.non_negative = false,
+            .linear_values = true,
+            .linear_gradients = true,
+            .continuous_values = true,
+            .continuous_gradient = true,
+            .gradient_of_values = false,
+            .patch_test = false,
+            .closed_walls = false};
+  }
+
+  /// The vertices of the cell in their order, then the rest of the ring.
+  std::span<const Index> stencil(const Mesh<D>&, Index c) const noexcept { return stencil_[c]; }
+  void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept;
+  void evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) const noexcept;
+
+  Real radius(Index node) const noexcept { return radius_[static_cast<std::size_t>(node)]; }  ///< R_v [m]
+
+  /// How round S is at x: D^D det S / tr(S)^D, 1 if all directions are seen alike, 0 if a direction is not seen.
+  Real roundness(const Cell& cell, const Vec<D>& x) const noexcept;
+  /// Radii grow where the roundness is below this; the hats replace the estimate below the other.
+  static constexpr Real poor_roundness = 0.02, unusable_roundness = 1e-6;
+
+ private:
+  void build_stencils(const Mesh<D>& mesh);
+  void choose_radii(const Mesh<D>& mesh);
+  bool poor(const Mesh<D>& mesh, Index c) const noexcept;
+  static void hats_instead(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) noexcept;
+
+  Csr stencil_;
+  std::vector<std::uint8_t> adjacency_;  ///< per entry of stencil_: bit a set if adjacent to vertex a of the cell
+  std::vector<Real> radius_;             ///< per node [m]
+};
+
+extern template class Umls<2>;
+extern template class Umls<3>;
+static_assert(Kernel<Umls<2>, 2> && Kernel<Umls<3>, 3>);
+
+}  // namespace talus
