@@ -18,7 +18,7 @@ setup:  ## install the Debian packages that are missing (tools/debian-packages.t
 
 build: setup  ## compile build/talus and build/talus-render, at full speed
 	@cmake --preset release -Wno-dev >/dev/null
-	@cmake --build build/release -j $(JOBS)
+	@cmake --build build/release --target programs -j $(JOBS)
 	@for program in talus talus-render; do if [ -e build/release/$$program ]; then ln -sfn release/$$program build/$$program; fi; done
 
 run: build  ## build, run SCENE into RUN, draw its pictures
@@ -38,8 +38,9 @@ format:  ## rewrite the sources as .clang-format says
 	@git ls-files '*.hpp' '*.cpp' | xargs clang-format -i
 
 bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus bench)
-	@if [ -x build/release/talus_speed ]; then build/release/talus_speed; fi
-	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
+	@cmake --build build/release --target talus_speed -j $(JOBS)
+	@build/release/talus_speed
+	@build/talus bench
 
 verify: build  ## run the benchmarks against their reference solutions (long)
 	@tools/verify.sh

@@ -31,6 +31,7 @@ function(talus_executable name source library)
   endif()
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${library})
+  add_dependencies(programs ${name})
   talus_use_pch(${name} talus_pch)
 endfunction()
 
