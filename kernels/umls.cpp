@@ -3,12 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
 #include "core/parallel.hpp"
 #include "kernels/pack.hpp"
+#include "kernels/symmetric.hpp"
 
 namespace talus {
 namespace {
@@ -18,99 +19,71 @@ constexpr Real regularisation = 1e-14;
 /// Raised radii, tried in this order.
 constexpr Real radius_factors[] = {1.25, 1.5};
 
-/// Entries of a symmetric D x D matrix: xx, yy, xy or xx, yy, zz, xy, yz, xz.
-template <int D>
-using Symmetric = std::array<Real, D*(D + 1) / 2>;
-template <int D>
-constexpr std::size_t entry(int d, int e)
-{
-  return static_cast<std::size_t>(d == e ? d : D == 2 ? 2 : d + e == 1 ? 3 : d + e == 3 ? 4 : 5);
-}
-
-/// det(A) A^-1
-template <int D>
-Symmetric<D> adjugate(const Symmetric<D>& s) noexcept
-{
-  if constexpr (D == 2) {
-    return {s[1], s[0], -s[2]};
-  } else {
-    const auto [xx, yy, zz, xy, yz, xz] = s;
-    return {yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy, xz * yz - xy * zz, xy * xz - xx * yz, xy * yz - xz * yy};
-  }
-}
-template <int D>
-Real determinant(const Symmetric<D>& s, const Symmetric<D>& adjugate_of_s) noexcept
-{
-  Real det = 0;
-  for (int d = 0; d < D; ++d)
-    det += s[entry<D>(0, d)] * adjugate_of_s[entry<D>(0, d)];
-  return det;
-}
-template <int D>
-Real trace(const Symmetric<D>& s) noexcept
-{
-  return D == 2 ? s[0] + s[1] : s[0] + s[1] + s[2];
-}
+/// bits_of[mask][a] = bit a of the mask, as a number.
+constexpr auto bits_of = [] {
+  std::array<std::array<Real, 4>, 16> bits{};
+  for (unsigned mask = 0; mask < 16; ++mask)
+    for (unsigned a = 0; a < 4; ++a)
+      bits[mask][a] = (mask >> a) & 1U;
+  return bits;
+}();
 
 /// Moments of the sample weights.
 template <int D>
 struct Moments {
-  Real sum;                      ///< W0
-  std::array<Real, D> first;     ///< W0 c, about the particle
-  Symmetric<D> spread;           ///< W0 S, about the centroid of the weights
+  Real sum;             ///< W0
+  Real first[D];        ///< W0 c, about the particle
+  Symmetric<D> spread;  ///< W0^2 S, about the centroid of the weights
 };
 
-/// Barycentric coordinates of x, given r = x - origin.
+/// x from a point: coordinates as plain numbers, and the barycentric coordinates there.
 template <int D>
-std::array<Real, D + 1> hats(const typename Umls<D>::Cell& cell, const std::array<Real, D>& r) noexcept
+struct Place {
+  Real x[D], from_origin[D], hat[D + 1];
+};
+template <int D>
+[[gnu::always_inline]] inline Place<D> place_of(const typename Umls<D>::Cell& cell, const Vec<D>& x) noexcept
 {
-  std::array<Real, D + 1> b;
-  b[0] = 1;
-  for (std::size_t a = 1; a <= D; ++a) {
-    b[a] = 0;
-    for (std::size_t d = 0; d < D; ++d)
-      b[a] += cell.slope[a][d] * r[d];
-    b[0] -= b[a];
+  Place<D> at;
+  for (int d = 0; d < D; ++d) {
+    at.x[d] = x[d];
+    at.from_origin[d] = x[d] - cell.origin[d];
   }
-  return b;
-}
-template <int D>
-std::array<Real, D> from_origin(const typename Umls<D>::Cell& cell, const Vec<D>& x) noexcept
-{
-  std::array<Real, D> r;
-  for (int d = 0; d < D; ++d)
-    r[static_cast<std::size_t>(d)] = x[d] - cell.origin[d];
-  return r;
+  at.hat[0] = 1;
+  for (int a = 1; a <= D; ++a) {
+    at.hat[a] = 0;
+    for (int d = 0; d < D; ++d)
+      at.hat[a] += cell.slope[a][d] * at.from_origin[d];
+    at.hat[0] -= at.hat[a];
+  }
+  return at;
 }
 
-/// R^2 times the quadratic B-spline d(q), q = distance / R: 3/4 - q^2 up to 1/2, (3/2 - q)^2 / 2 up to 3/2, then 0; written with
-/// truncated powers, without branch or division.  The common factor R^2 of all samples cancels in the estimate.
+/// 2 R^2 times the quadratic B-spline d(q), q = distance / R: 3/4 - q^2 up to 1/2, (3/2 - q)^2 / 2 up to 3/2, then 0; written with
+/// truncated powers, without branch or division.  The common factor of all samples cancels in the estimate.
 [[gnu::always_inline]] inline Pack profile(const Pack& distance, Real radius) noexcept
 {
   const Pack outer = positive_part(1.5 * radius - distance), inner = positive_part(0.5 * radius - distance);
-  return 0.5 * (outer * outer) - 1.5 * (inner * inner);
+  return outer * outer - 3 * inner * inner;
 }
 
-/// Sample weights R^2 W into `weight`, and their moments: the first sweep over the stencil.
+/// Sample weights 2 R^2 W into `weight`, and their moments: the first sweep over the stencil.
 template <int D>
-[[gnu::always_inline]] inline Moments<D> sample(const typename Umls<D>::Cell& cell, const Vec<D>& x, Real* weight) noexcept
+[[gnu::always_inline]] inline Moments<D> sample(const typename Umls<D>::Cell& cell, const Place<D>& at, Real* weight) noexcept
 {
-  const auto from = from_origin<D>(cell, x);
-  const auto b = hats<D>(cell, from);
   Real radius = cell.radius;
-  for (std::size_t d = 0; d < D; ++d)
-    radius += cell.radius_slope[d] * from[d];
+  for (int d = 0; d < D; ++d)
+    radius += cell.radius_slope[d] * at.from_origin[d];
 
-  constexpr std::size_t pairs = D * (D + 1) / 2;
   Pack w0{}, first[3]{}, second[6]{};
   for (int i = 0; i < cell.padded_size; i += pack_size) {
     Pack r[D], r2{}, eta{};
     for (int d = 0; d < D; ++d) {
-      r[d] = load(cell.x[d] + i) - x[d];
+      r[d] = load(cell.x[d] + i) - at.x[d];
       r2 += r[d] * r[d];
     }
-    for (std::size_t a = 0; a <= D; ++a)
-      eta += b[a] * load(cell.adjacent[a] + i);
+    for (int a = 0; a <= D; ++a)
+      eta += at.hat[a] * load(cell.adjacent[a] + i);
     const Pack w = eta * profile(square_root(r2), radius);
     store(weight + i, w);
     w0 += w;
@@ -118,30 +91,36 @@ template <int D>
       const Pack wr = w * r[d];
       first[d] += wr;
       for (int e = d; e < D; ++e)
-        second[entry<D>(d, e)] += wr * r[e];
+        second[Symmetric<D>::place(d, e)] += wr * r[e];
     }
   }
   const Pack low = sums(w0, first[0], first[1], first[2]);
   const Pack middle = sums(second[0], second[1], second[2], second[3]);
   const Pack high = sums(second[4], second[5], second[4], second[5]);
 
-  Moments<D> m{.sum = low[0], .first = {}, .spread = {}};
-  for (std::size_t d = 0; d < D; ++d)
+  Moments<D> m;
+  m.sum = low[0];
+  for (int d = 0; d < D; ++d)
     m.first[d] = low[d + 1];
-  for (std::size_t k = 0; k < pairs; ++k)
-    m.spread[k] = m.sum * (k < 4 ? middle[k] : high[k - 4]);
+  for (int k = 0; k < Symmetric<D>::size; ++k)
+    m.spread.entry[k] = m.sum * (k < pack_size ? middle[k] : high[k - pack_size]);
   for (int d = 0; d < D; ++d)
     for (int e = d; e < D; ++e)
-      m.spread[entry<D>(d, e)] -= m.first[static_cast<std::size_t>(d)] * m.first[static_cast<std::size_t>(e)];
+      m.spread.entry[Symmetric<D>::place(d, e)] -= m.first[d] * m.first[e];
   return m;
 }
 
-/// (tr A / D)^D: what det A would be if A were round.
+/// The hats of the cell, in the room of the whole stencil.
 template <int D>
-Real round_determinant(const Symmetric<D>& s) noexcept
+void hats_instead(const typename Umls<D>::Cell& cell, const Place<D>& at, Weights<D, Umls<D>::max_nodes>& out) noexcept
 {
-  const Real mean = trace<D>(s) * (1.0 / D);
-  return D == 2 ? mean * mean : mean * mean * mean;
+  std::fill_n(out.w, cell.padded_size, 0.0);
+  std::copy_n(at.hat, D + 1, out.w);
+  for (int d = 0; d < D; ++d) {
+    std::fill_n(out.dw[d], cell.padded_size, 0.0);
+    for (int a = 0; a <= D; ++a)
+      out.dw[d][a] = cell.slope[a][d];
+  }
 }
 
 }  // namespace
@@ -235,15 +214,16 @@ void Umls<D>::open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept
   cell.nodes = stencil_[c];
   cell.size = static_cast<int>(cell.nodes.size());
   cell.padded_size = padded(cell.size);
+  const Index* nodes = cell.nodes.data();
   const std::uint8_t* adjacency = adjacency_.data() + stencil_.begin[static_cast<std::size_t>(c)];
   for (int i = 0; i < cell.padded_size; ++i) {
     const bool real = i < cell.size;
-    const Vec<D>& x = mesh.node(cell.nodes[real ? static_cast<std::size_t>(i) : 0]);
+    const Vec<D>& x = mesh.node(nodes[real ? i : 0]);
     for (int d = 0; d < D; ++d)
       cell.x[d][i] = x[d];
-    const unsigned mask = real ? adjacency[i] : 0;
-    for (int a = 0; a <= D; ++a)
-      cell.adjacent[a][i] = static_cast<Real>((mask >> a) & 1U);
+    const auto& bits = bits_of[real ? adjacency[i] : 0];
+    for (std::size_t a = 0; a <= D; ++a)
+      cell.adjacent[a][i] = bits[a];
   }
   cell.origin = mesh.node(cell.nodes[0]);
   const auto gradients = mesh.gradients(c);
@@ -261,60 +241,45 @@ void Umls<D>::open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept
 template <int D>
 void Umls<D>::evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) const noexcept
 {
-  Moments<D> m = sample<D>(cell, x, out.w);
-  const Real share_of_trace = regularisation * trace<D>(m.spread);
-  for (std::size_t d = 0; d < D; ++d)
-    m.spread[d] += share_of_trace;
-  const Symmetric<D> adjoint = adjugate<D>(m.spread);
-  const Real det = determinant<D>(m.spread, adjoint);
-  if (!(det > unusable_roundness * round_determinant<D>(m.spread))) {  // NaN too
-    hats_instead(cell, x, out);
+  const Place<D> at = place_of<D>(cell, x);
+  Moments<D> m = sample<D>(cell, at, out.w);
+  const Real diagonal = regularisation * m.spread.trace();
+  for (int d = 0; d < D; ++d)
+    m.spread.entry[d] += diagonal;
+  const Symmetric<D> adjoint = adjugate(m.spread);
+  const Real det = determinant(m.spread, adjoint);
+  if (!(det > unusable_roundness * round_determinant(m.spread))) {  // NaN too
+    hats_instead<D>(cell, at, out);
     return;
   }
+
   // With k = S^-1 c:  G_v = W_v (S^-1 r_v - k)  and  w_v = W_v (1/W0 + k . c - k . r_v)
   const Real per_det = 1 / det, share = 1 / m.sum;
-  Real at_x = share;
   Symmetric<D> inverse;
-  std::array<Real, D> k{};
-  for (std::size_t j = 0; j < inverse.size(); ++j)
-    inverse[j] = adjoint[j] * per_det * m.sum;
+  for (int j = 0; j < Symmetric<D>::size; ++j)
+    inverse.entry[j] = adjoint.entry[j] * per_det * m.sum;
+  Real k[D], at_x = share;
   for (int d = 0; d < D; ++d) {
-    const auto i = static_cast<std::size_t>(d);
+    k[d] = 0;
     for (int e = 0; e < D; ++e)
-      k[i] += adjoint[entry<D>(d, e)] * m.first[static_cast<std::size_t>(e)];
-    k[i] *= per_det;
-    at_x += k[i] * m.first[i] * share;
+      k[d] += adjoint(d, e) * m.first[e];
+    k[d] *= per_det;
+    at_x += k[d] * m.first[d] * share;
   }
   for (int i = 0; i < cell.padded_size; i += pack_size) {
     Pack r[D], value = at_x - Pack{};
     for (int d = 0; d < D; ++d) {
-      r[d] = load(cell.x[d] + i) - x[d];
-      value -= k[static_cast<std::size_t>(d)] * r[d];
+      r[d] = load(cell.x[d] + i) - at.x[d];
+      value -= k[d] * r[d];
     }
     const Pack w = load(out.w + i);
     store(out.w + i, w * value);
     for (int d = 0; d < D; ++d) {
-      Pack g = Pack{} - k[static_cast<std::size_t>(d)];
+      Pack g = Pack{} - k[d];
       for (int e = 0; e < D; ++e)
-        g += inverse[entry<D>(d, e)] * r[e];
+        g += inverse(d, e) * r[e];
       store(out.dw[d] + i, w * g);
     }
-  }
-}
-
-template <int D>
-void Umls<D>::hats_instead(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) noexcept
-{
-  for (int i = 0; i < cell.padded_size; ++i) {
-    out.w[i] = 0;
-    for (int d = 0; d < D; ++d)
-      out.dw[d][i] = 0;
-  }
-  const auto b = hats<D>(cell, from_origin<D>(cell, x));
-  for (std::size_t a = 0; a <= D; ++a) {
-    out.w[a] = b[a];
-    for (int d = 0; d < D; ++d)
-      out.dw[d][a] = cell.slope[a][d];
   }
 }
 
@@ -322,8 +287,8 @@ template <int D>
 Real Umls<D>::roundness(const Cell& cell, const Vec<D>& x) const noexcept
 {
   alignas(64) Real unused[max_nodes];
-  const Symmetric<D> spread = sample<D>(cell, x, unused).spread;
-  const Real round = determinant<D>(spread, adjugate<D>(spread)) / round_determinant<D>(spread);
+  const Symmetric<D> spread = sample<D>(cell, place_of<D>(cell, x), unused).spread;
+  const Real round = determinant(spread, adjugate(spread)) / round_determinant(spread);
   return round > 0 ? round : 0;
 }
 

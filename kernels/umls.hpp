@@ -54,14 +54,13 @@ class Umls {
 
   /// How round S is at x: D^D det S / tr(S)^D, 1 if all directions are seen alike, 0 if a direction is not seen.
   Real roundness(const Cell& cell, const Vec<D>& x) const noexcept;
-  /// Radii grow where the roundness is below this; the hats replace the estimate below the other.
+  /// Radii grow where the roundness is below the first; below the second the hats replace the estimate.
   static constexpr Real poor_roundness = 0.02, unusable_roundness = 1e-6;
 
  private:
   void build_stencils(const Mesh<D>& mesh);
   void choose_radii(const Mesh<D>& mesh);
   bool poor(const Mesh<D>& mesh, Index c) const noexcept;
-  static void hats_instead(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) noexcept;
 
   Csr stencil_;
   std::vector<std::uint8_t> adjacency_;  ///< per entry of stencil_: bit a set if adjacent to vertex a of the cell
