@@ -1,0 +1,239 @@
+#include "io/gmsh_regions.hpp"
+
+#include <fmt/format.h>
+#include <gmsh.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "io/gmsh_session.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Adds one shape to the OpenCASCADE model and answers its entities of dimension D; complaints name the region.
+template <int D>
+class ShapeMaker {
+ public:
+  explicit ShapeMaker(const RegionSpec& region) : region_(region) {}
+
+  gmsh::vectorpair operator()(const Box& box) const
+  {
+    const Vec3 low = point(box.low, "low"), size = point(box.high, "high") - low;
+    if (!(size.head<D>().array() > 0).all())
+      refuse("low is not below high");
+    if constexpr (D == 2)
+      return one(gmsh::model::occ::addRectangle(low[0], low[1], 0, size[0], size[1]));
+    else
+      return one(gmsh::model::occ::addBox(low[0], low[1], low[2], size[0], size[1], size[2]));
+  }
+
+  gmsh::vectorpair operator()(const Sphere& sphere) const
+  {
+    const Vec3 centre = point(sphere.centre, "centre");
+    if (!(sphere.radius > 0))
+      refuse("the radius is not positive");
+    if constexpr (D == 2)
+      return one(gmsh::model::occ::addDisk(centre[0], centre[1], 0, sphere.radius, sphere.radius));
+    else
+      return one(gmsh::model::occ::addSphere(centre[0], centre[1], centre[2], sphere.radius));
+  }
+
+  gmsh::vectorpair operator()(const Cylinder& cylinder) const
+  {
+    if constexpr (D == 2) {
+      refuse("a cylinder needs a scene of dimension 3; in 2-D a sphere is a disk");
+    } else {
+      const Vec3 from = point(cylinder.from, "from"), axis = point(cylinder.to, "to") - from;
+      if (!(axis.norm() > 0) || !(cylinder.radius > 0))
+        refuse("a cylinder needs two different ends and a positive radius");
+      return one(gmsh::model::occ::addCylinder(from[0], from[1], from[2], axis[0], axis[1], axis[2], cylinder.radius));
+    }
+  }
+
+  gmsh::vectorpair operator()(const Polygon& polygon) const
+  {
+    const std::vector<Vec<2>> corners = checked_corners(polygon);
+    const Real bottom = bottom_of(polygon);
+    std::vector<int> points, lines;
+    for (const Vec<2>& x : corners)
+      points.push_back(gmsh::model::occ::addPoint(x[0], x[1], bottom));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      lines.push_back(gmsh::model::occ::addLine(points[i], points[(i + 1) % points.size()]));
+    const int face = gmsh::model::occ::addPlaneSurface({gmsh::model::occ::addCurveLoop(lines)});
+    if constexpr (D == 2)
+      return one(face);
+    gmsh::vectorpair swept;
+    gmsh::model::occ::extrude({{2, face}}, 0, 0, polygon.extrude[1] - bottom, swept);
+    std::erase_if(swept, [](const auto& entity) { return entity.first != 3; });
+    return swept;
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& why) const
+  {
+    throw SceneErrors(region_.where, fmt::format("region \"{}\": {}", region_.name, why));
+  }
+  static gmsh::vectorpair one(int tag) { return {{D, tag}}; }
+
+  Vec3 point(const std::vector<Real>& numbers, std::string_view key) const
+  {
+    if (numbers.size() != D)
+      refuse(fmt::format("{} has {} numbers; the scene has dimension {}", key, numbers.size(), D));
+    Vec3 x = Vec3::Zero();
+    x.head<D>() = Eigen::Map<const Vec<D>>(numbers.data());
+    return x;
+  }
+
+  Real bottom_of(const Polygon& polygon) const
+  {
+    if (D == 2 && !polygon.extrude.empty())
+      refuse("extrude is for scenes of dimension 3");
+    if (D == 3 && (polygon.extrude.size() != 2 || !(polygon.extrude[0] < polygon.extrude[1])))
+      refuse("a polygon needs extrude: [z from, z to] in a scene of dimension 3");
+    return D == 2 ? 0 : polygon.extrude[0];
+  }
+
+  /// OpenCASCADE makes nonsense of polygons that cross themselves, in silence.
+  std::vector<Vec<2>> checked_corners(const Polygon& polygon) const
+  {
+    std::vector<Vec<2>> corners;
+    for (const auto& numbers : polygon.points) {
+      if (numbers.size() != 2)
+        refuse("every point of a polygon has two numbers");
+      corners.emplace_back(numbers[0], numbers[1]);
+    }
+    const std::size_t n = corners.size();
+    if (n < 3)
+      refuse("a polygon needs three points or more");
+    const auto side = [&](std::size_t i, std::size_t p) {
+      const Vec<2> a = corners[(i + 1) % n] - corners[i], b = corners[p] - corners[i];
+      return a[0] * b[1] - a[1] * b[0];
+    };
+    for (std::size_t i = 0; i < n; ++i) {
+      if (corners[i] == corners[(i + 1) % n])
+        refuse(fmt::format("the point ({}, {}) stands twice in a row", corners[i][0], corners[i][1]));
+      for (std::size_t j = i + 2; j < n; ++j)
+        if ((j + 1) % n != i && side(i, j) * side(i, (j + 1) % n) <= 0 && side(j, i) * side(j, (i + 1) % n) <= 0)
+          refuse(fmt::format("the polygon crosses itself: its sides {} and {} meet", i + 1, j + 1));
+    }
+    return corners;
+  }
+
+  const RegionSpec& region_;
+};
+
+/// Solids with the name they give to their cells.
+struct Named {
+  std::string name;
+  gmsh::vectorpair solids;
+};
+
+/// Cuts solids along each other so that they share faces, and makes physical groups of them.  Returns the name of a solid of which
+/// nothing is left, or an empty one.
+std::string share_faces(int dimension, const std::vector<Named>& parts)
+{
+  gmsh::vectorpair all, unused;
+  std::vector<std::size_t> part_of;  // of every solid
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    all.insert(all.end(), parts[p].solids.begin(), parts[p].solids.end());
+    part_of.resize(all.size(), p);
+  }
+  std::vector<gmsh::vectorpair> pieces;  // of every solid
+  if (all.size() > 1)
+    gmsh::model::occ::fragment({all.front()}, {all.begin() + 1, all.end()}, unused, pieces);
+  else
+    pieces = {all};
+  gmsh::model::occ::synchronize();
+
+  std::set<int> taken;
+  std::vector<std::vector<int>> tags(parts.size());
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (const auto& [piece_dimension, tag] : pieces[i])
+      if (piece_dimension == dimension && taken.insert(tag).second)  // a piece belongs to the first solid that has it
+        tags[part_of[i]].push_back(tag);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    if (tags[p].empty())
+      return parts[p].name;
+    gmsh::model::setPhysicalName(dimension, gmsh::model::addPhysicalGroup(dimension, tags[p]), parts[p].name);
+  }
+  return {};
+}
+
+/// The solids of an imported file by their names, "Shapes/Part/soil" being "soil".
+std::vector<Named> imported_solids(int dimension)
+{
+  gmsh::vectorpair solids;
+  gmsh::model::getEntities(solids, dimension);
+  std::map<std::string, Named> by_name;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    std::string name;
+    gmsh::model::getEntityName(solids[i].first, solids[i].second, name);
+    name = name.substr(name.rfind('/') + 1);
+    if (name.empty())
+      name = fmt::format("part_{}", i + 1);
+    by_name[name].name = name;
+    by_name[name].solids.push_back(solids[i]);
+  }
+  std::vector<Named> parts;
+  for (const auto& [name, part] : by_name)
+    parts.push_back(part);
+  return parts;
+}
+
+}  // namespace
+
+template <int D>
+MeshData<D> mesh_geometry(const MeshSpec& spec, const std::filesystem::path& file)
+{
+  if (!std::filesystem::is_regular_file(file))
+    throw SceneErrors(spec.where, fmt::format("geometry \"{}\" does not exist or is no file", file.string()));
+  const std::string kind = file.extension().string();
+  const std::set<std::string> imported{".step", ".stp", ".brep", ".iges", ".igs"};
+  if (kind != ".geo" && !imported.contains(kind))
+    throw SceneErrors(spec.where, fmt::format("geometry \"{}\" is neither .geo nor .step; meshes are given with file", file.string()));
+  GmshSession session(spec.where);
+  return session.run([&] {
+    gmsh::open(file.string());
+    if (imported.contains(kind)) {
+      const std::vector<Named> parts = imported_solids(D);
+      if (parts.empty())
+        session.fail(fmt::format("\"{}\" holds no {}", file.string(), D == 3 ? "solids" : "surfaces"));
+      share_faces(D, parts);
+    }
+    session.set_sizes(spec, D, kind == ".geo");
+    session.generate(D);
+    return session.take<D>();
+  });
+}
+
+template <int D>
+MeshData<D> mesh_regions(const MeshSpec& spec)
+{
+  GmshSession session(spec.where);
+  return session.run([&] {
+    gmsh::model::add("regions");
+    std::vector<Named> parts;
+    for (const RegionSpec& region : spec.regions) {
+      if (std::any_of(parts.begin(), parts.end(), [&](const Named& part) { return part.name == region.name; }))
+        throw SceneErrors(region.where, fmt::format("two regions have the name \"{}\"", region.name));
+      parts.push_back({region.name, std::visit(ShapeMaker<D>(region), region.shape)});
+    }
+    const std::string hidden = share_faces(D, parts);
+    for (const RegionSpec& region : spec.regions)
+      if (region.name == hidden)
+        throw SceneErrors(region.where, fmt::format("nothing is left of region \"{}\": earlier regions cover it", hidden));
+    session.set_sizes(spec, D, false);
+    session.generate(D);
+    return session.take<D>();
+  });
+}
+
+template MeshData<2> mesh_geometry<2>(const MeshSpec&, const std::filesystem::path&);
+template MeshData<3> mesh_geometry<3>(const MeshSpec&, const std::filesystem::path&);
+template MeshData<2> mesh_regions<2>(const MeshSpec&);
+template MeshData<3> mesh_regions<3>(const MeshSpec&);
+
+}  // namespace talus

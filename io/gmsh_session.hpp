@@ -1,0 +1,56 @@
+#pragma once
+// gmsh behind one door: silent, on one thread, its errors turned into SceneErrors.  One session at a time.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+#include "io/scene.hpp"
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// Meshes with more cells than this are taken for a slip of the pen: 10^8 tetrahedra need about 100 GB.
+inline constexpr Real most_cells = 1e8;
+
+class GmshSession {
+ public:
+  explicit GmshSession(Where asked_by);
+  ~GmshSession();
+  GmshSession(const GmshSession&) = delete;
+  GmshSession& operator=(const GmshSession&) = delete;
+
+  /// f(); what gmsh throws becomes SceneErrors with the errors it logged.
+  template <class F>
+  auto run(F&& f)
+  {
+    try {
+      return f();
+    } catch (const SceneErrors&) {
+      throw;
+    } catch (const std::string& complaint) {  // gmsh 4.8 throws these
+      fail(complaint);
+    } catch (const std::exception& complaint) {
+      fail(complaint.what());
+    }
+  }
+  [[noreturn]] void fail(const std::string& complaint) const;
+
+  /// Edge lengths: `spec.size` everywhere, less in the boxes of `spec.refine`.  `points_count`: sizes given at the points of the
+  /// geometry hold where they are smaller.
+  void set_sizes(const MeshSpec& spec, int dimension, bool points_count);
+  /// Meshes the current model: Frontal-Delaunay in 2-D, HXT in 3-D (Delaunay where HXT fails).
+  void generate(int dimension);
+  /// The cells and physical groups of the current model.
+  template <int D>
+  MeshData<D> take();
+
+ private:
+  std::string messages() const;
+  Where asked_by_;
+};
+
+extern template MeshData<2> GmshSession::take<2>();
+extern template MeshData<3> GmshSession::take<3>();
+
+}  // namespace talus
