@@ -116,9 +116,11 @@ class BoxTree {
   {
     std::array<std::pair<Real, Index>, fan> children;
     const Index n = last - first;
-    for (Index i = 0; i < n; ++i)
+    for (Index i = 0; i < n; ++i) {
       children[i] = {levels_[level][first + i].squared_distance(x), first + i};
-    std::sort(children.begin(), children.begin() + n);
+      for (Index j = i; j > 0 && children[j] < children[j - 1]; --j)
+        std::swap(children[j], children[j - 1]);
+    }
     for (Index i = n; i-- > 0;)
       stack.push(level, children[i].second);
   }

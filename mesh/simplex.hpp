@@ -3,6 +3,7 @@
 //
 // A simplex is the array of its D+1 corners [m].  It is positive if its signed volume is: counter-clockwise in 2-D; in 3-D
 // corners 0, 1, 2 are counter-clockwise seen from corner 3.
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,0 +1,39 @@
+#pragma once
+// Boxes of triangles or tetrahedra, regular or spoilt on purpose: meshes for tests and benchmarks that need no mesher.
+#include <array>
+#include <cstdint>
+
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// How the squares of a plane box are cut: all along (0,0)-(1,1), all along (1,0)-(0,1), in turn like a chessboard, or at random.
+enum class Diagonals : std::uint8_t { rising, falling, alternating, random };
+
+/// A structured box: squares of two triangles (rising diagonals), or bricks of six tetrahedra around a diagonal (H. W. Kuhn,
+/// 1960).  Facet sets x_min, x_max, y_min, y_max (z_min, z_max) are its sides, the cell set `all` everything.
+/// Throws std::invalid_argument unless low < high and every count is positive.
+template <int D>
+MeshData<D> box(Vec<D> low, Vec<D> high, std::array<Index, D> cells);
+MeshData<2> box(Vec<2> low, Vec<2> high, std::array<Index, 2> cells, Diagonals diagonals, std::uint64_t seed = 1);
+
+/// What jittered() does with the nodes on the boundary.  Sliding ones keep to the planes (lines) of all boundary facets they belong to.
+enum class BoundaryNodes : std::uint8_t { stay, slide };
+
+/// Every node moved by up to `amount` times its shortest edge along each axis.  Where a cell would lose more than four fifths of
+/// its volume the move is halved until it would not, so that cells stay positive for any amount.
+template <int D>
+MeshData<D> jittered(MeshData<D> data, Real amount, std::uint64_t seed, BoundaryNodes boundary = BoundaryNodes::stay);
+
+/// Spacing that grows exponentially along x, `ratio` times as large at the high end as at the low end (below one: shrinks).  The
+/// extent stays.
+template <int D>
+MeshData<D> graded(MeshData<D> data, Real ratio);
+
+/// `count` cells pressed flat, no two of which share a node: one interior node of each is moved to just above the middle of the
+/// opposite facet, so that the smallest (dihedral) angle there is `angle` [rad].  Throws std::invalid_argument if the angle is
+/// not in (0, pi/6) or there is no room for so many.
+template <int D>
+MeshData<D> slivered(MeshData<D> data, Real angle, Index count, std::uint64_t seed);
+
+}  // namespace talus
