@@ -35,11 +35,14 @@ void parallel_for_uneven(Index n, F&& f)
 inline constexpr Index sum_block = 4096;
 
 /// Sum of f(i) over [0, n): every block of 4096 in order, then the blocks in order.  T needs T{} = 0 and +=.
+/// Its buffer is kept, so a repeated sum of the same length allocates nothing.  Not to be nested.
 template <class T, class F>
 T parallel_sum(Index n, F&& f)
 {
   const Index blocks = (n + sum_block - 1) / sum_block;
-  std::vector<T> partial(static_cast<std::size_t>(blocks), T{});
+  static thread_local std::vector<T> buffer;
+  buffer.assign(static_cast<std::size_t>(blocks), T{});
+  std::vector<T>& partial = buffer;  // a name that the threads below share
   parallel_for(blocks, [&](Index b) {
     T sum{};
     const Index last = std::min(n, (b + 1) * sum_block);

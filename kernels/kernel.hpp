@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <string_view>
 
+#include "core/lanes.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
@@ -22,10 +23,6 @@ struct Claims {
   bool patch_test;           ///< int G_v dx = 0 for interior v
   bool closed_walls;         ///< on a boundary facet only its own nodes have weight
 };
-
-/// Numbers per pack: loops over a stencil run over whole packs, padded with zero weights, so that they vectorise without a tail.
-inline constexpr int pack_size = 4;
-constexpr int padded(int n) noexcept { return (n + pack_size - 1) / pack_size * pack_size; }
 
 /// Values and gradients [1/m] of one particle over a stencil, as arrays of numbers; lives on the stack.
 template <int D, int N>
@@ -56,6 +53,15 @@ concept Kernel = requires(const K k, const Mesh<D>& mesh, Index c, const Vec<D>&
   { k.open(mesh, c, cell) } noexcept;                                 // fills what the particles of the cell share
   { k.evaluate(cell, x, out) } noexcept;                              // w and dw of a particle at x, padding zeroed
   requires K::max_nodes % pack_size == 0;
+};
+
+template <int D>
+class NodeOperators;
+
+/// A kernel with a node part: its weights are those of hats, and the operators stand between hats and unknowns.
+template <class K, int D>
+concept HasNodePart = requires(const K k) {
+  { k.node_part() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
 
 }  // namespace talus

@@ -1,0 +1,102 @@
+#pragma once
+// The algorithm: one explicit step, stress last.  Numbers are those of docs/algorithm.md.
+#include <chrono>
+
+#include "solver/gather.hpp"
+#include "solver/model.hpp"
+#include "solver/update_stress.hpp"
+
+namespace talus {
+
+/// Adds the time since the last lap to a phase.
+class StopWatch {
+ public:
+  void lap(Real& phase) noexcept
+  {
+    const auto now = Clock::now();
+    phase += std::chrono::duration<Real>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point last_ = Clock::now();
+};
+
+template <int D, Kernel<D> K>
+void remap(Model<D, K>& m, Real dt);
+
+/// One step of length dt [s].  Afterwards `m.health` tells whether the state is sound.
+template <int D, Kernel<D> K>
+void advance(Model<D, K>& m, Real dt)
+{
+  StopWatch watch;
+  const Real time = m.clock.time, ramp = m.stage.ramp(time + dt);
+  const Vec<D> gravity = m.loads.gravity(time + dt, ramp);
+
+  if (relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.mass, m.health))  //  1
+    index_rows(m);
+  if (m.health.worst())
+    return;
+  apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);                                                //  2
+  watch.lap(m.timings.locate);
+
+  scatter(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);                      //  3
+  watch.lap(m.timings.scatter);
+
+  assemble(m.blocks, m.nodes.sum);                                                                          //  4
+  const Vec<D> on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
+  m.slaves.lump(m.mesh, m.nodes);                                                                           //  5
+  integrate(gravity, m.stage.damping, dt, m.nodes);                                                         //  6
+  const WallWork wall_work = m.walls.apply(time, dt, m.nodes);                                              //  7
+  m.slaves.follow(m.mesh, m.nodes, m.walls, time + dt, m.nodes.motion);                                     //  8
+  record(m, gravity, on_mesh, wall_work, dt);
+  m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
+  watch.lap(m.timings.nodes);
+
+  gather(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles);             //  9
+  m.energy.loads += work_on(m.particles);
+  if (m.transfer.musl)
+    remap(m, dt);                                                                                           // 10
+  watch.lap(m.timings.gather);
+
+  for (auto& batch : m.materials)
+    m.energy.internal += update_stress(batch, dt, m.stage.elastic, m.particles, m.health);                  // 11
+  watch.lap(m.timings.stress);
+
+  m.clock = {m.clock.step + 1, time + dt, dt};
+  m.timings.particle_steps += static_cast<Real>(m.particles.size());
+}
+
+/// MUSL: momentum of the new particle velocities on the nodes, held by the walls; then L_p from these velocities, while the
+/// particles move with those of the step itself.
+template <int D, Kernel<D> K>
+void remap(Model<D, K>& m, Real dt)
+{
+  scatter_momentum(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);
+  assemble_momentum(m.blocks, m.nodes.sum);
+  m.slaves.lump_momentum(m.mesh, m.nodes);
+  parallel_for(static_cast<Index>(m.remapped.size()), [&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    const Vec<D> v = m.nodes.active[i] ? Vec<D>(m.nodes.sum[i].momentum / m.nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
+    m.remapped[i] = {v, m.nodes.motion[i].v};
+  });
+  m.walls.hold(m.clock.time + dt, m.remapped);
+  m.slaves.follow_velocity(m.mesh, m.nodes, m.walls, m.clock.time + dt, m.remapped);
+  gather_gradient(m.kernel, m.mesh, m.n_bodies(), m.order, m.remapped, dt, m.particles);
+}
+
+/// Work terms and residual of the step, for the audit.
+template <int D, Kernel<D> K>
+void record(Model<D, K>& m, const Vec<D>& gravity, const Vec<D>& on_mesh, const WallWork& wall_work, Real dt)
+{
+  const NodeWork work = node_work(gravity, m.stage.damping, dt, m.nodes);
+  m.energy.gravity += work.gravity;
+  m.energy.damping += work.damping;
+  m.energy.walls += wall_work.other;
+  m.energy.friction += wall_work.friction;
+  m.energy.nodes += work.kinetic_after - work.kinetic_before;
+  m.residual = unbalanced(gravity, m.stage.damping, dt, m.nodes, on_mesh);
+}
+
+}  // namespace talus

@@ -1,0 +1,48 @@
+#pragma once
+// Who is in which cell: particle rows sorted by body, cell and id, and where each block of cells begins.
+#include <span>
+#include <vector>
+
+#include "core/particles.hpp"
+
+namespace talus {
+
+/// Cells [b * block_cells, (b+1) * block_cells) form block b: near one another in space, because the mesh numbers its cells
+/// along a space-filling curve.  Blocks are the unit of parallel work; they depend on the mesh only.
+inline constexpr Index block_cells = 128;
+
+/// Inside a cell particles stand in the order of their ids, so nodal sums depend on the state and not on its history.
+struct CellOrder {
+  std::vector<Index> row;    ///< particle rows sorted by (body, cell, id)
+  std::vector<Index> first;  ///< (body * blocks + block) -> first position in `row`; one more at the end
+  Index blocks = 0;
+  std::vector<Index> count;  ///< scratch: particles per cell
+
+  std::span<const Index> rows(Index body, Index block) const noexcept
+  {
+    const auto key = static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
+    return std::span(row).subspan(static_cast<std::size_t>(first[key]), static_cast<std::size_t>(first[key + 1] - first[key]));
+  }
+};
+
+/// Sorts anew from `cell` and `id`; `order` keeps its buffers.  Linear in particles and cells.
+void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells, CellOrder& order);
+
+/// Share of the particles whose row is not their position in the order.
+Real disorder(const CellOrder& order) noexcept;
+
+/// f(run) for the particles of each single cell in `rows`, which are sorted by cell.
+template <class F>
+void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f)
+{
+  for (std::size_t begin = 0; begin < rows.size();) {
+    const Index c = cell[static_cast<std::size_t>(rows[begin])];
+    std::size_t end = begin + 1;
+    while (end < rows.size() && cell[static_cast<std::size_t>(rows[end])] == c)
+      ++end;
+    f(c, rows.subspan(begin, end - begin));
+    begin = end;
+  }
+}
+
+}  // namespace talus

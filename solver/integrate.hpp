@@ -1,0 +1,117 @@
+#pragma once
+// The nodes' equation of motion, and what happens to nodes with next to no mass.
+#include "core/parallel.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/walls.hpp"
+
+namespace talus {
+
+/// Work done on the nodes in a step [J]: force times the mean of old and new velocity.
+struct NodeWork {
+  Real kinetic_before{}, kinetic_after{}, gravity{}, damping{};
+  NodeWork& operator+=(const NodeWork& other) noexcept
+  {
+    kinetic_before += other.kinetic_before, kinetic_after += other.kinetic_after, gravity += other.gravity, damping += other.damping;
+    return *this;
+  }
+};
+
+/// Nodes below the mass cut become slaves: their mass, momentum and force go to the active nodes of their ring, in proportion
+/// to the masters' masses, and they move with the mean of these.  The map back is the transpose of the map there, so momentum
+/// is neither made nor lost, and a uniform motion stays one.  Nodes with negative mass (weights of moving least squares turn
+/// negative at the boundary of a mesh) are treated alike.
+template <int D>
+class Slaves {
+ public:
+  /// Finds the slaves, sets the active flags, hands on mass, momentum and force.
+  void lump(const Mesh<D>& mesh, Nodes<D>& nodes);
+  /// Hands on momentum alone, after it was summed anew.
+  void lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const;
+  /// Rows of the slaves: the mean motion of their masters, as the walls allow it.
+  void follow(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const;
+  /// The same for `v` alone.
+  void follow_velocity(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const;
+  Index size() const noexcept { return static_cast<Index>(slaves_.size()); }
+
+ private:
+  /// f(master, share) for the active nodes a slave hangs on; nothing if there are none within two rings.
+  template <class F>
+  static void for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Index slave, F&& f);
+  std::vector<Index> slaves_;
+};
+
+extern template class Slaves<2>;
+extern template class Slaves<3>;
+
+/// v <- v + dt (f/m + g - damping |f/m + g| sign v), componentwise (local non-viscous damping, Cundall 1987).
+template <int D>
+void integrate(const Vec<D>& gravity, Real damping, Real dt, Nodes<D>& nodes)
+{
+  parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    NodeMotion<D>& motion = nodes.motion[i];
+    if (!nodes.active[i]) {
+      motion = NodeMotion<D>{};
+      return;
+    }
+    const NodeSum<D>& sum = nodes.sum[i];
+    const Vec<D> v_old = sum.momentum / sum.mass;
+    Vec<D> a = sum.force / sum.mass + gravity;
+    if (damping > 0)
+      for (int d = 0; d < D; ++d)
+        a[d] -= damping * std::abs(a[d]) * static_cast<Real>((v_old[d] > 0) - (v_old[d] < 0));
+    motion.change = dt * a;
+    motion.v = v_old + motion.change;
+  });
+}
+
+/// Work of gravity and damping and the kinetic energies, once the walls have spoken.
+template <int D>
+NodeWork node_work(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>& nodes)
+{
+  return parallel_sum<NodeWork>(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    NodeWork work;
+    if (!nodes.active[i])
+      return work;
+    const NodeSum<D>& sum = nodes.sum[i];
+    const Vec<D> v_old = sum.momentum / sum.mass, v = nodes.motion[i].v, v_mid = 0.5 * (v_old + v);
+    work.kinetic_before = 0.5 * sum.mass * v_old.squaredNorm();
+    work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
+    work.gravity = dt * sum.mass * gravity.dot(v_mid);
+    if (damping > 0)
+      for (int d = 0; d < D; ++d)
+        work.damping -= dt * damping * std::abs(sum.force[d] + sum.mass * gravity[d]) * static_cast<Real>((v_old[d] > 0) - (v_old[d] < 0)) * v_mid[d];
+    return work;
+  });
+}
+
+/// Sum over active nodes of |net force with wall reactions, without damping| over that of |gravity and loads|: zero at rest
+/// in equilibrium.
+template <int D>
+Real unbalanced(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>& nodes, const Vec<D>& other_loads)
+{
+  struct Sums {
+    Real net{}, load{};
+    Sums& operator+=(const Sums& other) noexcept
+    {
+      net += other.net, load += other.load;
+      return *this;
+    }
+  };
+  const Sums sums = parallel_sum<Sums>(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (!nodes.active[i])
+      return Sums{};
+    const NodeSum<D>& sum = nodes.sum[i];
+    const Vec<D> v_old = nodes.motion[i].v - nodes.motion[i].change;
+    Vec<D> net = sum.mass / dt * nodes.motion[i].change;
+    for (int d = 0; d < D; ++d)
+      net[d] += damping * std::abs(sum.force[d] + sum.mass * gravity[d]) * static_cast<Real>((v_old[d] > 0) - (v_old[d] < 0));
+    return Sums{net.norm(), sum.mass * gravity.norm()};
+  });
+  const Real load = sums.load + other_loads.norm();
+  return load > 0 ? sums.net / load : 0;
+}
+
+}  // namespace talus

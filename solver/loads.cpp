@@ -1,0 +1,125 @@
+#include "solver/loads.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace talus {
+
+template <int D>
+ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Facet> facets, const Particles<D>& particles)
+{
+  std::map<Index, std::vector<Index>> in_cell;  // only cells behind the facets
+  for (const Facet facet : facets)
+    in_cell[facet.cell];
+  for (Index p = 0; p < particles.size(); ++p)
+    if (const auto found = in_cell.find(particles.cell[static_cast<std::size_t>(p)]); found != in_cell.end())
+      found->second.push_back(p);
+
+  std::map<std::int64_t, Vec<D>> share;  // by id: one entry for a particle behind several facets
+  for (const Facet facet : facets) {
+    const auto& behind = in_cell[facet.cell];
+    for (const Index p : behind) {
+      auto& area = share.try_emplace(particles.id[static_cast<std::size_t>(p)], Vec<D>::Zero()).first->second;
+      area += mesh.area_vector(facet) / static_cast<Real>(behind.size());
+    }
+  }
+  ParticleTraction<D> load;
+  for (const auto& [id, area] : share) {
+    load.id.push_back(id);
+    load.area.push_back(area);
+  }
+  return load;
+}
+
+template <int D>
+MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets)
+{
+  std::map<Index, std::pair<Vec<D>, Real>> share;
+  for (const Facet facet : facets) {
+    const Vec<D> area = mesh.area_vector(facet);
+    for (const Index n : mesh.nodes_of(facet)) {
+      auto& [sum, measure] = share.try_emplace(n, Vec<D>::Zero(), 0.0).first->second;
+      sum += area / D;
+      measure += area.norm() / D;
+    }
+  }
+  MeshTraction<D> load;
+  for (const auto& [node, both] : share) {
+    load.node.push_back(node);
+    load.area.push_back(both.first);
+    load.measure.push_back(both.second);
+  }
+  return load;
+}
+
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
+{
+  if (particles.applied.empty())
+    return;
+  std::fill(particles.applied.begin(), particles.applied.end(), Vec<D>::Zero());
+  for (const auto& load : loads.on_particles) {
+    const Real factor = ramp * load.table(time);
+    for (std::size_t k = 0; k < load.id.size(); ++k) {
+      const Index row = row_of_id[static_cast<std::size_t>(load.id[k])];
+      if (row == none)
+        continue;
+      const auto p = static_cast<std::size_t>(row);
+      const Mat<D> F = particles.F[p].template topLeftCorner<D, D>();
+      const Vec<D> area = particles.F[p].determinant() * F.inverse().transpose() * load.area[k];
+      particles.applied[p] += factor * (load.area[k].norm() * load.traction - load.pressure * area);
+    }
+  }
+}
+
+namespace {
+
+/// f(node, force) for every node of every mesh traction.
+template <int D, class F>
+void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
+{
+  for (const auto& load : loads.on_mesh) {
+    const Real factor = ramp * load.table(time);
+    for (std::size_t k = 0; k < load.node.size(); ++k)
+      f(static_cast<std::size_t>(load.node[k]), Vec<D>(factor * (load.measure[k] * load.traction - load.pressure * load.area[k])));
+  }
+}
+
+}  // namespace
+
+template <int D>
+Vec<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept
+{
+  Vec<D> total = Vec<D>::Zero();
+  for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
+    if (sum[node].mass <= 0)
+      return;
+    sum[node].force += force;
+    total += force;
+  });
+  return total;
+}
+
+template <int D>
+Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& nodes) noexcept
+{
+  Real total = 0;
+  for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
+    if (nodes.sum[node].mass > 0)
+      total += dt * force.dot(nodes.motion[node].v - 0.5 * nodes.motion[node].change);
+  });
+  return total;
+}
+
+template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<const Facet>, const Particles<2>&);
+template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
+template void apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, Particles<2>&) noexcept;
+template Vec<2> apply<2>(const Loads<2>&, Real, Real, std::span<NodeSum<2>>) noexcept;
+template Real work<2>(const Loads<2>&, Real, Real, Real, const Nodes<2>&) noexcept;
+template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
+template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
+template void apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, Particles<3>&) noexcept;
+template Vec<3> apply<3>(const Loads<3>&, Real, Real, std::span<NodeSum<3>>) noexcept;
+template Real work<3>(const Loads<3>&, Real, Real, Real, const Nodes<3>&) noexcept;
+
+}  // namespace talus

@@ -1,0 +1,81 @@
+#pragma once
+// Loads: gravity at the nodes, tractions carried by particles or by facets of the mesh.
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "core/particles.hpp"
+#include "core/table.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/nodes.hpp"
+
+namespace talus {
+
+/// Gravity is added at the nodes, exactly and for free; `ramp` is the factor of the stage, the same for every load.
+template <int D>
+struct Gravity {
+  Vec<D> acceleration = Vec<D>::Zero();  ///< [m/s^2]
+  Table table;
+  Vec<D> operator()(Real time, Real ramp) const noexcept { return ramp * table(time) * acceleration; }
+};
+
+/// Force per area that the first layer of particles behind a facet group takes along.  Each facet's area is shared among the
+/// particles of the cell behind it; a pressure turns and stretches with the surface, n da = J F^-T N dA (Nanson).
+template <int D>
+struct ParticleTraction {
+  Vec<D> traction = Vec<D>::Zero();  ///< [Pa], per initial area
+  Real pressure{};                   ///< [Pa], positive pushes
+  Table table;
+  Where where;
+  std::vector<std::int64_t> id;      ///< particles that carry it
+  std::vector<Vec<D>> area;          ///< share of the outward area vector at the start [m^(D-1)]
+};
+
+/// Force per area on facets of the mesh, for as long as there is mass at their nodes.
+template <int D>
+struct MeshTraction {
+  Vec<D> traction = Vec<D>::Zero();
+  Real pressure{};
+  Table table;
+  Where where;
+  std::vector<Index> node;           ///< ascending
+  std::vector<Vec<D>> area;          ///< share of the outward area vector [m^(D-1)]
+  std::vector<Real> measure;         ///< share of the area [m^(D-1)]
+};
+
+template <int D>
+struct Loads {
+  Gravity<D> gravity;
+  std::vector<ParticleTraction<D>> on_particles;
+  std::vector<MeshTraction<D>> on_mesh;
+};
+
+/// Shares the facets' area among the particles of the cells behind them.
+/// Facets without a particle behind them are left out; the caller may compare the areas.
+template <int D>
+ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Facet> facets, const Particles<D>& particles);
+/// Shares the facets' area among their nodes.
+template <int D>
+MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
+
+/// Writes particles.applied [N] anew; does nothing for a scene without particle tractions.  `row_of_id` finds a particle, or
+/// `none` for one that was deleted.
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
+
+/// Work [J] of mesh tractions over a step, from the nodes' mean velocity.
+template <int D>
+Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& nodes) noexcept;
+
+/// Adds mesh tractions to the force of nodes that have mass.  Returns their sum [N].
+template <int D>
+Vec<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept;
+
+/// Work [J] of particle tractions in the last step.
+template <int D>
+Real work_on(const Particles<D>& particles)
+{
+  return parallel_sum<Real>(static_cast<Index>(particles.load_work.size()), [&](Index p) { return particles.load_work[static_cast<std::size_t>(p)]; });
+}
+
+}  // namespace talus

@@ -1,0 +1,119 @@
+#pragma once
+// Everything a run is made of, by value.
+#include "solver/blocks.hpp"
+#include "solver/integrate.hpp"
+#include "solver/ledger.hpp"
+#include "solver/loads.hpp"
+#include "solver/relocate.hpp"
+#include "solver/transfer.hpp"
+#include "solver/walls.hpp"
+
+namespace talus {
+
+struct Clock {
+  std::int64_t step = 0;  ///< steps done
+  Real time = 0;          ///< [s]
+  Real dt = 0;            ///< of the last step [s]
+};
+
+/// What a stage sets for every step it makes.
+struct StageState {
+  Real damping = 0;      ///< local, share of the unbalanced force
+  Real ramp_start = 0, ramp_time = 0;  ///< gravity and loads grow from 0 to 1 over [start, start + time] [s]
+  bool elastic = false;  ///< yielding suspended
+  Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - ramp_start) / ramp_time, Real{0}, Real{1}) : Real{1}; }
+};
+
+/// Time spent per phase of the step [s], and the work counted.
+struct Timings {
+  Real locate{}, scatter{}, nodes{}, gather{}, stress{}, output{};
+  Real particle_steps{};
+};
+
+template <int D, Kernel<D> K>
+struct Model {
+  Mesh<D> mesh;
+  Locator<D> locator;
+  K kernel;
+  BlockRows<D> blocks;
+
+  Particles<D> particles;
+  std::vector<Body> bodies;
+  std::vector<AnyBatch> materials;  ///< one per body, same ranges
+  CellOrder order;
+  std::vector<Index> row_of_id;     ///< kept only if somebody follows single particles; `none` when deleted
+
+  Nodes<D> nodes;
+  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, the step's own in `change`
+  Slaves<D> slaves;
+
+  Transfer transfer;
+  Loads<D> loads;
+  Walls<D> walls;
+  Exits exits;
+  Clock clock;
+  StageState stage;
+  EnergyLedger energy;
+  MassLedger mass;
+  Real residual = 0;  ///< of the last step: unbalanced nodal force over loads
+  Health health;
+  Timings timings;
+
+  explicit Model(Mesh<D> m) : mesh(std::move(m)), locator(mesh), kernel(mesh), blocks(make_block_rows<D>(kernel, mesh))
+  {
+    nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+    nodes.motion.resize(nodes.sum.size());
+    nodes.active.resize(nodes.sum.size());
+  }
+  Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
+};
+
+/// A node with less than this share of the mean particle mass is a slave of its neighbours.
+inline constexpr Real mass_cut_share = 1e-8;
+
+/// Where each id stands now, if anybody asks.
+template <int D, Kernel<D> K>
+void index_rows(Model<D, K>& m)
+{
+  if (m.row_of_id.empty())
+    return;
+  std::fill(m.row_of_id.begin(), m.row_of_id.end(), none);
+  for (Index p = 0; p < m.particles.size(); ++p)
+    m.row_of_id[static_cast<std::size_t>(m.particles.id[static_cast<std::size_t>(p)])] = p;
+}
+
+/// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.
+/// `by_id`: single particles will be looked up by id.
+template <int D, Kernel<D> K>
+void make_ready(Model<D, K>& m, bool by_id)
+{
+  const auto n = m.particles.id.size();
+  if (m.transfer.scheme == Scheme::apic)
+    m.particles.C.assign(n, Mat<D>::Zero());
+  if (!m.loads.on_particles.empty())
+    m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.load_work.assign(n, 0);
+  if (m.transfer.musl)
+    m.remapped.resize(m.nodes.sum.size());
+  if (by_id || !m.loads.on_particles.empty())
+    m.row_of_id.assign(n, none);
+  m.walls.settle();
+  m.exits.closed.assign(static_cast<std::size_t>(m.mesh.n_cells()), 0);
+  for (const Facet facet : m.walls.closed_facets(m.mesh))
+    m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
+  const Totals<D> now = totals(m.particles);
+  m.mass.start = now.mass;
+  m.nodes.mass_cut = mass_cut_share * now.mass / static_cast<Real>(std::max<std::size_t>(n, 1));
+  index_rows(m);
+}
+
+/// Energy dissipated by the laws so far [J].
+template <int D, Kernel<D> K>
+Real plastic_work(const Model<D, K>& m)
+{
+  Real total = 0;
+  for (std::size_t b = 0; b < m.bodies.size(); ++b)
+    total += total_plastic_work(m.materials[b], std::span(m.particles.volume0).subspan(static_cast<std::size_t>(m.bodies[b].begin), static_cast<std::size_t>(m.bodies[b].size())));
+  return total;
+}
+
+}  // namespace talus

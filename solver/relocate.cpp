@@ -1,0 +1,162 @@
+#include "solver/relocate.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace talus {
+
+namespace {
+
+/// Share of rows out of place above which the arrays themselves are re-ordered: below it the gain does not pay for the move.
+constexpr Real most_disorder = 0.2;
+/// A particle set back onto a wall is placed this share of the cell's smallest altitude inside.
+constexpr Real inset = 1e-6;
+
+std::size_t z(Index i) { return static_cast<std::size_t>(i); }
+
+/// column[i] <- column[order[i]], in place: no second copy of the largest arrays.
+template <class T>
+void permute_in_place(std::vector<T>& column, std::span<const Index> order, std::vector<std::uint8_t>& done)
+{
+  if (column.empty())
+    return;
+  done.assign(order.size(), 0);
+  for (std::size_t start = 0; start < order.size(); ++start) {
+    if (done[start] || order[start] == static_cast<Index>(start))
+      continue;
+    const T kept = column[start];
+    std::size_t to = start;
+    for (auto from = z(order[to]); from != start; from = z(order[to])) {
+      column[to] = column[from];
+      done[to] = 1;
+      to = from;
+    }
+    column[to] = kept;
+    done[to] = 1;
+  }
+}
+
+template <int D>
+void follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
+{
+  static thread_local std::vector<std::uint8_t> done;
+  static thread_local std::vector<Index> within;
+  particles.for_each_column([&](std::string_view, std::string_view, auto& column) { permute_in_place(column, order.row, done); });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    within.resize(z(bodies[b].size()));
+    for (Index i = 0; i < bodies[b].size(); ++i)
+      within[z(i)] = order.row[z(bodies[b].begin + i)] - bodies[b].begin;
+    permute(materials[b], within);
+  }
+  std::iota(order.row.begin(), order.row.end(), 0);
+}
+
+/// Drops the rows whose cell is `none`.
+template <int D>
+void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+{
+  std::vector<std::uint8_t> stays(z(particles.size()));
+  for (Index p = 0; p < particles.size(); ++p)
+    stays[z(p)] = particles.cell[z(p)] != none;
+  const auto squeeze = [&](auto& column, Index begin, Index end) {
+    auto to = z(begin);
+    for (Index p = begin; p < end; ++p)
+      if (stays[z(p)])
+        column[to++] = column[z(p)];
+    return to;
+  };
+  for (auto& material : materials)
+    std::visit(
+        [&](auto& batch) {
+          std::size_t to = 0;
+          for (Index i = 0; i < batch.size(); ++i)
+            if (stays[z(batch.begin + i)])
+              batch.history[to++] = batch.history[z(i)];
+          batch.history.resize(to);
+        },
+        material);
+  const Index all = particles.size();
+  particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
+    if (!column.empty())
+      column.resize(squeeze(column, 0, all));
+  });
+  Index begin = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto count = static_cast<Index>(std::count(stays.begin() + bodies[b].begin, stays.begin() + bodies[b].end, 1));
+    bodies[b].begin = begin;
+    bodies[b].end = begin += count;
+    std::visit([&](auto& batch) { batch.begin = bodies[b].begin, batch.end = bodies[b].end; }, materials[b]);
+  }
+}
+
+}  // namespace
+
+template <int D>
+bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+              CellOrder& order, MassLedger& mass, Health& health)
+{
+  std::atomic<bool> moved = order.row.size() != particles.id.size(), outside = false;
+  parallel_for(particles.size(), [&](Index row) {
+    const std::size_t p = z(row);
+    if (!particles.x[p].allFinite() || !particles.v[p].allFinite()) {
+      health.report(particles.id[p], Trouble::not_finite);
+      return;
+    }
+    const auto found = locator(mesh, particles.x[p], particles.cell[p]);
+    const Index cell = found.value_or(none);
+    if (cell == particles.cell[p])
+      return;
+    if (cell == none)
+      outside = true;
+    else {
+      particles.cell[p] = cell;
+      moved = true;
+    }
+  });
+
+  bool rows_changed = false;
+  if (outside) {  // rare, and in order of rows, so that ledgers do not depend on threads
+    bool deleted = false;
+    for (Index row = 0; row < particles.size(); ++row) {
+      const std::size_t p = z(row);
+      if (!particles.x[p].allFinite() || locator(mesh, particles.x[p], particles.cell[p]))
+        continue;
+      const auto nearest = locator.nearest(mesh, particles.x[p]);
+      const Real distance = (nearest.x - particles.x[p]).norm();
+      if ((exits.closed[z(nearest.cell)] >> nearest.facet.local & 1) != 0 && distance < mesh.altitude(nearest.cell)) {
+        Vec<D> centre = Vec<D>::Zero();
+        for (const Index n : mesh.cell(nearest.cell))
+          centre += mesh.node(n) / (D + 1);
+        particles.x[p] = nearest.x + inset * (centre - nearest.x);
+        particles.cell[p] = locator(mesh, particles.x[p], nearest.cell).value_or(nearest.cell);
+        ++mass.held_count;
+        mass.held_most = std::max(mass.held_most, distance);
+        moved = true;
+      } else if (exits.policy == OnExitPolicy::remove) {
+        mass.deleted += particles.mass[p];
+        ++mass.deleted_count;
+        particles.cell[p] = none;
+        deleted = true;
+      } else {
+        health.report(particles.id[p], Trouble::lost);
+      }
+    }
+    if (deleted)
+      drop_lost(bodies, materials, particles);
+    rows_changed = deleted;
+    moved = moved || deleted;
+  }
+
+  if (!moved)
+    return false;
+  sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
+  if (disorder(order) <= most_disorder)
+    return rows_changed;
+  follow_order(bodies, materials, particles, order);
+  return true;
+}
+
+template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger&, Health&);
+template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger&, Health&);
+
+}  // namespace talus

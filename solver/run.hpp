@@ -1,0 +1,135 @@
+#pragma once
+// Stages, the loop over steps, and what stops it.
+#include <fmt/format.h>
+
+#include "solver/advance.hpp"
+#include "solver/initial_stress.hpp"
+#include "solver/stable_step.hpp"
+
+namespace talus {
+
+/// A phase of the analysis.
+struct Stage {
+  std::string name;
+  Real duration{};                    ///< [s]
+  Real damping{};
+  Real ramp{};                        ///< [s]
+  bool elastic = false;
+  std::optional<Real> residual;       ///< geostatic: ends when the unbalanced force is below this share of the loads
+  std::optional<Real> k0;             ///< start from a K0 stress
+  bool reset_displacement = false;
+  Where where;
+};
+
+struct StepLimits {
+  Real cfl = 0.4;
+  Real longest = std::numeric_limits<Real>::infinity();  ///< [s]
+  Real shortest = 1e-12;                                 ///< [s]
+};
+
+/// How a stage went.
+struct StageResult {
+  std::string name;
+  Real start{}, end{};     ///< [s]
+  std::int64_t steps{};
+  Real residual{};         ///< at its end
+  EnergyLedger energy;
+  Real kinetic_end{}, plastic_end{};  ///< [J]
+};
+
+/// What the loop tells whoever watches; the watcher may look at the model and not touch it.
+enum class Moment : std::uint8_t { stage_begins, step_done, stage_done };
+
+/// Throws RunError naming step, time, particle, body, scene line and place if the state is not sound.
+template <int D, Kernel<D> K>
+void stop_if_unwell(const Model<D, K>& m);
+
+/// A particle in words: `particle 3311 of "dam" (scenes/dam.yaml:31) at (4.2, 0.1)`.
+template <int D>
+std::string describe(const Particles<D>& particles, const std::vector<Body>& bodies, Index row)
+{
+  const auto p = static_cast<std::size_t>(row);
+  std::string body, place;
+  for (const Body& b : bodies)
+    if (b.begin <= row && row < b.end)
+      body = fmt::format(" of \"{}\"{}", b.name, b.where.line > 0 ? fmt::format(" ({})", to_string(b.where)) : "");
+  for (int d = 0; d < D; ++d)
+    place += fmt::format("{}{:.6g}", d == 0 ? "" : ", ", particles.x[p][d]);
+  return fmt::format("particle {}{} at ({})", particles.id[p], body, place);
+}
+
+template <int D, Kernel<D> K>
+void stop_if_unwell(const Model<D, K>& m)
+{
+  const auto finding = m.health.worst();
+  if (!finding)
+    return;
+  Index row = 0;
+  while (m.particles.id[static_cast<std::size_t>(row)] != finding->id)
+    ++row;
+  const auto p = static_cast<std::size_t>(row);
+  const std::string who = describe(m.particles, m.bodies, row);
+  const Real J = m.particles.F[p].determinant();
+  std::string what;
+  switch (finding->trouble) {
+    case Trouble::lost:
+      what = fmt::format("{} is outside the mesh; extend the mesh, close its boundary with a wall, or set on_exit: delete", who);
+      break;
+    case Trouble::inverted:
+      what = fmt::format("{} turned inside out, det F = {:.4g}; refine the mesh there, take more particles per cell or a smaller time.cfl", who, J);
+      break;
+    case Trouble::no_answer:
+      what = fmt::format("the law of {} returned no finite stress, det F = {:.4g}", who, J);
+      break;
+    case Trouble::not_finite:
+      what = fmt::format("{} has a position, velocity or deformation that is not finite; the step may be too long (time.cfl)", who);
+      break;
+  }
+  throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, what));
+}
+
+/// Runs one stage.  `watch(model, moment)` is called at its beginning, after each step and at its end.
+template <int D, Kernel<D> K, class Watch>
+StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limits, Watch&& watch)
+{
+  constexpr int steps_in_balance = 20;  // an oscillation passes through balance; this many steps in a row do not
+  const Real begin = m.clock.time, end = begin + stage.duration;
+  m.stage = {.damping = stage.damping, .ramp_start = begin, .ramp_time = stage.ramp, .elastic = stage.elastic};
+  if (stage.k0)
+    set_k0_stress(m.mesh, m.loads.gravity(begin, 1), *stage.k0, m.bodies, m.materials, m.particles);
+  m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m)};
+  const std::int64_t first_step = m.clock.step;
+  watch(m, Moment::stage_begins);
+
+  int balanced = 0;
+  while (m.clock.time < end * (1 - 1e-14) && balanced < steps_in_balance) {
+    const Real wanted = std::min(stable_step(m.mesh, m.materials, m.particles, limits.cfl), limits.longest);
+    if (!(wanted >= limits.shortest)) {
+      const Index row = slowest_particle(m.mesh, m.materials, m.particles);
+      throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step, m.clock.time,
+                                 row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted, limits.shortest));
+    }
+    const Real left = end - m.clock.time;
+    const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
+    advance(m, dt);
+    stop_if_unwell(m);
+    watch(m, Moment::step_done);
+    const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
+                      totals(m.particles).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity);
+    balanced = calm ? balanced + 1 : 0;
+  }
+  const Real kinetic = totals(m.particles).kinetic;
+  const StageResult result{stage.name, begin, m.clock.time, m.clock.step - first_step, m.residual, m.energy, kinetic, plastic_work(m)};
+  if (stage.residual && balanced < steps_in_balance)
+    throw RunError(fmt::format("step {}, t = {:.6g} s: stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it more duration or damping",
+                               m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration, m.residual, *stage.residual));
+  if (stage.residual)
+    for (auto& v : m.particles.v)
+      v.setZero();
+  if (stage.reset_displacement && !m.particles.x0.empty())
+    m.particles.x0 = m.particles.x;
+  watch(m, Moment::stage_done);
+  return result;
+}
+
+}  // namespace talus

@@ -1,0 +1,47 @@
+#pragma once
+// How long a step may be.
+#include "materials/batch.hpp"
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// cfl * min over particles of (smallest altitude of its cell / (wave speed + |v|)) [s]; infinite without particles.
+template <int D>
+Real stable_step(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Real cfl)
+{
+  Real least = std::numeric_limits<Real>::infinity();
+  for (const auto& material : materials)
+    std::visit(
+        [&](const auto& batch) {
+          least = parallel_min(batch.size(), least, [&](Index i) {
+            const auto p = static_cast<std::size_t>(batch.begin + i);
+            return mesh.altitude(particles.cell[p]) / (batch.law.wave_speed(particles.F[p]) + particles.v[p].norm());
+          });
+        },
+        material);
+  return cfl * least;
+}
+
+/// The particle that asks for the shortest step: row, for messages.
+template <int D>
+Index slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
+{
+  Index slowest = none;
+  Real least = std::numeric_limits<Real>::infinity();
+  for (const auto& material : materials)
+    std::visit(
+        [&](const auto& batch) {
+          for (Index row = batch.begin; row < batch.end; ++row) {
+            const auto p = static_cast<std::size_t>(row);
+            const Real own = mesh.altitude(particles.cell[p]) / (batch.law.wave_speed(particles.F[p]) + particles.v[p].norm());
+            if (own < least) {
+              least = own;
+              slowest = row;
+            }
+          }
+        },
+        material);
+  return slowest;
+}
+
+}  // namespace talus

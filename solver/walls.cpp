@@ -1,0 +1,199 @@
+#include "solver/walls.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus {
+
+namespace {
+
+/// Cosine of the angle below which two facets belong to one smooth surface.
+constexpr Real smooth = 0.8660254037844387;
+/// Sweeps over the planes of an edge or corner; each sweep contracts the violation by the cosine of their angle or better.
+constexpr int sweeps = 20;
+
+}  // namespace
+
+template <int D>
+typename Walls<D>::NodeRule& Walls<D>::rule(Index node)
+{
+  if (static_cast<std::size_t>(node) >= rule_of_node_.size())
+    rule_of_node_.resize(static_cast<std::size_t>(node) + 1, none);
+  Index& at = rule_of_node_[static_cast<std::size_t>(node)];
+  if (at == none) {
+    at = static_cast<Index>(rules_.size());
+    rules_.push_back({.node = node, .rollers = {}, .frictions = {}});
+  }
+  return rules_[static_cast<std::size_t>(at)];
+}
+
+template <int D>
+void Walls<D>::add(Wall<D> wall, std::span<const Index> nodes)
+{
+  const auto number = static_cast<Index>(walls_.size());
+  const bool fixed = wall.kind == WallKind::fixed;
+  walls_.push_back(std::move(wall));
+  for (const Index n : nodes) {
+    Index& whole = rule(n).whole;
+    if (whole == none || (fixed && walls_[static_cast<std::size_t>(whole)].kind != WallKind::fixed))
+      whole = number;
+  }
+}
+
+template <int D>
+void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets)
+{
+  const auto number = static_cast<Index>(walls_.size());
+  const bool roller = wall.kind == WallKind::roller;
+  walls_.push_back(std::move(wall));
+  facets_.insert(facets_.end(), facets.begin(), facets.end());
+  for (const Facet facet : facets) {
+    const Vec<D> area = mesh.area_vector(facet);
+    for (const Index n : mesh.nodes_of(facet)) {
+      auto& planes = roller ? rule(n).rollers : rule(n).frictions;
+      // until settle(), a plane's normal is the sum of the area vectors it stands for
+      const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) { return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm(); });
+      if (same != planes.end())
+        same->normal += area;
+      else
+        planes.push_back({number, area});
+    }
+  }
+}
+
+template <int D>
+void Walls<D>::settle()
+{
+  for (NodeRule& rule : rules_) {
+    for (Plane& plane : rule.frictions)
+      plane.normal.normalize();
+    std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span already adds nothing
+    for (Plane plane : rule.rollers) {
+      plane.normal.normalize();
+      for (const Plane& other : basis)
+        plane.normal -= plane.normal.dot(other.normal) * other.normal;
+      if (plane.normal.norm() > 1e-6) {
+        plane.normal.normalize();
+        basis.push_back(plane);
+      }
+    }
+    rule.rollers = basis;
+  }
+  std::sort(rules_.begin(), rules_.end(), [](const NodeRule& a, const NodeRule& b) { return a.node < b.node; });
+  for (std::size_t r = 0; r < rules_.size(); ++r)
+    rule_of_node_[static_cast<std::size_t>(rules_[r].node)] = static_cast<Index>(r);
+}
+
+template <int D>
+WallWork Walls<D>::apply(Real time, Real dt, Nodes<D>& nodes)
+{
+  WallWork work;
+  for (NodeRule& rule : rules_) {
+    const auto n = static_cast<std::size_t>(rule.node);
+    rule.stuck = false;
+    if (!nodes.active[n])
+      continue;
+    const Real mass = nodes.sum[n].mass;
+    NodeMotion<D>& motion = nodes.motion[n];
+    const Vec<D> v_old = motion.v - motion.change;
+    Vec<D> v = motion.v, rubbed = Vec<D>::Zero();
+    const auto push = [&](Index wall, const Vec<D>& change) {
+      walls_[static_cast<std::size_t>(wall)].impulse += mass * change;
+      v += change;
+    };
+    if (rule.whole != none) {
+      const Wall<D>& wall = walls_[static_cast<std::size_t>(rule.whole)];
+      push(rule.whole, (wall.kind == WallKind::fixed ? Vec<D>(Vec<D>::Zero()) : Vec<D>(wall.velocity * wall.table(time + dt))) - v);
+    } else {
+      for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
+        bool touched = false;
+        for (const Plane& plane : rule.rollers)
+          push(plane.wall, -v.dot(plane.normal) * plane.normal);
+        for (const Plane& plane : rule.frictions) {
+          const Real into = v.dot(plane.normal);
+          if (into <= 0)
+            continue;
+          push(plane.wall, -into * plane.normal);
+          const Real slip = v.norm(), limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
+          const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
+          push(plane.wall, rub);
+          rubbed += rub;
+          rule.stuck = rule.stuck || slip <= limit;
+          touched = true;
+        }
+        if (!touched || rule.rollers.size() + rule.frictions.size() == 1)
+          break;
+      }
+    }
+    const Vec<D> v_mid = 0.5 * (v_old + v);
+    const Real all = mass * (v - motion.v).dot(v_mid), friction = mass * rubbed.dot(v_mid);
+    work.friction += friction;
+    work.other += all - friction;
+    motion.change = v - v_old;
+    motion.v = v;
+  }
+  return work;
+}
+
+template <int D>
+Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) const
+{
+  if (rule.whole != none) {
+    const Wall<D>& wall = walls_[static_cast<std::size_t>(rule.whole)];
+    return wall.kind == WallKind::fixed ? Vec<D>(Vec<D>::Zero()) : Vec<D>(wall.velocity * wall.table(time));
+  }
+  if (rule.stuck)
+    return Vec<D>::Zero();
+  Vec<D> held = v;
+  for (const Plane& plane : rule.frictions)
+    held -= std::max(held.dot(plane.normal), Real{0}) * plane.normal;
+  for (const Plane& plane : rule.rollers)
+    held -= held.dot(plane.normal) * plane.normal;
+  return held;
+}
+
+template <int D>
+void Walls<D>::hold(Real time, std::span<NodeMotion<D>> motion) const
+{
+  for (const NodeRule& rule : rules_) {
+    Vec<D>& v = motion[static_cast<std::size_t>(rule.node)].v;
+    v = constrained(rule, time, v);
+  }
+}
+
+template <int D>
+Vec<D> Walls<D>::held(Index node, Real time, const Vec<D>& v) const
+{
+  const auto n = static_cast<std::size_t>(node);
+  if (n >= rule_of_node_.size() || rule_of_node_[n] == none)
+    return v;
+  return constrained(rules_[static_cast<std::size_t>(rule_of_node_[n])], time, v);
+}
+
+template <int D>
+void Walls<D>::reset_impulses() noexcept
+{
+  for (Wall<D>& wall : walls_)
+    wall.impulse.setZero();
+}
+
+template <int D>
+std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
+{
+  std::vector<Facet> closed = facets_;
+  const auto whole = [&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    return i < rule_of_node_.size() && rule_of_node_[i] != none && rules_[static_cast<std::size_t>(rule_of_node_[i])].whole != none;
+  };
+  for (const Facet facet : mesh.boundary_facets()) {
+    const auto nodes = mesh.nodes_of(facet);
+    if (std::all_of(nodes.begin(), nodes.end(), whole))
+      closed.push_back(facet);
+  }
+  return closed;
+}
+
+template class Walls<2>;
+template class Walls<3>;
+
+}  // namespace talus

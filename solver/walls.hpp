@@ -1,0 +1,87 @@
+#pragma once
+// Conditions on the nodes of the mesh: held, moved, sliding, rubbing.  Each wall keeps the impulse and the work it exerts.
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/table.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/nodes.hpp"
+
+namespace talus {
+
+enum class WallKind : std::uint8_t {
+  fixed,     ///< v = 0
+  velocity,  ///< v = prescribed
+  roller,    ///< v . n = 0, sliding free
+  friction,  ///< v . n <= 0 (n points out of the mesh), Coulomb friction, free separation
+};
+
+/// One condition on a group, and what it has done to the bodies.
+template <int D>
+struct Wall {
+  std::string name;
+  WallKind kind;
+  Real friction{};                      ///< coefficient [-]
+  Vec<D> velocity = Vec<D>::Zero();     ///< [m/s], times table(t)
+  Table table;
+  Where where;
+  Vec<D> impulse = Vec<D>::Zero();      ///< exerted on the bodies since the last reset [N s]
+};
+
+/// What walls did to the energy of the bodies in a step [J].
+struct WallWork {
+  Real friction{};  ///< of tangential impulses of friction walls, <= 0
+  Real other{};     ///< of all other impulses: prescribed motion, inelastic arrival
+};
+
+/// All conditions of a scene, sorted out per node.  Where several meet in a node: `fixed` wins over `velocity` (the earlier
+/// one of two), both win over planes; planes (rollers, friction) act together, so edges and corners need no special care.
+template <int D>
+class Walls {
+ public:
+  /// Conditions on all components of the nodes given.
+  void add(Wall<D> wall, std::span<const Index> nodes);
+  /// Conditions with a normal: facets of one group.  Facets that meet in a node under less than 30 degrees share their mean
+  /// normal (a smooth surface); sharper ones stay separate planes (an edge).
+  void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets);
+  /// To be called once after the last add().
+  void settle();
+
+  /// The new velocities of nodes with active mass obey the walls.  Returns the work done.
+  WallWork apply(Real time, Real dt, Nodes<D>& nodes);
+  /// The kinematic part alone, on velocities that carry no momentum of their own: remapped ones, and rows of slaves.
+  void hold(Real time, std::span<NodeMotion<D>> motion) const;
+  /// The same for one node.
+  Vec<D> held(Index node, Real time, const Vec<D>& v) const;
+
+  std::span<const Wall<D>> walls() const noexcept { return walls_; }
+  void reset_impulses() noexcept;
+  /// Facets of rollers and friction walls, and facets whose nodes are all held or moved: no particle passes them.
+  std::vector<Facet> closed_facets(const Mesh<D>& mesh) const;
+
+ private:
+  struct Plane {
+    Index wall;
+    Vec<D> normal;  ///< out of the mesh, unit length
+  };
+  struct NodeRule {
+    Index node;
+    Index whole = none;       ///< wall that sets all components
+    std::vector<Plane> rollers;   ///< normals made orthonormal
+    std::vector<Plane> frictions;
+    bool stuck = false;       ///< the last apply() found friction to hold it
+  };
+  NodeRule& rule(Index node);
+  Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
+
+  std::vector<Wall<D>> walls_;
+  std::vector<NodeRule> rules_;
+  std::vector<Index> rule_of_node_;  ///< or none
+  std::vector<Facet> facets_;
+};
+
+extern template class Walls<2>;
+extern template class Walls<3>;
+
+}  // namespace talus
