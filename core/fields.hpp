@@ -41,11 +41,13 @@ std::string to_string(const Range& range);
 
 enum class Need : std::uint8_t { required, optional };
 
-/// A parameter: number, integer, bool, word, vector of numbers, path.  Units are "-" where there is none.
+/// A parameter, read by its type: number, integer, bool, text, Table, list of these, struct with fields() (a mapping), std::variant
+/// of such structs (a mapping whose key `type` chooses), std::optional of any of them.  A range holds for every number of a list.
+/// Units are "-" where there is none.
 template <class Owner, class Value>
 struct Parameter {
   std::string_view key;
-  Value Owner::* member;
+  Value Owner::*member;
   Need need;
   Range range;
   std::string_view unit, meaning;
@@ -56,7 +58,7 @@ struct Parameter {
 template <class Owner, class Value>
 struct Choice {
   std::string_view key;
-  Value Owner::* member;
+  Value Owner::*member;
   Need need;
   std::string_view meaning;
 };
@@ -65,17 +67,26 @@ struct Choice {
 template <class Owner, class Value>
 struct Group {
   std::string_view key;
-  Value Owner::* member;
+  Value Owner::*member;
   std::string_view meaning;
 };
 
 /// A list of mappings: the member is a std::vector of a struct with fields(), or of a std::variant of such structs, each with
-/// `static constexpr std::string_view name`; for variants the key `type` (laws: `law`) chooses.
+/// `static constexpr std::string_view name`; for variants the key `type` chooses.
 template <class Owner, class Item>
 struct List {
   std::string_view key;
-  std::vector<Item> Owner::* member;
+  std::vector<Item> Owner::*member;
   Need need;
+  std::string_view meaning;
+};
+
+/// One of several structs: the member is a std::variant of structs with fields(), each with `static constexpr std::string_view
+/// name`.  The key chooses which by its name; the fields of the chosen one stand in the same mapping.
+template <class Owner, class Value>
+struct Alternative {
+  std::string_view key;
+  Value Owner::*member;
   std::string_view meaning;
 };
 
@@ -83,47 +94,52 @@ struct List {
 template <class Owner, class Value>
 struct History {
   std::string_view key;
-  Value Owner::* member;
+  Value Owner::*member;
   std::string_view unit, meaning;
 };
 
 template <class Owner, class Value>
-constexpr auto required(std::string_view key, Value Owner::* member, Range range, std::string_view unit, std::string_view meaning)
+constexpr auto required(std::string_view key, Value Owner::*member, Range range, std::string_view unit, std::string_view meaning)
 {
   return Parameter<Owner, Value>{key, member, Need::required, range, unit, meaning};
 }
 template <class Owner, class Value>
-constexpr auto optional(std::string_view key, Value Owner::* member, Range range, std::string_view unit, std::string_view meaning)
+constexpr auto optional(std::string_view key, Value Owner::*member, Range range, std::string_view unit, std::string_view meaning)
 {
   return Parameter<Owner, Value>{key, member, Need::optional, range, unit, meaning};
 }
 template <class Owner, class Value>
-constexpr auto required_choice(std::string_view key, Value Owner::* member, std::string_view meaning)
+constexpr auto required_choice(std::string_view key, Value Owner::*member, std::string_view meaning)
 {
   return Choice<Owner, Value>{key, member, Need::required, meaning};
 }
 template <class Owner, class Value>
-constexpr auto optional_choice(std::string_view key, Value Owner::* member, std::string_view meaning)
+constexpr auto optional_choice(std::string_view key, Value Owner::*member, std::string_view meaning)
 {
   return Choice<Owner, Value>{key, member, Need::optional, meaning};
 }
 template <class Owner, class Value>
-constexpr auto group(std::string_view key, Value Owner::* member, std::string_view meaning)
+constexpr auto group(std::string_view key, Value Owner::*member, std::string_view meaning)
 {
   return Group<Owner, Value>{key, member, meaning};
 }
 template <class Owner, class Item>
-constexpr auto required_list(std::string_view key, std::vector<Item> Owner::* member, std::string_view meaning)
+constexpr auto required_list(std::string_view key, std::vector<Item> Owner::*member, std::string_view meaning)
 {
   return List<Owner, Item>{key, member, Need::required, meaning};
 }
 template <class Owner, class Item>
-constexpr auto optional_list(std::string_view key, std::vector<Item> Owner::* member, std::string_view meaning)
+constexpr auto optional_list(std::string_view key, std::vector<Item> Owner::*member, std::string_view meaning)
 {
   return List<Owner, Item>{key, member, Need::optional, meaning};
 }
 template <class Owner, class Value>
-constexpr auto history(std::string_view key, Value Owner::* member, std::string_view unit, std::string_view meaning)
+constexpr auto alternative(std::string_view key, Value Owner::*member, std::string_view meaning)
+{
+  return Alternative<Owner, Value>{key, member, meaning};
+}
+template <class Owner, class Value>
+constexpr auto history(std::string_view key, Value Owner::*member, std::string_view unit, std::string_view meaning)
 {
   return History<Owner, Value>{key, member, unit, meaning};
 }

@@ -2,7 +2,8 @@
 // The scene: plain typed values, one struct per block of the file.  Their field lists are the user manual.
 //
 // A struct may have `Where where` (set by the reader to the place of its mapping) and `void check(std::vector<std::string>&) const`
-// (rules between keys, in words).  Rules that need the mesh are checked when the model is built, with the same error type.
+// (rules between its keys, in words).  Rules between blocks stand in scene_rules.hpp; rules that need the mesh are checked when the
+// model is built, with the same error type.
 #include <optional>
 #include <string>
 #include <variant>
@@ -11,12 +12,14 @@
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "core/table.hpp"
+#include "core/type_list.hpp"
 #include "io/shape.hpp"
 #include "materials/laws.hpp"
 
 namespace talus {
 
-// ---- mesh -------------------------------------------------------------------------------------------------------------
+/// A value of any law: std::variant<LinearElastic, ...>.
+using AnyLaw = variant_of<Laws, std::type_identity_t>;
 
 /// A named solid of inline geometry.  Regions that touch share their faces; a later region gives way where two overlap.
 struct RegionSpec {
@@ -48,7 +51,8 @@ struct RefineSpec {
   Real size{};
   static constexpr auto fields()
   {
-    return std::tuple{group("within", &RefineSpec::within, "where"), required("size", &RefineSpec::size, positive, "m", "edge length inside the box")};
+    return std::tuple{group("within", &RefineSpec::within, "where"),
+                      required("size", &RefineSpec::size, positive, "m", "edge length inside the box")};
   }
 };
 
@@ -59,10 +63,14 @@ struct GridSpec {
   Real jitter = 0;
   static constexpr auto fields()
   {
-    return std::tuple{required("low", &GridSpec::low, any, "m", "corner with the smallest coordinates"), required("high", &GridSpec::high, any, "m", "corner with the largest coordinates"),
-                      required("cells", &GridSpec::cells, positive, "-", "intervals along each axis; each square is cut in 2 triangles, each cube in 6 tetrahedra"),
-                      optional("jitter", &GridSpec::jitter, from_to_below(0, 0.5), "-", "interior nodes moved at random by up to this share of the spacing")};
+    return std::tuple{required("low", &GridSpec::low, any, "m", "corner with the smallest coordinates"),
+                      required("high", &GridSpec::high, any, "m", "corner with the largest coordinates"),
+                      required("cells", &GridSpec::cells, positive, "-",
+                               "intervals along each axis; each square is cut in 2 triangles, each cube in 6 tetrahedra"),
+                      optional("jitter", &GridSpec::jitter, from_to_below(0, 0.5), "-",
+                               "interior nodes moved at random by up to this share of the spacing")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 /// Exactly one of file, geometry, regions, grid.
@@ -76,18 +84,19 @@ struct MeshSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
-                      optional("geometry", &MeshSpec::geometry, any, "-", "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
-                      optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry and regions"),
-                      optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
-                      optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
-                      optional_list("groups", &MeshSpec::groups, "names for parts of the boundary, added to those of the mesh; x_min, x_max, y_min, ... and boundary always exist"),
-                      group("grid", &MeshSpec::grid, "built-in box")};
+    return std::tuple{
+        optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
+        optional("geometry", &MeshSpec::geometry, any, "-",
+                 "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
+        optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry and regions"),
+        optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
+        optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
+        optional_list("groups", &MeshSpec::groups,
+                      "names for parts of the boundary, added to those of the mesh; x_min, x_max, y_min, ... and boundary always exist"),
+        group("grid", &MeshSpec::grid, "built-in box")};
   }
   void check(std::vector<std::string>& problems) const;
 };
-
-// ---- time and method --------------------------------------------------------------------------------------------------
 
 struct TimeSpec {
   Real end = 0;
@@ -97,11 +106,14 @@ struct TimeSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{optional("end", &TimeSpec::end, positive, "s", "end of the run; needed unless there are stages"),
-                      optional("cfl", &TimeSpec::cfl, within(1e-4, 2), "-", "time step as a share of smallest altitude / (wave speed + particle speed)"),
-                      optional("max_step", &TimeSpec::max_step, positive, "s", "no step longer than this"),
-                      optional("min_step", &TimeSpec::min_step, positive, "s", "the run stops, naming the particle, when a shorter step would be needed")};
+    return std::tuple{
+        optional("end", &TimeSpec::end, positive, "s", "end of the run; needed unless there are stages"),
+        optional("cfl", &TimeSpec::cfl, within(1e-4, 2), "-", "time step as a share of smallest altitude / (wave speed + particle speed)"),
+        optional("max_step", &TimeSpec::max_step, positive, "s", "no step longer than this"),
+        optional("min_step", &TimeSpec::min_step, positive, "s",
+                 "the run stops, naming the particle, when a shorter step would be needed")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 enum class Scheme : std::uint8_t { flip, apic, tpic };
@@ -114,20 +126,29 @@ struct TransferSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{optional_choice("scheme", &TransferSpec::scheme, "flip (increments), apic (affine, own matrix) or tpic (affine, velocity gradient)"),
-                      optional("musl", &TransferSpec::musl, any, "-", "map momentum back to the nodes before the velocity gradient is taken; default true for flip, false otherwise"),
-                      optional("pic_damping_time", &TransferSpec::pic_damping_time, positive, "s", "flip only: share dt/time of plain PIC in each step; default none")};
+    return std::tuple{
+        optional_choice("scheme", &TransferSpec::scheme,
+                        "flip (increments), apic (affine, own matrix) or tpic (affine, velocity gradient)"),
+        optional("musl", &TransferSpec::musl, any, "-",
+                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip, false otherwise"),
+        optional("pic_damping_time", &TransferSpec::pic_damping_time, positive, "s",
+                 "flip only: share dt/time of plain PIC in each step; default none")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
-
-// ---- materials and bodies ---------------------------------------------------------------------------------------------
 
 struct MaterialSpec {
   std::string name;
-  AnyLaw law;  ///< std::variant over Laws; the key `law` chooses, its fields stand in the same mapping
+  AnyLaw law;
   Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
+                      alternative("law", &MaterialSpec::law, "constitutive law; its parameters are keys of the same mapping")};
+  }
 };
 
+/// A body fills either a cell group or a shape.
 struct BodySpec {
   std::string name, material;
   std::string region;
@@ -137,16 +158,17 @@ struct BodySpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("name", &BodySpec::name, any, "-", "name in messages and output"), required("material", &BodySpec::material, any, "-", "name of a material"),
+    return std::tuple{required("name", &BodySpec::name, any, "-", "name in messages and output"),
+                      required("material", &BodySpec::material, any, "-", "name of a material"),
                       optional("region", &BodySpec::region, any, "-", "the body fills this cell group of the mesh"),
                       optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
-                      optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-", "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, ..."),
-                      optional("velocity", &BodySpec::velocity, any, "m/s", "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
+                      optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
+                               "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, ..."),
+                      optional("velocity", &BodySpec::velocity, any, "m/s",
+                               "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
   }
-  void check(std::vector<std::string>& problems) const;  ///< exactly one of region and shape
+  void check(std::vector<std::string>& problems) const;
 };
-
-// ---- loads and boundaries ---------------------------------------------------------------------------------------------
 
 struct GravitySpec {
   static constexpr std::string_view name = "gravity";
@@ -174,10 +196,14 @@ struct TractionSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &TractionSpec::on, any, "-", "facet group"), optional("traction", &TractionSpec::traction, any, "Pa", "force per initial area, fixed direction, one number per dimension"),
-                      optional("pressure", &TractionSpec::pressure, any, "Pa", "pressure normal to the surface as it deforms, positive pushes"),
-                      optional_choice("carried_by", &TractionSpec::carried_by, "particles: the first layer of particles behind the facets carries the load and takes it along; mesh: the facets keep it"),
-                      optional("table", &TractionSpec::table, any, "-", "factor in time: list of [time, factor]")};
+    return std::tuple{
+        required("on", &TractionSpec::on, any, "-", "facet group"),
+        optional("traction", &TractionSpec::traction, any, "Pa", "force per initial area, fixed direction, one number per dimension"),
+        optional("pressure", &TractionSpec::pressure, any, "Pa", "pressure normal to the surface as it deforms, positive pushes"),
+        optional_choice(
+            "carried_by", &TractionSpec::carried_by,
+            "particles: the first layer of particles behind the facets carries the load and takes it along; mesh: the facets keep it"),
+        optional("table", &TractionSpec::table, any, "-", "factor in time: list of [time, factor]")};
   }
   void check(std::vector<std::string>& problems) const;
 };
@@ -195,7 +221,10 @@ struct RollerSpec {
   static constexpr std::string_view name = "roller";
   std::string on;
   Where where;
-  static constexpr auto fields() { return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free")}; }
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free")};
+  }
 };
 
 struct VelocitySpec {
@@ -206,7 +235,8 @@ struct VelocitySpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"), required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension"),
+    return std::tuple{required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
+                      required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension"),
                       optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]")};
   }
 };
@@ -219,13 +249,12 @@ struct FrictionSpec {
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FrictionSpec::on, any, "-", "facet group that acts as a wall: no penetration, free separation"),
-                      required("coefficient", &FrictionSpec::coefficient, non_negative, "-", "Coulomb friction coefficient, tangent of the wall friction angle")};
+                      required("coefficient", &FrictionSpec::coefficient, non_negative, "-",
+                               "Coulomb friction coefficient, tangent of the wall friction angle")};
   }
 };
 
 using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec>;
-
-// ---- stages -----------------------------------------------------------------------------------------------------------
 
 /// Stress at the start: vertical stress from the weight above, horizontal stress k0 times it.
 struct K0Spec {
@@ -242,14 +271,19 @@ struct GeostaticSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("duration", &GeostaticSpec::duration, positive, "s", "the stage fails if the residual is not reached by then"),
-                      optional("ramp", &GeostaticSpec::ramp, non_negative, "s", "gravity and loads grow linearly over this time"),
-                      optional("damping", &GeostaticSpec::damping, from_to_below(0, 1), "-", "local damping: share of the nodal force that opposes the motion"),
-                      optional("residual", &GeostaticSpec::residual, positive, "-", "done when the unbalanced nodal force is below this share of the total load"),
-                      optional("elastic", &GeostaticSpec::elastic, any, "-", "suspend yielding during the stage"),
-                      optional("reset_displacement", &GeostaticSpec::reset_displacement, any, "-", "displacement and time of later stages count from the end of this one"),
-                      group("initial_stress", &GeostaticSpec::initial_stress, "K0 state to start from, for laws that can carry a prestress")};
+    return std::tuple{
+        required("duration", &GeostaticSpec::duration, positive, "s", "the stage fails if the residual is not reached by then"),
+        optional("ramp", &GeostaticSpec::ramp, non_negative, "s", "gravity and loads grow linearly over this time"),
+        optional("damping", &GeostaticSpec::damping, from_to_below(0, 1), "-",
+                 "local damping: share of the nodal force that opposes the motion"),
+        optional("residual", &GeostaticSpec::residual, positive, "-",
+                 "done when the unbalanced nodal force is below this share of the total load"),
+        optional("elastic", &GeostaticSpec::elastic, any, "-", "suspend yielding during the stage"),
+        optional("reset_displacement", &GeostaticSpec::reset_displacement, any, "-",
+                 "displacement and time of later stages count from the end of this one"),
+        group("initial_stress", &GeostaticSpec::initial_stress, "K0 state to start from, for laws that can carry a prestress")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 struct RunSpec {
@@ -265,8 +299,6 @@ struct RunSpec {
 
 using StageSpec = std::variant<GeostaticSpec, RunSpec>;
 
-// ---- output -----------------------------------------------------------------------------------------------------------
-
 struct ParticleOutputSpec {
   Real every{};
   std::vector<std::string> fields_wanted{"velocity", "displacement", "stress"};
@@ -274,7 +306,9 @@ struct ParticleOutputSpec {
   static constexpr auto fields()
   {
     return std::tuple{required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
-                      optional("fields", &ParticleOutputSpec::fields_wanted, any, "-", "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, F, velocity_gradient, and any history variable of a law")};
+                      optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
+                               "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, F, velocity_gradient, and any "
+                               "history variable of a law")};
   }
 };
 
@@ -297,7 +331,8 @@ struct PointSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("name", &PointSpec::name, any, "-", "prefix of its columns"), required("at", &PointSpec::at, any, "m", "place at the start; the nearest particle is followed"),
+    return std::tuple{required("name", &PointSpec::name, any, "-", "prefix of its columns"),
+                      required("at", &PointSpec::at, any, "m", "place at the start; the nearest particle is followed"),
                       optional("body", &PointSpec::body, any, "-", "only particles of this body; default any")};
   }
 };
@@ -314,8 +349,10 @@ struct FrontSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("name", &FrontSpec::name, any, "-", "name of the column"), required_choice("direction", &FrontSpec::direction, "along which the mass is measured"),
-                      optional("mass_share", &FrontSpec::mass_share, within(0, 1), "-", "coordinate below which this share of the mass lies; 1 is the outermost particle"),
+    return std::tuple{required("name", &FrontSpec::name, any, "-", "name of the column"),
+                      required_choice("direction", &FrontSpec::direction, "along which the mass is measured"),
+                      optional("mass_share", &FrontSpec::mass_share, within(0, 1), "-",
+                               "coordinate below which this share of the mass lies; 1 is the outermost particle"),
                       optional("body", &FrontSpec::body, any, "-", "only this body; default all")};
   }
 };
@@ -327,8 +364,10 @@ struct HistoryOutputSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("every", &HistoryOutputSpec::every, positive, "s", "time between rows; energies, momenta, mass, residual and reactions are always there"),
-                      optional_list("points", &HistoryOutputSpec::points, "material points whose position, displacement, velocity and stress are written"),
+    return std::tuple{required("every", &HistoryOutputSpec::every, positive, "s",
+                               "time between rows; energies, momenta, mass, residual and reactions are always there"),
+                      optional_list("points", &HistoryOutputSpec::points,
+                                    "material points whose position, displacement, velocity and stress are written"),
                       optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass")};
   }
 };
@@ -340,12 +379,14 @@ struct PictureSpec {
   bool mesh = true;
   static constexpr auto fields()
   {
-    return std::tuple{optional("field", &PictureSpec::field, any, "-", "particle field that colours the particles; vectors by their length"),
-                      optional("range", &PictureSpec::range, any, "-", "[low, high] of the colour map; default the range of the last frame"),
-                      optional("view", &PictureSpec::view, any, "-", "3-D: direction from the scene to the camera"),
-                      optional("up", &PictureSpec::up, any, "-", "3-D: direction that points up in the picture; default against gravity"),
-                      optional("mesh", &PictureSpec::mesh, any, "-", "draw the outline of the mesh")};
+    return std::tuple{
+        optional("field", &PictureSpec::field, any, "-", "particle field that colours the particles; vectors by their length"),
+        optional("range", &PictureSpec::range, any, "-", "[low, high] of the colour map; default the range of the last frame"),
+        optional("view", &PictureSpec::view, any, "-", "3-D: direction from the scene to the camera"),
+        optional("up", &PictureSpec::up, any, "-", "3-D: direction that points up in the picture; default against gravity"),
+        optional("mesh", &PictureSpec::mesh, any, "-", "draw the outline of the mesh")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 struct OutputSpec {
@@ -355,12 +396,12 @@ struct OutputSpec {
   PictureSpec picture;
   static constexpr auto fields()
   {
-    return std::tuple{group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"), group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"),
-                      group("history", &OutputSpec::history, "history.csv"), optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};
+    return std::tuple{group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"),
+                      group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"),
+                      group("history", &OutputSpec::history, "history.csv"),
+                      optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};
   }
 };
-
-// ---- the whole --------------------------------------------------------------------------------------------------------
 
 enum class OnExit : std::uint8_t { stop, remove };
 constexpr std::array<std::string_view, 2> words(OnExit) { return {"stop", "delete"}; }
@@ -385,17 +426,23 @@ struct Scene {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("title", &Scene::title, any, "-", "one line"), required("dimension", &Scene::dimension, within(2, 3), "-", "2 (plane strain, unit thickness) or 3"),
-                      group("mesh", &Scene::mesh, "the background mesh"), optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
-                      group("time", &Scene::time, "end and step"), optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
-                      required_list("materials", &Scene::materials, "constitutive laws with their constants"), required_list("bodies", &Scene::bodies, "what is made of particles"),
-                      optional_list("loads", &Scene::loads, "forces"), optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
-                      optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
-                      optional("outputs", &Scene::outputs, any, "-", "what is written"),
-                      optional_choice("on_exit", &Scene::on_exit, "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
-                      optional("threads", &Scene::threads, non_negative, "-", "threads to use; 0 means all, --threads wins")};
+    return std::tuple{
+        required("title", &Scene::title, any, "-", "one line"),
+        required("dimension", &Scene::dimension, within(2, 3), "-", "2 (plane strain, unit thickness) or 3"),
+        group("mesh", &Scene::mesh, "the background mesh"),
+        optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
+        optional("time", &Scene::time, any, "-", "end and step"),
+        optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
+        required_list("materials", &Scene::materials, "constitutive laws with their constants"),
+        required_list("bodies", &Scene::bodies, "what is made of particles"),
+        optional_list("loads", &Scene::loads, "forces"),
+        optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
+        optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
+        optional("outputs", &Scene::outputs, any, "-", "what is written"),
+        optional_choice("on_exit", &Scene::on_exit,
+                        "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
+        optional("threads", &Scene::threads, non_negative, "-", "threads to use; 0 means all, --threads wins")};
   }
-  void check(std::vector<std::string>& problems) const;
 };
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 #pragma once
 // Simple solids: inline geometry for the mesher, and regions of space that bodies fill.
-#include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -11,6 +11,9 @@
 
 namespace talus {
 
+/// Complains unless low < high along every axis.
+void check_corners(const std::vector<Real>& low, const std::vector<Real>& high, std::vector<std::string>& problems);
+
 /// Axis-parallel box.
 struct Box {
   static constexpr std::string_view name = "box";
@@ -20,6 +23,7 @@ struct Box {
     return std::tuple{required("low", &Box::low, any, "m", "corner with the smallest coordinates, one number per dimension"),
                       required("high", &Box::high, any, "m", "corner with the largest coordinates")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 /// Disk in 2-D, ball in 3-D.
@@ -41,9 +45,11 @@ struct Cylinder {
   Real radius{};
   static constexpr auto fields()
   {
-    return std::tuple{required("from", &Cylinder::from, any, "m", "centre of one end face"), required("to", &Cylinder::to, any, "m", "centre of the other"),
+    return std::tuple{required("from", &Cylinder::from, any, "m", "centre of one end face"),
+                      required("to", &Cylinder::to, any, "m", "centre of the other end face"),
                       required("radius", &Cylinder::radius, positive, "m", "radius")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 /// Simple polygon in the x-y plane; in 3-D it is extruded along z.
@@ -56,11 +62,12 @@ struct Polygon {
     return std::tuple{required("points", &Polygon::points, any, "m", "corners [x, y] in order, not closed"),
                       optional("extrude", &Polygon::extrude, any, "m", "3-D only: [z from, z to]")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 using Shape = std::variant<Box, Sphere, Cylinder, Polygon>;
 
-/// True if x (one number per dimension) lies in the shape or on its surface.
+/// True if x (one number per dimension of the scene) lies in the shape or on its surface.  The shape must fit the dimension.
 bool contains(const Shape& shape, std::span<const Real> x) noexcept;
 
 }  // namespace talus

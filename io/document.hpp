@@ -1,0 +1,97 @@
+#pragma once
+// An input file as a tree of values that know their place: what is left of YAML outside io/reader.cpp.
+#include <filesystem>
+#include <list>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace talus {
+
+/// A text that values come from: a file, or one override of the command line.  Not copied: the lines point into the text.
+struct Source {
+  std::string name;                     ///< as messages show it
+  std::string text;                     ///< lines ended by "\n", no byte order mark
+  std::vector<std::string_view> lines;  ///< of the text; none for an override
+};
+
+/// Where a value stands.  Lines and columns count from one, columns in bytes; zero means unknown.
+struct Place {
+  const Source* source = nullptr;
+  int line = 0, column = 0;
+};
+
+/// A value of the file.
+struct Node {
+  enum class Kind : std::uint8_t {
+    empty,       ///< a key without a value
+    scalar,      ///< `text`
+    list,        ///< `items`
+    mapping,     ///< `keys` and, in the same order, `items`
+    unreadable,  ///< a problem has been noted already: readers keep silent
+  };
+  struct Key {
+    std::string text;
+    Place place;
+  };
+  Kind kind = Kind::empty;
+  bool quoted = false;  ///< a scalar in quotes, or a block of text: never a number
+  Place place;
+  std::string text{};
+  std::vector<Node> items{};
+  std::vector<Key> keys{};
+
+  /// The value of a key, or nothing if this is no mapping or has no such key.
+  const Node* find(std::string_view key) const noexcept;
+};
+
+/// `parent.key`, or `key` at the top.
+std::string path_to(const std::string& parent, std::string_view key);
+/// `parent[i]`, followed by the name in quotes if the entry has one: `materials[1] "clay"`.
+std::string path_to(const std::string& parent, std::size_t i, const Node& entry);
+
+/// Collects what is wrong.  Keeps the first hundred: more would help nobody, and a damaged file has millions.
+class Problems {
+ public:
+  void add(const Place& place, std::string path, std::string message);
+  std::size_t size() const noexcept { return list_.size(); }
+  const std::vector<Problem>& list() const noexcept { return list_; }
+  /// Throws SceneErrors with all of them, if there are any.
+  void throw_if_any() const;
+
+ private:
+  std::vector<Problem> list_;
+};
+
+struct Document {
+  std::list<Source> sources;  ///< the file, then the overrides; addresses stay
+  Node root;
+  Problems problems;  ///< doubled keys, aliases, overrides that fit nowhere
+};
+
+/// The whole text of a file; throws SceneErrors unless it is a text in UTF-8, without tabs in the indentation, of at most 4 MB.
+std::string read_text(const std::filesystem::path& file);
+std::vector<std::string_view> lines_of(std::string_view text);
+
+/// The place in words of the error messages, with the path of keys to the value.
+Where to_where(const Place& place, std::string path);
+
+/// Replaces or adds the value at a path of keys such as `bodies[0].particles_per_cell`; mappings that are missing on the way are
+/// made, entries of lists are not.  `origin` is the place of the override, for messages.
+void set_value(Document& document, std::string_view path, Node value, const Place& origin);
+
+/// True if a path is the other one or leads to something inside it.
+bool is_within(std::string_view path, std::string_view outer);
+
+/// A value and its path as messages show it.
+struct Found {
+  const Node* node;
+  std::string path;
+};
+/// The value at a path of keys, or the last one on the way to it that exists.
+Found find_nearest(const Node& root, std::string_view path);
+
+}  // namespace talus

@@ -1,0 +1,68 @@
+#include "io/field_reader.hpp"
+
+#include <fmt/format.h>
+
+namespace talus {
+
+const Node* Mapping::find(std::string_view key)
+{
+  known_.emplace_back(key);
+  return node_.find(key);
+}
+
+const Node* Mapping::find_required(std::string_view key, std::string_view unit)
+{
+  const Node* value = find(key);
+  if (value == nullptr)
+    complain(fmt::format("missing key \"{}\"{}", key, unit == "-" ? "" : fmt::format(" [{}]", unit)));
+  return value;
+}
+
+void Mapping::close()
+{
+  for (const auto& [key, place] : node_.keys)
+    if (!any_key_ && std::find(known_.begin(), known_.end(), key) == known_.end())
+      problems_.add(place, path_, fmt::format("unknown key \"{}\"{}", key, suggestion(key, known_)));
+  if (problems_.size() > before_)
+    return;
+  std::vector<std::string> broken;
+  for (const auto& check : checks_)
+    check(broken);
+  for (auto& rule : broken)
+    complain(std::move(rule));
+}
+
+void FieldReader::read(const Node& node, const std::string& path, const Asked&, Table& table)
+{
+  const std::size_t before = problems_.size();
+  read(node, path, {}, table.points);
+  for (std::size_t i = 1; i < table.points.size() && problems_.size() == before; ++i)
+    if (const Real t0 = table.points[i - 1][0], t1 = table.points[i][0]; !(t1 > t0))
+      problems_.add(node.items[i].place, path_to(path, i, node.items[i]), fmt::format("time {} s does not come after {} s", t1, t0));
+}
+
+bool FieldReader::is(Node::Kind kind, const Node& node, const std::string& path)
+{
+  if (node.kind == kind)
+    return true;
+  const auto name = [](Node::Kind k) {
+    return k == Node::Kind::list ? "a list [..., ...]" : k == Node::Kind::mapping ? "a mapping {key: value}" : "a single value";
+  };
+  if (node.kind == Node::Kind::empty)
+    problems_.add(node.place, path, fmt::format("there is nothing here, expected {}", name(kind)));
+  else if (node.kind != Node::Kind::unreadable)
+    problems_.add(node.place, path, fmt::format("expected {}, found {}", name(kind), name(node.kind)));
+  return false;
+}
+
+std::string FieldReader::count_message(std::size_t wanted, std::size_t found)
+{
+  return fmt::format("needs {} values, not {}", wanted, found);
+}
+
+std::string FieldReader::unknown_word(std::string_view key, const std::string& word, const std::vector<std::string>& known)
+{
+  return fmt::format("unknown {} \"{}\"{}", key, word, suggestion(word, known));
+}
+
+}  // namespace talus

@@ -1,0 +1,18 @@
+#pragma once
+// Reading a scene file, strictly: everything that is wrong is found at once, with file, line, column and key.
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include "io/scene.hpp"
+
+namespace talus {
+
+/// The scene in a YAML file, changed by overrides such as "time.end=2" or "bodies[0].particles_per_cell=6" (from --set).
+///
+/// When it returns, every rule is kept that does not need the mesh.  Otherwise it throws SceneErrors with all that is wrong, sorted
+/// by place; the file of a problem in an override is its text, such as `--set time.end=2x`.  A subset of YAML is read: no anchors,
+/// aliases, merge keys or tags, one document, decimal numbers, `true` and `false`.
+Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+}  // namespace talus

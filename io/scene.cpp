@@ -1,0 +1,86 @@
+// Rules between the keys of one block.
+#include "io/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+namespace talus {
+
+namespace {
+
+/// Complains unless exactly one of the keys is there.
+void exactly_one(std::string_view keys, int found, std::vector<std::string>& problems)
+{
+  if (found == 0)
+    problems.push_back(fmt::format("one of {} is needed", keys));
+  if (found > 1)
+    problems.push_back(fmt::format("only one of {} may stand here, not {}", keys, found));
+}
+
+}  // namespace
+
+void GridSpec::check(std::vector<std::string>& problems) const
+{
+  check_corners(low, high, problems);
+  if (cells.size() != low.size())
+    problems.push_back(fmt::format("cells has {} numbers and low has {}", cells.size(), low.size()));
+}
+
+void MeshSpec::check(std::vector<std::string>& problems) const
+{
+  exactly_one("file, geometry, regions or grid", !file.empty() + !geometry.empty() + !regions.empty() + grid.has_value(), problems);
+  const bool meshed = !geometry.empty() || !regions.empty();
+  if (meshed && !size)
+    problems.push_back("missing key \"size\" [m]: geometry and regions are meshed");
+  if (!meshed && (size || !refine.empty()))
+    problems.push_back(fmt::format("{} is for geometry and regions only", size ? "size" : "refine"));
+  if (!file.empty() && std::filesystem::path(file).extension() != ".msh")
+    problems.push_back(fmt::format("file \"{}\" does not end in .msh; a .geo or .step file is given as geometry", file));
+  const auto kind = std::filesystem::path(geometry).extension();
+  if (!geometry.empty() && kind != ".geo" && kind != ".step" && kind != ".stp")
+    problems.push_back(fmt::format("geometry \"{}\" does not end in .geo, .step or .stp", geometry));
+}
+
+void TimeSpec::check(std::vector<std::string>& problems) const
+{
+  if (max_step && *max_step < min_step)
+    problems.push_back(fmt::format("max_step {} s is smaller than min_step {} s", *max_step, min_step));
+}
+
+void TransferSpec::check(std::vector<std::string>& problems) const
+{
+  if (pic_damping_time && scheme != Scheme::flip)
+    problems.push_back("pic_damping_time is for scheme flip only");
+}
+
+void BodySpec::check(std::vector<std::string>& problems) const
+{
+  exactly_one("region or shape", !region.empty() + shape.has_value(), problems);
+}
+
+void TractionSpec::check(std::vector<std::string>& problems) const
+{
+  exactly_one("traction or pressure", !traction.empty() + pressure.has_value(), problems);
+}
+
+void GeostaticSpec::check(std::vector<std::string>& problems) const
+{
+  if (ramp > duration)
+    problems.push_back(fmt::format("ramp {} s is longer than the stage, {} s", ramp, duration));
+}
+
+void PictureSpec::check(std::vector<std::string>& problems) const
+{
+  if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))
+    problems.push_back("range needs two numbers, the smaller one first");
+  const auto needs_direction = [&](std::string_view key, const std::vector<Real>& v) {
+    if (v.size() != 3 || (v[0] == 0 && v[1] == 0 && v[2] == 0))
+      problems.push_back(fmt::format("{} needs three numbers that are not all zero", key));
+  };
+  needs_direction("view", view);
+  if (!up.empty())
+    needs_direction("up", up);
+}
+
+}  // namespace talus

@@ -1,0 +1,225 @@
+#include "io/scene_rules.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/words.hpp"
+#include "kernels/kernels.hpp"
+
+namespace talus {
+
+namespace {
+
+class Rules {
+ public:
+  explicit Rules(const Scene& scene) : scene_(scene) {}
+
+  std::vector<Finding> broken()
+  {
+    known_word("kernel", "kernel", scene_.kernel, kernel_names());
+    mesh();
+    time();
+    materials_and_bodies();
+    loads_and_boundaries();
+    outputs();
+    return std::move(findings_);
+  }
+
+ private:
+  void add(std::string path, std::string message) { findings_.push_back({std::move(path), std::move(message)}); }
+
+  void known_word(std::string path, std::string_view what, const std::string& word, const std::vector<std::string>& known)
+  {
+    if (!word.empty() && std::find(known.begin(), known.end(), word) == known.end())
+      add(std::move(path), fmt::format("there is no {} \"{}\"{}", what, word, suggestion(word, known)));
+  }
+
+  template <class Item>
+  static std::vector<std::string> names(const std::vector<Item>& items)
+  {
+    std::vector<std::string> all;
+    for (const Item& item : items)
+      all.push_back(item.name);
+    return all;
+  }
+
+  template <class Item>
+  void different_names(const std::string& path, const std::vector<Item>& items)
+  {
+    const auto all = names(items);
+    for (auto name = all.begin(); name != all.end(); ++name)
+      if (const auto first = std::find(all.begin(), name, *name); first != name && !name->empty())
+        add(fmt::format("{}[{}].name", path, name - all.begin()),
+            fmt::format("\"{}\" is the name of {}[{}] already", *name, path, first - all.begin()));
+  }
+
+  /// A list with one entry per dimension, unless it is empty.
+  template <class T>
+  void fits(const std::string& path, const std::vector<T>& list)
+  {
+    if (scene_.dimension != 0 && !list.empty() && list.size() != static_cast<std::size_t>(scene_.dimension))
+      add(path, fmt::format("needs {} values in {} dimensions, not {}", scene_.dimension, scene_.dimension, list.size()));
+  }
+  void fits(const std::string& path, const Box& box)
+  {
+    fits(path + ".low", box.low);
+    fits(path + ".high", box.high);
+  }
+  void fits(const std::string& path, const Sphere& sphere) { fits(path + ".centre", sphere.centre); }
+  void fits(const std::string& path, const Cylinder& cylinder)
+  {
+    if (scene_.dimension == 2)
+      return add(path + ".type", "a cylinder needs 3 dimensions; in 2 use a sphere or a box");
+    fits(path + ".from", cylinder.from);
+    fits(path + ".to", cylinder.to);
+  }
+  void fits(const std::string& path, const Polygon& polygon)
+  {
+    if (scene_.dimension == 3 && polygon.extrude.empty() && !polygon.points.empty())
+      add(path, "missing key \"extrude\" [m]: in 3 dimensions a polygon has [z from, z to]");
+    if (scene_.dimension == 2 && !polygon.extrude.empty())
+      add(path + ".extrude", "a polygon is extruded in 3 dimensions only");
+  }
+  void fits(const std::string& path, const Shape& shape)
+  {
+    std::visit([&](const auto& s) { fits(path, s); }, shape);
+  }
+
+  void mesh()
+  {
+    const MeshSpec& mesh = scene_.mesh;
+    different_names("mesh.regions", mesh.regions);
+    different_names("mesh.groups", mesh.groups);
+    for (std::size_t i = 0; i < mesh.regions.size(); ++i)
+      fits(fmt::format("mesh.regions[{}].shape", i), mesh.regions[i].shape);
+    for (std::size_t i = 0; i < mesh.refine.size(); ++i)
+      fits(fmt::format("mesh.refine[{}].within", i), mesh.refine[i].within);
+    for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
+      fits(fmt::format("mesh.groups[{}].within", i), mesh.groups[i].within);
+      static constexpr std::array<std::string_view, 7> taken{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "boundary"};
+      if (std::find(taken.begin(), taken.end(), mesh.groups[i].name) != taken.end())
+        add(fmt::format("mesh.groups[{}].name", i), fmt::format("every mesh has a group \"{}\" already", mesh.groups[i].name));
+    }
+    if (mesh.grid) {
+      fits("mesh.grid.low", mesh.grid->low);
+      fits("mesh.grid.high", mesh.grid->high);
+      fits("mesh.grid.cells", mesh.grid->cells);
+    }
+  }
+
+  void time()
+  {
+    if (scene_.stages.empty() && scene_.time.end == 0)
+      add("time", "time.end or stages must say when the run ends");
+    if (!scene_.stages.empty() && scene_.time.end != 0)
+      add("time.end", "the stages say when the run ends: leave this out");
+    for (std::size_t i = 1; i < scene_.stages.size(); ++i)
+      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
+        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress");
+  }
+
+  void materials_and_bodies()
+  {
+    different_names("materials", scene_.materials);
+    different_names("bodies", scene_.bodies);
+    const auto known = names(scene_.materials);
+    const bool all_known = !known.empty() && std::find(known.begin(), known.end(), "") == known.end();
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) {
+      const BodySpec& body = scene_.bodies[i];
+      const std::string path = fmt::format("bodies[{}]", i);
+      if (all_known)
+        known_word(path + ".material", "material", body.material, known);
+      fits(path + ".velocity", body.velocity);
+      if (body.shape)
+        fits(path + ".shape", *body.shape);
+    }
+  }
+
+  void loads_and_boundaries()
+  {
+    std::optional<std::size_t> gravity;
+    for (std::size_t i = 0; i < scene_.loads.size(); ++i) {
+      const std::string path = fmt::format("loads[{}]", i);
+      if (const auto* load = std::get_if<GravitySpec>(&scene_.loads[i])) {
+        fits(path + ".acceleration", load->acceleration);
+        if (gravity)
+          add(path, fmt::format("gravity is given by loads[{}] already", *gravity));
+        gravity = gravity ? gravity : i;
+      }
+      if (const auto* load = std::get_if<TractionSpec>(&scene_.loads[i]))
+        fits(path + ".traction", load->traction);
+    }
+    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+      if (const auto* boundary = std::get_if<VelocitySpec>(&scene_.boundaries[i]))
+        fits(fmt::format("boundaries[{}].velocity", i), boundary->velocity);
+  }
+
+  void outputs()
+  {
+    const OutputSpec& outputs = scene_.outputs;
+    if (outputs.particles)
+      known_fields("outputs.particles.fields", outputs.particles->fields_wanted, particle_field_names());
+    if (outputs.mesh)
+      known_fields("outputs.mesh.fields", outputs.mesh->fields_wanted, {node_fields.begin(), node_fields.end()});
+    if (outputs.history)
+      history(*outputs.history);
+  }
+
+  void history(const HistoryOutputSpec& history)
+  {
+    const auto bodies = names(scene_.bodies);
+    different_names("outputs.history.points", history.points);
+    different_names("outputs.history.fronts", history.fronts);
+    for (std::size_t i = 0; i < history.points.size(); ++i) {
+      const std::string path = fmt::format("outputs.history.points[{}]", i);
+      fits(path + ".at", history.points[i].at);
+      known_word(path + ".body", "body", history.points[i].body, bodies);
+    }
+    for (std::size_t i = 0; i < history.fronts.size(); ++i) {
+      const std::string path = fmt::format("outputs.history.fronts[{}]", i);
+      known_word(path + ".body", "body", history.fronts[i].body, bodies);
+      const Direction direction = history.fronts[i].direction;
+      if (scene_.dimension == 2 && (direction == Direction::z_plus || direction == Direction::z_minus))
+        add(path + ".direction", "there is no z in 2 dimensions");
+    }
+  }
+
+  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known)
+  {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      known_word(fmt::format("{}[{}]", path, i), "field", wanted[i], known);
+      if (!wanted[i].empty() && std::find(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(i), wanted[i]) !=
+                                    wanted.begin() + static_cast<std::ptrdiff_t>(i))
+        add(fmt::format("{}[{}]", path, i), fmt::format("\"{}\" is asked for twice", wanted[i]));
+    }
+  }
+
+  /// Those of every particle, and the history variables of the laws in this scene.
+  std::vector<std::string> particle_field_names() const
+  {
+    std::vector<std::string> known(particle_fields.begin(), particle_fields.end());
+    const auto add_history = [&]<class Law>(const Law&) {
+      for_each_field<typename Law::State>([&](const auto& variable) { known.emplace_back(variable.key); });
+    };
+    for (const MaterialSpec& material : scene_.materials)
+      std::visit(add_history, material.law);
+    return known;
+  }
+
+  const Scene& scene_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+std::vector<Finding> broken_rules(const Scene& scene) { return Rules(scene).broken(); }
+
+std::vector<std::string> kernel_names()
+{
+  std::vector<std::string> names;
+  for_each_type(Kernels<2>{}, [&]<class K>() { names.emplace_back(K::name); });
+  return names;
+}
+
+}  // namespace talus
