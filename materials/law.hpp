@@ -1,6 +1,7 @@
 #pragma once
 // What a constitutive law is: a small value that knows no mesh, no kernel and no dimension.
 #include <concepts>
+#include <limits>
 #include <string_view>
 #include <tuple>
 
@@ -29,6 +30,8 @@ struct NoHistory {
 ///   void check(std::vector<std::string>& problems) const            rules between parameters, in words
 ///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
 ///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
+///   Constants constants() const;  Mat3 update(in, state, const Constants&) const     what a batch computes once from the parameters
+///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
 /// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
 template <class L>
 concept Law = requires(const L law, const Increment& in, typename L::State& state) {
@@ -40,5 +43,18 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
   { law.update(in, state) } noexcept -> std::same_as<Mat3>;
   { law.wave_speed(in.F) } noexcept -> std::same_as<Real>;
 };
+
+/// What a law answers where it has no answer.
+inline Mat3 no_answer() noexcept { return Mat3::Constant(std::numeric_limits<Real>::quiet_NaN()); }
+
+/// True unless the law says that it is not: the contract tests prove the claim, and its opposite, for every law.
+template <class L>
+constexpr bool is_objective() noexcept
+{
+  if constexpr (requires { L::objective; })
+    return L::objective;
+  else
+    return true;
+}
 
 }  // namespace talus

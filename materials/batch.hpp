@@ -1,0 +1,172 @@
+#pragma once
+// One law and its history over the particles of one body, and the questions a solver asks without knowing which law it is.
+#include <cassert>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "materials/laws.hpp"
+
+namespace talus {
+
+namespace detail {
+struct NoConstants {};
+template <class L>
+struct ConstantsOf {
+  using type = NoConstants;
+};
+template <class L>
+  requires requires { typename L::Constants; }
+struct ConstantsOf<L> {
+  using type = typename L::Constants;
+};
+}  // namespace detail
+
+/// Particles [begin, end) of the model follow `law`.  Every index i below counts from 0 inside the body.
+template <class L>
+struct Batch {
+  static_assert(Law<L>);
+  using LawType = L;
+  using State = typename L::State;
+
+  L law{};
+  Index begin{}, end{};
+  std::vector<State> history{};
+  Where where{};
+  std::string name{};
+  std::optional<typename detail::ConstantsOf<L>::type> constants{};  ///< of make_batch(); reset when parameters of `law` change
+  std::vector<State> scratch{};                                      ///< of permute()
+
+  Index size() const noexcept { return end - begin; }
+  /// Cauchy stress [Pa] of particle i at the end of the step; changes its history.
+  Mat3 update(Index i, const Increment& in) noexcept
+  {
+    State& state = history[static_cast<std::size_t>(i)];
+    if constexpr (requires { typename L::Constants; })
+      if (constants)
+        return law.update(in, state, *constants);
+    return law.update(in, state);
+  }
+};
+
+/// A body at rest: history as a particle starts with it.
+template <class L>
+Batch<L> make_batch(L law, Index begin, Index end, std::string name, Where where = {})
+{
+  Batch<L> batch{.law = std::move(law), .begin = begin, .end = end, .where = std::move(where), .name = std::move(name)};
+  batch.history.resize(static_cast<std::size_t>(batch.size()));
+  if constexpr (requires { typename L::Constants; })
+    batch.constants = batch.law.constants();
+  return batch;
+}
+
+using AnyBatch = variant_of<Laws, Batch>;
+
+/// One history variable of all particles of a body: column[i] is a Real or a Sym3.
+template <class State, class Value>
+struct HistoryColumn {
+  State* first;
+  Value State::* member;
+  Index count;
+  static constexpr int components = std::is_same_v<Value, Real> ? 1 : static_cast<int>(sizeof(Value) / sizeof(Real));
+
+  Index size() const noexcept { return count; }
+  auto& operator[](Index i) const noexcept { return first[i].*member; }
+  /// Component c of particle i, whatever the type of the variable.
+  auto& component(Index i, int c) const noexcept
+  {
+    if constexpr (components == 1)
+      return (*this)[i];
+    else
+      return (*this)[i][c];
+  }
+};
+
+/// f(key, unit, meaning, column) for every history variable in order of declaration; columns write through unless the batch is const.
+template <class B, class F>
+  requires requires { typename std::remove_const_t<B>::LawType; }
+void for_each_history(B& batch, F&& f)
+{
+  using State = typename B::State;
+  using Row = std::conditional_t<std::is_const_v<B>, const State, State>;
+  const auto count = static_cast<Index>(batch.history.size());
+  for_each_field<State>([&]<class Owner, class Value>(const History<Owner, Value>& field) {
+    f(field.key, field.unit, field.meaning, HistoryColumn<Row, Value>{batch.history.data(), field.member, count});
+  });
+}
+template <class F>
+void for_each_history(AnyBatch& batch, F&& f)
+{
+  std::visit([&](auto& typed) { for_each_history(typed, f); }, batch);
+}
+template <class F>
+void for_each_history(const AnyBatch& batch, F&& f)
+{
+  std::visit([&](const auto& typed) { for_each_history(typed, f); }, batch);
+}
+
+/// Re-orders the history: afterwards particle i is the former particle order[i].  Allocates at its first call only.
+template <class L>
+void permute(Batch<L>& batch, std::span<const Index> order)
+{
+  assert(order.size() == batch.history.size());
+  batch.scratch.resize(batch.history.size());
+  parallel_for(static_cast<Index>(order.size()), [&](Index i) {
+    batch.scratch[static_cast<std::size_t>(i)] = batch.history[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
+  });
+  std::swap(batch.history, batch.scratch);
+}
+inline void permute(AnyBatch& batch, std::span<const Index> order)
+{
+  std::visit([&](auto& typed) { permute(typed, order); }, batch);
+}
+
+/// Makes `stress` [Pa] the stress of particle i at F = I.  False if the law cannot start from a stress.
+template <class L>
+bool prestress(Batch<L>& batch, Index i, const Mat3& stress) noexcept
+{
+  auto& state = batch.history[static_cast<std::size_t>(i)];
+  if constexpr (requires { batch.law.prestress(stress, state); }) {
+    batch.law.prestress(stress, state);
+    return true;
+  }
+  return false;
+}
+inline bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept
+{
+  return std::visit([&](auto& typed) { return prestress(typed, i, stress); }, batch);
+}
+
+/// Energy [J] dissipated so far in a body whose particles had the volumes `volume0` [m^3]; 0 for a law without "plastic_work".
+template <class L>
+Real total_plastic_work(const Batch<L>& batch, std::span<const Real> volume0)
+{
+  Real total = 0;
+  for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
+    if constexpr (std::decay_t<decltype(column)>::components == 1)
+      if (key == "plastic_work")
+        total += parallel_sum<Real>(column.size(), [&](Index i) { return volume0[static_cast<std::size_t>(i)] * column[i]; });
+  });
+  return total;
+}
+inline Real total_plastic_work(const AnyBatch& batch, std::span<const Real> volume0)
+{
+  return std::visit([&](const auto& typed) { return total_plastic_work(typed, volume0); }, batch);
+}
+
+inline Real density(const AnyBatch& batch) noexcept
+{
+  return std::visit([](const auto& typed) { return typed.law.density; }, batch);
+}
+inline Real wave_speed(const AnyBatch& batch, const Mat3& F) noexcept
+{
+  return std::visit([&](const auto& typed) { return typed.law.wave_speed(F); }, batch);
+}
+inline std::string_view law_name(const AnyBatch& batch) noexcept
+{
+  return std::visit([](const auto& typed) { return std::string_view{std::decay_t<decltype(typed.law)>::name}; }, batch);
+}
+
+}  // namespace talus

@@ -1,0 +1,21 @@
+#pragma once
+// The list of laws: what a scene may name, what the contract tests run over.  A new law is one line here.
+#include "core/type_list.hpp"
+#include "materials/corotated.hpp"
+#include "materials/drucker_prager.hpp"
+#include "materials/hencky.hpp"
+#include "materials/linear_elastic.hpp"
+#include "materials/linear_first_piola.hpp"
+#include "materials/neo_hookean.hpp"
+
+namespace talus {
+
+using Laws = TypeList<
+    LinearElastic,
+    NeoHookean,
+    Corotated,
+    Hencky,
+    DruckerPrager,
+    LinearFirstPiola>;
+
+}  // namespace talus

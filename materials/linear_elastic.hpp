@@ -1,0 +1,49 @@
+#pragma once
+// Small-strain elasticity in an objective rate form.
+#include <string_view>
+
+#include "materials/law.hpp"
+#include "materials/logarithm.hpp"
+
+namespace talus {
+
+/// Hooke's law for the Cauchy stress.  With the polar decomposition I + dt L = R U of the step and e = ln U,
+///     stress = R (stress_old + lambda tr(e) I + 2 mu e) R^T,
+/// exact for a step that is a rotation and for stretches along fixed axes (stress = M ln F in uniaxial strain).  Hypoelastic: a closed
+/// cycle of large strain may leave stress behind.
+struct LinearElastic {
+  static constexpr std::string_view name = "linear_elastic";
+  static constexpr std::string_view summary =
+      "Hooke's law for the Cauchy stress, turned with the rotation of the step (rate form; small elastic strains).";
+  Real density{}, youngs_modulus{}, poisson_ratio{};
+  static constexpr auto fields()
+  {
+    return std::tuple{required("density", &LinearElastic::density, positive, "kg/m^3", "mass density at rest"),
+                      required("youngs_modulus", &LinearElastic::youngs_modulus, positive, "Pa", "Young's modulus"),
+                      required("poisson_ratio", &LinearElastic::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio")};
+  }
+  using State = NoHistory;
+
+  Mat3 update(const Increment& in, State&) const noexcept
+  {
+    if (!(in.F.determinant() > 0))
+      return no_answer();
+    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    const Mat3 H = in.dt * in.L;
+    const Sym3 strain = 0.5 * log1p(push_forward(H.transpose(), Sym3::Zero()));  // C - I = f^T f - I
+    const Mat3 R = (Mat3::Identity() + H) * unpack(add_diagonal(expm1(-strain), 1));
+    const Mat3 unrotated = in.stress + unpack(add_diagonal(2 * mu * strain, lambda * trace(strain)));
+    return sym(R * unrotated * R.transpose());
+  }
+
+  /// The stress is its own history: it may start from any value.
+  void prestress(const Mat3&, State&) const noexcept {}
+
+  Real wave_speed(const Mat3& F) const noexcept
+  {
+    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    return std::sqrt((lambda + 2 * mu) * F.determinant() / density);
+  }
+};
+
+}  // namespace talus

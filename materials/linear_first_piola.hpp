@@ -1,0 +1,45 @@
+#pragma once
+// A law for one purpose: bars whose exact solution holds at any amplitude.
+#include <string_view>
+
+#include "materials/law.hpp"
+#include "materials/logarithm.hpp"
+
+namespace talus {
+
+/// First Piola stress linear in the displacement gradient, P = lambda tr(F - I) I + 2 mu (F - I): in uniaxial strain the wave
+/// equation in initial coordinates is then linear, P = M (F - 1), however large the strain.  For verification only: a rotation
+/// makes stress.  The Cauchy stress is P F^T / J; its skew part, which is zero for diagonal F, is dropped.
+struct LinearFirstPiola {
+  static constexpr std::string_view name = "linear_first_piola";
+  static constexpr std::string_view summary =
+      "First Piola stress linear in F, P = lambda tr(F - I) I + 2 mu (F - I); not objective, for the verification of bars only.";
+  static constexpr bool objective = false;
+  Real density{}, youngs_modulus{}, poisson_ratio{};
+  static constexpr auto fields()
+  {
+    return std::tuple{required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest"),
+                      required("youngs_modulus", &LinearFirstPiola::youngs_modulus, positive, "Pa", "Young's modulus at small strain"),
+                      required("poisson_ratio", &LinearFirstPiola::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio at small strain")};
+  }
+  using State = NoHistory;
+
+  Mat3 update(const Increment& in, State&) const noexcept
+  {
+    const Real J = in.F.determinant();
+    if (!(J > 0))
+      return no_answer();
+    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    const Mat3 G = in.F - Mat3::Identity();
+    const Mat3 P = lambda * G.trace() * Mat3::Identity() + 2 * mu * G;
+    return sym(P * in.F.transpose()) / J;
+  }
+
+  Real wave_speed(const Mat3& F) const noexcept
+  {
+    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    return std::sqrt((lambda + 2 * mu) * largest_eigenvalue_bound(F * F.transpose()) / density);
+  }
+};
+
+}  // namespace talus

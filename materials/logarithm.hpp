@@ -1,0 +1,147 @@
+#pragma once
+// Logarithm and exponential of symmetric 3x3 tensors, fast near the identity, and the rotation of a polar decomposition.
+//
+// Arguments and results are kept as differences from the identity, so that strains of 1e-8 keep all their digits.
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "core/tensor.hpp"
+
+namespace talus {
+
+/// Frobenius norm of the deviator up to which the series below are used; beyond it principal axes are found.
+inline constexpr Real series_radius = 0.1;
+
+inline Real trace(const Sym3& a) noexcept { return a[0] + a[1] + a[2]; }
+/// a + m I
+inline Sym3 add_diagonal(const Sym3& a, Real m) noexcept
+{
+  Sym3 sum;
+  sum << a[0] + m, a[1] + m, a[2] + m, a[3], a[4], a[5];
+  return sum;
+}
+/// a:a
+inline Real squared_norm(const Sym3& a) noexcept
+{
+  return a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + 2 * (a[3] * a[3] + a[4] * a[4] + a[5] * a[5]);
+}
+
+/// (I + H)(I + b)(I + H)^T - I: the left Cauchy-Green tensor minus identity after a step with displacement gradient H.
+inline Sym3 push_forward(const Mat3& H, const Sym3& b) noexcept
+{
+  const Mat3 fb = unpack(b) + H * unpack(b);
+  const auto entry = [&](int i, int j) {
+    Real sum = fb(i, j) + H(i, j) + H(j, i);
+    for (int k = 0; k < 3; ++k)
+      sum += (fb(i, k) + H(i, k)) * H(j, k);
+    return sum;
+  };
+  Sym3 pushed;
+  pushed << entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2);
+  return pushed;
+}
+
+namespace detail {
+
+/// sum_k c[k] X^(k+1) of a symmetric trace-free X.  Cayley-Hamilton, X^3 = J2 X + J3 I, keeps every power in the span of
+/// I, X, X^2, so that one product of matrices is enough.
+template <std::size_t N>
+Sym3 trace_free_series(const Sym3& X, const std::array<Real, N>& c) noexcept
+{
+  const Real xx = X[0], yy = X[1], zz = X[2], xy = X[3], yz = X[4], xz = X[5];
+  Sym3 X2;
+  X2 << xx * xx + xy * xy + xz * xz, xy * xy + yy * yy + yz * yz, xz * xz + yz * yz + zz * zz, xy * (xx + yy) + xz * yz,
+      xy * xz + yz * (yy + zz), xz * (xx + zz) + xy * yz;
+  const Real J2 = 0.5 * trace(X2);
+  const Real J3 = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  Real a = 0, b = 0, d = 0;  // sum so far = a I + b X + d X^2
+  for (std::size_t k = N; k-- > 0;) {
+    const Real b_new = a + d * J2 + c[k];
+    a = d * J3;
+    d = b;
+    b = b_new;
+  }
+  return add_diagonal(b * X + d * X2, a);
+}
+
+// The eigenvalues of a trace-free X are at most sqrt(2/3) |X| <= 0.0817, so the first term left out is below
+// 0.0817^14/15 = 4e-17 (logarithm) and 0.0817^9/10! = 5e-17 (exponential) of the first term: less than one rounding.
+inline constexpr std::array<Real, 14> logarithm_series = [] {
+  std::array<Real, 14> c{};
+  for (std::size_t k = 0; k < c.size(); ++k)
+    c[k] = (k % 2 == 0 ? 1.0 : -1.0) / static_cast<Real>(k + 1);
+  return c;
+}();
+inline constexpr std::array<Real, 9> exponential_series = [] {
+  std::array<Real, 9> c{};
+  Real factorial = 1;
+  for (std::size_t k = 0; k < c.size(); ++k) {
+    factorial *= static_cast<Real>(k + 1);
+    c[k] = 1 / factorial;
+  }
+  return c;
+}();
+
+template <class F>
+Sym3 in_principal_axes(const Sym3& A, F&& f) noexcept
+{
+  const Eigen::SelfAdjointEigenSolver<Mat3> axes(unpack(A));
+  const Mat3& V = axes.eigenvectors();
+  return pack(V * axes.eigenvalues().unaryExpr(f).asDiagonal() * V.transpose());
+}
+inline Sym3 log1p_by_axes(const Sym3& B) noexcept
+{
+  return in_principal_axes(B, [](Real x) { return std::log1p(x); });
+}
+inline Sym3 expm1_by_axes(const Sym3& E) noexcept
+{
+  return in_principal_axes(E, [](Real x) { return std::expm1(x); });
+}
+
+}  // namespace detail
+
+/// ln(I + B) of a symmetric B.  NaN where I + B is not positive definite.
+inline Sym3 log1p(const Sym3& B) noexcept
+{
+  const Real mean = trace(B) / 3;
+  const Sym3 X = add_diagonal(B, -mean) * (1 / (1 + mean));
+  if (!(mean > -1 && squared_norm(X) <= series_radius * series_radius))
+    return detail::log1p_by_axes(B);
+  return add_diagonal(detail::trace_free_series(X, detail::logarithm_series), std::log1p(mean));
+}
+
+/// exp(E) - I of a symmetric E.
+inline Sym3 expm1(const Sym3& E) noexcept
+{
+  const Real mean = trace(E) / 3;
+  const Sym3 X = add_diagonal(E, -mean);
+  if (!(squared_norm(X) <= series_radius * series_radius))
+    return detail::expm1_by_axes(E);
+  const Real volumetric = std::expm1(mean);
+  return add_diagonal((1 + volumetric) * detail::trace_free_series(X, detail::exponential_series), volumetric);
+}
+
+/// R of F = R U, det F > 0.  Newton's iteration with the scaling of Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160; it
+/// converges quadratically from every regular F and has no trouble with equal stretches.  NaN where F is singular.
+inline Mat3 polar_rotation(const Mat3& F) noexcept
+{
+  constexpr int enough = 30;  // condition 1e12 takes 9
+  constexpr Real rounding = 1e-15;
+  Mat3 R = F;
+  for (int i = 0; i < enough; ++i) {
+    const Mat3 inverse = R.inverse().transpose();
+    const Real change_of_scale = std::sqrt(inverse.norm() / R.norm());
+    const Real scale = std::abs(change_of_scale - 1) < 1e-2 ? 1 : change_of_scale;
+    const Mat3 next = 0.5 * (scale * R + inverse / scale);
+    const Real change = (next - R).squaredNorm();
+    R = next;
+    if (!(change > 3 * rounding * rounding))
+      break;
+  }
+  return R;
+}
+
+/// Upper bound of the largest eigenvalue (Gershgorin): for squares of stretches in wave speeds.
+inline Real largest_eigenvalue_bound(const Mat3& A) noexcept { return A.cwiseAbs().rowwise().sum().maxCoeff(); }
+
+}  // namespace talus
