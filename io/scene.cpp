@@ -50,7 +50,7 @@ void TimeSpec::check(std::vector<std::string>& problems) const
 
 void TransferSpec::check(std::vector<std::string>& problems) const
 {
-  if (pic_damping_time && scheme != Scheme::flip)
+  if (pic_damping_time && scheme != TransferScheme::flip)
     problems.push_back("pic_damping_time is for scheme flip only");
 }
 

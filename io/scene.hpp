@@ -116,11 +116,11 @@ struct TimeSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-enum class Scheme : std::uint8_t { flip, apic, tpic };
-constexpr std::array<std::string_view, 3> words(Scheme) { return {"flip", "apic", "tpic"}; }
+enum class TransferScheme : std::uint8_t { flip, apic, tpic };
+constexpr std::array<std::string_view, 3> words(TransferScheme) { return {"flip", "apic", "tpic"}; }
 
 struct TransferSpec {
-  Scheme scheme = Scheme::flip;
+  TransferScheme scheme = TransferScheme::flip;
   std::optional<bool> musl;
   std::optional<Real> pic_damping_time;
   Where where;

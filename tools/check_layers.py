@@ -31,7 +31,7 @@ THIRD_PARTY = [
     ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),
     ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp"]),
     ("CLI/*", ["app/cli.cpp"]),
-    ("spdlog/*", ["app/log.cpp"]),
+    ("muParser*", ["app/expression.cpp"]),
     ("gtest/*", ["tests/*"]),
     ("gmock/*", ["tests/*"]),
     ("benchmark/*", ["tests/speed/*"]),
