@@ -14,10 +14,10 @@
 namespace talus {
 
 template <int D>
-struct Box {
+struct Extent {
   Vec<D> low = Vec<D>::Constant(std::numeric_limits<Real>::infinity());
   Vec<D> high = Vec<D>::Constant(-std::numeric_limits<Real>::infinity());
-  void take(const Box& other) noexcept
+  void take(const Extent& other) noexcept
   {
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
@@ -42,8 +42,8 @@ class BoxTree {
     for (Index i = 0; i < n; ++i)
       levels_[0][i / fan].take(box_of(i));
     while (levels_.back().size() > 1) {
-      const std::vector<Box<D>>& below = levels_.back();
-      std::vector<Box<D>> level((below.size() + fan - 1) / fan);
+      const std::vector<Extent<D>>& below = levels_.back();
+      std::vector<Extent<D>> level((below.size() + fan - 1) / fan);
       for (std::size_t i = 0; i < below.size(); ++i)
         level[i / fan].take(below[i]);
       levels_.push_back(std::move(level));
@@ -126,7 +126,7 @@ class BoxTree {
   }
 
   Index n_items_;
-  std::vector<std::vector<Box<D>>> levels_;
+  std::vector<std::vector<Extent<D>>> levels_;
 };
 
 }  // namespace talus

@@ -12,9 +12,9 @@ namespace {
 constexpr int longest_walk = 32;  // steps; a search in the tree costs about as much
 
 template <int D>
-Box<D> tolerant_box(const Simplex<D>& s, Real tolerance)
+Extent<D> tolerant_box(const Simplex<D>& s, Real tolerance)
 {
-  Box<D> box;
+  Extent<D> box;
   for (const Vec<D>& corner : s)
     box.take(corner);
   box.low.array() -= tolerance;
@@ -23,7 +23,7 @@ Box<D> tolerant_box(const Simplex<D>& s, Real tolerance)
 }
 
 template <int D>
-Box<D> cell_box(const Mesh<D>& mesh, Index c)
+Extent<D> cell_box(const Mesh<D>& mesh, Index c)
 {
   const Simplex<D> s = mesh.corners(c);
   return tolerant_box<D>(s, location_tolerance * longest_edge<D>(s));
@@ -36,9 +36,9 @@ std::array<Vec<D>, D> facet_corners(const Mesh<D>& mesh, Facet f)
 }
 
 template <int D>
-Box<D> facet_box(const Mesh<D>& mesh, Facet f)
+Extent<D> facet_box(const Mesh<D>& mesh, Facet f)
 {
-  Box<D> box;
+  Extent<D> box;
   for (const Vec<D>& corner : facet_corners(mesh, f))
     box.take(corner);
   return box;
