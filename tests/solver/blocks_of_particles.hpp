@@ -1,0 +1,89 @@
+#pragma once
+// Small models made in memory, without files: shared by the solver's tests.
+#include <functional>
+
+#include "kernels/kernels.hpp"
+#include "mesh/generate.hpp"
+#include "mesh/quadrature.hpp"
+#include "solver/run.hpp"
+
+namespace talus::testing {
+
+/// Fills the cells whose centroid `inside` accepts with `per_cell` particles of `law`, as one more body of the model.
+template <int D, Kernel<D> K, class L>
+void add_body(Model<D, K>& m, const std::string& name, const L& law, int per_cell, const std::function<bool(const Vec<D>&)>& inside,
+              const std::function<Vec<D>(const Vec<D>&)>& velocity = [](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); })
+{
+  auto& p = m.particles;
+  const Index begin = p.size();
+  const auto points = seeding_points<D>(per_cell).value();
+  for (Index c = 0; c < m.mesh.n_cells(); ++c) {
+    Vec<D> centre = Vec<D>::Zero();
+    for (const Index n : m.mesh.cell(c))
+      centre += m.mesh.node(n) / (D + 1);
+    if (!inside(centre))
+      continue;
+    for (const auto& B : points) {
+      Vec<D> x = Vec<D>::Zero();
+      for (std::size_t k = 0; k <= D; ++k)
+        x += B[k] * m.mesh.node(m.mesh.cell(c)[k]);
+      p.id.push_back(p.size());
+      p.cell.push_back(c);
+      p.x.push_back(x);
+      p.v.push_back(velocity(x));
+      p.L.push_back(Mat<D>::Zero());
+      p.F.push_back(Mat3::Identity());
+      p.stress.push_back(Sym3::Zero());
+      p.volume0.push_back(m.mesh.volume(c) / per_cell);
+      p.mass.push_back(law.density * p.volume0.back());
+    }
+  }
+  m.bodies.push_back({name, begin, p.size(), {}});
+  m.materials.push_back(make_batch(law, begin, p.size(), name));
+}
+
+/// Seeds the affine field too, so that a rigid or linear motion starts exact.
+template <int D, Kernel<D> K>
+void set_velocity(Model<D, K>& m, const Mat<D>& A, const Vec<D>& b)
+{
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    m.particles.v[p] = A * m.particles.x[p] + b;
+    m.particles.L[p] = A;
+    if (!m.particles.C.empty())
+      m.particles.C[p] = A;
+  }
+}
+
+inline Stage test_stage(Real duration)
+{
+  Stage stage;
+  stage.name = "test";
+  stage.duration = duration;
+  return stage;
+}
+
+/// Steps of the stable size until `end`.
+template <int D, Kernel<D> K>
+void run_until(Model<D, K>& m, Real end, Real cfl = 0.4)
+{
+  run_stage(m, test_stage(end - m.clock.time), StepLimits{.cfl = cfl}, [](const auto&, Moment) {});
+}
+
+inline NeoHookean rubber(Real youngs_modulus, Real poisson_ratio, Real density)
+{
+  NeoHookean law;
+  law.youngs_modulus = youngs_modulus;
+  law.poisson_ratio = poisson_ratio;
+  law.density = density;
+  return law;
+}
+
+template <int D>
+Mesh<D> unit_box(Index cells, Real jitter, std::uint64_t seed = 1)
+{
+  std::array<Index, D> n;
+  n.fill(cells);
+  return Mesh<D>(jittered(box<D>(Vec<D>::Zero(), Vec<D>::Ones(), n), jitter, seed));
+}
+
+}  // namespace talus::testing

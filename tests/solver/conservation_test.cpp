@@ -1,0 +1,125 @@
+// What every kernel and transfer must keep: mass, momentum, the same bits for any number of threads, and no allocation in a step.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}  // namespace
+
+void* operator new(std::size_t size)
+{
+  ++allocations;
+  if (void* block = std::malloc(size))
+    return block;
+  throw std::bad_alloc();
+}
+void operator delete(void* block) noexcept { std::free(block); }
+void operator delete(void* block, std::size_t) noexcept { std::free(block); }
+
+namespace talus::testing {
+namespace {
+
+template <int D_, class K_, Scheme scheme_, bool musl_>
+struct Case {
+  static constexpr int D = D_;
+  using K = K_;
+  static constexpr Scheme scheme = scheme_;
+  static constexpr bool musl = musl_;
+};
+
+template <class C>
+class EveryKernelAndTransfer : public ::testing::Test {};
+
+using Cases = ::testing::Types<Case<2, Linear<2>, Scheme::flip, true>, Case<2, Linear<2>, Scheme::flip, false>, Case<2, Linear<2>, Scheme::apic, false>, Case<2, Linear<2>, Scheme::tpic, false>,
+                               Case<2, Umls<2>, Scheme::flip, true>, Case<2, Umls<2>, Scheme::flip, false>, Case<2, Umls<2>, Scheme::apic, false>, Case<2, Umls<2>, Scheme::tpic, false>,
+                               Case<2, Umls<2>, Scheme::tpic, true>, Case<3, Linear<3>, Scheme::flip, true>, Case<3, Linear<3>, Scheme::tpic, false>, Case<3, Umls<3>, Scheme::flip, true>,
+                               Case<3, Umls<3>, Scheme::apic, false>, Case<3, Umls<3>, Scheme::tpic, false>>;
+TYPED_TEST_SUITE(EveryKernelAndTransfer, Cases);
+
+/// A rubber block that flies, spins and swings in the middle of a jittered box; nothing touches it.
+template <class C>
+Model<C::D, typename C::K> flying_block()
+{
+  constexpr int D = C::D;
+  Model<D, typename C::K> m(unit_box<D>(D == 2 ? 12 : 7, 0.2));
+  m.transfer = {.scheme = C::scheme, .musl = C::musl, .pic_damping_time = {}};
+  const auto inside = [](const Vec<D>& x) { return (x.array() > 0.3).all() && (x.array() < 0.7).all(); };
+  add_body<D>(m, "block", rubber(1e4, 0.3, 1000), D == 2 ? 3 : 4, inside);
+  make_ready(m, false);
+  Mat<D> A = Mat<D>::Zero();
+  A(0, 1) = -0.6;
+  A(1, 0) = 0.4;
+  A(0, 0) = 0.15;
+  set_velocity<D>(m, A, Vec<D>::Constant(-0.1));
+  return m;
+}
+
+TYPED_TEST(EveryKernelAndTransfer, KeepMassAndMomentumOfAFreeBlock)
+{
+  auto m = flying_block<TypeParam>();
+  const auto before = totals(m.particles);
+  run_until(m, 0.2);
+  const auto after = totals(m.particles);
+  EXPECT_NEAR(before.mass, after.mass, 1e-14 * before.mass) << "rows are sorted anew, so the sum may round differently";
+  const Real scale = 0.2 * before.mass;  // speeds are of this order
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12 * scale);
+  EXPECT_GT(m.clock.step, 10);
+  EXPECT_GT(m.particles.stress[0].norm(), 1) << "the block must have been strained for this to mean anything";
+}
+
+TYPED_TEST(EveryKernelAndTransfer, GiveTheSameBitsForAnyNumberOfThreads)
+{
+  const auto hash = [](int threads) {
+    set_threads(threads);
+    auto m = flying_block<TypeParam>();
+    run_until(m, 0.06);
+    set_threads(1);
+    std::uint64_t h = 14695981039346656037ull;
+    const auto mix = [&](const auto& column) {
+      const auto* bytes = reinterpret_cast<const unsigned char*>(column.data());
+      for (std::size_t i = 0; i < column.size() * sizeof(column[0]); ++i)
+        h = (h ^ bytes[i]) * 1099511628211ull;
+    };
+    m.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { mix(column); });
+    return h;
+  };
+  const auto one = hash(1);
+  EXPECT_EQ(one, hash(2));
+  EXPECT_EQ(one, hash(3));
+  EXPECT_EQ(one, hash(4));
+}
+
+TYPED_TEST(EveryKernelAndTransfer, AllocateNothingInAStep)
+{
+  set_threads(2);
+  auto m = flying_block<TypeParam>();
+  const Real dt = stable_step(m.mesh, m.materials, m.particles, 0.3);
+  for (int step = 0; step < 30; ++step)
+    advance(m, dt);
+  const long before = allocations;
+  for (int step = 0; step < 30; ++step)
+    advance(m, dt);
+  EXPECT_EQ(allocations - before, 0);
+  set_threads(1);
+}
+
+TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalance)
+{
+  auto m = flying_block<TypeParam>();
+  m.energy = {.kinetic_start = totals(m.particles).kinetic};
+  const Real start = m.energy.kinetic_start;
+  const Real dt = stable_step(m.mesh, m.materials, m.particles, 0.05);  // the balance is first order in the step
+  while (m.clock.time < 0.2)
+    advance(m, dt);
+  const Real kinetic = totals(m.particles).kinetic;
+  EXPECT_GT(std::abs(m.energy.internal), 1e-3 * start);
+  EXPECT_LT(std::abs(m.energy.defect(kinetic)), 0.01 * start);
+}
+
+}  // namespace
+}  // namespace talus::testing
