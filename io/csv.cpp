@@ -1,0 +1,158 @@
+// Comma-separated histories, written row by row and read back whole.
+#include "io/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <iterator>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "io/whole_file.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Quoted as RFC 4180 says when the text would not survive plainly; line ends become blanks, so a record stays one line.
+std::string cell_text(std::string text)
+{
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.find_first_of(",\"") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string header(std::span<const CsvColumn> columns)
+{
+  std::string line;
+  for (const auto& [name, unit] : columns)
+    line += (line.empty() ? "" : ",") + cell_text(unit.empty() ? name : fmt::format("{} [{}]", name, unit));
+  return line + '\n';
+}
+
+std::string row(std::span<const Real> values)
+{
+  std::string line;
+  for (const Real value : values)
+    fmt::format_to(std::back_inserter(line), "{}{}", line.empty() ? "" : ",", value);  // {}: the shortest text with the same bits
+  return line + '\n';
+}
+
+std::vector<std::string> split(std::string_view line)
+{
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (line[i] == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (line[i] == '"')
+      quoted = !quoted;
+    else if (line[i] == ',' && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += line[i];
+  }
+  return cells;
+}
+
+CsvColumn column_of(const std::string& cell)
+{
+  const auto open = cell.rfind(" [");
+  if (open == std::string::npos || cell.back() != ']')
+    return {cell};
+  return {cell.substr(0, open), cell.substr(open + 2, cell.size() - open - 3)};
+}
+
+Real number(const std::string& cell, const fs::path& file, std::size_t line)
+{
+  Real value{};
+  const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (code != std::errc{} || end != cell.data() + cell.size())
+    throw EnvironmentError(fmt::format("{}:{}: \"{}\" is not a number", file.string(), line, cell));
+  return value;
+}
+
+}  // namespace
+
+HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns, std::string_view rows)
+    : path_(std::move(file)), columns_(std::move(columns))
+{
+  write_whole(path_, header(columns_).append(rows));
+  file_.reset(std::fopen(path_.c_str(), "ae"));
+  if (!file_)
+    throw EnvironmentError(fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));
+}
+
+HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns) : HistoryFile(std::move(file), std::move(columns), {}) {}
+
+HistoryFile HistoryFile::resume(fs::path file, std::vector<CsvColumn> columns, Real time)
+{
+  std::string rows;
+  if (fs::exists(file)) {
+    const HistoryTable old = read_history(file);
+    if (old.columns != columns)
+      throw EnvironmentError(fmt::format("{} has other columns than this run: move it away to go on", file.string()));
+    std::vector<Real> values(columns.size());
+    for (std::size_t r = 0; r < old.rows() && old.values[0][r] <= time; ++r) {
+      for (std::size_t c = 0; c < columns.size(); ++c)
+        values[c] = old.values[c][r];
+      rows += row(values);
+    }
+  }
+  return HistoryFile(std::move(file), std::move(columns), rows);
+}
+
+void HistoryFile::append(std::span<const Real> values)
+{
+  if (values.size() != columns_.size())
+    throw std::invalid_argument(fmt::format("{}: a row of {} values for {} columns", path_.string(), values.size(), columns_.size()));
+  put(row(values));
+}
+
+void HistoryFile::put(std::string_view text)
+{
+  if (std::fwrite(text.data(), 1, text.size(), file_.get()) != text.size() || std::fflush(file_.get()) != 0)
+    throw EnvironmentError(fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));
+}
+
+std::optional<std::span<const Real>> HistoryTable::operator[](std::string_view name) const&
+{
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    if (columns[c].name == name)
+      return values[c];
+  return std::nullopt;
+}
+
+HistoryTable read_history(const fs::path& file)
+{
+  const std::string text = read_whole(file);
+  HistoryTable history;
+  std::size_t line = 0, begin = 0;
+  for (std::size_t end = text.find('\n'); end != std::string::npos; begin = end + 1, end = text.find('\n', begin)) {
+    const auto cells = split(std::string_view(text).substr(begin, end - begin));
+    if (++line == 1) {
+      for (const auto& cell : cells)
+        history.columns.push_back(column_of(cell));
+      history.values.resize(cells.size());
+      continue;
+    }
+    if (cells.size() != history.columns.size())
+      throw EnvironmentError(fmt::format("{}:{}: {} values for {} columns", file.string(), line, cells.size(), history.columns.size()));
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      history.values[c].push_back(number(cells[c], file, line));
+  }
+  if (line == 0)
+    throw EnvironmentError(fmt::format("{} has no header line", file.string()));
+  return history;
+}
+
+}  // namespace talus

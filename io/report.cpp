@@ -1,0 +1,104 @@
+// RunSummary as JSON.  Keys keep this order, so two summaries can be compared line by line.
+#include "io/report.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "io/whole_file.hpp"
+
+namespace talus {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_object(const std::vector<NamedValue>& values)
+{
+  Json object = Json::object();
+  for (const auto& [name, value, unit] : values)
+    object[unit.empty() ? name : name + " [" + unit + "]"] = value;
+  return object;
+}
+
+Json to_object(const BodySummary& body)
+{
+  return {{"name", body.name}, {"material", body.material}, {"law", body.law}, {"particles", body.particles}, {"mass [kg]", body.mass}};
+}
+
+Json to_object(const StageSummary& stage)
+{
+  Json object = {{"kind", stage.kind}, {"result", stage.result}, {"steps", stage.steps}, {"duration [s]", stage.duration}};
+  if (stage.residual)
+    object["residual"] = *stage.residual;
+  return object;
+}
+
+template <class Item>
+Json to_list(const std::vector<Item>& items)
+{
+  Json list = Json::array();
+  for (const Item& item : items)
+    list.push_back(to_object(item));
+  return list;
+}
+
+Json program(const RunSummary& s) { return {{"version", s.version}, {"commit", s.commit}, {"compiler", s.compiler}, {"build", s.build}}; }
+
+Json cost(const RunSummary& s)
+{
+  return {{"threads", s.threads},
+          {"wall [s]", s.wall_total},
+          {"wall_by_phase", to_object(s.wall_seconds)},
+          {"particle_steps_per_second", s.particle_steps_per_second},
+          {"bytes_per_particle", s.bytes_per_particle},
+          {"peak_memory [B]", s.peak_memory_bytes}};
+}
+
+Json balances(const RunSummary& s)
+{
+  Json object = Json::object();
+  if (s.energy)
+    object["energy"] = {
+        {"terms", to_object(s.energy->terms)}, {"closure", s.energy->closure_relative}, {"relative_to", s.energy->relative_to}};
+  if (s.momentum)
+    object["momentum"] = {{"start [kg m/s]", s.momentum->start},
+                          {"end [kg m/s]", s.momentum->end},
+                          {"impulse [kg m/s]", s.momentum->impulse},
+                          {"closure", s.momentum->closure_relative},
+                          {"relative_to", s.momentum->relative_to}};
+  if (s.mass)
+    object["mass"] = {{"start [kg]", s.mass->start},
+                      {"end [kg]", s.mass->end},
+                      {"removed [kg]", s.mass->removed},
+                      {"particles_removed", s.mass->particles_removed}};
+  return object;
+}
+
+}  // namespace
+
+std::string to_json(const RunSummary& s)
+{
+  Json json;
+  json["title"] = s.title;
+  json["status"] = s.status == RunStatus::done ? "done" : "failed";
+  if (!s.message.empty())
+    json["message"] = s.message;
+  json["program"] = program(s);
+  json["dimension"] = s.dimension;
+  json["kernel"] = s.kernel;
+  json["transfer"] = s.transfer;
+  json["mesh"] = {{"nodes", s.mesh_nodes}, {"cells", s.mesh_cells}, {"quality", to_object(s.mesh_quality)}};
+  json["bodies"] = to_list(s.bodies);
+  json["stages"] = to_list(s.stages);
+  json["steps"] = s.steps;
+  json["simulated_time [s]"] = s.simulated_time;
+  json["cost"] = cost(s);
+  json["balances"] = balances(s);
+  json["warnings"] = s.warnings;
+  json["files"] = s.files;
+  json["scene"] = {{"file", s.scene_file}, {"text", s.scene_text}};
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';  // replace: a scene may hold bytes that are not UTF-8
+}
+
+void write_summary(const std::filesystem::path& file, const RunSummary& summary) { write_whole(file, to_json(summary)); }
+
+}  // namespace talus

@@ -1,0 +1,94 @@
+#pragma once
+// summary.json: what was run, with what, how it went, what it cost, and how well the balances close.
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+enum class RunStatus : std::uint8_t { done, failed };
+
+/// A named number with its unit: work terms, qualities, wall seconds.
+struct NamedValue {
+  std::string name;
+  Real value{};
+  std::string unit = {};
+};
+
+struct BodySummary {
+  std::string name, material, law;
+  std::int64_t particles{};
+  Real mass{};  ///< kg at the start
+};
+
+struct StageSummary {
+  std::string kind;  ///< "geostatic" or "run"
+  std::int64_t steps{};
+  Real duration{};               ///< simulated [s]
+  std::optional<Real> residual;  ///< unbalanced nodal force over total load at the end, where the stage looks for it
+  std::string result;            ///< "reached", "not converged", ...
+};
+
+/// Terms are signed as they enter the sum; closure is |sum that should vanish| over the named scale, a pure number.
+struct EnergyAudit {
+  std::vector<NamedValue> terms;  ///< J: kinetic energy, work of gravity, of loads, of walls, of stress, damping, transfer
+  Real closure_relative{};
+  std::string relative_to;  ///< the scale, in words
+};
+
+struct MomentumAudit {
+  std::vector<Real> start, end, impulse;  ///< kg m/s, one number per dimension; impulse of everything outside the bodies
+  Real closure_relative{};
+  std::string relative_to;
+};
+
+struct MassAudit {
+  Real start{}, end{}, removed{};  ///< kg
+  std::int64_t particles_removed{};
+};
+
+/// Everything summary.json holds.  Optional parts that are empty are left out of the file.
+struct RunSummary {
+  std::string title;
+  std::string scene_file;
+  std::string scene_text;  ///< echo, byte for byte
+  std::string version, commit, compiler, build;
+  RunStatus status = RunStatus::done;
+  std::string message;  ///< why it failed
+
+  int dimension{};
+  std::string kernel, transfer;
+  int threads{};
+
+  std::int64_t mesh_nodes{}, mesh_cells{};
+  std::vector<NamedValue> mesh_quality;
+  std::vector<BodySummary> bodies;
+  std::vector<StageSummary> stages;
+
+  std::int64_t steps{};
+  Real simulated_time{};                 ///< s
+  std::vector<NamedValue> wall_seconds;  ///< by phase: mesh, build, each verb of the step, output
+  Real wall_total{};                     ///< s
+  Real particle_steps_per_second{};
+  Real bytes_per_particle{};
+  std::int64_t peak_memory_bytes{};  ///< resident set
+
+  std::optional<EnergyAudit> energy;
+  std::optional<MomentumAudit> momentum;
+  std::optional<MassAudit> mass;
+
+  std::vector<std::string> warnings;
+  std::vector<std::string> files;  ///< written by the run, relative to its folder
+};
+
+/// The text of summary.json.  Numbers keep all their digits; those that are not finite become null.
+std::string to_json(const RunSummary& summary);
+
+/// Writes summary.json as a whole or not at all; EnvironmentError naming the file.
+void write_summary(const std::filesystem::path& file, const RunSummary& summary);
+
+}  // namespace talus

@@ -1,0 +1,223 @@
+// The only file of this library that knows VTK.  Arrays are lent to VTK, not copied, wherever the layouts agree.
+#include "io/vtk.hpp"
+
+#include <fmt/format.h>
+#include <vtkCallbackCommand.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkCellType.h>
+#include <vtkDoubleArray.h>
+#include <vtkExecutive.h>
+#include <vtkFieldData.h>
+#include <vtkFloatArray.h>
+#include <vtkInformation.h>
+#include <vtkInformationStringKey.h>
+#include <vtkIntArray.h>
+#include <vtkLongArray.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkSmartPointer.h>
+#include <vtkUnstructuredGrid.h>
+#include <vtkXMLDataElement.h>
+#include <vtkXMLPolyDataWriter.h>
+#include <vtkXMLUnstructuredGridWriter.h>
+#include <vtkXMLUtilities.h>
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include "core/error.hpp"
+#include "io/whole_file.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An array that shows `values` to VTK.  VTK's interface is not const; writers only read, and `save` = 1 keeps the memory ours.
+template <class Array, class T>
+vtkSmartPointer<Array> lend(std::span<const T> values, int components, const char* name)
+{
+  auto array = vtkSmartPointer<Array>::New();
+  array->SetName(name);
+  array->SetNumberOfComponents(components);
+  array->SetArray(const_cast<T*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
+  return array;
+}
+
+void add_columns(vtkFieldData* data, std::span<const Column> columns, std::size_t items, const fs::path& file)
+{
+  for (const Column& column : columns) {
+    if (column.components < 1 || column.values.size() != items * static_cast<std::size_t>(column.components))
+      throw std::invalid_argument(fmt::format("{}: column \"{}\" has {} values, {} items of {} components were expected", file.string(),
+                                              column.name, column.values.size(), items, column.components));
+    const auto array = lend<vtkFloatArray>(std::span<const float>(column.values), column.components, column.name.c_str());
+    if (!column.unit.empty())
+      array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), column.unit.c_str());
+    data->AddArray(array);
+  }
+}
+
+void add_time(vtkDataObject* object, Real time)
+{
+  vtkNew<vtkDoubleArray> array;
+  array->SetName("TimeValue");  // the name ParaView looks for
+  array->InsertNextValue(time);
+  object->GetFieldData()->AddArray(array);
+}
+
+/// VTK prints errors and goes on; this keeps the first one instead.
+void keep_message(vtkObject*, unsigned long, void* kept, void* message)
+{
+  auto& text = *static_cast<std::string*>(kept);
+  if (text.empty() && message != nullptr)
+    text = static_cast<const char*>(message);
+}
+
+template <class Writer>
+void write(const fs::path& file, vtkDataObject* object)
+{
+  write_whole(file, [&](const fs::path& temporary) {
+    std::string message;
+    vtkNew<vtkCallbackCommand> observer;
+    observer->SetCallback(keep_message);
+    observer->SetClientData(&message);
+    vtkNew<Writer> writer;
+    writer->AddObserver(vtkCommand::ErrorEvent, observer);
+    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
+    writer->SetFileName(temporary.c_str());
+    writer->SetInputDataObject(object);
+    writer->SetDataModeToAppended();
+    writer->EncodeAppendedDataOff();
+    writer->SetHeaderTypeToUInt64();
+    writer->SetCompressorTypeToLZ4();
+    if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !message.empty())
+      throw EnvironmentError(fmt::format("cannot write {}: {}", file.string(), message.empty() ? "the disk may be full" : message));
+  });
+}
+
+vtkSmartPointer<vtkCellArray> cell_array(vtkSmartPointer<vtkIntArray> nodes, vtkIdType cells, int nodes_per_cell)
+{
+  vtkNew<vtkIntArray> offsets;
+  offsets->SetNumberOfValues(cells + 1);
+  for (vtkIdType c = 0; c <= cells; ++c)
+    offsets->SetValue(c, static_cast<int>(c * nodes_per_cell));
+  auto array = vtkSmartPointer<vtkCellArray>::New();
+  array->SetData(offsets, nodes);
+  return array;
+}
+
+std::string escaped(const std::string& text)
+{
+  std::string out;
+  for (const char c : text)
+    out += c == '&' ? "&amp;" : c == '<' ? "&lt;" : c == '"' ? "&quot;" : std::string(1, c);
+  return out;
+}
+
+}  // namespace
+
+void write_particles(const fs::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
+                     std::span<const Column> columns)
+{
+  const std::size_t n = ids.size();
+  if (positions.size() != 3 * n)
+    throw std::invalid_argument(fmt::format("{}: {} coordinates for {} particles", file.string(), positions.size(), n));
+  vtkNew<vtkPoints> points;
+  points->SetData(lend<vtkDoubleArray>(positions, 3, "Points"));
+  auto vertices = vtkSmartPointer<vtkIntArray>::New();
+  vertices->SetNumberOfValues(static_cast<vtkIdType>(n));
+  std::iota(vertices->GetPointer(0), vertices->GetPointer(0) + n, 0);
+
+  vtkNew<vtkPolyData> cloud;
+  cloud->SetPoints(points);
+  cloud->SetVerts(cell_array(vertices, static_cast<vtkIdType>(n), 1));
+  static_assert(std::is_same_v<std::int64_t, long>);
+  cloud->GetPointData()->AddArray(lend<vtkLongArray>(ids, 1, "id"));
+  add_columns(cloud->GetPointData(), columns, n, file);
+  add_time(cloud, time);
+  write<vtkXMLPolyDataWriter>(file, cloud);
+}
+
+template <int D>
+void write_mesh(const fs::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
+                std::span<const Column> cell_columns)
+{
+  const auto nodes = mesh.nodes();
+  vtkNew<vtkDoubleArray> coordinates;
+  coordinates->SetNumberOfComponents(3);
+  coordinates->SetNumberOfTuples(mesh.n_nodes());
+  double* place = coordinates->GetPointer(0);
+  for (const auto& x : nodes)
+    for (int d = 0; d < 3; ++d)
+      *place++ = d < D ? x[std::min(d, D - 1)] : 0.0;
+  vtkNew<vtkPoints> points;
+  points->SetData(coordinates);
+
+  auto corners = vtkSmartPointer<vtkIntArray>::New();
+  corners->SetNumberOfValues(mesh.n_cells() * vtkIdType{D + 1});
+  int* corner = corners->GetPointer(0);
+  for (const auto& cell : mesh.cells())
+    corner = std::copy(cell.begin(), cell.end(), corner);
+
+  vtkNew<vtkUnstructuredGrid> grid;
+  grid->SetPoints(points);
+  grid->SetCells(D == 2 ? VTK_TRIANGLE : VTK_TETRA, cell_array(corners, mesh.n_cells(), D + 1));
+  add_columns(grid->GetPointData(), node_columns, nodes.size(), file);
+  add_columns(grid->GetCellData(), cell_columns, mesh.cells().size(), file);
+  add_time(grid, time);
+  write<vtkXMLUnstructuredGridWriter>(file, grid);
+}
+
+template void write_mesh<2>(const fs::path&, Real, const Mesh<2>&, std::span<const Column>, std::span<const Column>);
+template void write_mesh<3>(const fs::path&, Real, const Mesh<3>&, std::span<const Column>, std::span<const Column>);
+
+void PvdSeries::drop_from(Real time)
+{
+  std::erase_if(entries_, [&](const auto& entry) { return entry.first >= time; });
+}
+
+void PvdSeries::resume(Real time)
+{
+  entries_.clear();
+  if (!fs::exists(file_))
+    return;
+  for (const auto& [t, path] : read_pvd(file_))
+    if (t <= time)
+      entries_.emplace_back(t, path.lexically_proximate(file_.parent_path()).string());
+}
+
+void PvdSeries::append(Real time, const fs::path& file)
+{
+  drop_from(time);
+  entries_.emplace_back(time, file.lexically_proximate(file_.parent_path()).string());
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+  for (const auto& [t, name] : entries_)
+    text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", t, escaped(name));
+  write_whole(file_, text + "  </Collection>\n</VTKFile>\n");
+}
+
+std::vector<std::pair<Real, fs::path>> read_pvd(const fs::path& file)
+{
+  const std::string text = read_whole(file);
+  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromString(text.c_str()));
+  vtkXMLDataElement* list = root ? root->FindNestedElementWithName("Collection") : nullptr;
+  if (list == nullptr)
+    throw EnvironmentError(fmt::format("{} is not a list of VTK files (.pvd)", file.string()));
+  std::vector<std::pair<Real, fs::path>> entries;
+  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
+    vtkXMLDataElement* entry = list->GetNestedElement(i);
+    double time = 0;
+    const char* name = entry->GetAttribute("file");
+    if (name == nullptr || entry->GetScalarAttribute("timestep", time) == 0)
+      throw EnvironmentError(fmt::format("{}: entry {} has no file or no timestep", file.string(), i + 1));
+    entries.emplace_back(time, file.parent_path() / name);
+  }
+  return entries;
+}
+
+}  // namespace talus

@@ -1,0 +1,52 @@
+#pragma once
+// Files for ParaView: particles (.vtp), fields on the mesh (.vtu) and their series in time (.pvd).
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// One field, item after item, in single precision: it is for viewing, not for restarting.
+struct Column {
+  std::string name;
+  int components = 1;         ///< 1 scalar, 3 vector, 6 symmetric tensor xx, yy, zz, xy, yz, xz, 9 tensor by rows
+  std::vector<float> values;  ///< components * number of items
+  std::string unit = {};      ///< stored with the field, shown in pictures; empty for none
+};
+
+/// Writes a .vtp (appended raw, LZ4, 64-bit headers) with one vertex per particle, the field "id" and the field "TimeValue" [s].
+/// positions: 3 numbers per particle [m], z = 0 in 2-D.  Any number of particles, none included; values are written as they are.
+/// Errors: EnvironmentError naming the file; std::invalid_argument for lengths that do not fit.
+void write_particles(const std::filesystem::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
+                     std::span<const Column> columns);
+
+/// Writes a .vtu of the mesh with fields per node and per cell, in the numbering of `mesh`.  Errors as above.
+template <int D>
+void write_mesh(const std::filesystem::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
+                std::span<const Column> cell_columns);
+
+/// The list of the files of a run with their times.  Rewritten as a whole by every append, so it is valid after a kill.
+class PvdSeries {
+ public:
+  explicit PvdSeries(std::filesystem::path file) : file_(std::move(file)) {}
+
+  /// Takes over the entries of an older list up to `time` [s], for a run that is resumed there.  No list there: nothing to take.
+  void resume(Real time);
+  /// Adds a file; a path below the folder of the list is stored relative to it.  Entries that are not earlier give way.
+  void append(Real time, const std::filesystem::path& file);
+
+ private:
+  void drop_from(Real time);
+  std::filesystem::path file_;
+  std::vector<std::pair<Real, std::string>> entries_;
+};
+
+/// Entries of a .pvd as (time [s], path that can be opened), ascending as listed.  EnvironmentError if it cannot be read.
+std::vector<std::pair<Real, std::filesystem::path>> read_pvd(const std::filesystem::path& file);
+
+}  // namespace talus

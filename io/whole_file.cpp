@@ -1,0 +1,125 @@
+// POSIX calls behind write_whole: a stream cannot be told to reach the disk.
+#include "io/whole_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "core/error.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& file, std::string_view verb, int code)
+{
+  throw EnvironmentError(fmt::format("cannot {} {}: {}", verb, file.string(), std::strerror(code)));
+}
+
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  ~Descriptor()
+  {
+    if (is_open())
+      ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  bool is_open() const noexcept { return number_ >= 0; }
+  int number() const noexcept { return number_; }
+
+ private:
+  int number_;
+};
+
+void sync(const fs::path& path, int flags, const fs::path& file)
+{
+  const Descriptor opened(path, flags);
+  // Some network file systems know no fsync of a folder and answer EINVAL; the rename has happened all the same.
+  if (!opened.is_open() || (::fsync(opened.number()) != 0 && errno != EINVAL))
+    fail(file, "write", errno);
+}
+
+/// Removes the temporary unless it has become the file.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& file) : path_(file.string() + ".tmp") {}
+  ~Temporary()
+  {
+    std::error_code ignored;
+    if (!kept_)
+      fs::remove(path_, ignored);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+  const fs::path& path() const noexcept { return path_; }
+  void keep() noexcept { kept_ = true; }
+
+ private:
+  fs::path path_;
+  bool kept_ = false;
+};
+
+void write_text(const fs::path& path, std::string_view text, const fs::path& file)
+{
+  const Descriptor opened(path, O_WRONLY | O_CREAT | O_TRUNC);
+  if (!opened.is_open())
+    fail(file, "write", errno);
+  while (!text.empty()) {
+    const ssize_t written = ::write(opened.number(), text.data(), text.size());
+    if (written < 0 && errno != EINTR)
+      fail(file, "write", errno);
+    if (written > 0)
+      text.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+}  // namespace
+
+void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write)
+{
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    fail(folder, "make the folder", failed.value());
+  Temporary temporary(file);
+  write(temporary.path());
+  sync(temporary.path(), O_RDONLY, file);
+  if (::rename(temporary.path().c_str(), file.c_str()) != 0)
+    fail(file, "write", errno);
+  temporary.keep();
+  sync(folder, O_RDONLY | O_DIRECTORY, file);
+}
+
+void write_whole(const fs::path& file, std::string_view text)
+{
+  write_whole(file, [&](const fs::path& temporary) { write_text(temporary, text, file); });
+}
+
+std::string read_whole(const fs::path& file)
+{
+  const Descriptor opened(file, O_RDONLY);
+  if (!opened.is_open())
+    fail(file, "read", errno);
+  std::string text;
+  std::string block(1 << 16, '\0');
+  for (;;) {
+    const ssize_t got = ::read(opened.number(), block.data(), block.size());
+    if (got == 0)
+      return text;
+    if (got < 0 && errno != EINTR)
+      fail(file, "read", errno);
+    if (got > 0)
+      text.append(block, 0, static_cast<std::size_t>(got));
+  }
+}
+
+}  // namespace talus

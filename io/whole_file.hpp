@@ -1,0 +1,21 @@
+#pragma once
+// Files that are there as a whole or not at all: written beside their place, flushed to the disk, then renamed.
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace talus {
+
+/// Calls write(temporary) with a path in the folder of `file`, then fsync, rename to `file`, fsync of the folder.  The folder is
+/// made if it is missing.  On any failure the temporary is removed and an older `file` is left as it was; EnvironmentError names
+/// `file`.  What `write` throws passes through.
+void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// The same for a text.
+void write_whole(const std::filesystem::path& file, std::string_view text);
+
+/// All bytes of a file; EnvironmentError names the file if it cannot be read.
+std::string read_whole(const std::filesystem::path& file);
+
+}  // namespace talus
