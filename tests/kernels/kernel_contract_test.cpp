@@ -1,0 +1,193 @@
+// Every kernel against what it says of itself, and against what it does not say: typed over the list of kernels and dimensions.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/kernels/defects.hpp"
+
+namespace talus::test {
+namespace {
+
+template <class Kernel_, int Dimension>
+struct On {
+  using K = Kernel_;
+  static constexpr int D = Dimension;
+};
+template <class Plane, class Space>
+struct Both;
+template <class... Plane, class... Space>
+struct Both<TypeList<Plane...>, TypeList<Space...>> {
+  using type = ::testing::Types<On<Plane, 2>..., On<Space, 3>...>;
+};
+struct Names {
+  template <class T>
+  static std::string GetName(int)
+  {
+    return std::string(T::K::name) + std::to_string(T::D);
+  }
+};
+
+template <class T>
+class KernelContract : public ::testing::Test {};
+using EveryKernel = Both<Kernels<2>, Kernels<3>>::type;
+TYPED_TEST_SUITE(KernelContract, EveryKernel, Names);
+
+// Sixteen digits, less the six that a second-moment matrix may lose before a kernel must take something else (kernels/umls.hpp).
+constexpr Real round_off = 1e-10;
+// What is not claimed must be false by much more than round-off.
+constexpr Real visible = 1e-3;
+
+/// `defect(mesh)` is round-off on every mesh if claimed, and visible on at least one if not.
+template <int D, class Defect>
+void prove(bool claimed, Real tolerance, Defect&& defect)
+{
+  Real worst = 0;
+  for (const auto& [name, mesh] : meshes<D>()) {
+    const Real here = defect(mesh);
+    worst = std::max(worst, here);
+    if (claimed) {
+      EXPECT_LE(here, tolerance) << "claimed, but false on the mesh: " << name;
+    }
+  }
+  if (!claimed) {
+    EXPECT_GE(worst, visible) << "not claimed, but true on every mesh: the kernel is better than it says";
+  }
+}
+
+TYPED_TEST(KernelContract, HasANameASummaryAndRoomInWholePacks)
+{
+  using K = typename TypeParam::K;
+  static_assert(Kernel<K, TypeParam::D>);
+  EXPECT_FALSE(std::string_view(K::name).empty());
+  EXPECT_FALSE(std::string_view(K::summary).empty());
+  EXPECT_EQ(K::max_nodes % pack_size, 0);
+}
+
+TYPED_TEST(KernelContract, StencilHoldsTheCellOnceAndCellRepeatsIt)
+{
+  constexpr int D = TypeParam::D;
+  using K = typename TypeParam::K;
+  for (const auto& [name, mesh] : meshes<D>()) {
+    const K kernel(mesh);
+    Probe<K, D> probe(kernel, mesh);
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+      const auto stencil = kernel.stencil(mesh, c);
+      const std::set<Index> nodes(stencil.begin(), stencil.end());
+      ASSERT_EQ(nodes.size(), stencil.size()) << name << ", cell " << c;
+      for (const Index v : mesh.cell(c))
+        ASSERT_TRUE(nodes.contains(v)) << name << ", cell " << c << ", node " << v;
+      probe.enter(c);
+      ASSERT_EQ(probe.cell.cell, c);
+      ASSERT_EQ(probe.cell.size, static_cast<int>(stencil.size()));
+      ASSERT_EQ(probe.cell.padded_size, padded(probe.cell.size));
+      ASSERT_LE(probe.cell.padded_size, K::max_nodes);
+      for (int i = 0; i < probe.cell.padded_size; ++i) {
+        const bool real = i < probe.cell.size;
+        if (real) {
+          ASSERT_EQ(probe.number(i), stencil[static_cast<std::size_t>(i)]);
+        }
+        ASSERT_EQ(probe.node(i), mesh.node(stencil[real ? static_cast<std::size_t>(i) : 0]));
+      }
+    }
+  }
+}
+
+TYPED_TEST(KernelContract, WeightsSumToOneAndGradientsToZeroOnNodesEdgesFacesAndInside)
+{
+  constexpr int D = TypeParam::D;
+  using K = typename TypeParam::K;
+  for (const auto& [name, mesh] : meshes<D>()) {
+    const K kernel(mesh);
+    for_each_trial(kernel, mesh, [&, &at = name](const auto& probe, Index c, const Vec<D>& x) {
+      Real sum = 0, size = 0, gradient_size = 0;
+      Vec<D> gradient = Vec<D>::Zero();
+      for (int i = 0; i < probe.cell.padded_size; ++i) {
+        ASSERT_TRUE(std::isfinite(probe.weights.w[i]) && probe.gradient(i).allFinite()) << at << ", cell " << c << ", x = " << x.transpose();
+        sum += probe.weights.w[i];
+        size += std::abs(probe.weights.w[i]);
+        gradient += probe.gradient(i);
+        gradient_size += probe.gradient(i).norm();
+      }
+      ASSERT_NEAR(sum, 1, round_off * size) << at << ", cell " << c << ", x = " << x.transpose();
+      ASSERT_LE(gradient.norm(), round_off * gradient_size) << at << ", cell " << c << ", x = " << x.transpose();
+    });
+  }
+}
+
+TYPED_TEST(KernelContract, PaddingCarriesNoWeight)
+{
+  constexpr int D = TypeParam::D;
+  using K = typename TypeParam::K;
+  const Mesh<D>& mesh = jittered_mesh<D>();
+  const K kernel(mesh);
+  int padded_entries = 0;
+  for_each_trial(kernel, mesh, [&](const auto& probe, Index, const Vec<D>&) {
+    for (int i = probe.cell.size; i < probe.cell.padded_size; ++i, ++padded_entries) {
+      ASSERT_EQ(probe.weights.w[i], 0);
+      ASSERT_EQ(probe.gradient(i).norm(), 0);
+    }
+  });
+  if (K::max_nodes > D + 1) {
+    EXPECT_GT(padded_entries, 0) << "the mesh has no stencil with padding, so nothing was tried";
+  }
+}
+
+TYPED_TEST(KernelContract, ValuesAreNonNegativeIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().non_negative, round_off, [](const Mesh<D>& mesh) { return negativity(K(mesh), mesh); });
+}
+
+TYPED_TEST(KernelContract, ValuesReproduceLinearFieldsIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().linear_values, round_off, [](const Mesh<D>& mesh) { return linear_value_defect(K(mesh), mesh); });
+}
+
+TYPED_TEST(KernelContract, GradientsOfLinearFieldsAreExactIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().linear_gradients, round_off, [](const Mesh<D>& mesh) { return linear_gradient_defect(K(mesh), mesh); });
+}
+
+TYPED_TEST(KernelContract, ValuesAreContinuousAcrossFacesIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().continuous_values, round_off, [](const Mesh<D>& mesh) { return jumps(K(mesh), mesh).value; });
+}
+
+TYPED_TEST(KernelContract, GradientIsContinuousAcrossFacesIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().continuous_gradient, round_off, [](const Mesh<D>& mesh) { return jumps(K(mesh), mesh).gradient; });
+}
+
+TYPED_TEST(KernelContract, GradientIsTheSlopeOfTheValuesIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  // A step of 1e-5 altitudes is 1e-8 in the flattest cells, of coordinates near one that carry sixteen digits.
+  prove<D>(K(jittered_mesh<D>()).claims().gradient_of_values, 1e-7, [](const Mesh<D>& mesh) { return slope_defect(K(mesh), mesh); });
+}
+
+TYPED_TEST(KernelContract, GradientsIntegrateToZeroAtInteriorNodesIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().patch_test, round_off, [](const Mesh<D>& mesh) { return patch_defect(K(mesh), mesh).largest; });
+}
+
+TYPED_TEST(KernelContract, WallsAreClosedIfClaimed)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  prove<D>(K(jittered_mesh<D>()).claims().closed_walls, round_off, [](const Mesh<D>& mesh) { return wall_leak(K(mesh), mesh); });
+}
+
+}  // namespace
+}  // namespace talus::test

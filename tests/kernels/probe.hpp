@@ -1,0 +1,139 @@
+#pragma once
+// Meshes to try kernels on, points to try them at, and the weights of one point by node number.
+#include <cmath>
+#include <map>
+#include <random>
+#include <string>
+
+#include "kernels/kernels.hpp"
+#include "mesh/generate.hpp"
+#include "mesh/quadrature.hpp"
+
+namespace talus::test {
+
+template <int D>
+struct Named {
+  std::string name;
+  Mesh<D> mesh;
+};
+
+template <int D>
+MeshData<D> unit_box(Index n)
+{
+  Vec<D> high = Vec<D>::Ones();
+  std::array<Index, D> cells;
+  cells.fill(n);
+  return box<D>(Vec<D>::Zero(), high, cells);
+}
+
+inline constexpr Real sliver_angle = 0.02;  // about one degree
+
+/// Regular, jittered by 20 % of the shortest edge, graded 10:1 and jittered, with slivers.
+template <int D>
+const std::vector<Named<D>>& meshes()
+{
+  constexpr Index n = D == 2 ? 12 : 5;
+  static const std::vector<Named<D>> all = [] {
+    std::vector<Named<D>> made;
+    made.push_back({"regular", Mesh<D>(unit_box<D>(n))});
+    made.push_back({"jittered", Mesh<D>(jittered<D>(unit_box<D>(n), 0.2, 1))});
+    made.push_back({"graded", Mesh<D>(graded<D>(jittered<D>(unit_box<D>(n), 0.1, 2), 10))});
+    made.push_back({"slivers", Mesh<D>(slivered<D>(unit_box<D>(n), sliver_angle, 4, 3))});
+    return made;
+  }();
+  return all;
+}
+
+template <int D>
+const Mesh<D>& jittered_mesh()
+{
+  return meshes<D>()[1].mesh;
+}
+
+template <int D>
+Vec<D> place(const Mesh<D>& mesh, Index c, const std::array<Real, D + 1>& barycentric)
+{
+  Vec<D> x = Vec<D>::Zero();
+  for (std::size_t a = 0; a <= D; ++a)
+    x += barycentric[a] * mesh.node(mesh.cell(c)[a]);
+  return x;
+}
+
+/// Vertices, middles of edges, centroids of facets (3-D), the centroid, and four random points, in barycentric coordinates.
+template <int D>
+std::vector<std::array<Real, D + 1>> trial_points(std::uint32_t seed)
+{
+  std::vector<std::array<Real, D + 1>> points;
+  const auto middle_of = [&](auto holds) {
+    std::array<Real, D + 1> b{};
+    Real count = 0;
+    for (std::size_t a = 0; a <= D; ++a)
+      count += holds(a);
+    for (std::size_t a = 0; a <= D; ++a)
+      b[a] = holds(a) / count;
+    points.push_back(b);
+  };
+  for (unsigned corners = 1; corners < (2U << D); ++corners)
+    middle_of([&](std::size_t a) { return static_cast<Real>((corners >> a) & 1U); });
+  std::mt19937 random(seed);
+  std::exponential_distribution<Real> share;  // normalised exponentials are uniform on the simplex
+  for (int i = 0; i < 4; ++i) {
+    std::array<Real, D + 1> b{};
+    Real total = 0;
+    for (auto& x : b)
+      total += x = share(random);
+    for (auto& x : b)
+      x /= total;
+    points.push_back(b);
+  }
+  return points;
+}
+
+/// The weights of one point; what a stencil does not hold is zero.
+template <class K, int D>
+class Probe {
+ public:
+  Probe(const K& kernel, const Mesh<D>& mesh) : kernel_(kernel), mesh_(mesh) {}
+  void enter(Index c) { kernel_.open(mesh_, c, cell); }
+  void evaluate(const Vec<D>& x) { kernel_.evaluate(cell, x, weights); }
+  Vec<D> gradient(int i) const
+  {
+    Vec<D> g;
+    for (int d = 0; d < D; ++d)
+      g[d] = weights.dw[d][i];
+    return g;
+  }
+  Vec<D> node(int i) const
+  {
+    Vec<D> x;
+    for (int d = 0; d < D; ++d)
+      x[d] = cell.x[d][i];
+    return x;
+  }
+  Index number(int i) const { return cell.nodes[static_cast<std::size_t>(i)]; }
+
+  typename K::Cell cell;
+  Weights<D, K::max_nodes> weights;
+
+ private:
+  const K& kernel_;
+  const Mesh<D>& mesh_;
+};
+
+template <int D>
+struct ByNode {
+  std::map<Index, Real> value;
+  std::map<Index, Vec<D>> gradient;
+};
+template <class K, int D>
+ByNode<D> by_node(const Probe<K, D>& probe)
+{
+  ByNode<D> all;
+  for (int i = 0; i < probe.cell.size; ++i) {
+    all.value[probe.number(i)] = probe.weights.w[i];
+    all.gradient[probe.number(i)] = probe.gradient(i);
+  }
+  return all;
+}
+
+}  // namespace talus::test
