@@ -144,7 +144,8 @@ Mat3 DruckerPrager::update(const Increment& in, State& state, const Constants& c
   else
     state.elastic_left = b;
   state.plastic_strain += end.multiplier / root3;
-  state.plastic_work += end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
+  const Real work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
+  state.plastic_work += std::max(work, Real{0});  // associated flow without cohesion dissipates nothing, up to rounding
   state.opened_volume = (closing ? 0 : state.opened_volume) + end.opening;
   return unpack(add_diagonal(2 * c.shear * kept / J * shear_strain, end.mean / J));
 }

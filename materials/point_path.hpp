@@ -26,7 +26,7 @@ struct Control {
 
 /// Control of each component; those not named have no strain rate.
 struct Controls {
-  std::optional<Control> xx, yy, zz, xy, yz, xz;
+  std::optional<Control> xx{}, yy{}, zz{}, xy{}, yz{}, xz{};
   static constexpr auto fields()
   {
     return std::tuple{group("xx", &Controls::xx, "normal component along x"), group("yy", &Controls::yy, "normal component along y"),
@@ -43,8 +43,8 @@ struct Controls {
 struct PointPath {
   Index steps = 100;
   Real time = 1;
-  Controls controls;
-  Where where;
+  Controls controls{};
+  Where where{};
   static constexpr auto fields()
   {
     return std::tuple{optional("steps", &PointPath::steps, positive, "-", "number of steps"), optional("time", &PointPath::time, positive, "s", "duration"),

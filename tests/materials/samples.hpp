@@ -7,14 +7,19 @@
 
 namespace talus::testing {
 
+/// Young's modulus of every sample, or the stiffness that stands for it [Pa].
+inline constexpr Real sample_stiffness = 1e7;
+
 /// Parameters under which a law shows all it has: for soil dilation, cohesion, softening and a cut-off.
 template <class L>
 L sample()
 {
   L law{};
   law.density = 2000;
-  law.youngs_modulus = 1e7;
-  law.poisson_ratio = 0.3;
+  if constexpr (requires { law.youngs_modulus; }) {
+    law.youngs_modulus = sample_stiffness;
+    law.poisson_ratio = 0.3;
+  }
   if constexpr (requires { law.friction_angle; }) {
     law.friction_angle = 30;
     law.cohesion = 5e3;
