@@ -12,7 +12,7 @@ namespace talus {
 namespace {
 
 constexpr std::size_t most_problems = 100;
-constexpr std::size_t longest_shown_line = 160;
+constexpr std::size_t longest_shown_line = 200;
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 

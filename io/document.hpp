@@ -15,7 +15,8 @@ namespace talus {
 struct Source {
   std::string name;                     ///< as messages show it
   std::string text;                     ///< lines ended by "\n", no byte order mark
-  std::vector<std::string_view> lines;  ///< of the text; none for an override
+  std::vector<std::string_view> lines;  ///< of the text
+  bool is_file = true;                  ///< otherwise lines and columns mean nothing to the reader of a message
 };
 
 /// Where a value stands.  Lines and columns count from one, columns in bytes; zero means unknown.

@@ -41,17 +41,17 @@ void FieldReader::read(const Node& node, const std::string& path, const Asked&, 
       problems_.add(node.items[i].place, path_to(path, i, node.items[i]), fmt::format("time {} s does not come after {} s", t1, t0));
 }
 
-bool FieldReader::is(Node::Kind kind, const Node& node, const std::string& path)
+bool FieldReader::is(Node::Kind kind, const Node& node, const std::string& path, std::string_view expected)
 {
   if (node.kind == kind)
     return true;
-  const auto name = [](Node::Kind k) {
-    return k == Node::Kind::list ? "a list [..., ...]" : k == Node::Kind::mapping ? "a mapping {key: value}" : "a single value";
+  const auto found = [&] {
+    return node.kind == Node::Kind::list ? "a list" : node.kind == Node::Kind::mapping ? "a mapping" : "a single value";
   };
   if (node.kind == Node::Kind::empty)
-    problems_.add(node.place, path, fmt::format("there is nothing here, expected {}", name(kind)));
+    problems_.add(node.place, path, fmt::format("the value is missing, expected {}", expected));
   else if (node.kind != Node::Kind::unreadable)
-    problems_.add(node.place, path, fmt::format("expected {}, found {}", name(kind), name(node.kind)));
+    problems_.add(node.place, path, fmt::format("expected {}, found {}", expected, found()));
   return false;
 }
 

@@ -69,7 +69,7 @@ class FieldReader {
   template <HasFields T>
   void read(const Node& node, const std::string& path, const Asked&, T& object)
   {
-    if (!is(Node::Kind::mapping, node, path))
+    if (!is(Node::Kind::mapping, node, path, "a mapping {key: value}"))
       return;
     Mapping mapping(node, path, problems_);
     read_fields(mapping, object);
@@ -80,7 +80,7 @@ class FieldReader {
   template <HasFields... T>
   void read(const Node& node, const std::string& path, const Asked&, std::variant<T...>& object)
   {
-    if (!is(Node::Kind::mapping, node, path))
+    if (!is(Node::Kind::mapping, node, path, "a mapping {key: value}"))
       return;
     Mapping mapping(node, path, problems_);
     read_alternative(mapping, "type", object);
@@ -96,7 +96,7 @@ class FieldReader {
   template <class T>
   void read(const Node& node, const std::string& path, const Asked& asked, std::vector<T>& list)
   {
-    if (!is(Node::Kind::list, node, path))
+    if (!is(Node::Kind::list, node, path, "a list [..., ...]"))
       return;
     list.assign(node.items.size(), T{});
     if (list.empty())
@@ -108,7 +108,7 @@ class FieldReader {
   template <class T, std::size_t N>
   void read(const Node& node, const std::string& path, const Asked& asked, std::array<T, N>& list)
   {
-    if (!is(Node::Kind::list, node, path))
+    if (!is(Node::Kind::list, node, path, "a list [..., ...]"))
       return;
     if (node.items.size() != N)
       return problems_.add(node.place, path, count_message(N, node.items.size()));
@@ -123,7 +123,7 @@ class FieldReader {
   requires requires(const Node& node, T& value) { read_scalar(node, Asked{}, value); }
   void read(const Node& node, const std::string& path, const Asked& asked, T& value)
   {
-    if (!is(Node::Kind::scalar, node, path))
+    if (!is(Node::Kind::scalar, node, path, scalar_name(value)))
       return;
     if (auto complaint = read_scalar(node, asked, value))
       problems_.add(node.place, path, std::move(*complaint));
@@ -199,7 +199,7 @@ class FieldReader {
   }
 
   /// True if the value is of that kind; otherwise complains, unless somebody did before.
-  bool is(Node::Kind kind, const Node& node, const std::string& path);
+  bool is(Node::Kind kind, const Node& node, const std::string& path, std::string_view expected);
   static std::string count_message(std::size_t wanted, std::size_t found);
   static std::string unknown_word(std::string_view key, const std::string& word, const std::vector<std::string>& known);
 

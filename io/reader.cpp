@@ -37,7 +37,8 @@ class TreeBuilder : public YAML::EventHandler {
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { add({.place = place(mark)}); }
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override
   {
-    problems_.add(place(mark), path(), "aliases are not read: write the value out");
+    if (open_.empty() || !open_.back().key || open_.back().key_is_right)
+      problems_.add(place(mark), path(), "aliases are not read: write the value out");
     add({.kind = Node::Kind::unreadable, .place = place(mark)});
   }
   void OnAnchor(const YAML::Mark& mark, const std::string& name) override
@@ -47,7 +48,9 @@ class TreeBuilder : public YAML::EventHandler {
   void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, const std::string& text) override
   {
     refuse_tag(mark, tag);
-    add({.kind = Node::Kind::scalar, .quoted = tag != "?", .place = place(mark), .text = text});
+    if (tag == "!")
+      check_closed(mark);
+    add({.kind = Node::Kind::scalar, .quoted = tag == "!", .place = place(mark), .text = text});
   }
   void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t, YAML::EmitterStyle::value) override
   {
@@ -72,7 +75,7 @@ class TreeBuilder : public YAML::EventHandler {
   /// Marks count from zero; the text of an override has no lines of its own.
   Place place(const YAML::Mark& mark) const
   {
-    return source_.lines.empty() || mark.is_null() ? Place{&source_} : Place{&source_, mark.line + 1, mark.column + 1};
+    return !source_.is_file || mark.is_null() ? Place{&source_} : Place{&source_, mark.line + 1, mark.column + 1};
   }
 
   /// Keys and numbers that lead to the value that comes next.
@@ -93,6 +96,21 @@ class TreeBuilder : public YAML::EventHandler {
   {
     if (!tag.empty() && tag != "?" && tag != "!")
       problems_.add(place(mark), path(), fmt::format("tags such as {} are not read", tag));
+  }
+
+  /// The parser takes the end of the file for a closing quote.
+  void check_closed(const YAML::Mark& mark) const
+  {
+    const std::string_view first = source_.lines.at(static_cast<std::size_t>(mark.line)).substr(static_cast<std::size_t>(mark.column));
+    const char quote = first.empty() ? ' ' : first.front();
+    if (quote != '"' && quote != '\'')
+      return;
+    const std::string& text = source_.text;
+    auto at = static_cast<std::size_t>(first.data() - text.data()) + 1;
+    while (at < text.size() && text[at] != quote)
+      at += quote == '"' && text[at] == '\\' ? 2 : 1;
+    if (at >= text.size())
+      throw Unparsable{place(mark), fmt::format("the quote {} is not closed", quote)};
   }
 
   void open(const YAML::Mark& mark, const std::string& tag, Node::Kind kind)
@@ -153,6 +171,22 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
+/// The parser's message, with what usually is the matter.
+std::string explained(const std::string& message)
+{
+  static constexpr std::array<std::array<std::string_view, 2>, 5> reasons{{
+      {"illegal map value", "a text with a colon in it needs quotes"},
+      {"end of sequence flow not found", "a bracket [ is not closed or a comma is missing"},
+      {"end of map flow not found", "a brace { is not closed or a comma is missing"},
+      {"end of map not found", "the indentation does not fit the lines above"},
+      {"end of sequence not found", "the indentation does not fit the lines above"},
+  }};
+  for (const auto& [known, reason] : reasons)
+    if (message == known)
+      return fmt::format("{}; {}", message, reason);
+  return message;
+}
+
 /// The tree of one YAML document.  Throws Unparsable.
 Node parse(const Source& source, Problems& problems)
 {
@@ -168,8 +202,8 @@ Node parse(const Source& source, Problems& problems)
       throw Unparsable{second.take().place, "a second document begins here: one file holds one scene"};
     return root;
   } catch (const YAML::Exception& e) {
-    const bool placed = !e.mark.is_null() && !source.lines.empty();
-    throw Unparsable{placed ? Place{&source, e.mark.line + 1, e.mark.column + 1} : Place{&source}, "this is not YAML: " + e.msg};
+    const bool placed = !e.mark.is_null() && source.is_file;
+    throw Unparsable{placed ? Place{&source, e.mark.line + 1, e.mark.column + 1} : Place{&source}, "this is not YAML: " + explained(e.msg)};
   }
 }
 
@@ -177,12 +211,16 @@ void apply_override(Document& document, const std::string& text)
 {
   const std::size_t equals = text.find('=');
   const std::string value = equals == text.npos ? "" : text.substr(equals + 1);
-  document.sources.push_back({"--set " + text, value, {}});
-  const Place place{&document.sources.back()};
+  Source& source = document.sources.emplace_back();
+  source.name = "--set " + text;
+  source.text = value;
+  source.lines = lines_of(source.text);
+  source.is_file = false;
+  const Place place{&source};
   if (equals == text.npos)
     return document.problems.add(place, "", "write it as key=value");
   try {
-    Node node = parse(document.sources.back(), document.problems);
+    Node node = parse(source, document.problems);
     node.place = place;
     set_value(document, std::string_view(text).substr(0, equals), std::move(node), place);
   } catch (const Unparsable& e) {
@@ -236,6 +274,15 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
   scene.file = file.string();
   scene.text = std::move(document.sources.front().text);
   return scene;
+}
+
+PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides)
+{
+  Document document = read_document(file, overrides);
+  PointTest test;
+  FieldReader(document.problems).read(document.root, "", {}, test);
+  document.problems.throw_if_any();
+  return test;
 }
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "io/point_test.hpp"
 #include "io/scene.hpp"
 
 namespace talus {
@@ -14,5 +15,8 @@ namespace talus {
 /// by place; the file of a problem in an override is its text, such as `--set time.end=2x`.  A subset of YAML is read: no anchors,
 /// aliases, merge keys or tags, one document, decimal numbers, `true` and `false`.
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The file of `talus drive`, read in the same way.
+PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 }  // namespace talus

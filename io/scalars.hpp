@@ -20,6 +20,15 @@ struct Asked {
   std::string_view unit = "-";
 };
 
+/// What the value is called in messages: "a number".
+constexpr std::string_view scalar_name(Real) { return "a number"; }
+constexpr std::string_view scalar_name(Index) { return "a whole number"; }
+constexpr std::string_view scalar_name(bool) { return "true or false"; }
+inline std::string_view scalar_name(const std::string&) { return "a text"; }
+template <class Enum>
+requires std::is_enum_v<Enum>
+constexpr std::string_view scalar_name(Enum) { return "a word"; }
+
 /// Decimal, finite, no leading zeros, no quotes, inside the range.  `value` is written only when nothing is wrong.
 Complaint read_scalar(const Node& node, const Asked& asked, Real& value);
 Complaint read_scalar(const Node& node, const Asked& asked, Index& value);

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 
 namespace talus {
@@ -15,17 +17,12 @@ void exactly_one(std::string_view keys, int found, std::vector<std::string>& pro
   if (found == 0)
     problems.push_back(fmt::format("one of {} is needed", keys));
   if (found > 1)
-    problems.push_back(fmt::format("only one of {} may stand here, not {}", keys, found));
+    problems.push_back(fmt::format("only one of {} may be given", keys));
 }
 
 }  // namespace
 
-void GridSpec::check(std::vector<std::string>& problems) const
-{
-  check_corners(low, high, problems);
-  if (cells.size() != low.size())
-    problems.push_back(fmt::format("cells has {} numbers and low has {}", cells.size(), low.size()));
-}
+void GridSpec::check(std::vector<std::string>& problems) const { check_corners(low, high, problems); }
 
 void MeshSpec::check(std::vector<std::string>& problems) const
 {
@@ -37,9 +34,9 @@ void MeshSpec::check(std::vector<std::string>& problems) const
     problems.push_back(fmt::format("{} is for geometry and regions only", size ? "size" : "refine"));
   if (!file.empty() && std::filesystem::path(file).extension() != ".msh")
     problems.push_back(fmt::format("file \"{}\" does not end in .msh; a .geo or .step file is given as geometry", file));
-  const auto kind = std::filesystem::path(geometry).extension();
-  if (!geometry.empty() && kind != ".geo" && kind != ".step" && kind != ".stp")
-    problems.push_back(fmt::format("geometry \"{}\" does not end in .geo, .step or .stp", geometry));
+  static constexpr std::array<std::string_view, 6> kinds{".geo", ".step", ".stp", ".brep", ".iges", ".igs"};
+  if (!geometry.empty() && std::find(kinds.begin(), kinds.end(), std::filesystem::path(geometry).extension()) == kinds.end())
+    problems.push_back(fmt::format("geometry \"{}\" does not end in .geo, .step, .stp, .brep, .iges or .igs", geometry));
 }
 
 void TimeSpec::check(std::vector<std::string>& problems) const

@@ -162,6 +162,7 @@ class Rules {
       known_fields("outputs.particles.fields", outputs.particles->fields_wanted, particle_field_names());
     if (outputs.mesh)
       known_fields("outputs.mesh.fields", outputs.mesh->fields_wanted, {node_fields.begin(), node_fields.end()});
+    known_word("outputs.picture.field", "field", outputs.picture.field, particle_field_names());
     if (outputs.history)
       history(*outputs.history);
   }

@@ -127,11 +127,9 @@ bool holds(const Polygon& polygon, std::span<const Real> x)
 
 void check_corners(const std::vector<Real>& low, const std::vector<Real>& high, std::vector<std::string>& problems)
 {
-  if (low.size() != high.size())
-    return problems.push_back(fmt::format("low has {} numbers and high has {}", low.size(), high.size()));
-  for (std::size_t d = 0; d < low.size(); ++d)
+  for (std::size_t d = 0; d < std::min({low.size(), high.size(), std::size_t{3}}); ++d)
     if (!(low[d] < high[d]))
-      problems.push_back(fmt::format("low must be smaller than high: {} and {} along axis {}", low[d], high[d], d));
+      problems.push_back(fmt::format("low must be smaller than high along {}: {} and {}", "xyz"[d], low[d], high[d]));
 }
 
 void Box::check(std::vector<std::string>& problems) const { check_corners(low, high, problems); }

@@ -112,8 +112,11 @@ std::string read_text(const std::filesystem::path& file)
   const Source source{file.string(), {}, lines_of(text)}, unprintable{file.string(), {}, {}};
   Problems problems;
   for (std::size_t i = 0; i < source.lines.size(); ++i)
-    if (const auto flaw = flaw_of(source.lines[i]))
+    if (const auto flaw = flaw_of(source.lines[i])) {
       problems.add({flaw->printable ? &source : &unprintable, static_cast<int>(i) + 1, static_cast<int>(flaw->at) + 1}, "", flaw->message);
+      if (!flaw->printable)
+        break;
+    }
   problems.throw_if_any();
   return text;
 }

@@ -1,0 +1,119 @@
+// The manual and the schema say what the field lists say.
+#include "io/manual.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "io/scene_rules.hpp"
+
+namespace talus {
+
+namespace {
+
+using testing::HasSubstr;
+
+/// The cells of the row of a key below a heading, without blanks around them.
+std::map<std::string, std::string> row(const std::string& title, const std::string& key)
+{
+  const std::string manual = scene_manual();
+  const auto heading =
+      manual.find("\n## " + title + "\n") != manual.npos ? manual.find("\n## " + title + "\n") : manual.find("\n### " + title + "\n");
+  const auto at = manual.find("\n| `" + key + "` ", heading);
+  if (heading == manual.npos || at == manual.npos || at > manual.find("\n#", heading + 2)) {
+    ADD_FAILURE() << "no " << key << " below " << title;
+    return {};
+  }
+  std::istringstream line(manual.substr(at + 2, manual.find('\n', at + 1) - at - 2));
+  std::map<std::string, std::string> cells;
+  for (const std::string column : {"key", "type", "unit", "range", "default", "meaning"}) {
+    std::string cell;
+    std::getline(line, cell, '|');
+    cells[column] =
+        cell.substr(cell.find_first_not_of(' '), cell.find_last_not_of(' ') + 1 - std::min(cell.find_first_not_of(' '), cell.size()));
+    if (cell.find_first_not_of(' ') == cell.npos)
+      cells[column] = "";
+  }
+  return cells;
+}
+
+TEST(Manual, GivesTypeUnitRangeDefaultAndMeaning)
+{
+  const auto step = row("time", "min_step");
+  EXPECT_EQ(step.at("type"), "number");
+  EXPECT_EQ(step.at("unit"), "s");
+  EXPECT_EQ(step.at("range"), "> 0");
+  EXPECT_EQ(step.at("default"), "1e-12");
+  EXPECT_THAT(step.at("meaning"), HasSubstr("the run stops"));
+}
+
+TEST(Manual, TellsRequiredFromOptionalKeys)
+{
+  EXPECT_EQ(row("the scene", "title").at("default"), "required");
+  EXPECT_EQ(row("the scene", "mesh").at("default"), "required");
+  EXPECT_EQ(row("the scene", "kernel").at("default"), "umls");
+  EXPECT_EQ(row("time", "end").at("default"), "none");
+  EXPECT_EQ(row("time", "max_step").at("default"), "none");
+  EXPECT_EQ(row("transfer", "scheme").at("default"), "flip");
+  EXPECT_EQ(row("outputs.particles", "fields").at("default"), "[velocity, displacement, stress]");
+  EXPECT_EQ(row("type: geostatic", "elastic").at("default"), "true");
+}
+
+TEST(Manual, ListsTheWordsOfEnums)
+{
+  EXPECT_EQ(row("transfer", "scheme").at("range"), "`flip`, `apic` or `tpic`");
+  EXPECT_THAT(row("materials", "law").at("range"), HasSubstr("`drucker_prager`"));
+}
+
+TEST(Manual, HasASectionForEveryLawWithItsParametersAndHistory)
+{
+  const std::string manual = scene_manual();
+  for_each_type(Laws{}, [&]<class L>() {
+    EXPECT_THAT(manual, HasSubstr("### law: " + std::string(L::name)));
+    for_each_field<L>([&](const auto& field) { row("law: " + std::string(L::name), std::string(field.key)); });
+    for_each_field<typename L::State>(
+        [&](const auto& variable) { EXPECT_THAT(manual, HasSubstr("| `" + std::string(variable.key) + "`")); });
+  });
+  EXPECT_EQ(row("law: drucker_prager", "friction_angle").at("range"), "[0, 90)");
+  EXPECT_EQ(row("law: drucker_prager", "friction_angle").at("unit"), "deg");
+}
+
+TEST(Manual, NamesEveryKernel)
+{
+  for (const auto& kernel : kernel_names())
+    EXPECT_THAT(scene_manual(), HasSubstr("* `" + kernel + "`: "));
+}
+
+TEST(Manual, LinksOnlyToSectionsThatExist)
+{
+  const std::string manual = scene_manual();
+  int links = 0;
+  for (auto at = manual.find("]("); at != manual.npos; at = manual.find("](", at + 1), ++links) {
+    const auto begin = manual.rfind('[', at) + 1;
+    EXPECT_THAT(manual, HasSubstr("\n## " + manual.substr(begin, at - begin) + "\n"));
+  }
+  EXPECT_GT(links, 15);
+}
+
+TEST(Schema, KnowsKeysTypesRangesAndWords)
+{
+  const auto schema = nlohmann::json::parse(scene_schema());
+  const auto& keys = schema.at("properties");
+  EXPECT_EQ(schema.at("additionalProperties"), false);
+  EXPECT_EQ(keys.at("dimension").at("type"), "integer");
+  EXPECT_EQ(keys.at("dimension").at("minimum"), 2);
+  EXPECT_EQ(keys.at("dimension").at("maximum"), 3);
+  EXPECT_EQ(keys.at("time").at("properties").at("end").at("exclusiveMinimum"), 0);
+  EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic"}));
+  EXPECT_EQ(keys.at("materials").at("items").at("oneOf").size(), Laws::size);
+  EXPECT_EQ(keys.at("loads").at("items").at("oneOf").at(0).at("properties").at("type").at("const"), "gravity");
+  EXPECT_THAT(schema.at("required").get<std::vector<std::string>>(),
+              testing::UnorderedElementsAre("title", "dimension", "mesh", "materials", "bodies"));
+}
+
+}  // namespace
+
+}  // namespace talus
