@@ -38,7 +38,7 @@ TEST(Csv, NumbersReadBackAsTheSameBits)
   HistoryFile file(folder / "history.csv", {{"time", "s"}});
   for (const Real value : values)
     file.append(std::array{value});
-  const History history = read_history(folder / "history.csv");
+  const HistoryTable history = read_history(folder / "history.csv");
   const auto read = history["time"].value();
   ASSERT_EQ(read.size(), values.size());
   for (std::size_t i = 0; i < values.size(); ++i)

@@ -1,0 +1,106 @@
+// Where the camera stands so that the particles fill the panel.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "io/render_canvas.hpp"
+
+namespace talus::render {
+
+namespace {
+
+constexpr Real margin = 0.03;             // of the panel, on each side
+constexpr Real panel_right = 0.87;        // of the picture's width
+constexpr Real above = 2.6, below = 2.4;  // letters: title, length scale
+
+struct Axes {
+  Vec3 right, up, towards;
+};
+
+Axes axes_of(const Vec3& towards, const Vec3& up)
+{
+  const Vec3 t = towards.normalized();
+  const Vec3 right = up.cross(t).normalized();
+  return {right, t.cross(right), t};
+}
+
+/// Coordinates of the points along right, up, towards.
+std::vector<Vec3> seen(const std::vector<Vec3>& points, const Axes& axes)
+{
+  std::vector<Vec3> out;
+  out.reserve(points.size());
+  for (const Vec3& x : points)
+    out.emplace_back(x.dot(axes.right), x.dot(axes.up), x.dot(axes.towards));
+  return out;
+}
+
+/// Distance from which all points fit, the camera looking at (centre[0], centre[1]) along the third axis.
+Real distance_for(const std::vector<Vec3>& points, const Vec3& centre, Real slope_x, Real slope_y)
+{
+  Real distance = 0;
+  for (const Vec3& p : points) {
+    const Vec3 q = p - centre;
+    distance = std::max({distance, q[2] + std::abs(q[0]) / slope_x, q[2] + std::abs(q[1]) / slope_y});
+  }
+  return distance;
+}
+
+/// Moves the centre so that the outermost points are equally near to opposite sides of the panel.
+void balance(const std::vector<Vec3>& points, Vec3& centre, Real distance)
+{
+  Vec3 low = Vec3::Constant(std::numeric_limits<Real>::max()), high = -low;
+  for (const Vec3& p : points) {
+    const Vec3 slope = (p - centre) / (distance - (p - centre)[2]);
+    low = low.cwiseMin(slope);
+    high = high.cwiseMax(slope);
+  }
+  centre.head<2>() += 0.5 * distance * (low + high).head<2>();
+}
+
+}  // namespace
+
+Panel panel_of(const std::array<int, 2>& size)
+{
+  const Real letter = letter_height * size[0] / size[1];
+  return {0, below * letter, panel_right, 1 - above * letter};
+}
+
+Real height_for(int width, Real aspect) { return width * (panel_right / aspect + (above + below) * letter_height); }
+
+Real aspect_of(const std::vector<Vec3>& points, const Vec3& towards, const Vec3& up)
+{
+  const auto bounds = bounds_of(seen(points, axes_of(towards, up)));
+  if (!bounds)
+    return 1;
+  const Vec3 size = bounds->high - bounds->low;
+  return size[1] > 0 && size[0] > 0 ? size[0] / size[1] : 1;
+}
+
+Camera fit_camera(const std::vector<Vec3>& points, const Vec3& towards, const Vec3& up, bool perspective, Real aspect)
+{
+  const Axes axes = axes_of(towards, up);
+  const auto projected = seen(points, axes);
+  const Bounds bounds = bounds_of(projected).value_or(Bounds{-Vec3::Ones(), Vec3::Ones()});
+  Vec3 centre = 0.5 * (bounds.low + bounds.high);
+  const Vec3 half = 0.5 * (bounds.high - bounds.low);
+  const Real room = 1 - 2 * margin;
+  Camera camera{.towards = axes.towards, .up = axes.up, .perspective = perspective};
+  camera.half_height = std::max(half[1], half[0] / aspect) / room;
+  if (camera.half_height <= 0)
+    camera.half_height = 1;
+  camera.distance = 4 * std::max(half.norm(), camera.half_height);
+  if (perspective && half.norm() > 0) {
+    const Real slope_y = std::tan(0.5 * view_angle * std::numbers::pi / 180) * room;
+    for (int i = 0; i < 5; ++i) {  // converges by a factor of about ten each time
+      camera.distance = distance_for(projected, centre, slope_y * aspect, slope_y);
+      balance(projected, centre, camera.distance);
+    }
+    camera.distance = distance_for(projected, centre, slope_y * aspect, slope_y);
+  }
+  camera.centre = centre[0] * axes.right + centre[1] * axes.up + centre[2] * axes.towards;
+  return camera;
+}
+
+}  // namespace talus::render

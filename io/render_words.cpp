@@ -1,0 +1,55 @@
+// Round numbers.
+#include "io/render_words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus::render {
+
+namespace {
+
+constexpr Real wanted_intervals = 5;
+constexpr Real slack = 1e-9;  // of a step: an end of the range that is a tick but for round-off
+
+}  // namespace
+
+Real round_below(Real length)
+{
+  const Real power = std::pow(10, std::floor(std::log10(length)));
+  for (const Real digit : {5.0, 2.0})
+    if (digit * power <= length * (1 + slack))
+      return digit * power;
+  return power;
+}
+
+std::vector<Tick> ticks(Real low, Real high)
+{
+  const Real step = round_below(1.5 * (high - low) / wanted_intervals);  // three to eight intervals
+  const Real largest = std::max(std::abs(low), std::abs(high));
+  const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + slack)));
+  std::vector<Tick> list;
+  for (Real i = std::ceil(low / step - slack); i * step <= high + slack * step; ++i) {
+    const Real value = i * step;
+    list.push_back(
+        {value, largest < 1e5 && decimals < 5 ? fmt::format("{:.{}f}", value + 0.0, decimals) : fmt::format("{:.3g}", value + 0.0)});
+  }
+  return list;
+}
+
+ScaledUnit scaled_unit(const std::string& unit, Real largest)
+{
+  const auto scaled = [&](Real factor, const char* prefix) { return ScaledUnit{factor, prefix + unit}; };
+  if (unit == "Pa" && largest >= 1e9)
+    return scaled(1e-9, "G");
+  if (unit == "Pa" && largest >= 1e6)
+    return scaled(1e-6, "M");
+  if (unit == "Pa" && largest >= 1e3)
+    return scaled(1e-3, "k");
+  if (unit == "m" && largest < 0.1)
+    return scaled(1e3, "m");
+  return {1, unit};
+}
+
+}  // namespace talus::render
