@@ -27,11 +27,12 @@ struct Particles {
   std::vector<Mat3> F;                ///< deformation gradient, plane strain in 2-D
   std::vector<Sym3> stress;           ///< Cauchy stress [Pa], tension positive
   std::vector<Real> mass, volume0;    ///< mass [kg], volume at the start [m^D, unit thickness in 2-D]
+  std::vector<Real> volume;           ///< det F times volume0
 
   std::vector<Mat<D>> C;              ///< affine field of APIC [1/s]
   std::vector<Vec<D>> x0;             ///< where displacement counts from [m]
   std::vector<Vec<D>> applied;        ///< force of tractions [N]
-  std::vector<Real> load_work;        ///< their work in the last step [J]
+  std::vector<Real> applied_at;       ///< applied . x before the move [J]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
 
@@ -52,8 +53,8 @@ struct Particles {
   static void each(Self& self, F_&& f)
   {
     f("id", "-", self.id), f("cell", "-", self.cell), f("position", "m", self.x), f("velocity", "m/s", self.v), f("velocity_gradient", "1/s", self.L);
-    f("deformation_gradient", "-", self.F), f("stress", "Pa", self.stress), f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0);
-    f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied), f("load_work", "J", self.load_work);
+    f("deformation_gradient", "-", self.F), f("stress", "Pa", self.stress), f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0), f("volume", "m^D", self.volume);
+    f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied), f("applied_at", "J", self.applied_at);
   }
 };
 

@@ -20,6 +20,22 @@ class Locator {
   /// The usual case, x still inside cell `hint`, costs one barycentric map.  `hint` may be `none`.
   std::optional<Index> operator()(const Mesh<D>& mesh, const Vec<D>& x, Index hint) const noexcept;
 
+  /// One cell opened for many points: most particles are still deep inside the cell they were in.
+  struct Probe {
+    Vec<D> origin;
+    std::array<Vec<D>, D + 1> slope;  ///< gradients of the barycentric coordinates [1/m]
+    Real least;                       ///< a point with all coordinates above this lies in no other cell
+    bool deep(const Vec<D>& x) const noexcept
+    {
+      const Vec<D> r = x - origin;
+      bool inside = 1 + slope[0].dot(r) > least;  // false for NaN
+      for (std::size_t a = 1; a <= D; ++a)
+        inside = inside && slope[a].dot(r) > least;
+      return inside;
+    }
+  };
+  Probe probe(const Mesh<D>& mesh, Index c) const noexcept { return {mesh.node(mesh.cell(c)[0]), mesh.gradients(c), margin_ / mesh.altitude(c)}; }
+
   /// The point of the mesh boundary nearest to x and its cell, for x outside: the projection on the nearest boundary facet.
   /// x must be finite.
   struct Nearest {

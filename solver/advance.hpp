@@ -54,14 +54,21 @@ void advance(Model<D, K>& m, Real dt)
   m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
   watch.lap(m.timings.nodes);
 
-  gather(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles);             //  9
-  m.energy.loads += work_on(m.particles);
-  if (m.transfer.musl)
-    remap(m, dt);                                                                                           // 10
+  if (m.transfer.musl) {
+    gather_and_return_momentum(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles, m.blocks);  //  9
+    remap(m, dt);                                                                                                         // 10
+  } else {
+    gather(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles);                         //  9
+  }
+  m.energy.loads += work(m.particles);
   watch.lap(m.timings.gather);
 
-  for (auto& batch : m.materials)
-    m.energy.internal += update_stress(batch, dt, m.stage.elastic, m.particles, m.health);                  // 11
+  m.crossing = std::numeric_limits<Real>::infinity();
+  for (auto& batch : m.materials) {
+    const StressSums sums = update_stress(m.mesh, batch, dt, m.stage.elastic, m.particles, m.health);       // 11
+    m.energy.internal += sums.work;
+    m.crossing = std::min(m.crossing, sums.crossing);
+  }
   watch.lap(m.timings.stress);
 
   m.clock = {m.clock.step + 1, time + dt, dt};
@@ -73,7 +80,6 @@ void advance(Model<D, K>& m, Real dt)
 template <int D, Kernel<D> K>
 void remap(Model<D, K>& m, Real dt)
 {
-  scatter_momentum(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);
   assemble_momentum(m.blocks, m.nodes.sum);
   m.slaves.lump_momentum(m.mesh, m.nodes);
   parallel_for(static_cast<Index>(m.remapped.size()), [&](Index n) {
@@ -96,7 +102,7 @@ void record(Model<D, K>& m, const Vec<D>& gravity, const Vec<D>& on_mesh, const 
   m.energy.walls += wall_work.other;
   m.energy.friction += wall_work.friction;
   m.energy.nodes += work.kinetic_after - work.kinetic_before;
-  m.residual = unbalanced(gravity, m.stage.damping, dt, m.nodes, on_mesh);
+  m.residual = unbalanced(gravity, dt, m.nodes, on_mesh);
 }
 
 }  // namespace talus

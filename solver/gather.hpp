@@ -33,7 +33,8 @@ struct Seen {
   Mat<D> L;          ///< sum v (x) G  [1/s]
 };
 
-template <int D, int N>
+/// `change` and `L` are found only if asked for.
+template <bool with_change, bool with_gradient, int D, int N>
 Seen<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int padded_size) noexcept
 {
   Pack v[D]{}, change[D]{}, L[D][D]{};
@@ -42,9 +43,11 @@ Seen<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int pa
     for (int i = 0; i < D; ++i) {
       const Pack vi = load(motion.v[i] + a);
       v[i] += w * vi;
-      change[i] += w * load(motion.change[i] + a);
-      for (int j = 0; j < D; ++j)
-        L[i][j] += vi * load(weights.dw[j] + a);
+      if constexpr (with_change)
+        change[i] += w * load(motion.change[i] + a);
+      if constexpr (with_gradient)
+        for (int j = 0; j < D; ++j)
+          L[i][j] += vi * load(weights.dw[j] + a);
     }
   }
   Seen<D> seen;
@@ -81,56 +84,121 @@ Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion,
   return sound ? Mat<D>(B * moment.inverse()) : L;
 }
 
-/// Calls f(p, cell, motion, weights) for every particle, motion read once per run.
+/// v_p, and L_p and the affine field where the scheme or the stress need them.
+template <bool affine, bool with_gradient, int D, int N>
+Seen<D> take_velocity(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion, const Weights<D, N>& weights, Scheme scheme, Real pic, Particles<D>& particles, std::size_t p) noexcept
+{
+  const Seen<D> seen = see<!affine, with_gradient>(motion, weights, cell.padded_size);
+  if constexpr (affine)
+    particles.v[p] = seen.v;
+  else
+    particles.v[p] = (1 - pic) * (particles.v[p] + seen.change) + pic * seen.v;
+  if constexpr (with_gradient)
+    particles.L[p] = seen.L;
+  if constexpr (affine)
+    if (scheme == Scheme::apic)
+      particles.C[p] = apic_field(cell, motion, weights, particles.x[p], seen.L);
+  return seen;
+}
+
+namespace detail {
+
+/// Calls f(p, cell, motion, weights) for every particle of a block, motion read once per run, and `done(cell)` after each run.
+template <int D, Kernel<D> K, class F, class Done>
+void for_each_seen_in_block(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order, Index b,
+                            const std::vector<NodeMotion<D>>& nodes, F&& f, Done&& done)
+{
+  typename K::Cell cell;
+  Weights<D, K::max_nodes> weights;
+  CellMotion<D, K::max_nodes> motion;
+  for (Index body = 0; body < n_bodies; ++body)
+    for_each_run(order.rows(body, b), particles.cell, [&](Index c, std::span<const Index> run) {
+      kernel.open(mesh, c, cell);
+      motion.read(nodes, cell.nodes, cell.padded_size);
+      for (const Index row : run) {
+        const auto p = static_cast<std::size_t>(row);
+        kernel.evaluate(cell, particles.x[p], weights);
+        f(p, cell, motion, weights);
+      }
+      done(cell);
+    });
+}
+
 template <int D, Kernel<D> K, class F>
 void for_each_seen(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order, const std::vector<NodeMotion<D>>& nodes, F&& f)
 {
-  parallel_for_uneven(order.blocks, [&](Index b) {
-    typename K::Cell cell;
-    Weights<D, K::max_nodes> weights;
-    CellMotion<D, K::max_nodes> motion;
-    for (Index body = 0; body < n_bodies; ++body)
-      for_each_run(order.rows(body, b), particles.cell, [&](Index c, std::span<const Index> run) {
-        kernel.open(mesh, c, cell);
-        motion.read(nodes, cell.nodes, cell.padded_size);
-        for (const Index row : run) {
-          const auto p = static_cast<std::size_t>(row);
-          kernel.evaluate(cell, particles.x[p], weights);
-          f(p, cell, motion, weights);
-        }
-      });
-  });
+  parallel_for_uneven(order.blocks, [&](Index b) { for_each_seen_in_block(kernel, mesh, particles, n_bodies, order, b, nodes, f, [](const auto&) {}); });
 }
 
-/// v_p, the affine field and, unless MUSL takes them later from remapped momentum, L_p and x_p <- x_p + dt sum w v.
-template <int D, Kernel<D> K>
+template <bool affine, int D, Kernel<D> K>
 void gather(const K& kernel, const Mesh<D>& mesh, Index n_bodies, const CellOrder& order, const std::vector<NodeMotion<D>>& nodes, const Transfer& transfer, Real dt,
             Particles<D>& particles)
 {
   const Real pic = transfer.pic_share(dt);
   for_each_seen(kernel, mesh, particles, n_bodies, order, nodes, [&](std::size_t p, const auto& cell, const auto& motion, const auto& weights) {
-    const Seen<D> seen = see(motion, weights, cell.padded_size);
-    if (transfer.scheme == Scheme::flip)
-      particles.v[p] = (1 - pic) * (particles.v[p] + seen.change) + pic * seen.v;
-    else
-      particles.v[p] = seen.v;
-    if (transfer.scheme == Scheme::apic)
-      particles.C[p] = apic_field(cell, motion, weights, particles.x[p], seen.L);
-    particles.L[p] = seen.L;
-    if (!particles.applied.empty())
-      particles.load_work[p] = dt * particles.applied[p].dot(seen.v - 0.5 * seen.change);
-    if (!transfer.musl)
-      particles.x[p] += dt * seen.v;
+    const Seen<D> seen = take_velocity<affine, true>(cell, motion, weights, transfer.scheme, pic, particles, p);
+    particles.x[p] += dt * seen.v;
   });
 }
 
-/// The last part of MUSL: L_p from the remapped velocities, while particles move with those of the step itself.
+template <bool affine, int D, Kernel<D> K>
+void gather_and_return_momentum(const K& kernel, const Mesh<D>& mesh, Index n_bodies, const CellOrder& order, const std::vector<NodeMotion<D>>& nodes, const Transfer& transfer, Real dt,
+                                Particles<D>& particles, BlockRows<D>& blocks)
+{
+  const Real pic = transfer.pic_share(dt);
+  parallel_for_uneven(order.blocks, [&](Index b) {
+    if (!blocks.occupied[static_cast<std::size_t>(b)])
+      return;
+    const auto rows = blocks.rows(b);
+    std::fill(rows.begin(), rows.end(), NodeSum<D>{});
+    CellSums<D, K::max_nodes> sums;
+    bool first = true;
+    for_each_seen_in_block(
+        kernel, mesh, particles, n_bodies, order, b, nodes,
+        [&](std::size_t p, const auto& cell, const auto& motion, const auto& weights) {
+          if (std::exchange(first, false))
+            sums.clear(cell.padded_size);
+          take_velocity<affine, affine>(cell, motion, weights, transfer.scheme, pic, particles, p);
+          deposit<affine, false, false>(particles, p, affine_field(particles, p, transfer.scheme), cell, weights, sums);
+        },
+        [&](const auto& cell) {
+          sums.add_to(rows, blocks.slots(cell.cell));
+          first = true;
+        });
+  });
+}
+
+}  // namespace detail
+
+/// v_p, L_p, the affine field, and x_p <- x_p + dt sum w v.
+template <int D, Kernel<D> K>
+void gather(const K& kernel, const Mesh<D>& mesh, Index n_bodies, const CellOrder& order, const std::vector<NodeMotion<D>>& nodes, const Transfer& transfer, Real dt,
+            Particles<D>& particles)
+{
+  if (transfer.affine())
+    detail::gather<true>(kernel, mesh, n_bodies, order, nodes, transfer, dt, particles);
+  else
+    detail::gather<false>(kernel, mesh, n_bodies, order, nodes, transfer, dt, particles);
+}
+
+/// MUSL, first half: v_p, whose momentum goes back at once to the rows of the blocks with the weights at hand.
+template <int D, Kernel<D> K>
+void gather_and_return_momentum(const K& kernel, const Mesh<D>& mesh, Index n_bodies, const CellOrder& order, const std::vector<NodeMotion<D>>& nodes, const Transfer& transfer, Real dt,
+                                Particles<D>& particles, BlockRows<D>& blocks)
+{
+  if (transfer.affine())
+    detail::gather_and_return_momentum<true>(kernel, mesh, n_bodies, order, nodes, transfer, dt, particles, blocks);
+  else
+    detail::gather_and_return_momentum<false>(kernel, mesh, n_bodies, order, nodes, transfer, dt, particles, blocks);
+}
+
+/// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
 /// Rows hold the remapped velocity in `v` and the step's own in `change`.
 template <int D, Kernel<D> K>
 void gather_gradient(const K& kernel, const Mesh<D>& mesh, Index n_bodies, const CellOrder& order, const std::vector<NodeMotion<D>>& nodes, Real dt, Particles<D>& particles)
 {
-  for_each_seen(kernel, mesh, particles, n_bodies, order, nodes, [&](std::size_t p, const auto& cell, const auto& motion, const auto& weights) {
-    const Seen<D> seen = see(motion, weights, cell.padded_size);
+  detail::for_each_seen(kernel, mesh, particles, n_bodies, order, nodes, [&](std::size_t p, const auto& cell, const auto& motion, const auto& weights) {
+    const Seen<D> seen = see<true, true>(motion, weights, cell.padded_size);
     particles.L[p] = seen.L;
     particles.x[p] += dt * seen.change;
   });

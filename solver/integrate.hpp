@@ -43,7 +43,15 @@ class Slaves {
 extern template class Slaves<2>;
 extern template class Slaves<3>;
 
-/// v <- v + dt (f/m + g - damping |f/m + g| sign v), componentwise (local non-viscous damping, Cundall 1987).
+/// Local non-viscous damping [Cundall 1987]: a force against the motion of a node, componentwise the share `damping` of its net
+/// force.  Nodes under a wall condition are left out.  `net` is force or acceleration, the result the same.
+template <int D>
+Vec<D> damping_of(const Vec<D>& net, const Vec<D>& v_old, Real damping) noexcept
+{
+  return -damping * net.cwiseAbs().cwiseProduct(v_old.cwiseSign());
+}
+
+/// v <- v + dt (f/m + g), with damping.
 template <int D>
 void integrate(const Vec<D>& gravity, Real damping, Real dt, Nodes<D>& nodes)
 {
@@ -57,9 +65,8 @@ void integrate(const Vec<D>& gravity, Real damping, Real dt, Nodes<D>& nodes)
     const NodeSum<D>& sum = nodes.sum[i];
     const Vec<D> v_old = sum.momentum / sum.mass;
     Vec<D> a = sum.force / sum.mass + gravity;
-    if (damping > 0)
-      for (int d = 0; d < D; ++d)
-        a[d] -= damping * std::abs(a[d]) * static_cast<Real>((v_old[d] > 0) - (v_old[d] < 0));
+    if (damping > 0 && !nodes.bound[i])
+      a += damping_of<D>(a, v_old, damping);
     motion.change = dt * a;
     motion.v = v_old + motion.change;
   });
@@ -79,9 +86,8 @@ NodeWork node_work(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>&
     work.kinetic_before = 0.5 * sum.mass * v_old.squaredNorm();
     work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
     work.gravity = dt * sum.mass * gravity.dot(v_mid);
-    if (damping > 0)
-      for (int d = 0; d < D; ++d)
-        work.damping -= dt * damping * std::abs(sum.force[d] + sum.mass * gravity[d]) * static_cast<Real>((v_old[d] > 0) - (v_old[d] < 0)) * v_mid[d];
+    if (damping > 0 && !nodes.bound[i])
+      work.damping = dt * damping_of<D>(sum.force + sum.mass * gravity, v_old, damping).dot(v_mid);
     return work;
   });
 }
@@ -89,7 +95,7 @@ NodeWork node_work(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>&
 /// Sum over active nodes of |net force with wall reactions, without damping| over that of |gravity and loads|: zero at rest
 /// in equilibrium.
 template <int D>
-Real unbalanced(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>& nodes, const Vec<D>& other_loads)
+Real unbalanced(const Vec<D>& gravity, Real dt, const Nodes<D>& nodes, const Vec<D>& other_loads)
 {
   struct Sums {
     Real net{}, load{};
@@ -104,10 +110,7 @@ Real unbalanced(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>& no
     if (!nodes.active[i])
       return Sums{};
     const NodeSum<D>& sum = nodes.sum[i];
-    const Vec<D> v_old = nodes.motion[i].v - nodes.motion[i].change;
-    Vec<D> net = sum.mass / dt * nodes.motion[i].change;
-    for (int d = 0; d < D; ++d)
-      net[d] += damping * std::abs(sum.force[d] + sum.mass * gravity[d]) * static_cast<Real>((v_old[d] > 0) - (v_old[d] < 0));
+    const Vec<D> net = nodes.bound[i] ? Vec<D>(sum.mass / dt * nodes.motion[i].change) : Vec<D>(sum.force + sum.mass * gravity);
     return Sums{net.norm(), sum.mass * gravity.norm()};
   });
   const Real load = sums.load + other_loads.norm();

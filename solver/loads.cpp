@@ -70,6 +70,8 @@ void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
       particles.applied[p] += factor * (load.area[k].norm() * load.traction - load.pressure * area);
     }
   }
+  for (std::size_t p = 0; p < particles.applied.size(); ++p)
+    particles.applied_at[p] = particles.applied[p].dot(particles.x[p]);
 }
 
 namespace {

@@ -71,11 +71,14 @@ Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& 
 template <int D>
 Vec<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept;
 
-/// Work [J] of particle tractions in the last step.
+/// Work [J] of particle tractions since apply(): force times displacement.
 template <int D>
-Real work_on(const Particles<D>& particles)
+Real work(const Particles<D>& particles)
 {
-  return parallel_sum<Real>(static_cast<Index>(particles.load_work.size()), [&](Index p) { return particles.load_work[static_cast<std::size_t>(p)]; });
+  return parallel_sum<Real>(static_cast<Index>(particles.applied.size()), [&](Index i) {
+    const auto p = static_cast<std::size_t>(i);
+    return particles.applied[p].dot(particles.x[p]) - particles.applied_at[p];
+  });
 }
 
 }  // namespace talus

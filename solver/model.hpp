@@ -56,6 +56,7 @@ struct Model {
   EnergyLedger energy;
   MassLedger mass;
   Real residual = 0;  ///< of the last step: unbalanced nodal force over loads
+  Real crossing = 0;  ///< shortest time in which a wave crosses the cell of a particle [s]; the stable step is a share of it
   Health health;
   Timings timings;
 
@@ -88,15 +89,19 @@ template <int D, Kernel<D> K>
 void make_ready(Model<D, K>& m, bool by_id)
 {
   const auto n = m.particles.id.size();
+  m.particles.volume = m.particles.volume0;
   if (m.transfer.scheme == Scheme::apic)
     m.particles.C.assign(n, Mat<D>::Zero());
   if (!m.loads.on_particles.empty())
-    m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.load_work.assign(n, 0);
+    m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
   if (m.transfer.musl)
     m.remapped.resize(m.nodes.sum.size());
   if (by_id || !m.loads.on_particles.empty())
     m.row_of_id.assign(n, none);
   m.walls.settle();
+  m.nodes.bound.resize(m.nodes.sum.size());
+  for (Index node = 0; node < m.mesh.n_nodes(); ++node)
+    m.nodes.bound[static_cast<std::size_t>(node)] = m.walls.binds(node) ? 1 : 0;
   m.exits.closed.assign(static_cast<std::size_t>(m.mesh.n_cells()), 0);
   for (const Facet facet : m.walls.closed_facets(m.mesh))
     m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);

@@ -33,7 +33,8 @@ struct Nodes {
   std::vector<NodeSum<D>> sum;
   std::vector<NodeMotion<D>> motion;
   std::vector<std::uint8_t> active;  ///< takes part with a mass of its own
-  Real mass_cut{};                   ///< nodes with less do not [kg]
+  std::vector<std::uint8_t> bound;   ///< under a wall condition: no local damping, its net force is known only after the wall's
+  Real mass_cut{};                   ///< nodes with less do not take part by themselves [kg]
 };
 
 }  // namespace talus

@@ -95,24 +95,33 @@ template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
               CellOrder& order, MassLedger& mass, Health& health)
 {
-  std::atomic<bool> moved = order.row.size() != particles.id.size(), outside = false;
-  parallel_for(particles.size(), [&](Index row) {
-    const std::size_t p = z(row);
-    if (!particles.x[p].allFinite() || !particles.v[p].allFinite()) {
+  const bool unsorted = order.row.size() != particles.id.size();
+  std::atomic<bool> moved = unsorted, outside = false;
+  const auto find = [&](std::size_t p) {
+    if (!particles.x[p].allFinite()) {
       health.report(particles.id[p], Trouble::not_finite);
       return;
     }
-    const auto found = locator(mesh, particles.x[p], particles.cell[p]);
-    const Index cell = found.value_or(none);
-    if (cell == particles.cell[p])
-      return;
+    const Index cell = locator(mesh, particles.x[p], particles.cell[p]).value_or(none);
     if (cell == none)
       outside = true;
-    else {
+    else if (cell != particles.cell[p]) {
       particles.cell[p] = cell;
       moved = true;
     }
-  });
+  };
+  if (unsorted)
+    parallel_for(particles.size(), [&](Index p) { find(z(p)); });
+  else
+    parallel_for_uneven(order.blocks, [&](Index block) {
+      for (Index body = 0; body < static_cast<Index>(bodies.size()); ++body)
+        for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
+          const auto probe = locator.probe(mesh, c);
+          for (const Index p : run)
+            if (!probe.deep(particles.x[z(p)]))
+              find(z(p));
+        });
+    });
 
   bool rows_changed = false;
   if (outside) {  // rare, and in order of rows, so that ledgers do not depend on threads

@@ -98,12 +98,13 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
   if (stage.k0)
     set_k0_stress(m.mesh, m.loads.gravity(begin, 1), *stage.k0, m.bodies, m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m)};
+  m.crossing = shortest_crossing(m.mesh, m.materials, m.particles);
   const std::int64_t first_step = m.clock.step;
   watch(m, Moment::stage_begins);
 
   int balanced = 0;
   while (m.clock.time < end * (1 - 1e-14) && balanced < steps_in_balance) {
-    const Real wanted = std::min(stable_step(m.mesh, m.materials, m.particles, limits.cfl), limits.longest);
+    const Real wanted = std::min(limits.cfl * m.crossing, limits.longest);
     if (!(wanted >= limits.shortest)) {
       const Index row = slowest_particle(m.mesh, m.materials, m.particles);
       throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step, m.clock.time,

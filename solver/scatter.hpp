@@ -45,10 +45,8 @@ void deposit(const Particles<D>& particles, std::size_t p, const Mat<D>& A, cons
   const Vec<D> x = particles.x[p], mv = m * particles.v[p];
   const Mat<D> mA = m * A;
   Mat<D> tension;  // V_p sigma_p [N m]
-  if constexpr (forces) {
-    const Real volume = particles.F[p].determinant() * particles.volume0[p];
-    tension = volume * unpack(particles.stress[p]).template topLeftCorner<D, D>();
-  }
+  if constexpr (forces)
+    tension = particles.volume[p] * unpack(particles.stress[p]).template topLeftCorner<D, D>();
   for (int a = 0; a < cell.padded_size; a += pack_size) {
     const Pack w = load(weights.w + a);
     Pack r[D], G[D];
@@ -125,16 +123,6 @@ void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles
     loaded ? run.template operator()<true, true>() : run.template operator()<true, false>();
   else
     loaded ? run.template operator()<false, true>() : run.template operator()<false, false>();
-}
-
-/// Momentum alone, with the particles' new velocities: the second half of MUSL.
-template <int D, Kernel<D> K>
-void scatter_momentum(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order, const Transfer& transfer, BlockRows<D>& blocks)
-{
-  if (transfer.affine())
-    detail::scatter<true, false, false>(kernel, mesh, particles, n_bodies, order, transfer.scheme, blocks);
-  else
-    detail::scatter<false, false, false>(kernel, mesh, particles, n_bodies, order, transfer.scheme, blocks);
 }
 
 }  // namespace talus

@@ -1,13 +1,14 @@
 #pragma once
-// How long a step may be.
+// How long a step may be: a share of the time in which a wave crosses the cell of a particle.
 #include "materials/batch.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
 
-/// cfl * min over particles of (smallest altitude of its cell / (wave speed + |v|)) [s]; infinite without particles.
+/// Smallest altitude of a particle's cell / (wave speed + |v|), over all particles [s]; infinite without particles.  Every step
+/// finds it anew while it has the particles at hand (update_stress); this is for the first one.
 template <int D>
-Real stable_step(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Real cfl)
+Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
 {
   Real least = std::numeric_limits<Real>::infinity();
   for (const auto& material : materials)
@@ -19,7 +20,7 @@ Real stable_step(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, co
           });
         },
         material);
-  return cfl * least;
+  return least;
 }
 
 /// The particle that asks for the shortest step: row, for messages.

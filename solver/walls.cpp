@@ -90,7 +90,7 @@ WallWork Walls<D>::apply(Real time, Real dt, Nodes<D>& nodes)
   WallWork work;
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
-    rule.stuck = false;
+    rule.rubs = false;
     if (!nodes.active[n])
       continue;
     const Real mass = nodes.sum[n].mass;
@@ -118,8 +118,7 @@ WallWork Walls<D>::apply(Real time, Real dt, Nodes<D>& nodes)
           const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
           push(plane.wall, rub);
           rubbed += rub;
-          rule.stuck = rule.stuck || slip <= limit;
-          touched = true;
+          touched = rule.rubs = true;
         }
         if (!touched || rule.rollers.size() + rule.frictions.size() == 1)
           break;
@@ -142,8 +141,6 @@ Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) c
     const Wall<D>& wall = walls_[static_cast<std::size_t>(rule.whole)];
     return wall.kind == WallKind::fixed ? Vec<D>(Vec<D>::Zero()) : Vec<D>(wall.velocity * wall.table(time));
   }
-  if (rule.stuck)
-    return Vec<D>::Zero();
   Vec<D> held = v;
   for (const Plane& plane : rule.frictions)
     held -= std::max(held.dot(plane.normal), Real{0}) * plane.normal;
@@ -153,21 +150,18 @@ Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) c
 }
 
 template <int D>
-void Walls<D>::hold(Real time, std::span<NodeMotion<D>> motion) const
+void Walls<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
 {
   for (const NodeRule& rule : rules_) {
-    Vec<D>& v = motion[static_cast<std::size_t>(rule.node)].v;
-    v = constrained(rule, time, v);
+    NodeMotion<D>& row = remapped[static_cast<std::size_t>(rule.node)];
+    row.v = rule.rubs ? row.change : constrained(rule, time, row.v);
   }
 }
 
 template <int D>
 Vec<D> Walls<D>::held(Index node, Real time, const Vec<D>& v) const
 {
-  const auto n = static_cast<std::size_t>(node);
-  if (n >= rule_of_node_.size() || rule_of_node_[n] == none)
-    return v;
-  return constrained(rules_[static_cast<std::size_t>(rule_of_node_[n])], time, v);
+  return binds(node) ? constrained(rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])], time, v) : v;
 }
 
 template <int D>
@@ -181,10 +175,7 @@ template <int D>
 std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
 {
   std::vector<Facet> closed = facets_;
-  const auto whole = [&](Index n) {
-    const auto i = static_cast<std::size_t>(n);
-    return i < rule_of_node_.size() && rule_of_node_[i] != none && rules_[static_cast<std::size_t>(rule_of_node_[i])].whole != none;
-  };
+  const auto whole = [&](Index n) { return binds(n) && rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(n)])].whole != none; };
   for (const Facet facet : mesh.boundary_facets()) {
     const auto nodes = mesh.nodes_of(facet);
     if (std::all_of(nodes.begin(), nodes.end(), whole))

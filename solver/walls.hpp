@@ -50,13 +50,15 @@ class Walls {
 
   /// The new velocities of nodes with active mass obey the walls.  Returns the work done.
   WallWork apply(Real time, Real dt, Nodes<D>& nodes);
-  /// The kinematic part alone, on velocities that carry no momentum of their own: remapped ones, and rows of slaves.
-  void hold(Real time, std::span<NodeMotion<D>> motion) const;
-  /// The same for one node.
+  /// The kinematic part alone, on remapped velocities (rows: remapped one in `v`, the step's own in `change`).  A node that rubs
+  /// keeps the step's own: friction acted on that one, and a strain taken from any other would make energy.
+  void hold(Real time, std::span<NodeMotion<D>> remapped) const;
+  /// The same for a node without momentum of its own.
   Vec<D> held(Index node, Real time, const Vec<D>& v) const;
 
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
+  bool binds(Index node) const noexcept { return static_cast<std::size_t>(node) < rule_of_node_.size() && rule_of_node_[static_cast<std::size_t>(node)] != none; }
   /// Facets of rollers and friction walls, and facets whose nodes are all held or moved: no particle passes them.
   std::vector<Facet> closed_facets(const Mesh<D>& mesh) const;
 
@@ -70,7 +72,7 @@ class Walls {
     Index whole = none;       ///< wall that sets all components
     std::vector<Plane> rollers;   ///< normals made orthonormal
     std::vector<Plane> frictions;
-    bool stuck = false;       ///< the last apply() found friction to hold it
+    bool rubs = false;        ///< the last apply() found it pressed against a friction wall
   };
   NodeRule& rule(Index node);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
