@@ -18,7 +18,7 @@ struct ConstantsOf {
   using type = NoConstants;
 };
 template <class L>
-  requires requires { typename L::Constants; }
+requires requires { typename L::Constants; }
 struct ConstantsOf<L> {
   using type = typename L::Constants;
 };
@@ -68,7 +68,7 @@ using AnyBatch = variant_of<Laws, Batch>;
 template <class State, class Value>
 struct HistoryColumn {
   State* first;
-  Value State::* member;
+  Value State::*member;
   Index count;
   static constexpr int components = std::is_same_v<Value, Real> ? 1 : static_cast<int>(sizeof(Value) / sizeof(Real));
 
@@ -86,7 +86,7 @@ struct HistoryColumn {
 
 /// f(key, unit, meaning, column) for every history variable in order of declaration; columns write through unless the batch is const.
 template <class B, class F>
-  requires requires { typename std::remove_const_t<B>::LawType; }
+requires requires { typename std::remove_const_t<B>::LawType; }
 void for_each_history(B& batch, F&& f)
 {
   using State = typename B::State;

@@ -18,7 +18,7 @@ Real tip(const Cone& cone) noexcept { return cone.q > 0 ? cone.k / cone.q : neve
 
 /// A state of stress by its two measures, and how it was reached from the trial state.
 struct Point {
-  Real mean, tau;           ///< Kirchhoff stress [Pa]
+  Real mean, tau;            ///< Kirchhoff stress [Pa]
   Real multiplier, opening;  ///< plastic multiplier; logarithmic volume that opened
 };
 
@@ -28,8 +28,7 @@ struct ReturnMap {
   Real plastic_strain;
   Cone start = c.cone_at(plastic_strain);
   Real left = root3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
-  Cone slope{(c.residual.q - c.peak.q) / (root3 * c.softening_strain),
-             (c.residual.k - c.peak.k) / (root3 * c.softening_strain)};  ///< of the cone by multiplier, while some is left
+  Cone slope{c.slope.q / root3, c.slope.k / root3};           ///< of the cone by multiplier, while some is left
 
   Cone cone_after(Real multiplier) const noexcept { return c.cone_at(plastic_strain + multiplier / root3); }
 
@@ -107,11 +106,15 @@ Cone DruckerPrager::cone(Real plastic_strain) const noexcept { return constants(
 
 DruckerPrager::Constants DruckerPrager::constants() const noexcept
 {
+  const Cone peak = cone_of(friction_angle, cohesion);
+  const Cone residual = cone_of(residual_friction_angle.value_or(friction_angle), residual_cohesion.value_or(cohesion));
+  const Real strain = softening_strain.value_or(never);
   return {.bulk = youngs_modulus / (3 * (1 - 2 * poisson_ratio)),
           .shear = youngs_modulus / (2 * (1 + poisson_ratio)),
-          .peak = cone_of(friction_angle, cohesion),
-          .residual = cone_of(residual_friction_angle.value_or(friction_angle), residual_cohesion.value_or(cohesion)),
-          .softening_strain = softening_strain.value_or(never),
+          .peak = peak,
+          .residual = residual,
+          .slope = {(residual.q - peak.q) / strain, (residual.k - peak.k) / strain},
+          .softening_strain = strain,
           .q_psi = dilation_slope(),
           .cutoff = tension_cutoff.value_or(never)};
 }
@@ -120,15 +123,15 @@ Mat3 DruckerPrager::update(const Increment& in, State& state, const Constants& c
 {
   const Real J = in.F.determinant();
   const Sym3 b = push_forward(in.dt * in.L, state.elastic_left);
-  const Sym3 strain = 0.5 * log1p(b);
-  const Real volume_strain = trace(strain);
-  const Sym3 shear_strain = add_diagonal(strain, -volume_strain / 3);
+  const Sym3 twice_strain = log1p(b);
+  const Real volume_strain = 0.5 * trace(twice_strain);
+  const Sym3 shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
   Point trial{c.bulk * volume_strain, c.shear * std::sqrt(2 * squared_norm(shear_strain)), 0, 0};
   if (!(J > 0 && std::isfinite(trial.mean + trial.tau)))
     return no_answer();
   if (in.elastic) {
     state.elastic_left = b;
-    return unpack(add_diagonal(2 * c.shear / J * shear_strain, trial.mean / J));
+    return unpack(scale_and_shift(2 * c.shear / J, shear_strain, trial.mean / J));
   }
 
   // What opened before fills first, and carries no tension while it does.
@@ -140,14 +143,14 @@ Mat3 DruckerPrager::update(const Increment& in, State& state, const Constants& c
 
   const Real kept = trial.tau > 0 ? end.tau / trial.tau : 0;
   if (closing || end.multiplier > 0 || end.opening > 0)
-    state.elastic_left = expm1(add_diagonal(2 * kept * shear_strain, 2 * end.mean / (3 * c.bulk)));
+    state.elastic_left = expm1(scale_and_shift(2 * kept, shear_strain, 2 * end.mean / (3 * c.bulk)));
   else
     state.elastic_left = b;
   state.plastic_strain += end.multiplier / root3;
   const Real work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
   state.plastic_work += std::max(work, Real{0});  // associated flow without cohesion dissipates nothing, up to rounding
   state.opened_volume = (closing ? 0 : state.opened_volume) + end.opening;
-  return unpack(add_diagonal(2 * c.shear * kept / J * shear_strain, end.mean / J));
+  return unpack(scale_and_shift(2 * c.shear * kept / J, shear_strain, end.mean / J));
 }
 
 void DruckerPrager::prestress(const Mat3& stress, State& state) const noexcept

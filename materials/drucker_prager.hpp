@@ -40,7 +40,8 @@ struct DruckerPrager {
         required("density", &Law::density, positive, "kg/m^3", "mass density at rest"),
         required("youngs_modulus", &Law::youngs_modulus, positive, "Pa", "Young's modulus"),
         required("poisson_ratio", &Law::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio"),
-        required("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg", "angle of friction of the Mohr-Coulomb soil that is matched"),
+        required("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg",
+                 "angle of friction of the Mohr-Coulomb soil that is matched"),
         required("cohesion", &Law::cohesion, non_negative, "Pa", "cohesion of the Mohr-Coulomb soil that is matched"),
         required_choice("match", &Law::match,
                         "which strength the cone shares with Mohr-Coulomb: triaxial compression (outer), extension (inner), plane strain"),
@@ -48,7 +49,8 @@ struct DruckerPrager {
         optional("tension_cutoff", &Law::tension_cutoff, non_negative, "Pa", "largest mean stress; without it the tip of the cone"),
         optional("residual_friction_angle", &Law::residual_friction_angle, from_to_below(0, 90), "deg",
                  "angle of friction after softening; without it the friction stays"),
-        optional("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa", "cohesion after softening; without it the cohesion stays"),
+        optional("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
+                 "cohesion after softening; without it the cohesion stays"),
         optional("softening_strain", &Law::softening_strain, positive, "-",
                  "plastic_strain at which the residual strength is reached, linear before; without it nothing softens")};
   }
@@ -77,15 +79,15 @@ struct DruckerPrager {
 
   /// What follows from the parameters alone: trigonometry that costs more than the rest of an update.
   struct Constants {
-    Real bulk, shear;        ///< Pa
-    Cone peak, residual;
+    Real bulk, shear;       ///< Pa
+    Cone peak, residual;    ///< before and after softening
+    Cone slope;             ///< of the cone by plastic strain while it softens
     Real softening_strain;  ///< infinite if nothing softens
     Real q_psi;             ///< slope of the plastic potential [-]
     Real cutoff;            ///< Pa, infinite if there is only the tip of the cone
     Cone cone_at(Real plastic_strain) const noexcept
     {
-      const Real done = std::min(plastic_strain / softening_strain, Real{1});
-      return {peak.q + done * (residual.q - peak.q), peak.k + done * (residual.k - peak.k)};
+      return plastic_strain < softening_strain ? Cone{peak.q + plastic_strain * slope.q, peak.k + plastic_strain * slope.k} : residual;
     }
   };
   Constants constants() const noexcept;

@@ -10,7 +10,8 @@ namespace talus {
 /// Hencky solid: J stress = lambda tr(e) I + 2 mu e with e = ln(F F^T) / 2.
 struct Hencky {
   static constexpr std::string_view name = "hencky";
-  static constexpr std::string_view summary = "Hencky solid, J stress = lambda tr(e) I + 2 mu e with the logarithmic strain e = ln(F F^T) / 2.";
+  static constexpr std::string_view summary =
+      "Hencky solid, J stress = lambda tr(e) I + 2 mu e with the logarithmic strain e = ln(F F^T) / 2.";
   Real density{}, youngs_modulus{}, poisson_ratio{};
   static constexpr auto fields()
   {
@@ -39,8 +40,8 @@ struct Hencky {
   Mat3 kirchhoff(const Mat3& F) const noexcept
   {
     const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
-    const Sym3 strain = 0.5 * log1p(push_forward(F - Mat3::Identity(), Sym3::Zero()));
-    return unpack(add_diagonal(2 * mu * strain, lambda * trace(strain)));
+    const Sym3 strain = scale_and_shift(0.5, log1p(push_forward(F - Mat3::Identity(), Sym3::Zero())), 0);
+    return unpack(scale_and_shift(2 * mu, strain, lambda * trace(strain)));
   }
 };
 

@@ -33,6 +33,7 @@ struct NoHistory {
 ///   Constants constants() const;  Mat3 update(in, state, const Constants&) const     what a batch computes once from the parameters
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
 /// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
+// clang-format off
 template <class L>
 concept Law = requires(const L law, const Increment& in, typename L::State& state) {
   { L::name } -> std::convertible_to<std::string_view>;
@@ -43,6 +44,7 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
   { law.update(in, state) } noexcept -> std::same_as<Mat3>;
   { law.wave_speed(in.F) } noexcept -> std::same_as<Real>;
 };
+// clang-format on
 
 /// What a law answers where it has no answer.
 inline Mat3 no_answer() noexcept { return Mat3::Constant(std::numeric_limits<Real>::quiet_NaN()); }

@@ -10,6 +10,7 @@
 
 namespace talus {
 
+// clang-format off
 using Laws = TypeList<
     LinearElastic,
     NeoHookean,
@@ -17,5 +18,6 @@ using Laws = TypeList<
     Hencky,
     DruckerPrager,
     LinearFirstPiola>;
+// clang-format on
 
 }  // namespace talus

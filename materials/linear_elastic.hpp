@@ -30,9 +30,9 @@ struct LinearElastic {
       return no_answer();
     const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
     const Mat3 H = in.dt * in.L;
-    const Sym3 strain = 0.5 * log1p(push_forward(H.transpose(), Sym3::Zero()));  // C - I = f^T f - I
-    const Mat3 R = (Mat3::Identity() + H) * unpack(add_diagonal(expm1(-strain), 1));
-    const Mat3 unrotated = in.stress + unpack(add_diagonal(2 * mu * strain, lambda * trace(strain)));
+    const Sym3 strain = scale_and_shift(0.5, log1p(push_forward(H.transpose(), Sym3::Zero())), 0);  // C - I = f^T f - I
+    const Mat3 R = (Mat3::Identity() + H) * unpack(add_diagonal(expm1(scale_and_shift(-1, strain, 0)), 1));
+    const Mat3 unrotated = in.stress + unpack(scale_and_shift(2 * mu, strain, lambda * trace(strain)));
     return sym(R * unrotated * R.transpose());
   }
 

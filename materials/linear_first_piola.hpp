@@ -18,9 +18,10 @@ struct LinearFirstPiola {
   Real density{}, youngs_modulus{}, poisson_ratio{};
   static constexpr auto fields()
   {
-    return std::tuple{required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest"),
-                      required("youngs_modulus", &LinearFirstPiola::youngs_modulus, positive, "Pa", "Young's modulus at small strain"),
-                      required("poisson_ratio", &LinearFirstPiola::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio at small strain")};
+    return std::tuple{
+        required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest"),
+        required("youngs_modulus", &LinearFirstPiola::youngs_modulus, positive, "Pa", "Young's modulus at small strain"),
+        required("poisson_ratio", &LinearFirstPiola::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio at small strain")};
   }
   using State = NoHistory;
 

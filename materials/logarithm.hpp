@@ -11,15 +11,18 @@ namespace talus {
 
 /// Frobenius norm of the deviator up to which the series below are used; beyond it principal axes are found.
 inline constexpr Real series_radius = 0.1;
+/// Up to here, as in most soil and metal, fewer terms do.
+inline constexpr Real short_series_radius = 0.01;
 
 inline Real trace(const Sym3& a) noexcept { return a[0] + a[1] + a[2]; }
-/// a + m I
-inline Sym3 add_diagonal(const Sym3& a, Real m) noexcept
+/// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
+inline Sym3 scale_and_shift(Real s, const Sym3& a, Real m) noexcept
 {
   Sym3 sum;
-  sum << a[0] + m, a[1] + m, a[2] + m, a[3], a[4], a[5];
+  sum << s * a[0] + m, s * a[1] + m, s * a[2] + m, s * a[3], s * a[4], s * a[5];
   return sum;
 }
+inline Sym3 add_diagonal(const Sym3& a, Real m) noexcept { return scale_and_shift(1, a, m); }
 /// a:a
 inline Real squared_norm(const Sym3& a) noexcept
 {
@@ -29,12 +32,10 @@ inline Real squared_norm(const Sym3& a) noexcept
 /// (I + H)(I + b)(I + H)^T - I: the left Cauchy-Green tensor minus identity after a step with displacement gradient H.
 inline Sym3 push_forward(const Mat3& H, const Sym3& b) noexcept
 {
-  const Mat3 fb = unpack(b) + H * unpack(b);
+  const Mat3 old = unpack(b);
+  const auto half = [&](int i, int j) { return old(i, j) + H(i, 0) * old(0, j) + H(i, 1) * old(1, j) + H(i, 2) * old(2, j) + H(i, j); };
   const auto entry = [&](int i, int j) {
-    Real sum = fb(i, j) + H(i, j) + H(j, i);
-    for (int k = 0; k < 3; ++k)
-      sum += (fb(i, k) + H(i, k)) * H(j, k);
-    return sum;
+    return half(i, j) + H(j, i) + half(i, 0) * H(j, 0) + half(i, 1) * H(j, 1) + half(i, 2) * H(j, 2);
   };
   Sym3 pushed;
   pushed << entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2);
@@ -43,9 +44,9 @@ inline Sym3 push_forward(const Mat3& H, const Sym3& b) noexcept
 
 namespace detail {
 
-/// sum_k c[k] X^(k+1) of a symmetric trace-free X.  Cayley-Hamilton, X^3 = J2 X + J3 I, keeps every power in the span of
+/// sum_k c[k] X^(k+1), `terms` of them, of a symmetric trace-free X.  Cayley-Hamilton, X^3 = J2 X + J3 I, keeps every power in the span of
 /// I, X, X^2, so that one product of matrices is enough.
-template <std::size_t N>
+template <std::size_t terms, std::size_t N>
 Sym3 trace_free_series(const Sym3& X, const std::array<Real, N>& c) noexcept
 {
   const Real xx = X[0], yy = X[1], zz = X[2], xy = X[3], yz = X[4], xz = X[5];
@@ -55,17 +56,20 @@ Sym3 trace_free_series(const Sym3& X, const std::array<Real, N>& c) noexcept
   const Real J2 = 0.5 * trace(X2);
   const Real J3 = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
   Real a = 0, b = 0, d = 0;  // sum so far = a I + b X + d X^2
-  for (std::size_t k = N; k-- > 0;) {
+  for (std::size_t k = terms; k-- > 0;) {
     const Real b_new = a + d * J2 + c[k];
     a = d * J3;
     d = b;
     b = b_new;
   }
-  return add_diagonal(b * X + d * X2, a);
+  Sym3 sum;
+  sum << b * xx + d * X2[0] + a, b * yy + d * X2[1] + a, b * zz + d * X2[2] + a, b * xy + d * X2[3], b * yz + d * X2[4], b * xz + d * X2[5];
+  return sum;
 }
 
 // The eigenvalues of a trace-free X are at most sqrt(2/3) |X| <= 0.0817, so the first term left out is below
 // 0.0817^14/15 = 4e-17 (logarithm) and 0.0817^9/10! = 5e-17 (exponential) of the first term: less than one rounding.
+// Within the short radius 8 and 6 terms leave out 0.00817^8/9 = 2e-18 and 0.00817^6/7! = 6e-17.
 inline constexpr std::array<Real, 14> logarithm_series = [] {
   std::array<Real, 14> c{};
   for (std::size_t k = 0; k < c.size(); ++k)
@@ -103,22 +107,30 @@ inline Sym3 expm1_by_axes(const Sym3& E) noexcept
 /// ln(I + B) of a symmetric B.  NaN where I + B is not positive definite.
 inline Sym3 log1p(const Sym3& B) noexcept
 {
-  const Real mean = trace(B) / 3;
-  const Sym3 X = add_diagonal(B, -mean) * (1 / (1 + mean));
-  if (!(mean > -1 && squared_norm(X) <= series_radius * series_radius))
+  const Real mean = trace(B) * (1.0 / 3);
+  const Real scale = 1 / (1 + mean);
+  const Sym3 X = scale_and_shift(scale, B, -mean * scale);
+  const Real size = squared_norm(X);
+  if (!(mean > -1 && size <= series_radius * series_radius))
     return detail::log1p_by_axes(B);
-  return add_diagonal(detail::trace_free_series(X, detail::logarithm_series), std::log1p(mean));
+  const Real volumetric = std::log1p(mean);
+  if (size <= short_series_radius * short_series_radius)
+    return add_diagonal(detail::trace_free_series<8>(X, detail::logarithm_series), volumetric);
+  return add_diagonal(detail::trace_free_series<14>(X, detail::logarithm_series), volumetric);
 }
 
 /// exp(E) - I of a symmetric E.
 inline Sym3 expm1(const Sym3& E) noexcept
 {
-  const Real mean = trace(E) / 3;
+  const Real mean = trace(E) * (1.0 / 3);
   const Sym3 X = add_diagonal(E, -mean);
-  if (!(squared_norm(X) <= series_radius * series_radius))
+  const Real size = squared_norm(X);
+  if (!(size <= series_radius * series_radius))
     return detail::expm1_by_axes(E);
   const Real volumetric = std::expm1(mean);
-  return add_diagonal((1 + volumetric) * detail::trace_free_series(X, detail::exponential_series), volumetric);
+  if (size <= short_series_radius * short_series_radius)
+    return scale_and_shift(1 + volumetric, detail::trace_free_series<6>(X, detail::exponential_series), volumetric);
+  return scale_and_shift(1 + volumetric, detail::trace_free_series<9>(X, detail::exponential_series), volumetric);
 }
 
 /// R of F = R U, det F > 0.  Newton's iteration with the scaling of Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160; it

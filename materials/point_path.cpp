@@ -119,7 +119,8 @@ class StepSolver {
     Eigen::Index worst = 0;
     residual.cwiseAbs().maxCoeff(&worst);
     const std::size_t k = free_[static_cast<std::size_t>(worst)];
-    return fmt::format("stress {} cannot reach {:.6g} Pa, it is off by {:.3g} Pa", names[k], target[static_cast<Eigen::Index>(k)], residual[worst]);
+    return fmt::format("stress {} cannot reach {:.6g} Pa, it is off by {:.3g} Pa", names[k], target[static_cast<Eigen::Index>(k)],
+                       residual[worst]);
   }
 
   const L& law_;
@@ -180,8 +181,8 @@ PointTable drive(Batch<L>& batch, std::span<const PointPath> paths, const Mat3& 
           target[static_cast<Eigen::Index>(k)] += (controls[k].value - start[static_cast<Eigen::Index>(k)]) * step / path.steps;
       if (const auto problem = solver.advance(state, target)) {
         const std::string place = to_string(path.where);
-        throw RunError(fmt::format("{}{}path {}, step {} of {}, t = {:.6g} s: {} ({})", place, place.empty() ? "" : ": ", n + 1, step, path.steps,
-                                   time + step * dt, *problem, L::name));
+        throw RunError(fmt::format("{}{}path {}, step {} of {}, t = {:.6g} s: {} ({})", place, place.empty() ? "" : ": ", n + 1, step,
+                                   path.steps, time + step * dt, *problem, L::name));
       }
       table.rows.push_back(row_of<L>(time + step * dt, state));
     }

@@ -18,9 +18,10 @@ struct Control {
   Real value = 0;
   static constexpr auto fields()
   {
-    return std::tuple{required_choice("quantity", &Control::quantity,
-                                      "strain_rate: D_ij without spin; velocity_gradient: L_ij alone, L_ji = 0 (simple shear); stress: Cauchy"),
-                      required("value", &Control::value, any, "1/s or Pa", "constant rate, or the stress reached linearly over the path")};
+    return std::tuple{
+        required_choice("quantity", &Control::quantity,
+                        "strain_rate: D_ij without spin; velocity_gradient: L_ij alone, L_ji = 0 (simple shear); stress: Cauchy"),
+        required("value", &Control::value, any, "1/s or Pa", "constant rate, or the stress reached linearly over the path")};
   }
 };
 
@@ -35,7 +36,8 @@ struct Controls {
   }
   std::array<Control, 6> all() const  ///< in the order of Sym3
   {
-    return {xx.value_or(Control{}), yy.value_or(Control{}), zz.value_or(Control{}), xy.value_or(Control{}), yz.value_or(Control{}), xz.value_or(Control{})};
+    return {xx.value_or(Control{}), yy.value_or(Control{}), zz.value_or(Control{}),
+            xy.value_or(Control{}), yz.value_or(Control{}), xz.value_or(Control{})};
   }
 };
 
@@ -47,7 +49,8 @@ struct PointPath {
   Where where{};
   static constexpr auto fields()
   {
-    return std::tuple{optional("steps", &PointPath::steps, positive, "-", "number of steps"), optional("time", &PointPath::time, positive, "s", "duration"),
+    return std::tuple{optional("steps", &PointPath::steps, positive, "-", "number of steps"),
+                      optional("time", &PointPath::time, positive, "s", "duration"),
                       group("controls", &PointPath::controls, "what is prescribed for each component")};
   }
 };

@@ -25,8 +25,8 @@ TEST(DruckerPragerMatch, OuterInnerAndPlaneStrainConesHaveTheirConstants)
   struct Row {
     Real phi, outer, inner, associated, isochoric;
   };
-  for (const Row& row : {Row{20, .44575, .35451, .33554, .34202}, Row{30, .69282, .49487, .48038, .50000}, Row{19.8, .44093, .35146, .33244, .33874},
-                         Row{32, .74317, .52004, .50673, .52992}}) {
+  for (const Row& row : {Row{20, .44575, .35451, .33554, .34202}, Row{30, .69282, .49487, .48038, .50000},
+                         Row{19.8, .44093, .35146, .33244, .33874}, Row{32, .74317, .52004, .50673, .52992}}) {
     EXPECT_NEAR(soil(ConeMatch::outer, row.phi, 0).cone(0).q, row.outer, 6e-6);
     EXPECT_NEAR(soil(ConeMatch::inner, row.phi, 0).cone(0).q, row.inner, 6e-6);
     EXPECT_NEAR(soil(ConeMatch::plane_strain, row.phi, 0, row.phi).cone(0).q, row.associated, 6e-6);
@@ -318,10 +318,14 @@ TEST(DruckerPragerRules, ContradictionsAreToldInWords)
   using Problems = std::vector<std::string>;
   EXPECT_EQ(problems([](auto&) {}), Problems{});
   EXPECT_EQ(problems([](auto& law) { law.dilation_angle = 31; }), Problems{"dilation_angle 31 is above friction_angle 30"});
-  EXPECT_EQ(problems([](auto& law) { law.tension_cutoff = 9e3; }), Problems{"tension_cutoff 9000 is above the tip of the cone, 8660.25 Pa"});
-  EXPECT_EQ(problems([](auto& law) { law.residual_cohesion = 6e3, law.softening_strain = 0.1; }), Problems{"residual_cohesion 6000 is above cohesion 5000"});
-  EXPECT_EQ(problems([](auto& law) { law.residual_cohesion = 0; }), Problems{"residual_friction_angle and residual_cohesion need softening_strain"});
-  EXPECT_EQ(problems([](auto& law) { law.softening_strain = 0.1; }), Problems{"softening_strain needs residual_friction_angle or residual_cohesion"});
+  EXPECT_EQ(problems([](auto& law) { law.tension_cutoff = 9e3; }),
+            Problems{"tension_cutoff 9000 is above the tip of the cone, 8660.25 Pa"});
+  EXPECT_EQ(problems([](auto& law) { law.residual_cohesion = 6e3, law.softening_strain = 0.1; }),
+            Problems{"residual_cohesion 6000 is above cohesion 5000"});
+  EXPECT_EQ(problems([](auto& law) { law.residual_cohesion = 0; }),
+            Problems{"residual_friction_angle and residual_cohesion need softening_strain"});
+  EXPECT_EQ(problems([](auto& law) { law.softening_strain = 0.1; }),
+            Problems{"softening_strain needs residual_friction_angle or residual_cohesion"});
   EXPECT_EQ(problems([](auto& law) { law.residual_friction_angle = 5, law.softening_strain = 0.1; }),
             Problems{"dilation_angle 10 is above residual_friction_angle 5"});
   EXPECT_EQ(problems([](auto& law) { law.residual_friction_angle = 35, law.softening_strain = 0.1; }),

@@ -122,10 +122,17 @@ TEST(MaterialsPage, StrengthsUnderTheThreeMatchesAreTheMeasuredOnes)
 {
   const Real phi = radians(30), c = 5e3, sine = std::sin(phi);
   const Real strength = 2 * (c * std::cos(phi) + p0 * sine);
-  std::array<std::string, 6> rows{"| slope `q` |", "| strength `k` [kPa] |", "| triaxial compression [kPa] |", "| triaxial extension [kPa] |",
-                                  "| plane strain at 8 % [kPa] |", "| critical slope, c = 0 [deg] |"};
-  const std::array<std::string, 6> mohr_coulomb{" - |", " - |", fmt::format(" {:.1f} |", strength / (1 - sine) / 1e3),
-                                                fmt::format(" {:.1f} |", strength / (1 + sine) / 1e3), fmt::format(" {:.1f} |", strength / (1 - sine) / 1e3),
+  std::array<std::string, 6> rows{"| slope `q` |",
+                                  "| strength `k` [kPa] |",
+                                  "| triaxial compression [kPa] |",
+                                  "| triaxial extension [kPa] |",
+                                  "| plane strain at 8 % [kPa] |",
+                                  "| critical slope, c = 0 [deg] |"};
+  const std::array<std::string, 6> mohr_coulomb{" - |",
+                                                " - |",
+                                                fmt::format(" {:.1f} |", strength / (1 - sine) / 1e3),
+                                                fmt::format(" {:.1f} |", strength / (1 + sine) / 1e3),
+                                                fmt::format(" {:.1f} |", strength / (1 - sine) / 1e3),
                                                 " 30.0 |"};
   for (std::size_t r = 0; r < rows.size(); ++r)
     rows[r] += mohr_coulomb[r];
@@ -158,8 +165,9 @@ TEST(PointPath, UniaxialStressOfNeoHookeanSolidLeavesTheSidesFree)
 
 TEST(PointPath, PathsFollowOneAnother)
 {
-  const std::array<PointPath, 2> paths{PointPath{.steps = 5, .time = 2, .controls = {.xx = stress(-p0), .yy = stress(-p0), .zz = stress(-p0)}},
-                                       PointPath{.steps = 10, .time = 3, .controls = {.xy = gradient(1e-3)}}};
+  const std::array<PointPath, 2> paths{
+      PointPath{.steps = 5, .time = 2, .controls = {.xx = stress(-p0), .yy = stress(-p0), .zz = stress(-p0)}},
+      PointPath{.steps = 10, .time = 3, .controls = {.xy = gradient(1e-3)}}};
   const auto table = drive(make_batch(sample<DruckerPrager>(), 0, 1, "soil"), paths);
   ASSERT_EQ(table.rows.size(), 16u);
   EXPECT_NEAR(table.rows[5].p, p0, 1e-8 * p0);
@@ -179,7 +187,8 @@ TEST(PointPath, SaysWhereAStressCannotBeReached)
     drive_one(testing::soft_soil(ConeMatch::outer, 30, 0), path);
     FAIL() << "cohesionless soil bears no tension";
   } catch (const RunError& error) {
-    EXPECT_NE(std::string(error.what()).find("drive.yaml:7:3: path 1, step 1 of 10, t = 0.1 s: stress "), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("drive.yaml:7:3: path 1, step 1 of 10, t = 0.1 s: stress "), std::string::npos)
+        << error.what();
   }
 }
 

@@ -54,7 +54,10 @@ class Dice {
   std::mt19937 bits_;
 };
 
-inline Mat3 rotation_about(const Vec3& axis, Real angle) { return Eigen::AngleAxisd(angle, Eigen::Vector3d(axis.normalized())).toRotationMatrix(); }
+inline Mat3 rotation_about(const Vec3& axis, Real angle)
+{
+  return Eigen::AngleAxisd(angle, Eigen::Vector3d(axis.normalized())).toRotationMatrix();
+}
 
 /// One material point.
 template <class L>
