@@ -280,7 +280,7 @@ struct GeostaticSpec {
                  "done when the unbalanced nodal force is below this share of the total load"),
         optional("elastic", &GeostaticSpec::elastic, any, "-", "suspend yielding during the stage"),
         optional("reset_displacement", &GeostaticSpec::reset_displacement, any, "-",
-                 "displacement and time of later stages count from the end of this one"),
+                 "displacement of later stages counts from the end of this one"),
         group("initial_stress", &GeostaticSpec::initial_stress, "K0 state to start from, for laws that can carry a prestress")};
   }
   void check(std::vector<std::string>& problems) const;
@@ -307,7 +307,7 @@ struct ParticleOutputSpec {
   {
     return std::tuple{required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
                       optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
-                               "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, F, velocity_gradient, and any "
+                               "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, any "
                                "history variable of a law")};
   }
 };

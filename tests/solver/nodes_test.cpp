@@ -1,0 +1,207 @@
+// Nodes with next to no mass, order by cell, exits, initial stress, loads.
+#include <gtest/gtest.h>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::testing {
+namespace {
+
+TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
+  Nodes<2> nodes;
+  const auto n = static_cast<std::size_t>(mesh.n_nodes());
+  nodes.sum.resize(n);
+  nodes.motion.resize(n);
+  nodes.active.resize(n);
+  nodes.mass_cut = 1e-8;
+  NodeSum<2> before;
+  for (std::size_t i = 0; i < n; ++i) {
+    nodes.sum[i].mass = i % 4 == 0 ? (i % 8 == 0 ? 1e-9 : -1e-3) : 1;  // tiny and negative ones among the others
+    nodes.sum[i].momentum = nodes.sum[i].mass * Vec<2>(3, -2);
+    nodes.sum[i].force = Vec<2>(1, static_cast<Real>(i));
+    before += nodes.sum[i];
+  }
+  Slaves<2> slaves;
+  slaves.lump(mesh, nodes);
+  EXPECT_GT(slaves.size(), 2);
+  NodeSum<2> after;
+  for (std::size_t i = 0; i < n; ++i)
+    if (nodes.active[i])
+      after += nodes.sum[i];
+  EXPECT_NEAR(after.mass, before.mass, 1e-13);
+  EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12);
+  EXPECT_LT((after.force - before.force).norm(), 1e-11);
+
+  for (auto& row : nodes.motion)
+    row = {Vec<2>(3, -2), Vec<2>(0.5, 0)};
+  slaves.follow(mesh, nodes, Walls<2>(), 0, nodes.motion);
+  for (const auto& row : nodes.motion)
+    EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
+}
+
+/// One particle dragged across a vertex meets nodes of vanishing mass on its way; nothing acts on it.
+template <class K>
+void drag_across_a_vertex(Scheme scheme)
+{
+  Model<2, K> m(unit_box<2>(4, 0.2));
+  m.transfer = {.scheme = scheme, .musl = false, .pic_damping_time = {}};
+  const auto one_cell = [&, done = false](const Vec<2>& x) mutable { return !done && x[0] > 0.3 && x[1] > 0.3 ? (done = true) : false; };
+  add_body<2>(m, "grain", rubber(1000, 0.3, 1000), 1, one_cell);
+  ASSERT_EQ(m.particles.size(), 1);
+  Index vertex = 0;
+  for (Index n = 0; n < m.mesh.n_nodes(); ++n)
+    if ((m.mesh.node(n) - Vec<2>(0.5, 0.5)).norm() < (m.mesh.node(vertex) - Vec<2>(0.5, 0.5)).norm())
+      vertex = n;
+  const Vec<2> v(1, 0.4);
+  m.particles.x[0] = m.mesh.node(vertex) - 0.02 * v;
+  m.particles.cell[0] = m.locator(m.mesh, m.particles.x[0], none).value();
+  m.particles.v[0] = v;
+  make_ready(m, false);
+  for (int step = 0; step < 40; ++step)  // hits the vertex exactly after half of them
+    advance(m, 1e-3);
+  EXPECT_LT((m.particles.v[0] - v).norm(), 1e-12);
+}
+
+TEST(Slaves, LeaveALoneParticleItsVelocityAcrossAVertex)
+{
+  drag_across_a_vertex<Linear<2>>(Scheme::flip);
+  drag_across_a_vertex<Umls<2>>(Scheme::flip);
+  drag_across_a_vertex<Linear<2>>(Scheme::tpic);
+  drag_across_a_vertex<Umls<2>>(Scheme::tpic);
+}
+
+TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
+{
+  const std::vector<Index> cell{3, 1, 3, 0, 2, 2, 200, 2};
+  const std::vector<std::int64_t> id{7, 6, 5, 4, 3, 2, 1, 0};
+  const std::vector<Body> bodies{{"a", 0, 3, {}}, {"b", 3, 8, {}}};
+  CellOrder order;
+  sort_by_cell(cell, id, bodies, 300, order);
+  EXPECT_EQ(order.row, (std::vector<Index>{1, 2, 0, 3, 7, 5, 4, 6}));
+  EXPECT_EQ(order.blocks, 3);
+  EXPECT_EQ(order.rows(0, 0).size(), 3U);
+  EXPECT_EQ(order.rows(1, 0).size(), 4U);
+  EXPECT_EQ(order.rows(1, 1).size(), 1U);
+  EXPECT_EQ(order.rows(1, 2).size(), 0U);
+}
+
+/// A block that flies to the right, out of the mesh.
+Model<2, Linear<2>> leaving(OnExitPolicy policy, bool wall)
+{
+  Model<2, Linear<2>> m(unit_box<2>(6, 0.1));
+  m.exits.policy = policy;
+  add_body<2>(m, "block", rubber(100, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.6; }, [](const Vec<2>&) { return Vec<2>(2, 0); });
+  if (wall) {
+    Wall<2> right;
+    right.name = "x_max";
+    right.kind = WallKind::roller;
+    m.walls.add(right, m.mesh, *m.mesh.facet_set("x_max"));
+  }
+  make_ready(m, true);
+  return m;
+}
+
+TEST(Exits, StopNamesTheParticleTheBodyAndThePlace)
+{
+  auto m = leaving(OnExitPolicy::stop, false);
+  try {
+    run_until(m, 0.3);
+    FAIL() << "the block has left the mesh";
+  } catch (const RunError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("of \"block\" at ("), std::string::npos) << text;
+    EXPECT_NE(text.find("is outside the mesh"), std::string::npos) << text;
+    EXPECT_EQ(text.find("step "), 0U) << text;
+  }
+}
+
+TEST(Exits, DeleteKeepsAccountOfTheMass)
+{
+  auto m = leaving(OnExitPolicy::remove, false);
+  const Index before = m.particles.size();
+  run_until(m, 0.3);
+  EXPECT_GT(m.mass.deleted_count, 5);
+  EXPECT_EQ(m.particles.size() + m.mass.deleted_count, before);
+  EXPECT_NEAR(totals(m.particles).mass + m.mass.deleted, m.mass.start, 1e-12 * m.mass.start);
+  for (Index p = 0; p < m.particles.size(); ++p)
+    EXPECT_EQ(m.row_of_id[static_cast<std::size_t>(m.particles.id[static_cast<std::size_t>(p)])], p);
+}
+
+TEST(Exits, AClosedWallKeepsParticlesIn)
+{
+  auto m = leaving(OnExitPolicy::stop, true);
+  m.particles.x[0] = {1 + 1e-4, 0.5};  // as weights off the wall may carry it
+  advance(m, 1e-4);
+  EXPECT_FALSE(m.health.worst());
+  EXPECT_EQ(m.mass.held_count, 1);
+  EXPECT_NEAR(m.mass.held_most, 1e-4, 1e-8);
+}
+
+TEST(InitialStress, CarriesTheWeightAbove)
+{
+  Model<2, Linear<2>> m(unit_box<2>(8, 0.2));
+  LinearElastic soil;
+  soil.density = 2000;
+  soil.youngs_modulus = 1e6;
+  soil.poisson_ratio = 0.3;
+  add_body<2>(m, "soil", soil, 3, [](const Vec<2>&) { return true; });
+  make_ready(m, false);
+  set_k0_stress<2>(m.mesh, {0, -10}, 0.5, m.bodies, m.materials, m.particles);
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    const Real weight = 2000 * 10 * (1 - m.particles.x[p][1]);
+    EXPECT_NEAR(m.particles.stress[p][1], -weight, 1e-9 * 2e4);
+    EXPECT_NEAR(m.particles.stress[p][0], -0.5 * weight, 1e-9 * 2e4);
+    EXPECT_NEAR(m.particles.stress[p][2], -0.5 * weight, 1e-9 * 2e4);
+  }
+}
+
+/// A column under traction on its top ends with that stress everywhere, whoever carries the load.
+template <class Put>
+void squeeze(Put&& put)
+{
+  Model<2, Umls<2>> m(Mesh<2>(jittered(box<2>({0, 0}, {1, 2}, {4, 8}), 0.15, 1)));
+  add_body<2>(m, "column", rubber(1e5, 0.0, 1000), 3, [](const Vec<2>& x) { return x[1] < 1.5; });
+  for (const char* side : {"x_min", "x_max", "y_min"}) {
+    Wall<2> roller;
+    roller.name = side;
+    roller.kind = WallKind::roller;
+    m.walls.add(roller, m.mesh, *m.mesh.facet_set(side));
+  }
+  put(m);
+  make_ready(m, false);
+  Stage rest = test_stage(10);
+  rest.damping = 0.7;
+  rest.ramp = 0.2;
+  m.stage.damping = 0.7;
+  run_stage(m, rest, StepLimits{.cfl = 0.5}, [](const auto&, Moment) {});
+  Real mean = 0, n = 0;
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
+    if (m.particles.x[p][1] < 0.8) {
+      mean += m.particles.stress[p][1];
+      n += 1;
+    }
+  EXPECT_NEAR(mean / n, -1000, 10);
+  EXPECT_GT(m.energy.loads, 0);
+}
+
+TEST(Loads, PressureOnParticlesIsTheStressBelow)
+{
+  squeeze([](auto& m) {
+    std::vector<Facet> top;  // upper faces of the cells that hold the column's top
+    for (Index c = 0; c < m.mesh.n_cells(); ++c)
+      for (Index k = 0; k < 3; ++k) {
+        const Facet f{c, k};
+        const auto nodes = m.mesh.nodes_of(f);
+        if (std::abs(m.mesh.node(nodes[0])[1] - 1.5) < 0.06 && std::abs(m.mesh.node(nodes[1])[1] - 1.5) < 0.06 && m.mesh.area_vector(f)[1] > 0)
+          top.push_back(f);
+      }
+    ASSERT_EQ(top.size(), 4U);
+    auto load = carried_by_particles<2>(m.mesh, top, m.particles);
+    load.pressure = 1000;
+    m.loads.on_particles.push_back(load);
+  });
+}
+
+}  // namespace
+}  // namespace talus::testing

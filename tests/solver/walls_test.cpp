@@ -1,0 +1,143 @@
+// Walls: single conditions, edges and corners where several meet, friction against its closed forms.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::testing {
+namespace {
+
+template <int D>
+Wall<D> wall(WallKind kind, const std::string& name, Real friction = 0)
+{
+  Wall<D> w;
+  w.name = name;
+  w.kind = kind;
+  w.friction = friction;
+  return w;
+}
+
+/// One node of the unit cube with unit mass and the velocity given; walls on the faces named.
+Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3& node_at, const Vec3& v)
+{
+  const Mesh<3> mesh(box<3>(Vec3::Zero(), Vec3::Ones(), {2, 2, 2}));
+  Walls<3> walls;
+  for (const auto& [face, w] : faces)
+    w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, *mesh.node_set(face)) : walls.add(w, mesh, *mesh.facet_set(face));
+  walls.settle();
+  Nodes<3> nodes;
+  nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+  nodes.motion.resize(nodes.sum.size());
+  nodes.active.assign(nodes.sum.size(), 1);
+  std::size_t at = 0;
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if ((mesh.node(n) - node_at).norm() < 1e-9)
+      at = static_cast<std::size_t>(n);
+  for (auto& row : nodes.sum)
+    row.mass = 1;
+  nodes.motion[at] = {v, v};
+  walls.apply(0, 0.1, nodes);
+  return nodes.motion[at].v;
+}
+
+TEST(Walls, FixedStopsAllAndRollerOnlyTheNormal)
+{
+  EXPECT_EQ(after({{"x_min", wall<3>(WallKind::fixed, "x_min")}}, {0, 0.5, 0.5}, {1, 2, 3}), Vec3::Zero());
+  EXPECT_LT((after({{"x_min", wall<3>(WallKind::roller, "x_min")}}, {0, 0.5, 0.5}, {1, 2, 3}) - Vec3(0, 2, 3)).norm(), 1e-15);
+}
+
+TEST(Walls, RollersThatMeetInAnEdgeOrACornerActTogether)
+{
+  const auto x = std::pair{std::string("x_min"), wall<3>(WallKind::roller, "x_min")};
+  const auto y = std::pair{std::string("y_min"), wall<3>(WallKind::roller, "y_min")};
+  const auto z = std::pair{std::string("z_min"), wall<3>(WallKind::roller, "z_min")};
+  EXPECT_LT((after({x, y}, {0, 0, 0.5}, {1, 2, 3}) - Vec3(0, 0, 3)).norm(), 1e-15);
+  EXPECT_LT(after({x, y, z}, {0, 0, 0}, {1, 2, 3}).norm(), 1e-15);
+  EXPECT_LT((after({x, y, z}, {0, 0.5, 0}, {1, 2, 3}) - Vec3(0, 2, 0)).norm(), 1e-15);
+}
+
+TEST(Walls, FixedWinsOverEveryOtherConditionOfANode)
+{
+  Wall<3> moving = wall<3>(WallKind::velocity, "x_min");
+  moving.velocity = {5, 0, 0};
+  const auto fixed = wall<3>(WallKind::fixed, "y_min");
+  EXPECT_EQ(after({{"x_min", moving}, {"y_min", fixed}}, {0, 0, 0.5}, {1, 2, 3}), Vec3::Zero());
+  EXPECT_EQ(after({{"y_min", fixed}, {"x_min", moving}}, {0, 0, 0.5}, {1, 2, 3}), Vec3::Zero());
+  EXPECT_EQ(after({{"x_min", moving}}, {0, 0, 0.5}, {1, 2, 3}), Vec3(5, 0, 0));
+}
+
+TEST(Walls, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
+{
+  const auto face = [](Real mu) { return std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", mu)}; };
+  const Vec3 at(0.5, 0, 0.5);
+  EXPECT_LT(after({face(0.5)}, at, {0.4, -1, 0}).norm(), 1e-15);                                  // 0.4 < 0.5 * 1: held
+  EXPECT_LT((after({face(0.5)}, at, {0.8, -1, 0}) - Vec3(0.3, 0, 0)).norm(), 1e-15);              // 0.8 - 0.5 * 1 is left
+  EXPECT_LT((after({face(0.5)}, at, {0.8, 1, 0}) - Vec3(0.8, 1, 0)).norm(), 1e-15);               // leaving: free
+}
+
+TEST(Walls, FrictionWallsOfACornerLeaveNoPenetration)
+{
+  const auto floor = std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", 0.3)};
+  const auto side = std::pair{std::string("x_min"), wall<3>(WallKind::friction, "x_min", 0.3)};
+  const Vec3 v = after({floor, side}, {0, 0, 0.5}, {-1, -2, 5});
+  EXPECT_GE(v[0], -1e-12);
+  EXPECT_GE(v[1], -1e-12);
+  EXPECT_GT(v[2], 5 - 0.3 * 4);  // each wall rubs with its own normal impulse only
+  EXPECT_LT(v[2], 5);
+}
+
+/// A mesh whose floor is inclined by `angle`; a rubber block lies on it.  Distances along and off the floor.
+struct Incline {
+  Real angle;
+  Vec<2> along(const Vec<2>& x) const { return {std::cos(angle) * x[0] - std::sin(angle) * x[1], std::sin(angle) * x[0] + std::cos(angle) * x[1]}; }
+  Model<2, Umls<2>> block(Real mu) const
+  {
+    MeshData<2> data = jittered(box<2>({0, 0}, {12, 2}, {36, 6}), 0.15, 1);
+    for (Vec<2>& x : data.nodes)
+      x = Vec<2>(std::cos(angle) * x[0] + std::sin(angle) * x[1], -std::sin(angle) * x[0] + std::cos(angle) * x[1]);
+    Model<2, Umls<2>> m{Mesh<2>(std::move(data))};
+    add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 4, [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
+    m.walls.add(wall<2>(WallKind::friction, "floor", mu), m.mesh, *m.mesh.facet_set("y_min"));
+    m.loads.gravity.acceleration = {0, -10};
+    make_ready(m, false);
+    return m;
+  }
+  Vec<2> centre(const Model<2, Umls<2>>& m) const
+  {
+    const auto t = totals(m.particles);
+    return along(t.centre / t.mass);
+  }
+};
+
+/// Coulomb's block: s = g (sin - mu cos) t^2 / 2.
+class SlidingBlock : public ::testing::TestWithParam<Real> {};
+
+TEST_P(SlidingBlock, FollowsTheClosedFormOnAnInclinedMeshFace)
+{
+  const Real mu = GetParam(), time = 1;
+  const Incline incline{std::numbers::pi / 4};
+  auto m = incline.block(mu);
+  const Real start = incline.centre(m)[0];
+  run_until(m, time);
+  const Real exact = 0.5 * 10 * (std::sin(incline.angle) - mu * std::cos(incline.angle)) * time * time;
+  EXPECT_NEAR(incline.centre(m)[0] - start, exact, 0.01 * exact);
+}
+INSTANTIATE_TEST_SUITE_P(Coefficients, SlidingBlock, ::testing::Values(0.0, 0.3, 0.5));
+
+TEST(RestingBlock, DoesNotCreepBelowTheFrictionAngle)
+{
+  const Incline incline{25 * std::numbers::pi / 180};
+  auto m = incline.block(0.5);  // holds up to 26.6 degrees
+  Stage rest = test_stage(10);
+  rest.damping = 0.7;
+  rest.ramp = 0.5;
+  rest.residual = 1e-3;
+  run_stage(m, rest, StepLimits{.cfl = 0.5}, [](const auto&, Moment) {});
+  const Vec<2> start = incline.centre(m);
+  run_until(m, m.clock.time + 1);
+  EXPECT_LT((incline.centre(m) - start).norm(), 1e-6);  // of a block 4 m long
+}
+
+}  // namespace
+}  // namespace talus::testing
