@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "mesh/connectivity.hpp"
+#include "mesh/quality.hpp"
 #include "mesh/simplex.hpp"
 
 namespace talus {
@@ -161,6 +162,38 @@ Real least_volume_ratio(const MeshData<D>& data, std::span<const Index> cells, I
   return least;
 }
 
+/// The place above the middle of `base` where the smallest angle of all cells at node n is `angle`, if there is one.
+template <int D>
+std::optional<Vec<D>> press_flat(const MeshData<D>& data, std::span<const Index> cells, Index n, const std::array<Vec<D>, D>& base, Real angle)
+{
+  Vec<D> middle = Vec<D>::Zero();
+  for (const Vec<D>& x : base)
+    middle += x / D;
+  const Vec<D> normal = area_vector(base).normalized();
+  const Real top = normal.dot(data.nodes[n] - middle);  // signed
+  const auto least_angle = [&](const Vec<D>& x) {
+    Real least = std::numeric_limits<Real>::infinity();
+    for (const Index c : cells) {
+      Simplex<D> s = corners(data, c);
+      for (int a = 0; a <= D; ++a)
+        if (data.cells[c][a] == n)
+          s[a] = x;
+      least = std::min(least, smallest_angle<D>(s));
+    }
+    return least;
+  };
+  Real high = 1;  // share of the height of the node; bisected until they are neighbouring numbers
+  while (high > 0 && least_angle(middle + high * top * normal) >= angle)
+    high /= 2;
+  if (high == 1)
+    return std::nullopt;
+  Real low = high;
+  high *= 2;
+  for (Real half = (low + high) / 2; low < half && half < high; half = (low + high) / 2)
+    (least_angle(middle + half * top * normal) < angle ? low : high) = half;
+  return middle + high * top * normal;
+}
+
 template <int D>
 std::vector<Real> signed_volumes(const MeshData<D>& data)
 {
@@ -285,26 +318,10 @@ MeshData<D> slivered(MeshData<D> data, Real angle, Index count, std::uint64_t se
     if (c == none || !normals[n].empty() || !free_star)
       continue;
     const Index local = static_cast<Index>(std::find(data.cells[c].begin(), data.cells[c].end(), n) - data.cells[c].begin());
-    const std::array<Vec<D>, D> base = facet<D>(corners(data, c), static_cast<int>(local));
-    Vec<D> middle = Vec<D>::Zero();
-    for (const Vec<D>& x : base)
-      middle += x / D;
-    // The angle at an edge of the base is atan(height / distance of the middle from it): smallest at the farthest edge.
-    Real reach = 0;
-    for (int i = 0; i < D; ++i) {
-      if constexpr (D == 2) {
-        reach = std::max(reach, (base[i] - middle).norm());
-      } else {
-        const Vec<D> edge = (base[(i + 1) % D] - base[i]).normalized(), to = middle - base[i];
-        reach = std::max(reach, (to - edge.dot(to) * edge).norm());
-      }
-    }
-    Vec<D> up = area_vector(base).normalized();
-    up *= up.dot(data.nodes[n] - middle) > 0 ? 1 : -1;
-    const Vec<D> x = middle + std::tan(angle) * reach * up;
-    if (!(least_volume_ratio<D>(data, cells, n, x, volume) > 0))
+    const std::optional<Vec<D>> pressed = press_flat<D>(data, cells, n, facet<D>(corners(data, c), static_cast<int>(local)), angle);
+    if (!pressed || !(least_volume_ratio<D>(data, cells, n, *pressed, volume) > 0))
       continue;
-    data.nodes[n] = x;
+    data.nodes[n] = *pressed;
     for (const Index k : cells)
       for (const Index m : data.cells[k])
         used[m] = 1;

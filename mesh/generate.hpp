@@ -30,8 +30,9 @@ MeshData<D> jittered(MeshData<D> data, Real amount, std::uint64_t seed, Boundary
 template <int D>
 MeshData<D> graded(MeshData<D> data, Real ratio);
 
-/// `count` cells pressed flat, no two of which share a node: one interior node of each is moved to just above the middle of the
-/// opposite facet, so that the smallest (dihedral) angle there is `angle` [rad].  Throws std::invalid_argument if the angle is
+/// Cells pressed flat at `count` places that share no node: an interior node is moved to just above the middle of the opposite
+/// facet of one of its cells, so that the smallest (dihedral) angle around it is `angle` [rad].  Where the next facet lies in the
+/// same plane, as in a structured box of tetrahedra, its cell goes flat as well.  Throws std::invalid_argument if the angle is
 /// not in (0, pi/6) or there is no room for so many.
 template <int D>
 MeshData<D> slivered(MeshData<D> data, Real angle, Index count, std::uint64_t seed);
