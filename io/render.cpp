@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int default_width = 1280, lowest = 420, highest = 960;  // pixels
-constexpr Real radius_2d = 0.75, radius_3d = 0.8;  // over the spacing: no gaps between neighbours, and a closed surface in 3-D
+constexpr Real radius_2d = 0.85, radius_3d = 0.8;  // over the spacing: no gaps between neighbours, and a closed surface in 3-D
 
 std::vector<std::size_t> chosen(const Settings& settings, std::size_t n)
 {
