@@ -46,7 +46,8 @@ template <int D>
 {
   const auto [first, second] = std::minmax({mesh.cell_number[f.cell], mesh.cell_number[other]});
   if (same_nodes(mesh.cells[f.cell], mesh.cells[other]))
-    refuse("cells {} and {} at {} are the same cell twice", first, second, place<D>(centroid<D>(corners<D>(mesh.nodes, mesh.cells[other]))));
+    refuse("cells {} and {} at {} are the same cell twice", first, second,
+           place<D>(centroid<D>(corners<D>(mesh.nodes, mesh.cells[other]))));
   refuse("cells {} and {} overlap: they lie on the same side of their common facet with {}", first, second, facet_name(mesh, f));
 }
 

@@ -110,9 +110,7 @@ FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, Inde
     row.fill(none);
   for (Index n = 0; n < n_nodes; ++n) {
     const auto first = claims.begin() + begin[n], last = claims.begin() + begin[n + 1];
-    std::sort(first, last, [](const Claim& a, const Claim& b) {
-      return std::tie(a.rest, a.facet.cell) < std::tie(b.rest, b.facet.cell);
-    });
+    std::sort(first, last, [](const Claim& a, const Claim& b) { return std::tie(a.rest, a.facet.cell) < std::tie(b.rest, b.facet.cell); });
     for (auto claim = first; claim != last;) {
       const auto end = std::find_if(claim, last, [&](const Claim& other) { return other.rest != claim->rest; });
       if (end - claim > 2) {

@@ -14,8 +14,8 @@ std::vector<Index> hilbert_order(std::span<const Vec<D>> nodes, std::span<const 
 
 template <int D>
 struct FacetMatch {
-  std::vector<std::array<Index, D + 1>> neighbours;   ///< cell across the facet opposite each local node, or `none`
-  std::optional<std::array<Facet, 3>> crowded;        ///< a facet that more than two cells claim; `neighbours` is then incomplete
+  std::vector<std::array<Index, D + 1>> neighbours;  ///< cell across the facet opposite each local node, or `none`
+  std::optional<std::array<Facet, 3>> crowded;       ///< a facet that more than two cells claim; `neighbours` is then incomplete
 };
 template <int D>
 FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, Index n_nodes);

@@ -77,8 +77,7 @@ Locator<D>::Locator(const Mesh<D>& mesh)
     : margin_(2 * location_tolerance * largest_cell(mesh)),
       cells_(mesh.n_cells(), [&](Index c) { return cell_box(mesh, c); }),
       facets_(static_cast<Index>(mesh.boundary_facets().size()), [&](Index i) { return facet_box(mesh, mesh.boundary_facets()[i]); })
-{
-}
+{}
 
 template <int D>
 std::optional<Index> Locator<D>::operator()(const Mesh<D>& mesh, const Vec<D>& x, Index hint) const noexcept

@@ -34,7 +34,10 @@ class Locator {
       return inside;
     }
   };
-  Probe probe(const Mesh<D>& mesh, Index c) const noexcept { return {mesh.node(mesh.cell(c)[0]), mesh.gradients(c), margin_ / mesh.altitude(c)}; }
+  Probe probe(const Mesh<D>& mesh, Index c) const noexcept
+  {
+    return {mesh.node(mesh.cell(c)[0]), mesh.gradients(c), margin_ / mesh.altitude(c)};
+  }
 
   /// The point of the mesh boundary nearest to x and its cell, for x outside: the projection on the nearest boundary facet.
   /// x must be finite.

@@ -51,7 +51,8 @@ std::optional<Facet> find_facet(const Mesh<D>& mesh, const std::array<Index, D>&
 {
   for (const Index c : mesh.cells_of_node()[nodes[0]]) {
     const auto& cell = mesh.cell(c);
-    const bool holds_all = std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return std::find(cell.begin(), cell.end(), n) != cell.end(); });
+    const bool holds_all =
+        std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return std::find(cell.begin(), cell.end(), n) != cell.end(); });
     if (!holds_all)
       continue;
     for (Index a = 0; a <= D; ++a)

@@ -22,11 +22,11 @@ struct Facet {
 /// What a reader or generator hands over: numbers in any order, groups by name.
 template <int D>
 struct MeshData {
-  std::vector<Vec<D>> nodes;                                               ///< coordinates [m]
-  std::vector<std::array<Index, D + 1>> cells;                             ///< node numbers; orientation is put right by Mesh
-  std::map<std::string, std::vector<Index>> node_sets;                     ///< points and curves (3-D): node numbers
-  std::map<std::string, std::vector<std::array<Index, D>>> facet_sets;     ///< boundary or interior facets by their nodes
-  std::map<std::string, std::vector<Index>> cell_sets;                     ///< cell numbers
+  std::vector<Vec<D>> nodes;                                            ///< coordinates [m]
+  std::vector<std::array<Index, D + 1>> cells;                          ///< node numbers; orientation is put right by Mesh
+  std::map<std::string, std::vector<Index>> node_sets;                  ///< points and curves (3-D): node numbers
+  std::map<std::string, std::vector<std::array<Index, D>>> facet_sets;  ///< boundary or interior facets by their nodes
+  std::map<std::string, std::vector<Index>> cell_sets;                  ///< cell numbers
 };
 
 /// Immutable simplex mesh.  Cells are renumbered along a space-filling curve and nodes by first use, so that neighbours in
@@ -49,10 +49,10 @@ class Mesh {
   const Vec<D>& node(Index n) const noexcept { return nodes_[static_cast<std::size_t>(n)]; }
   const Cell& cell(Index c) const noexcept { return cells_[static_cast<std::size_t>(c)]; }
 
-  Real volume(Index c) const noexcept { return volume_[static_cast<std::size_t>(c)]; }          ///< area in 2-D [m^D]
-  Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }      ///< the smallest one [m]
-  Real node_size(Index n) const noexcept { return node_size_[static_cast<std::size_t>(n)]; }    ///< h_n, mean length of the edges at n [m]
-  const Vec<D>& low() const noexcept { return low_; }                                           ///< corners of the bounding box [m]
+  Real volume(Index c) const noexcept { return volume_[static_cast<std::size_t>(c)]; }        ///< area in 2-D [m^D]
+  Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }    ///< the smallest one [m]
+  Real node_size(Index n) const noexcept { return node_size_[static_cast<std::size_t>(n)]; }  ///< h_n, mean length of the edges at n [m]
+  const Vec<D>& low() const noexcept { return low_; }                                         ///< corners of the bounding box [m]
   const Vec<D>& high() const noexcept { return high_; }
 
   /// Cell across the facet opposite each local node, or `none` on the boundary.
@@ -63,7 +63,7 @@ class Mesh {
   bool on_boundary(Index n) const noexcept { return on_boundary_[static_cast<std::size_t>(n)] != 0; }
 
   std::array<Index, D> nodes_of(Facet f) const noexcept;  ///< in the order that turns the normal outwards of f.cell
-  Vec<D> area_vector(Facet f) const noexcept;  ///< outward normal of f.cell times length or area [m^(D-1)]
+  Vec<D> area_vector(Facet f) const noexcept;             ///< outward normal of f.cell times length or area [m^(D-1)]
 
   /// Barycentric coordinates of x in cell c (sum to one; all >= 0 inside).
   std::array<Real, D + 1> barycentric(Index c, const Vec<D>& x) const noexcept;
@@ -74,8 +74,8 @@ class Mesh {
   std::optional<std::vector<Index>> node_set(std::string_view name) const;
   /// Each facet once: those on the boundary first, then interior ones, seen from the lower numbered of their two cells.
   std::optional<std::vector<Facet>> facet_set(std::string_view name) const;
-  std::optional<std::vector<Index>> cell_set(std::string_view name) const;   ///< ascending
-  std::vector<std::string> node_set_names() const;                           ///< every name node_set() knows, sorted
+  std::optional<std::vector<Index>> cell_set(std::string_view name) const;  ///< ascending
+  std::vector<std::string> node_set_names() const;                          ///< every name node_set() knows, sorted
   std::vector<std::string> facet_set_names() const;
   std::vector<std::string> cell_set_names() const;
 

@@ -94,17 +94,10 @@ std::optional<Points<2>> triangle_points(int n)
       continue;
     Points<2> rule;
     switch (n / (cuts * cuts)) {
-      case 1:
-        add_orbit<2>(rule, {1.0 / 3, 1.0 / 3, 1.0 / 3});
-        return cuts == 1 ? rule : stretched<2>(subdivided(rule, cuts));
-      case 3:
-        add_orbit<2>(rule, {1.0 / 6, 1.0 / 6, 2.0 / 3});
-        return subdivided(rule, cuts);
-      case 6:
-        add_orbit<2>(rule, strang_fix());
-        return subdivided(rule, cuts);
-      default:
-        break;
+      case 1: add_orbit<2>(rule, {1.0 / 3, 1.0 / 3, 1.0 / 3}); return cuts == 1 ? rule : stretched<2>(subdivided(rule, cuts));
+      case 3: add_orbit<2>(rule, {1.0 / 6, 1.0 / 6, 2.0 / 3}); return subdivided(rule, cuts);
+      case 6: add_orbit<2>(rule, strang_fix()); return subdivided(rule, cuts);
+      default: break;
     }
   }
   return std::nullopt;
@@ -121,11 +114,8 @@ std::optional<Points<3>> tetrahedron_points(int n)
 {
   Points<3> points;
   switch (n) {
-    case 1:
-      points.push_back({0.25, 0.25, 0.25, 0.25});
-      return points;
-    case 4:
-      return stretched<3>(lattice<3>(1));
+    case 1: points.push_back({0.25, 0.25, 0.25, 0.25}); return points;
+    case 4: return stretched<3>(lattice<3>(1));
     case 8:  // t^2 + s^2 = 0.025: every point the same 0.1 away from its nearest facets
       add_corner_orbit(points, 0.15);
       add_corner_orbit(points, -0.05);
@@ -141,14 +131,10 @@ std::optional<Points<3>> tetrahedron_points(int n)
       add_corner_orbit(points, -0.06);
       add_edge_orbit(points, std::sqrt((0.15 * 14 - 48 * (0.155 * 0.155 + 0.06 * 0.06)) / 24));
       return points;
-    case 20:
-      return stretched<3>(lattice<3>(3));
-    case 35:
-      return stretched<3>(lattice<3>(4));
-    case 56:
-      return stretched<3>(lattice<3>(5));
-    default:
-      return std::nullopt;
+    case 20: return stretched<3>(lattice<3>(3));
+    case 35: return stretched<3>(lattice<3>(4));
+    case 56: return stretched<3>(lattice<3>(5));
+    default: return std::nullopt;
   }
 }
 

@@ -86,7 +86,8 @@ template <int D>
 std::string to_string(const MeshQuality<D>& q)
 {
   const Real degrees = 180 / std::acos(-1.0);
-  std::string text = fmt::format("{} nodes, {} {}, {} boundary facets\n", q.nodes, q.cells, D == 2 ? "triangles" : "tetrahedra", q.boundary_facets);
+  std::string text =
+      fmt::format("{} nodes, {} {}, {} boundary facets\n", q.nodes, q.cells, D == 2 ? "triangles" : "tetrahedra", q.boundary_facets);
   text += fmt::format("{} {:.6g} m^{}, of one cell {:.4g} to {:.4g}\n", D == 2 ? "area" : "volume", q.volume, D, q.smallest_volume,
                       q.largest_volume);
   text += fmt::format("edges {:.4g} to {:.4g} m; altitude {:.4g} m at least, {:.4g} m in the median\n", q.shortest_edge, q.longest_edge,

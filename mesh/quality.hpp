@@ -19,15 +19,15 @@ Real smallest_angle(const Simplex<D>& s) noexcept;
 template <int D>
 struct MeshQuality {
   Index nodes, cells, boundary_facets;
-  Real volume, smallest_volume, largest_volume;   ///< area in 2-D [m^D]; of all cells, of the smallest, of the largest
-  Real smallest_mean_ratio, average_mean_ratio;   ///< mean_ratio()
-  Real smallest_angle;                            ///< [rad], of the whole mesh
-  Real smallest_altitude, median_altitude;        ///< of the smallest altitudes of the cells [m]
-  Real shortest_edge, longest_edge;               ///< [m]
-  Real gradation;                                 ///< largest ratio of sizes, volume^(1/D), of two cells with a common facet
-  Index largest_ring;                             ///< most nodes in the one-ring of a node, itself included
-  Index worst_cell;                               ///< lowest mean ratio; by the numbers of the mesh
-  Vec<D> worst_place;                             ///< its centroid [m]
+  Real volume, smallest_volume, largest_volume;  ///< area in 2-D [m^D]; of all cells, of the smallest, of the largest
+  Real smallest_mean_ratio, average_mean_ratio;  ///< mean_ratio()
+  Real smallest_angle;                           ///< [rad], of the whole mesh
+  Real smallest_altitude, median_altitude;       ///< of the smallest altitudes of the cells [m]
+  Real shortest_edge, longest_edge;              ///< [m]
+  Real gradation;                                ///< largest ratio of sizes, volume^(1/D), of two cells with a common facet
+  Index largest_ring;                            ///< most nodes in the one-ring of a node, itself included
+  Index worst_cell;                              ///< lowest mean ratio; by the numbers of the mesh
+  Vec<D> worst_place;                            ///< its centroid [m]
 };
 
 template <int D>

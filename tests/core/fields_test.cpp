@@ -22,8 +22,9 @@ struct Sample {
   std::vector<Inner> items;
   static constexpr auto fields()
   {
-    return std::tuple(required("mass", &Sample::mass, positive, "kg", "mass"), optional("count", &Sample::count, at_least(1), "-", "how many"),
-                      group("inner", &Sample::inner, "a nested block"), optional_list("items", &Sample::items, "a list"));
+    return std::tuple(required("mass", &Sample::mass, positive, "kg", "mass"),
+                      optional("count", &Sample::count, at_least(1), "-", "how many"), group("inner", &Sample::inner, "a nested block"),
+                      optional_list("items", &Sample::items, "a list"));
   }
 };
 

@@ -110,7 +110,7 @@ TEST(Jittered, MovesInteriorNodesByAboutTheAmountAndKeepsTheBoundary)
       moved_on_sides += slide.nodes[n] != x ? 1 : 0;
     }
   }
-  EXPECT_GT(moved_inside, 60);    // of 64
+  EXPECT_GT(moved_inside, 60);                 // of 64
   EXPECT_EQ(moved_on_sides, 6 * 16 + 12 * 4);  // all on faces and edges, no corner
 }
 
@@ -161,8 +161,8 @@ TEST(Slivered, SmallestAngleIsTheOneAskedFor)
     EXPECT_NEAR(quality(solid).volume, 1, 1e-13);
     int flat = 0;
     for (Index c = 0; c < solid.n_cells(); ++c)
-      flat += smallest_angle<3>(solid.corners(c)) < 2.5 * angle ? 1 : 0;
-    EXPECT_EQ(flat, 6);  // at each place two cells whose facets make one side of a brick
+      flat += smallest_angle<3>(solid.corners(c)) < 1.001 * angle ? 1 : 0;
+    EXPECT_GE(flat, 3);  // one at each place at least
   }
 }
 

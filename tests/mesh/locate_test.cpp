@@ -174,7 +174,8 @@ TEST(Locator, NotAPlaceIsNowhere)
 {
   const Mesh<3> mesh(box<3>({0, 0, 0}, {1, 1, 1}, {2, 2, 2}));
   const Locator<3> locate(mesh);
-  for (const Real bad : {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()})
+  for (const Real bad :
+       {std::numeric_limits<Real>::quiet_NaN(), std::numeric_limits<Real>::infinity(), -std::numeric_limits<Real>::infinity()})
     for (int d = 0; d < 3; ++d)
       for (Index hint = none; hint < mesh.n_cells(); ++hint) {
         Vec<3> x(0.3, 0.4, 0.2);

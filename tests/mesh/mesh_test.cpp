@@ -15,7 +15,10 @@ namespace {
 
 using ::testing::ElementsAre;
 
-MeshData<2> plane(Index n) { return jittered(box(Vec<2>(0, 0), Vec<2>(2, 1), {2 * n, n}, Diagonals::random), 0.3, 5, BoundaryNodes::slide); }
+MeshData<2> plane(Index n)
+{
+  return jittered(box(Vec<2>(0, 0), Vec<2>(2, 1), {2 * n, n}, Diagonals::random), 0.3, 5, BoundaryNodes::slide);
+}
 MeshData<3> solid(Index n) { return jittered(box<3>({0, 0, 0}, {2, 1, 1}, {2 * n, n, n}), 0.3, 5, BoundaryNodes::slide); }
 
 /// The same mesh with cells and nodes in random order and every other cell turned over.
@@ -119,7 +122,7 @@ TYPED_TEST(MeshOf, BoundaryIsClosedAndFacesOutwards)
     flux += middle.dot(mesh.area_vector(f));
     EXPECT_GT(mesh.area_vector(f).dot(middle - centroid<D>(mesh.corners(f.cell))), 0);
   }
-  EXPECT_LT(sum.norm(), 1e-13);             // of an area of order ten
+  EXPECT_LT(sum.norm(), 1e-13);               // of an area of order ten
   EXPECT_NEAR(flux, 2.0 * D, 1e-12 * 2 * D);  // the flux of x through the boundary is D times the volume
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     const Vec<D>& x = mesh.node(n);

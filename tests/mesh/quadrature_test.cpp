@@ -110,8 +110,7 @@ TEST(SeedingPoints, AreSymmetricInTetrahedra) { expect_symmetry<3>(); }
 TEST(SeedingPoints, CountsAreThoseOfTheDocumentation)
 {
   EXPECT_THAT(seeding_counts<3>(), ::testing::ElementsAre(1, 4, 8, 10, 14, 20, 35, 56));
-  EXPECT_THAT(seeding_counts<2>(),
-              ::testing::ElementsAre(1, 3, 4, 6, 9, 12, 16, 24, 25, 27, 36, 48, 49, 54, 64, 75, 81, 96, 100));
+  EXPECT_THAT(seeding_counts<2>(), ::testing::ElementsAre(1, 3, 4, 6, 9, 12, 16, 24, 25, 27, 36, 48, 49, 54, 64, 75, 81, 96, 100));
 }
 
 TEST(SeedingPoints, OtherCountsHaveNone)
