@@ -30,6 +30,12 @@ class Text(unittest.TestCase):
         self.fails("<" * 7 + " HEAD")
         self.fails("text  ")
 
+    def test_meshes_are_written_by_programs(self):
+        self.assertEqual(check_text("slope.msh", "1 2 3 \n"), [])
+
+    def test_one_file_does_not_fill_the_screen(self):
+        self.assertLess(len(check_text("a.md", " \n" * 1000)), 10)
+
     def test_findings_name_file_and_line(self):
         self.assertTrue(check_text("a.md", "\n \n")[0].startswith("a.md:2: "))
 
