@@ -1,0 +1,113 @@
+// The only file that sees CLI11.
+#include "app/cli.hpp"
+
+#include <CLI/CLI.hpp>
+
+#include "app/commands.hpp"
+#include "core/version.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr int usage_error = 2;
+constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
+
+/// Commands and the options they fill; lives as long as the parse.
+class CommandLine {
+ public:
+  CommandLine() : app_("Talus: the material point method on triangles and tetrahedra", "talus")
+  {
+    app_.require_subcommand(1);
+    app_.set_version_flag("--version", describe(version()));
+    app_.set_help_all_flag("--help-all", "help of every command");
+    add_run();
+    add_check();
+    add_mesh();
+    add_drive();
+    add_render();
+    CLI::App* manual = app_.add_subcommand("manual", "every key of a scene, as Markdown");
+    manual->add_flag("--schema", schema_, "as JSON Schema, for editors");
+    manual->callback([this] { print_manual(schema_); });
+    app_.add_subcommand("info", "version, laws, kernels, licence")->callback([] { print_info(); });
+  }
+
+  int parse(int argc, const char* const* argv)
+  {
+    try {
+      app_.parse(argc, argv);
+      return 0;
+    } catch (const CLI::ParseError& e) {
+      return app_.exit(e) == 0 ? 0 : usage_error;
+    }
+  }
+
+ private:
+  void add_run()
+  {
+    CLI::App* run = app_.add_subcommand("run", "run a scene");
+    run->add_option("scene", run_.scene, "scene file (.yaml)")->required();
+    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>");
+    run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
+    run->add_option("--set", run_.set, set_help);
+    run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs");
+    run->add_flag("--quiet", run_.quiet, "no progress and no table");
+    run->callback([this] { run_scene(run_); });
+  }
+
+  void add_check()
+  {
+    CLI::App* check = app_.add_subcommand("check", "find everything wrong with a scene and its mesh; say what a run would cost");
+    check->add_option("scene", check_scene_, "scene file (.yaml)")->required();
+    check->add_option("--set", check_set_, set_help);
+    check->callback([this] { check_scene(check_scene_, check_set_); });
+  }
+
+  void add_mesh()
+  {
+    CLI::App* mesh = app_.add_subcommand("mesh", "quality and groups of a mesh; make it if need be");
+    mesh->add_option("file", mesh_.file, "scene (.yaml), mesh (.msh) or geometry (.geo, .step)")->required();
+    mesh->add_option("--out", mesh_.out, "write the mesh to this .msh");
+    mesh->add_option("--size", mesh_.size, "edge length of the cells of a geometry [m]")->check(CLI::PositiveNumber);
+    mesh->add_option("--dimension", mesh_.dimension, "2 or 3; default that of the largest cells")->check(CLI::Range(2, 3));
+    mesh->add_option("--set", mesh_.set, set_help);
+    mesh->callback([this] { show_mesh(mesh_); });
+  }
+
+  void add_drive()
+  {
+    CLI::App* drive = app_.add_subcommand("drive", "drive one law along a path of strains and stresses");
+    drive->add_option("file", drive_file_, "material and paths (.yaml)")->required();
+    drive->add_option("--out", drive_out_, "write the table to this .csv instead of the screen");
+    drive->add_option("--set", drive_set_, set_help);
+    drive->callback([this] { drive_law(drive_file_, drive_set_, drive_out_); });
+  }
+
+  void add_render()
+  {
+    CLI::App* render = app_.add_subcommand("render", "draw pictures of a run");
+    render->add_option("folder", render_.folder, "results of a run")->required();
+    render->add_option("--field", render_.field, "particle field that colours the particles; default what the scene says");
+    render->add_option("--frames", render_.frames, "first, last, all, or the number of one");
+    render->add_option("--size", render_.size, "pixels, such as 1280x720");
+    render->add_option("--range", render_.range, "lowest and highest value of the colours")->expected(2);
+    render->add_option("--view", render_.view, "3-D: direction from the scene to the camera")->expected(3);
+    render->add_option("--out", render_.out, "a .png or a folder; default DIR/pictures");
+    render->callback([this] { render_results(render_); });
+  }
+
+  CLI::App app_;
+  RunOptions run_;
+  std::filesystem::path check_scene_, drive_file_;
+  std::vector<std::string> check_set_, drive_set_;
+  std::optional<std::filesystem::path> drive_out_;
+  MeshOptions mesh_;
+  RenderOptions render_;
+  bool schema_ = false;
+};
+
+}  // namespace
+
+int cli(int argc, const char* const* argv) { return CommandLine().parse(argc, argv); }
+
+}  // namespace talus

@@ -1,0 +1,52 @@
+#pragma once
+// What each word after `talus` does.  The command line itself is read in cli.cpp.
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+struct RunOptions {
+  std::filesystem::path scene;
+  std::optional<std::filesystem::path> out;
+  std::optional<int> threads;
+  std::vector<std::string> set;
+  bool quick = false, quiet = false;
+};
+/// Runs a scene and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError.
+void run_scene(const RunOptions& options);
+
+/// Does everything but run, writes nothing, says what a run would cost.
+void check_scene(const std::filesystem::path& scene, const std::vector<std::string>& set);
+
+struct MeshOptions {
+  std::filesystem::path file;  ///< a scene, a .msh, or a geometry
+  std::vector<std::string> set;
+  std::optional<Real> size;            ///< edge length for a geometry [m]
+  std::optional<int> dimension;        ///< of a file; default: that of its largest cells
+  std::optional<std::filesystem::path> out;
+};
+/// Statistics and groups of a mesh; writes it if asked to.
+void show_mesh(const MeshOptions& options);
+
+/// Drives the law of a file along its paths; CSV to `out`, or to standard output.
+void drive_law(const std::filesystem::path& file, const std::vector<std::string>& set, const std::optional<std::filesystem::path>& out);
+
+struct RenderOptions {
+  std::filesystem::path folder;
+  std::optional<std::string> field, frames, size;
+  std::vector<Real> range, view;
+  std::optional<std::filesystem::path> out;
+};
+/// Draws the results in a folder; what is not asked for is as the scene says.
+void render_results(const RenderOptions& options);
+
+/// Every key of a scene: Markdown, or JSON Schema.
+void print_manual(bool schema);
+void print_info();
+
+}  // namespace talus

@@ -1,0 +1,77 @@
+#pragma once
+// Bodies of the functions in simulate.hpp; simulate_2d.cpp and simulate_3d.cpp compile them for every kernel of one dimension.
+#include <stdexcept>
+
+#include "app/simulate.hpp"
+#include "kernels/kernels.hpp"
+
+namespace talus {
+
+/// f.template operator()<K>() for the kernel of that name, which the reader has found in the list.
+template <int D, class F>
+void with_kernel(std::string_view name, F&& f)
+{
+  for_each_type(Kernels<D>{}, [&]<class K>() {
+    if (K::name == name)
+      f.template operator()<K>();
+  });
+}
+
+template <int D, Kernel<D> K>
+Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
+try {
+  Model<D, K> m(std::move(mesh));
+  m.particles = std::move(setup.particles);
+  m.bodies = std::move(setup.bodies);
+  m.materials = std::move(setup.materials);
+  m.walls = std::move(setup.walls);
+  m.loads = std::move(setup.loads);
+  m.transfer = setup.transfer;
+  m.exits = std::move(setup.exits);
+  make_ready(m, scene.outputs.history && !scene.outputs.history->points.empty());
+  return m;
+} catch (const std::invalid_argument& e) {
+  throw SceneErrors(scene.mesh.where, fmt::format("kernel \"{}\": {}", scene.kernel, e.what()));
+}
+
+template <int D>
+Real first_step(const Mesh<D>& mesh, const Setup<D>& setup)
+{
+  return std::min(setup.limits.cfl * shortest_crossing(mesh, setup.materials, setup.particles), setup.limits.longest);
+}
+
+template <int D>
+void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience)
+{
+  const auto stages = setup.stages;
+  const auto limits = setup.limits;
+  with_kernel<D>(scene.kernel, [&]<class K>() {
+    auto m = build<D, K>(scene, std::move(mesh), std::move(setup));
+    for (std::size_t s = 0; s < stages.size(); ++s)
+      audience.stage_done(run_stage(m, stages[s], limits, [&](const Model<D, K>& model, Moment moment) {
+        audience.watch(frame_of(model, stages[s], static_cast<Index>(s)), moment);
+      }));
+  });
+}
+
+template <int D>
+Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
+{
+  Estimate cost{};
+  cost.dt = first_step(mesh, setup);
+  for (const Stage& stage : setup.stages)
+    cost.steps += static_cast<std::int64_t>(std::ceil(stage.duration / cost.dt));
+  with_kernel<D>(scene.kernel, [&]<class K>() {
+    const auto m = build<D, K>(scene, std::move(mesh), std::move(setup));
+    const auto bytes = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
+    m.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { cost.particle_bytes += bytes(column); });
+    for (const AnyBatch& material : m.materials)
+      std::visit([&](const auto& batch) { cost.particle_bytes += bytes(batch.history); }, material);
+    cost.mesh_bytes = static_cast<std::int64_t>(m.mesh.nodes().size_bytes() + m.mesh.cells().size_bytes()) + m.mesh.n_cells() * static_cast<std::int64_t>(2 * sizeof(Real)) +
+                      bytes(m.mesh.cells_of_node().item) + bytes(m.mesh.ring_of_node().item);
+    cost.node_bytes = bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
+  });
+  return cost;
+}
+
+}  // namespace talus

@@ -1,0 +1,55 @@
+#pragma once
+// What an observer sees of a run: the model without its kernel, to look at and not to touch.
+#include "solver/run.hpp"
+
+namespace talus {
+
+template <int D>
+struct Frame {
+  const Mesh<D>& mesh;
+  const Particles<D>& particles;
+  const std::vector<Body>& bodies;
+  const std::vector<AnyBatch>& materials;
+  const Nodes<D>& nodes;
+  const Walls<D>& walls;
+  const Loads<D>& loads;
+  std::span<const Index> row_of_id;  ///< where a particle stands now, or `none`
+  const Clock& clock;
+  const StageState& stage;
+  std::string_view stage_name;
+  Index stage_number;
+  const EnergyLedger& energy;  ///< since the beginning of the stage
+  const MassLedger& mass;
+  const Timings& timings;
+  Real residual;
+};
+
+template <int D, Kernel<D> K>
+Frame<D> frame_of(const Model<D, K>& m, const Stage& stage, Index stage_number)
+{
+  return {m.mesh,  m.particles, m.bodies,   m.materials,  m.nodes,  m.walls, m.loads,   m.row_of_id,
+          m.clock, m.stage,     stage.name, stage_number, m.energy, m.mass,  m.timings, m.residual};
+}
+
+/// Energy the laws have dissipated so far [J].
+template <int D>
+Real plastic_work(const Frame<D>& frame)
+{
+  Real total = 0;
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
+    const auto first = static_cast<std::size_t>(frame.bodies[b].begin), count = static_cast<std::size_t>(frame.bodies[b].size());
+    total += total_plastic_work(frame.materials[b], std::span(frame.particles.volume0).subspan(first, count));
+  }
+  return total;
+}
+
+/// The body of a particle row.
+inline std::size_t body_of(const std::vector<Body>& bodies, Index row)
+{
+  std::size_t b = 0;
+  while (row >= bodies[b].end)
+    ++b;
+  return b;
+}
+
+}  // namespace talus

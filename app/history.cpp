@@ -1,0 +1,146 @@
+#include "app/history.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace talus {
+
+namespace {
+
+constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
+constexpr std::array<std::string_view, 6> stresses{"sxx", "syy", "szz", "sxy", "syz", "sxz"};
+constexpr Real not_there = std::numeric_limits<Real>::quiet_NaN();
+
+/// f(row) for the particles of one body, or of all.
+template <class F>
+void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& f)
+{
+  for (const Body& b : bodies)
+    if (body.empty() || b.name == body)
+      for (Index row = b.begin; row < b.end; ++row)
+        f(static_cast<std::size_t>(row));
+}
+
+template <int D>
+void put(const Vec<D>& v, std::vector<Real>& row)
+{
+  row.insert(row.end(), v.begin(), v.end());
+}
+
+}  // namespace
+
+template <int D>
+std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles)
+{
+  const Vec<D> at = Eigen::Map<const Vec<D>>(spec.at.data());
+  std::pair<Real, std::int64_t> best{std::numeric_limits<Real>::infinity(), 0};
+  for_each_row(spec.body, bodies, [&](std::size_t p) { best = std::min(best, std::pair{(particles.x[p] - at).squaredNorm(), particles.id[p]}); });
+  return best.second;
+}
+
+template <int D>
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles)
+{
+  const auto axis = static_cast<Index>(spec.direction) / 2;
+  const Real sign = static_cast<Index>(spec.direction) % 2 == 0 ? 1 : -1;
+  std::vector<std::pair<Real, Real>> reach;  // coordinate along the direction, mass
+  Real total = 0;
+  for_each_row(spec.body, bodies, [&](std::size_t p) {
+    reach.emplace_back(sign * particles.x[p][axis], particles.mass[p]);
+    total += particles.mass[p];
+  });
+  if (reach.empty())
+    return not_there;
+  std::sort(reach.begin(), reach.end());
+  std::size_t i = 0;
+  Real mass = reach[0].second;
+  const Real wanted = spec.mass_share * total * (1 - 1e-12);  // sums of the same masses in another order
+  while (mass < wanted && i + 1 < reach.size())
+    mass += reach[++i].second;
+  return sign * reach[i].first;
+}
+
+template <int D>
+std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, const Frame<D>& start)
+{
+  std::vector<CsvColumn> all{{"time", "s"}, {"step"}, {"dt", "s"}, {"stage"}, {"mass", "kg"}};
+  const auto vector = [&](const std::string& prefix, const std::string& unit) {
+    for (std::size_t d = 0; d < D; ++d)
+      all.push_back({fmt::format("{}{}", prefix, axes[d]), unit});
+  };
+  vector("momentum_", "kg m/s");
+  for (std::size_t d = D == 2 ? 2 : 0; d < 3; ++d)
+    all.push_back({fmt::format("angular_momentum_{}", axes[d]), "kg m^2/s"});
+  vector("centre_", "m");
+  for (const char* energy : {"kinetic", "strain", "plastic", "friction", "damping", "gravity_work", "load_work", "wall_work", "transfer_loss", "energy_defect"})
+    all.push_back({energy, "J"});
+  all.push_back({"residual"});
+  for (const Wall<D>& wall : start.walls.walls())
+    vector(fmt::format("reaction_{}_", wall.name), "N");
+  for (const PointSpec& point : spec.points) {
+    vector(point.name + "_", "m");
+    vector(point.name + "_u", "m");
+    vector(point.name + "_v", "m/s");
+    for (const auto stress : stresses)
+      all.push_back({fmt::format("{}_{}", point.name, stress), "Pa"});
+  }
+  for (const FrontSpec& front_spec : spec.fronts)
+    all.push_back({front_spec.name, "m"});
+  return all;
+}
+
+template <int D>
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start)
+    : spec_(std::move(spec)), impulse_(start.walls.walls().size(), Vec<D>::Zero()), file_(file, columns(spec_, start))
+{
+  for (const PointSpec& point : spec_.points)
+    followed_.push_back(nearest_particle(point, start.bodies, start.particles));
+}
+
+template <int D>
+void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts)
+{
+  const Totals<D> sums = totals(frame.particles);
+  const Clock& clock = frame.clock;
+  std::vector<Real> row{clock.time, static_cast<Real>(clock.step), clock.dt, static_cast<Real>(frame.stage_number), sums.mass};
+  put<D>(sums.momentum, row);
+  for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
+    row.push_back(sums.angular[d]);
+  put<D>(sums.centre / sums.mass, row);
+  const EnergyNow e = accounts.energy(frame);
+  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer, e.defect, frame.residual});
+  const Real elapsed = clock.time - time_;
+  for (std::size_t w = 0; w < impulse_.size(); ++w) {
+    const Vec<D>& impulse = frame.walls.walls()[w].impulse;
+    put<D>(elapsed > 0 ? Vec<D>((impulse - impulse_[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
+    impulse_[w] = impulse;
+  }
+  for (const std::int64_t id : followed_)
+    add_point(frame, id, row);
+  for (const FrontSpec& spec : spec_.fronts)
+    row.push_back(front(spec, frame.bodies, frame.particles));
+  file_.append(row);
+  time_ = clock.time;
+}
+
+template <int D>
+void HistoryWriter<D>::add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row)
+{
+  const Index at = frame.row_of_id[static_cast<std::size_t>(id)];
+  if (at == none)
+    return row.resize(row.size() + 3 * D + 6, not_there);
+  const auto p = static_cast<std::size_t>(at);
+  put<D>(frame.particles.x[p], row);
+  put<D>(frame.particles.x[p] - frame.particles.x0[p], row);
+  put<D>(frame.particles.v[p], row);
+  row.insert(row.end(), frame.particles.stress[p].begin(), frame.particles.stress[p].end());
+}
+
+template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&);
+template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&);
+template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&);
+template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&);
+template class HistoryWriter<2>;
+template class HistoryWriter<3>;
+
+}  // namespace talus

@@ -1,0 +1,40 @@
+#pragma once
+// history.csv: balances, reactions, followed points and fronts at each output time.
+#include "app/accounts.hpp"
+#include "io/csv.hpp"
+#include "io/scene.hpp"
+
+namespace talus {
+
+/// Id of the particle of `spec.body` (any, if empty) that is nearest to `spec.at`; of several equally near the lowest.
+template <int D>
+std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles);
+
+/// Coordinate [m] that a share of the mass does not pass, looking along the direction of `spec`.  NaN without particles.
+template <int D>
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles);
+
+/// Columns: time, step, dt, stage; mass, momentum, angular momentum, centre of mass; the terms of EnergyNow; the residual; for each
+/// wall `reaction_<wall>_x` ..., its mean force on the bodies since the row before; for each point its position, displacement (u),
+/// velocity (v) and stress (s); each front.
+template <int D>
+class HistoryWriter {
+ public:
+  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start);
+  void append(const Frame<D>& frame, const Accounts<D>& accounts);
+
+ private:
+  static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
+  static void add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row);
+
+  HistoryOutputSpec spec_;
+  std::vector<std::int64_t> followed_;
+  std::vector<Vec<D>> impulse_;  // of each wall at the row before
+  Real time_ = 0;
+  HistoryFile file_;
+};
+
+extern template class HistoryWriter<2>;
+extern template class HistoryWriter<3>;
+
+}  // namespace talus

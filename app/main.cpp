@@ -1,0 +1,41 @@
+// The program, and the only place that catches everything.
+#include <fmt/format.h>
+
+#include <new>
+
+#include "app/cli.hpp"
+#include "core/error.hpp"
+
+namespace {
+
+constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3;
+
+int fail(int code, const char* what)
+{
+  std::fflush(stdout);
+  fmt::print(stderr, "{}\n", what);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv)
+{
+  try {
+    return talus::cli(argc, argv);
+  } catch (const talus::SceneErrors& e) {
+    return fail(scene_wrong, e.what());
+  } catch (const talus::RunError& e) {
+    return fail(run_failed, fmt::format("error: {}", e.what()).c_str());
+  } catch (const talus::EnvironmentError& e) {
+    return fail(environment_wrong, fmt::format("error: {}", e.what()).c_str());
+  } catch (const talus::Error& e) {
+    return fail(scene_wrong, fmt::format("error: {}", e.what()).c_str());
+  } catch (const std::bad_alloc&) {
+    return fail(environment_wrong, "error: not enough memory");
+  } catch (const std::exception& e) {
+    return fail(environment_wrong, fmt::format("error: {}", e.what()).c_str());
+  } catch (...) {
+    return fail(environment_wrong, "error: an exception of an unknown kind");
+  }
+}

@@ -1,0 +1,83 @@
+// talus mesh
+#include <fmt/format.h>
+
+#include "app/commands.hpp"
+#include "app/setup.hpp"
+#include "io/gmsh_mesh.hpp"
+#include "io/gmsh_write.hpp"
+#include "io/reader.hpp"
+#include "mesh/quality.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is known of the mesh before it is made.
+struct Asked {
+  MeshSpec spec;
+  fs::path folder;
+  std::optional<int> dimension;
+};
+
+Asked asked(const MeshOptions& options)
+{
+  const auto kind = options.file.extension();
+  if (kind == ".yaml" || kind == ".yml") {
+    Scene scene = read_scene(options.file, options.set);
+    return {scene.mesh, folder_of(scene), scene.dimension};
+  }
+  MeshSpec spec;
+  spec.where.file = options.file.string();
+  const std::string name = options.file.filename().string();
+  if (kind == ".msh")
+    spec.file = name;
+  else
+    spec.geometry = name;
+  spec.size = options.size;
+  std::vector<std::string> problems;
+  spec.check(problems);
+  if (!problems.empty())
+    throw SceneErrors(spec.where, fmt::format("{}{}", problems.front(), spec.size || kind == ".msh" ? "" : " (--size)"));
+  return {spec, options.file.parent_path(), options.dimension};
+}
+
+template <int D>
+void show(const Mesh<D>& mesh, const MeshOptions& options)
+{
+  fmt::print("{}", to_string(quality(mesh)));
+  fmt::print("groups\n");
+  for (const std::string& name : mesh.cell_set_names())
+    fmt::print("  {:<28} {:>9} cells\n", name, mesh.cell_set(name)->size());
+  for (const std::string& name : mesh.facet_set_names())
+    fmt::print("  {:<28} {:>9} facets\n", name, mesh.facet_set(name)->size());
+  for (const std::string& name : mesh.node_set_names())
+    if (!mesh.facet_set(name) && !mesh.cell_set(name))
+      fmt::print("  {:<28} {:>9} nodes\n", name, mesh.node_set(name)->size());
+  if (!options.out)
+    return;
+  write_msh(*options.out, mesh);
+  fmt::print("written to {}\n", options.out->string());
+}
+
+}  // namespace
+
+void show_mesh(const MeshOptions& options)
+{
+  const Asked wanted = asked(options);
+  const auto show_in = [&]<int D>(std::integral_constant<int, D>) { show(load_mesh<D>(wanted.spec, wanted.folder), options); };
+  constexpr std::integral_constant<int, 2> plane;
+  constexpr std::integral_constant<int, 3> space;
+  if (wanted.dimension)
+    return *wanted.dimension == 2 ? show_in(plane) : show_in(space);
+  std::optional<Mesh<3>> solid;
+  try {
+    solid = load_mesh<3>(wanted.spec, wanted.folder);
+  } catch (const SceneErrors&) {
+    return show_in(plane);  // no tetrahedra; if there are no triangles either, that is what the message will be about
+  }
+  show(*solid, options);
+}
+
+}  // namespace talus

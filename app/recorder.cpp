@@ -1,0 +1,165 @@
+#include "app/recorder.hpp"
+
+#include <cmath>
+
+#include "app/fields.hpp"
+
+namespace talus {
+
+namespace {
+
+/// "never", for outputs the scene does not have.
+template <class Spec>
+Real every(const std::optional<Spec>& spec)
+{
+  return spec ? spec->every : std::numeric_limits<Real>::infinity();
+}
+
+Real total(const std::vector<Stage>& stages)
+{
+  Real sum = 0;
+  for (const Stage& stage : stages)
+    sum += stage.duration;
+  return sum;
+}
+
+template <int D>
+Real storage_of(const Frame<D>& frame)
+{
+  std::size_t bytes = 0;
+  frame.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+  for (const AnyBatch& material : frame.materials)
+    std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
+  return static_cast<Real>(bytes) / static_cast<Real>(frame.particles.size());
+}
+
+template <int D>
+BodySummary summary_of(const Frame<D>& frame, std::size_t b)
+{
+  const Body& body = frame.bodies[b];
+  BodySummary summary{body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]), std::string(law_name(frame.materials[b])), body.size(), 0};
+  for (Index row = body.begin; row < body.end; ++row)
+    summary.mass += frame.particles.mass[static_cast<std::size_t>(row)];
+  return summary;
+}
+
+}  // namespace
+
+bool Schedule::due(Real time)
+{
+  constexpr Real round_off = 1e-9;
+  if (!(time >= next_ * every_ - round_off * every_) || !std::isfinite(every_))
+    return false;
+  next_ = std::floor(time / every_ + round_off) + 1;
+  return true;
+}
+
+template <int D>
+Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet)
+    : folder_(std::move(folder)),
+      outputs_(outputs),
+      stage_list_(stages),
+      progress_(total(stages), quiet),
+      particle_times_(every(outputs.particles)),
+      mesh_times_(every(outputs.mesh)),
+      history_times_(every(outputs.history)),
+      particle_series_(folder_ / "particles.pvd"),
+      mesh_series_(folder_ / "mesh.pvd")
+{}
+
+template <int D>
+void Recorder<D>::open(const Frame<D>& frame)
+{
+  bytes_per_particle_ = storage_of(frame);
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+    bodies_.push_back(summary_of(frame, b));
+  if (outputs_.history) {
+    history_.emplace(folder_ / "history.csv", *outputs_.history, frame);
+    files_.push_back("history.csv");
+  }
+  if (outputs_.particles)
+    files_.push_back("particles.pvd");
+  if (outputs_.mesh)
+    files_.push_back("mesh.pvd");
+}
+
+template <int D>
+void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
+{
+  accounts_.see(frame, moment);
+  const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
+  if (first)
+    open(frame);
+  if (moment == Moment::stage_begins)
+    stage_start_ = frame.clock.time;
+  if (moment == Moment::step_done)
+    progress_.step(done_before_ + frame.clock.time - stage_start_, frame.clock.time, frame.clock.step, frame.timings.particle_steps);
+
+  StopWatch watch;
+  if (first || moment != Moment::stage_begins)  // the beginning of a later stage is the end of the one before
+    write(frame, moment == Moment::stage_done);
+  watch.lap(output_seconds_);
+
+  last_.clock = frame.clock;
+  last_.timings = frame.timings;
+  last_.mass = frame.mass;
+  if (moment != Moment::stage_done)
+    return;
+  done_before_ += stage_list_[static_cast<std::size_t>(frame.stage_number)].duration;
+  last_.energy = accounts_.energy(frame);
+  last_.momentum_start = accounts_.momentum_start();
+  last_.momentum = totals(frame.particles).momentum;
+  last_.impulse = accounts_.impulse(frame);
+  last_.momentum_scale = accounts_.momentum_scale(frame);
+  last_.momentum_closes = accounts_.momentum_closes() && frame.mass.deleted_count == 0;
+}
+
+template <int D>
+void Recorder<D>::write(const Frame<D>& frame, bool last)
+{
+  const Real time = frame.clock.time;
+  if (particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time))
+    write_particles_file(frame);
+  if (frame.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time)))
+    write_mesh_file(frame);
+  if (history_ && (history_times_.due(time) || (last && history_time_ != time))) {
+    history_->append(frame, accounts_);
+    history_time_ = time;
+  }
+}
+
+template <int D>
+void Recorder<D>::write_particles_file(const Frame<D>& frame)
+{
+  const auto rows = rows_by_id(frame.particles);
+  std::vector<Column> columns;
+  for (const std::string& name : particle_fields_of(outputs_))
+    columns.push_back(particle_column(frame, rows, name));
+  std::vector<std::int64_t> ids;
+  for (const Index row : rows)
+    ids.push_back(frame.particles.id[static_cast<std::size_t>(row)]);
+  const auto file = folder_ / fmt::format("particles_{:04}.vtp", particle_files_++);
+  write_particles(file, frame.clock.time, positions(frame.particles, rows), ids, columns);
+  particle_series_.append(frame.clock.time, file);
+  particle_time_ = frame.clock.time;
+  files_.push_back(file.filename().string());
+  last_output_ = file.string();
+}
+
+template <int D>
+void Recorder<D>::write_mesh_file(const Frame<D>& frame)
+{
+  std::vector<Column> columns;
+  for (const std::string& name : outputs_.mesh->fields_wanted)
+    columns.push_back(node_column(frame, name));
+  const auto file = folder_ / fmt::format("mesh_{:04}.vtu", mesh_files_++);
+  write_mesh<D>(file, frame.clock.time, frame.mesh, columns, {});
+  mesh_series_.append(frame.clock.time, file);
+  mesh_time_ = frame.clock.time;
+  files_.push_back(file.filename().string());
+}
+
+template class Recorder<2>;
+template class Recorder<3>;
+
+}  // namespace talus

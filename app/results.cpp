@@ -1,0 +1,59 @@
+#include "app/results.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <cctype>
+
+#include "core/error.hpp"
+
+namespace talus {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Files that a run writes, and the pictures drawn of them.
+bool is_result(const fs::path& file)
+{
+  static constexpr std::array<std::string_view, 7> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd", "mesh.msh", "mesh.vtu", "scene.yaml"};
+  const std::string name = file.filename().string();
+  for (const std::string_view known : names)
+    if (name == known)
+      return true;
+  const auto numbered = [&](std::string_view prefix, std::string_view suffix) {
+    if (!name.starts_with(prefix) || !name.ends_with(suffix) || name.size() <= prefix.size() + suffix.size())
+      return false;
+    for (const char c : std::string_view(name).substr(prefix.size(), name.size() - prefix.size() - suffix.size()))
+      if (std::isdigit(static_cast<unsigned char>(c)) == 0)
+        return false;
+    return true;
+  };
+  return numbered("particles_", ".vtp") || numbered("mesh_", ".vtu");
+}
+
+}  // namespace
+
+void prepare_results(const fs::path& folder)
+try {
+  fs::create_directories(folder);
+  if (!fs::is_empty(folder) && !fs::exists(folder / "summary.json"))
+    throw EnvironmentError(fmt::format("{} is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out", folder.string()));
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    throw EnvironmentError(fmt::format("{} cannot be written", folder.string()));
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (is_result(entry.path()))
+      fs::remove(entry.path());
+  fs::remove_all(folder / "pictures");
+} catch (const fs::filesystem_error& e) {
+  throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));
+}
+
+fs::path default_results(const fs::path& scene)
+{
+  const fs::path folder = fs::absolute(scene).lexically_normal().parent_path().filename();
+  return fs::path("runs") / (scene.filename() == "scene.yaml" && !folder.empty() ? folder : scene.stem());
+}
+
+}  // namespace talus

@@ -1,0 +1,15 @@
+#pragma once
+// The folder of a run: made, emptied of an older run's results, and known to be writable before anything is computed.
+#include <filesystem>
+#include <string>
+
+namespace talus {
+
+/// Makes `folder`, or clears it if it holds the results of an earlier run (it has a summary.json).
+/// EnvironmentError: it cannot be written, or holds something else, which is left alone.
+void prepare_results(const std::filesystem::path& folder);
+
+/// runs/<name>: name of the scene's folder, or of the file if that is not called scene.yaml.
+std::filesystem::path default_results(const std::filesystem::path& scene);
+
+}  // namespace talus

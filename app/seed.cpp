@@ -1,0 +1,165 @@
+#include "app/seed.hpp"
+
+#include <algorithm>
+
+#include "app/expression.hpp"
+#include "mesh/quadrature.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Fills one body after the other.
+template <int D>
+class Seeder {
+ public:
+  Seeder(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints) : scene_(scene), mesh_(mesh), complaints_(complaints) {}
+
+  void add(const BodySpec& spec)
+  {
+    const auto points = seeding_points<D>(spec.particles_per_cell);
+    if (!points)
+      complain_of_count(spec);
+    const auto cells = cells_of(spec);
+    const MaterialSpec* material = material_of(spec);
+    if (!points || !cells || material == nullptr)
+      return;
+    const Index begin = seeds_.particles.size();
+    const Real density = std::visit([](const auto& law) { return law.density; }, material->law);
+    for (const Index c : *cells)
+      fill(c, *points, spec, density);
+    const Index end = seeds_.particles.size();
+    if (begin == end)
+      complaints_.add(spec.where, "", fmt::format("the body has no particles: {}", spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
+    seeds_.bodies.push_back({spec.name, begin, end, spec.where});
+    std::visit([&](const auto& law) { seeds_.materials.push_back(make_batch(law, begin, end, material->name, material->where)); }, material->law);
+    set_velocity(spec, begin, end);
+  }
+
+  Seeds<D> take()
+  {
+    Particles<D>& p = seeds_.particles;
+    p.L.assign(p.id.size(), Mat<D>::Zero());
+    p.F.assign(p.id.size(), Mat3::Identity());
+    p.stress.assign(p.id.size(), Sym3::Zero());
+    return std::move(seeds_);
+  }
+
+ private:
+  void complain_of_count(const BodySpec& spec)
+  {
+    std::vector<std::string> known;
+    for (const int n : seeding_counts<D>())
+      known.push_back(std::to_string(n));
+    complaints_.add(spec.where, "particles_per_cell",
+                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell, D == 2 ? "triangle" : "tetrahedron", or_list(known)));
+  }
+
+  std::optional<std::vector<Index>> cells_of(const BodySpec& spec)
+  {
+    if (spec.shape) {
+      std::vector<Index> all(static_cast<std::size_t>(mesh_.n_cells()));
+      for (std::size_t c = 0; c < all.size(); ++c)
+        all[c] = static_cast<Index>(c);
+      return all;
+    }
+    auto cells = mesh_.cell_set(spec.region);
+    if (!cells)
+      complaints_.unknown_group(spec.where, "region", "cell", spec.region, mesh_.cell_set_names());
+    return cells;
+  }
+
+  const MaterialSpec* material_of(const BodySpec& spec) const
+  {
+    const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(), [&](const MaterialSpec& m) { return m.name == spec.material; });
+    return found == scene_.materials.end() ? nullptr : &*found;  // the reader has complained
+  }
+
+  void fill(Index cell, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density)
+  {
+    Particles<D>& p = seeds_.particles;
+    const auto corners = mesh_.corners(cell);
+    const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
+    for (const auto& point : points) {
+      Vec<D> x = Vec<D>::Zero();
+      for (std::size_t a = 0; a <= D; ++a)
+        x += point[a] * corners[a];
+      if (spec.shape && !contains(*spec.shape, std::span<const Real>(x.data(), D)))
+        continue;
+      p.id.push_back(p.size());
+      p.cell.push_back(cell);
+      p.x.push_back(x);
+      p.v.push_back(Vec<D>::Zero());
+      p.volume0.push_back(volume);
+      p.mass.push_back(density * volume);
+    }
+  }
+
+  void set_velocity(const BodySpec& spec, Index begin, Index end)
+  {
+    if (spec.velocity.empty())
+      return;
+    std::vector<Vec3> places(static_cast<std::size_t>(end - begin), Vec3::Zero());
+    for (Index p = begin; p < end; ++p)
+      places[static_cast<std::size_t>(p - begin)].template head<D>() = seeds_.particles.x[static_cast<std::size_t>(p)];
+    for (int d = 0; d < D; ++d)
+      try {
+        const auto values = evaluate(spec.velocity[static_cast<std::size_t>(d)], places);
+        for (Index p = begin; p < end; ++p)
+          seeds_.particles.v[static_cast<std::size_t>(p)][d] = values[static_cast<std::size_t>(p - begin)];
+      } catch (const std::invalid_argument& e) {
+        complaints_.add(spec.where, fmt::format("velocity[{}]", d), e.what());
+      }
+  }
+
+  const Scene& scene_;
+  const Mesh<D>& mesh_;
+  Complaints& complaints_;
+  Seeds<D> seeds_;
+};
+
+/// Cells that hold particles of two bodies: material there is counted twice, unless the shapes only touch.
+template <int D>
+void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, std::vector<std::string>& warnings)
+{
+  std::vector<Index> owner(static_cast<std::size_t>(n_cells), none);
+  for (std::size_t b = 0; b < seeds.bodies.size(); ++b) {
+    std::vector<Index> shared(seeds.bodies.size(), 0);
+    Index last = none;
+    for (Index row = seeds.bodies[b].begin; row < seeds.bodies[b].end; ++row) {
+      const Index cell = seeds.particles.cell[static_cast<std::size_t>(row)];
+      Index& holds = owner[static_cast<std::size_t>(cell)];
+      if (holds != none && holds != static_cast<Index>(b) && cell != last)
+        ++shared[static_cast<std::size_t>(holds)];
+      if (holds == none)
+        holds = static_cast<Index>(b);
+      last = cell;
+    }
+    for (std::size_t other = 0; other < b; ++other)
+      if (shared[other] > 0)
+        warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(seeds.bodies[b].where), seeds.bodies[other].name, seeds.bodies[b].name,
+                                       shared[other], shared[other] == 1 ? "" : "s"));
+  }
+}
+
+}  // namespace
+
+template <int D>
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, std::vector<std::string>& warnings)
+{
+  Seeder<D> seeder(scene, mesh, complaints);
+  for (const BodySpec& body : scene.bodies)
+    seeder.add(body);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (!scene.bodies[i].region.empty() && scene.bodies[i].region == scene.bodies[j].region)
+        complaints.add(scene.bodies[i].where, "region", fmt::format("body \"{}\" fills the cell group \"{}\" already", scene.bodies[j].name, scene.bodies[i].region));
+  Seeds<D> seeds = seeder.take();
+  warn_of_shared_cells(seeds, mesh.n_cells(), warnings);
+  return seeds;
+}
+
+template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Complaints&, std::vector<std::string>&);
+template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Complaints&, std::vector<std::string>&);
+
+}  // namespace talus

@@ -1,0 +1,259 @@
+#include "app/setup.hpp"
+
+#include <algorithm>
+
+#include "app/seed.hpp"
+#include "io/scene_rules.hpp"
+
+namespace talus {
+
+namespace {
+
+template <int D>
+Vec<D> vector_of(const std::vector<Real>& numbers)
+{
+  return numbers.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(Eigen::Map<const Vec<D>>(numbers.data()));
+}
+
+/// Boundaries -> walls, whose names are those of their groups, numbered where one group has several.
+template <int D>
+class WallBuilder {
+ public:
+  WallBuilder(const Mesh<D>& mesh, Complaints& complaints, Walls<D>& walls) : mesh_(mesh), complaints_(complaints), walls_(walls) {}
+
+  void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
+  void operator()(const VelocitySpec& spec)
+  {
+    Wall<D> wall = wall_of(spec, WallKind::velocity);
+    wall.velocity = vector_of<D>(spec.velocity);
+    wall.table = spec.table;
+    on_nodes(spec, std::move(wall));
+  }
+  void operator()(const RollerSpec& spec) { on_facets(spec, wall_of(spec, WallKind::roller)); }
+  void operator()(const FrictionSpec& spec)
+  {
+    Wall<D> wall = wall_of(spec, WallKind::friction);
+    wall.friction = spec.coefficient;
+    on_facets(spec, std::move(wall));
+  }
+
+ private:
+  template <class Spec>
+  Wall<D> wall_of(const Spec& spec, WallKind kind)
+  {
+    const auto count = ++times_[spec.on];
+    Wall<D> wall;
+    wall.name = count == 1 ? spec.on : fmt::format("{}_{}", spec.on, count);
+    wall.kind = kind;
+    wall.where = spec.where;
+    return wall;
+  }
+  template <class Spec>
+  void on_nodes(const Spec& spec, Wall<D> wall)
+  {
+    if (const auto nodes = mesh_.node_set(spec.on))
+      walls_.add(std::move(wall), *nodes);
+    else
+      complaints_.unknown_group(spec.where, "on", "node, facet or cell", spec.on, mesh_.node_set_names());
+  }
+  template <class Spec>
+  void on_facets(const Spec& spec, Wall<D> wall)
+  {
+    if (const auto facets = mesh_.facet_set(spec.on))
+      walls_.add(std::move(wall), mesh_, *facets);
+    else
+      complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+  }
+
+  const Mesh<D>& mesh_;
+  Complaints& complaints_;
+  Walls<D>& walls_;
+  std::map<std::string, int> times_;
+};
+
+template <int D>
+class LoadBuilder {
+ public:
+  LoadBuilder(const Mesh<D>& mesh, const Particles<D>& particles, Complaints& complaints, Setup<D>& setup)
+      : mesh_(mesh), particles_(particles), complaints_(complaints), setup_(setup), filled_(static_cast<std::size_t>(mesh.n_cells()), 0)
+  {
+    for (const Index c : particles.cell)
+      filled_[static_cast<std::size_t>(c)] = 1;
+  }
+
+  void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
+  void operator()(const TractionSpec& spec)
+  {
+    auto facets = mesh_.facet_set(spec.on);
+    if (!facets)
+      return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+    Real area = 0, loaded = 0;
+    for (Facet& facet : *facets) {
+      facet = seen_from_material(facet);
+      area += mesh_.area_vector(facet).norm();
+      loaded += has_particles(facet.cell) ? mesh_.area_vector(facet).norm() : 0;
+    }
+    if (loaded == 0)
+      return complaints_.add(spec.where, "on", fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
+    if (loaded < area * (1 - 1e-9))  // sums of the same areas differ by round-off only
+      setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load", to_string(spec.where), 100 * (1 - loaded / area), spec.on));
+    if (spec.carried_by == Carrier::particles)
+      setup_.loads.on_particles.push_back(filled(carried_by_particles<D>(mesh_, *facets, particles_), spec));
+    else
+      setup_.loads.on_mesh.push_back(filled(carried_by_mesh<D>(mesh_, *facets), spec));
+  }
+
+ private:
+  bool has_particles(Index cell) const { return filled_[static_cast<std::size_t>(cell)] != 0; }
+  /// A facet inside the mesh belongs to the side that has material, if only one has.
+  Facet seen_from_material(Facet facet) const
+  {
+    const Index other = mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)];
+    if (other == none || has_particles(facet.cell) || !has_particles(other))
+      return facet;
+    const auto& back = mesh_.neighbours(other);
+    return {other, static_cast<Index>(std::find(back.begin(), back.end(), facet.cell) - back.begin())};
+  }
+  template <class Load>
+  static Load filled(Load load, const TractionSpec& spec)
+  {
+    load.traction = vector_of<D>(spec.traction);
+    load.pressure = spec.pressure.value_or(0);
+    load.table = spec.table;
+    load.where = spec.where;
+    return load;
+  }
+
+  const Mesh<D>& mesh_;
+  const Particles<D>& particles_;
+  Complaints& complaints_;
+  Setup<D>& setup_;
+  std::vector<std::uint8_t> filled_;
+};
+
+bool can_start_from_stress(const AnyBatch& material)
+{
+  return std::visit([]<class L>(const Batch<L>& batch) { return requires(typename L::State& state) { batch.law.prestress(Mat3(), state); }; }, material);
+}
+
+Stage stage_of(const std::string& name, Real duration, Real damping, const Where& where)
+{
+  Stage stage;
+  stage.name = name;
+  stage.duration = duration;
+  stage.damping = damping;
+  stage.where = where;
+  return stage;
+}
+Stage stage_of(const RunSpec& spec) { return stage_of("run", spec.duration, spec.damping, spec.where); }
+Stage stage_of(const GeostaticSpec& spec)
+{
+  return {.name = "geostatic",
+          .duration = spec.duration,
+          .damping = spec.damping,
+          .ramp = spec.ramp,
+          .elastic = spec.elastic,
+          .residual = spec.residual,
+          .k0 = spec.initial_stress ? std::optional(spec.initial_stress->k0) : std::nullopt,
+          .reset_displacement = spec.reset_displacement,
+          .where = spec.where};
+}
+
+Transfer transfer_of(const TransferSpec& spec)
+{
+  Transfer transfer;
+  transfer.scheme = spec.scheme == TransferScheme::flip ? Scheme::flip : spec.scheme == TransferScheme::apic ? Scheme::apic : Scheme::tpic;
+  transfer.musl = spec.musl.value_or(transfer.scheme == Scheme::flip);
+  transfer.pic_damping_time = spec.pic_damping_time;
+  return transfer;
+}
+
+template <int D>
+void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
+{
+  if (scene.stages.empty())
+    setup.stages.push_back(stage_of("run", scene.time.end, 0, scene.time.where));
+  for (const StageSpec& spec : scene.stages)
+    setup.stages.push_back(std::visit([](const auto& s) { return stage_of(s); }, spec));
+  for (const Stage& stage : setup.stages)
+    for (std::size_t b = 0; stage.k0 && b < setup.bodies.size(); ++b)
+      if (!can_start_from_stress(setup.materials[b]))
+        complaints.add(stage.where, "initial_stress",
+                       fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)", law_name(setup.materials[b]),
+                                   setup.bodies[b].name));
+}
+
+}  // namespace
+
+std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::path(scene.file).parent_path(); }
+
+std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
+{
+  std::vector<std::string> fields = outputs.particles->fields_wanted;
+  for (const std::string& name : {outputs.picture.field.substr(0, outputs.picture.field.find(':')), std::string("body")})
+    if (std::find(fields.begin(), fields.end(), name) == fields.end())
+      fields.push_back(name);
+  return fields;
+}
+
+namespace {
+
+bool wants_displacement(const OutputSpec& outputs)
+{
+  if (outputs.history && !outputs.history->points.empty())
+    return true;
+  if (!outputs.particles)
+    return false;
+  const auto fields = particle_fields_of(outputs);
+  return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+}
+
+/// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
+void check_picture(const Scene& scene, Complaints& complaints)
+{
+  if (!scene.outputs.particles)
+    return;
+  std::vector<std::string> known(particle_fields.begin(), particle_fields.end());
+  known.emplace_back("body");
+  for (const MaterialSpec& material : scene.materials)
+    std::visit([&]<class Law>(const Law&) { for_each_field<typename Law::State>([&](const auto& variable) { known.emplace_back(variable.key); }); }, material.law);
+  for (const std::string& name : particle_fields_of(scene.outputs))
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      complaints.add(scene.where, "outputs.picture.field", fmt::format("there is no field \"{}\"{}", name, suggestion(name, known)));
+}
+
+}  // namespace
+
+template <int D>
+Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
+{
+  Complaints complaints(scene);
+  Setup<D> setup;
+  Seeds<D> seeds = seed(scene, mesh, complaints, setup.warnings);
+  setup.particles = std::move(seeds.particles);
+  setup.bodies = std::move(seeds.bodies);
+  setup.materials = std::move(seeds.materials);
+  WallBuilder<D> walls(mesh, complaints, setup.walls);
+  for (const BoundarySpec& boundary : scene.boundaries)
+    std::visit(walls, boundary);
+  LoadBuilder<D> loads(mesh, setup.particles, complaints, setup);
+  for (const LoadSpec& load : scene.loads)
+    std::visit(loads, load);
+  set_stages(scene, complaints, setup);
+  check_picture(scene, complaints);
+  complaints.throw_if_any();
+
+  setup.transfer = transfer_of(scene.transfer);
+  setup.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
+  setup.limits.cfl = scene.time.cfl;
+  setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
+  setup.limits.shortest = scene.time.min_step;
+  if (wants_displacement(scene.outputs))
+    setup.particles.x0 = setup.particles.x;
+  return setup;
+}
+
+template Setup<2> set_up<2>(const Scene&, const Mesh<2>&);
+template Setup<3> set_up<3>(const Scene&, const Mesh<3>&);
+
+}  // namespace talus

@@ -1,0 +1,52 @@
+#pragma once
+// The kernel's name becomes a type here, once: builds the model and runs its stages.
+#include <functional>
+
+#include "app/frame.hpp"
+#include "app/setup.hpp"
+
+namespace talus {
+
+/// Who watches a run.
+template <int D>
+struct Audience {
+  std::function<void(const Frame<D>&, Moment)> watch;
+  std::function<void(const StageResult&)> stage_done;
+};
+
+/// What a model costs before it has made a step.
+struct Estimate {
+  Real dt;                  ///< first step [s]
+  std::int64_t steps;       ///< of all stages with that step
+  std::int64_t particle_bytes, mesh_bytes, node_bytes;
+};
+
+template <int D>
+Real total_duration(const Setup<D>& setup)
+{
+  Real total = 0;
+  for (const Stage& stage : setup.stages)
+    total += stage.duration;
+  return total;
+}
+
+/// First step and number of steps that follow from it; no kernel is asked.
+template <int D>
+Real first_step(const Mesh<D>& mesh, const Setup<D>& setup);
+
+/// Runs all stages.  SceneErrors: the kernel refuses the mesh.  RunError: a stage failed; the state before is what the audience saw.
+template <int D>
+void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience);
+
+/// Builds the model and lets it go.
+template <int D>
+Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup);
+
+extern template Real first_step<2>(const Mesh<2>&, const Setup<2>&);
+extern template Real first_step<3>(const Mesh<3>&, const Setup<3>&);
+extern template void simulate<2>(const Scene&, Mesh<2>, Setup<2>, const Audience<2>&);
+extern template void simulate<3>(const Scene&, Mesh<3>, Setup<3>, const Audience<3>&);
+extern template Estimate estimate<2>(const Scene&, Mesh<2>, Setup<2>);
+extern template Estimate estimate<3>(const Scene&, Mesh<3>, Setup<3>);
+
+}  // namespace talus

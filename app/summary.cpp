@@ -1,0 +1,185 @@
+#include "app/summary.hpp"
+
+#include <sys/resource.h>
+
+#include <array>
+
+#include "core/parallel.hpp"
+#include "core/version.hpp"
+#include "mesh/quality.hpp"
+
+namespace talus {
+
+namespace {
+
+/// A stage's own balance [J].
+EnergyNow balance_of(const StageResult& stage)
+{
+  const EnergyLedger& e = stage.energy;
+  EnergyNow now;
+  now.kinetic_start = e.kinetic_start;
+  now.kinetic = stage.kinetic_end;
+  now.plastic = stage.plastic_end - e.plastic_start;
+  now.strain = e.internal - now.plastic;
+  now.friction = 0 - e.friction;  // not -0
+  now.damping = 0 - e.damping;
+  now.gravity = e.gravity;
+  now.loads = e.loads;
+  now.walls = e.walls;
+  now.transfer = e.transfer(stage.kinetic_end);
+  now.defect = e.defect(stage.kinetic_end);
+  return now;
+}
+
+std::array<std::pair<std::string_view, Real>, 11> terms_of(const EnergyNow& e)
+{
+  return {{{"gravity_work", e.gravity}, {"load_work", e.loads}, {"wall_work", e.walls}, {"kinetic_start", e.kinetic_start}, {"kinetic", e.kinetic},
+           {"strain", e.strain}, {"plastic", e.plastic}, {"friction", e.friction}, {"damping", e.damping}, {"transfer_loss", e.transfer}, {"energy_defect", e.defect}}};
+}
+
+Real share(Real part, Real whole) { return whole > 0 ? std::abs(part) / whole : 0; }
+
+std::int64_t peak_memory()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss * std::int64_t{1024};
+}
+
+template <int D>
+std::vector<NamedValue> named(const MeshQuality<D>& q)
+{
+  return {{"smallest_mean_ratio", q.smallest_mean_ratio, ""}, {"smallest_altitude", q.smallest_altitude, "m"}, {"median_altitude", q.median_altitude, "m"}, {"gradation", q.gradation, ""}};
+}
+
+template <int D>
+EnergyAudit audit(const Recorder<D>& recorder)
+{
+  EnergyAudit audit;
+  const EnergyNow& total = recorder.last_seen().energy;
+  for (const auto& [name, value] : terms_of(total))
+    audit.terms.push_back({std::string(name), value, "J"});
+  if (total.dissipated() > 0)
+    audit.terms.push_back({"energy_defect / dissipated", share(total.defect, total.dissipated()), ""});
+  for (std::size_t s = 0; recorder.stages().size() > 1 && s < recorder.stages().size(); ++s) {
+    const StageResult& stage = recorder.stages()[s];
+    const EnergyNow balance = balance_of(stage);
+    const std::string prefix = fmt::format("stage {} {}: ", s, stage.name);
+    for (const auto& [name, value] : terms_of(balance))
+      audit.terms.push_back({prefix + std::string(name), value, "J"});
+    if (balance.dissipated() > 0)
+      audit.terms.push_back({prefix + "energy_defect / dissipated", share(balance.defect, balance.dissipated()), ""});
+  }
+  audit.closure_relative = share(total.defect, total.largest_term());
+  audit.relative_to = "largest term";
+  return audit;
+}
+
+template <int D>
+std::vector<Real> numbers(const Vec<D>& v)
+{
+  return {v.begin(), v.end()};
+}
+
+template <int D>
+Real momentum_closure(const LastSeen<D>& last)
+{
+  return share((last.momentum - last.momentum_start - last.impulse).norm(), last.momentum_scale);
+}
+
+}  // namespace
+
+template <int D>
+RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup)
+{
+  RunSummary s;
+  s.title = scene.title;
+  s.scene_file = scene.file;
+  s.scene_text = scene.text;
+  const Version v = version();
+  s.version = v.number, s.commit = v.commit, s.compiler = v.compiler;
+  s.build = fmt::format("{}: {}", v.build_type, v.flags);
+  s.status = RunStatus::failed;
+  s.message = "the run did not end";
+  s.dimension = scene.dimension;
+  s.kernel = scene.kernel;
+  s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)], setup.transfer.musl ? ", musl" : "");
+  s.threads = threads();
+  s.mesh_nodes = mesh.n_nodes();
+  s.mesh_cells = mesh.n_cells();
+  s.mesh_quality = named(quality(mesh));
+  s.warnings = setup.warnings;
+  return s;
+}
+
+template <int D>
+void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
+{
+  const LastSeen<D>& last = recorder.last_seen();
+  s.bodies = recorder.bodies();
+  s.files = recorder.files();
+  for (const StageResult& stage : recorder.stages()) {
+    const bool geostatic = stage.name == "geostatic";
+    s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, geostatic ? std::optional(stage.residual) : std::nullopt, quick ? "quick" : geostatic ? "at rest" : "done"});
+  }
+  s.steps = last.clock.step;
+  s.simulated_time = last.clock.time;
+  const Timings& t = last.timings;
+  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, Real>>{
+           {"locate", t.locate}, {"scatter", t.scatter}, {"nodes", t.nodes}, {"gather", t.gather}, {"stress", t.stress}, {"output", recorder.output_seconds()}})
+    s.wall_seconds.push_back({name, value, ""});
+  const Real in_steps = t.locate + t.scatter + t.nodes + t.gather + t.stress;
+  s.particle_steps_per_second = in_steps > 0 ? t.particle_steps / in_steps : 0;
+  s.bytes_per_particle = recorder.bytes_per_particle();
+  s.peak_memory_bytes = peak_memory();
+  if (!recorder.stages().empty()) {
+    s.energy = audit(recorder);
+    if (last.momentum_closes)
+      s.momentum = MomentumAudit{numbers<D>(last.momentum_start), numbers<D>(last.momentum), numbers<D>(last.impulse), momentum_closure(last), "momenta at the start and impulses"};
+  }
+  s.mass = MassAudit{last.mass.start, last.mass.start - last.mass.deleted, last.mass.deleted, last.mass.deleted_count};
+  if (last.mass.held_count > 0)
+    s.warnings.push_back(fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count, last.mass.held_most));
+}
+
+template <int D>
+std::string table(const Recorder<D>& recorder)
+{
+  const LastSeen<D>& last = recorder.last_seen();
+  std::string text = fmt::format("{:<16}", "energy [J]");
+  std::vector<EnergyNow> balances;
+  for (const StageResult& stage : recorder.stages()) {
+    text += fmt::format("{:>14}", stage.name);
+    balances.push_back(balance_of(stage));
+  }
+  text += '\n';
+  for (std::size_t k = 0; k < terms_of({}).size(); ++k) {
+    text += fmt::format("  {:<14}", terms_of({})[k].first);
+    for (const EnergyNow& balance : balances)
+      text += fmt::format("{:>14.5g}", terms_of(balance)[k].second);
+    text += '\n';
+  }
+  const auto line = [&](std::string_view name, auto&& f) {
+    text += fmt::format("  {:<14}", name);
+    for (const EnergyNow& balance : balances)
+      text += fmt::format("{:>14}", f(balance));
+    text += '\n';
+  };
+  line("defect/largest", [](const EnergyNow& b) { return fmt::format("{:.2g}", share(b.defect, b.largest_term())); });
+  line("defect/dissip.", [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
+  text += fmt::format("mass {:.6g} kg", last.mass.start);
+  if (last.mass.deleted_count > 0)
+    text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh", last.mass.deleted, last.mass.deleted_count);
+  if (last.momentum_closes)
+    text += fmt::format("; momentum closes to {:.2g}", momentum_closure(last));
+  return text + '\n';
+}
+
+template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, const Setup<2>&);
+template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, const Setup<3>&);
+template void complete<2>(const Recorder<2>&, bool, RunSummary&);
+template void complete<3>(const Recorder<3>&, bool, RunSummary&);
+template std::string table<2>(const Recorder<2>&);
+template std::string table<3>(const Recorder<3>&);
+
+}  // namespace talus

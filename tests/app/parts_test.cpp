@@ -1,0 +1,107 @@
+// Parts that need no program: formulas, fronts, schedules, names of folders.
+#include <gmock/gmock.h>
+
+#include <numbers>
+#include <stdexcept>
+
+#include "app/expression.hpp"
+#include "app/history.hpp"
+#include "app/quick.hpp"
+#include "app/recorder.hpp"
+#include "app/results.hpp"
+
+namespace talus {
+
+namespace {
+
+TEST(Expression, KnowsPlaceAndPi)
+{
+  const std::vector<Vec3> places{{1, 2, 3}, {0.5, 0, 0}};
+  EXPECT_EQ(evaluate("x + 10 * y + 100 * z", places), (std::vector<Real>{321, 0.5}));
+  EXPECT_DOUBLE_EQ(evaluate("sin(pi * x)", places)[1], 1.0);
+  EXPECT_EQ(evaluate("y > 1 ? 7 : -7", places), (std::vector<Real>{7, -7}));
+}
+
+TEST(Expression, RefusesWhatIsNoFormula)
+{
+  const std::vector<Vec3> places{{0, 0, 0}};
+  for (const char* wrong : {"", "2 +", "velocity", "sin(", "1 / x", "sqrt(x - 1)"})
+    EXPECT_THROW(evaluate(wrong, places), std::invalid_argument) << wrong;
+  EXPECT_THROW(evaluate("2 +", {}), std::invalid_argument) << "even where there is nothing to evaluate";
+}
+
+Particles<2> row_of_four()
+{
+  Particles<2> particles;
+  for (const Real x : {3.0, 0.0, 2.0, 1.0}) {
+    particles.id.push_back(static_cast<std::int64_t>(particles.id.size()));
+    particles.x.emplace_back(x, 0);
+    particles.mass.push_back(1);
+  }
+  return particles;
+}
+
+TEST(Front, IsTheCoordinateThatAShareOfTheMassDoesNotPass)
+{
+  const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};
+  const auto particles = row_of_four();
+  FrontSpec spec;
+  spec.direction = Direction::x_plus;
+  spec.mass_share = 1;
+  EXPECT_EQ(front(spec, bodies, particles), 3);
+  spec.mass_share = 0.5;
+  EXPECT_EQ(front(spec, bodies, particles), 1);
+  spec.direction = Direction::x_minus;
+  EXPECT_EQ(front(spec, bodies, particles), 2);
+  spec.mass_share = 1;
+  spec.body = "right";
+  EXPECT_EQ(front(spec, bodies, particles), 1);
+}
+
+TEST(NearestParticle, IsLookedForInItsBody)
+{
+  const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};
+  PointSpec spec;
+  spec.at = {2.9, 0};
+  EXPECT_EQ(nearest_particle<2>(spec, bodies, row_of_four()), 0);
+  spec.body = "right";
+  EXPECT_EQ(nearest_particle<2>(spec, bodies, row_of_four()), 2);
+  spec = {};
+  spec.at = {0.5, 0};
+  EXPECT_EQ(nearest_particle<2>(spec, bodies, row_of_four()), 1) << "the lower id of two equally near ones";
+}
+
+TEST(Schedule, ComesOncePerIntervalHoweverLongTheSteps)
+{
+  Schedule schedule(0.1);
+  std::vector<Real> written;
+  for (const Real time : {0.0, 0.05, 0.1, 0.11, 0.35, 0.36, 0.4})
+    if (schedule.due(time))
+      written.push_back(time);
+  EXPECT_EQ(written, (std::vector<Real>{0.0, 0.1, 0.35, 0.4}));
+}
+
+TEST(Results, AreNamedAfterTheFolderOfAScene)
+{
+  EXPECT_EQ(default_results("scenes/bar/scene.yaml"), "runs/bar");
+  EXPECT_EQ(default_results("scenes/bar/fine.yaml"), "runs/fine");
+}
+
+TEST(Quick, CutsStagesInProportion)
+{
+  std::vector<Stage> stages(2);
+  stages[0].duration = 3, stages[0].ramp = 1, stages[0].residual = 1e-3;
+  stages[1].duration = 1;
+  OutputSpec outputs;
+  outputs.history.emplace().every = 1e-3;
+  shorten(0.001, stages, outputs);
+  EXPECT_DOUBLE_EQ(stages[0].duration, 0.15);
+  EXPECT_DOUBLE_EQ(stages[0].ramp, 0.05);
+  EXPECT_DOUBLE_EQ(stages[1].duration, 0.05);
+  EXPECT_FALSE(stages[0].residual.has_value());
+  EXPECT_DOUBLE_EQ(outputs.history->every, 0.05);
+}
+
+}  // namespace
+
+}  // namespace talus

@@ -1,0 +1,62 @@
+#pragma once
+// Runs the program as a user does, in a folder that is gone afterwards.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "io/csv.hpp"
+#include "io/whole_file.hpp"
+#include "tests/io/scratch_folder.hpp"
+
+namespace talus {
+
+struct Outcome {
+  int code;
+  std::string out, err;
+};
+
+class Program : public testing::Test {
+ protected:
+  ScratchFolder folder_;
+
+  /// `talus words` in the scratch folder.
+  Outcome talus(const std::string& words) const
+  {
+    const std::string command = "cd '" + folder_.path().string() + "' && '" TALUS_BINARY "' " + words + " >out.txt 2>err.txt";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_whole(folder_ / "out.txt"), read_whole(folder_ / "err.txt")};
+  }
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+  std::string read(const std::string& name) const { return read_whole(folder_ / name); }
+  bool exists(const std::string& name) const { return std::filesystem::exists(folder_ / name); }
+  HistoryTable history(const std::string& run) const { return read_history(folder_ / (run + "/history.csv")); }
+};
+
+/// First and last value of a column; NaN if there is none, so that every comparison fails.
+inline Real first(const HistoryTable& table, std::string_view column)
+{
+  const auto values = table[column];
+  return values ? values->front() : std::numeric_limits<Real>::quiet_NaN();
+}
+inline Real last(const HistoryTable& table, std::string_view column)
+{
+  const auto values = table[column];
+  return values ? values->back() : std::numeric_limits<Real>::quiet_NaN();
+}
+
+/// An elastic block of 1 x 1 m in a box of 2 x 2 m; `rest` adds loads, boundaries and so on.
+inline std::string block_scene(const std::string& rest, const std::string& velocity = "")
+{
+  return R"(title: Block
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [2, 2], cells: [8, 8]}}
+materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]
+bodies:
+  - {name: block, material: rubber, shape: {type: box, low: [0.5, 0], high: [1.5, 1]}, particles_per_cell: 3)" +
+         velocity + "}\n" + rest;
+}
+
+}  // namespace talus

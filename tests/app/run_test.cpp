@@ -1,0 +1,224 @@
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+#include "tests/app/program.hpp"
+
+namespace talus {
+
+namespace {
+
+using testing::HasSubstr;
+
+const std::string bar_scene = R"(title: Small bar
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [12, 1], cells: [24, 2]}}
+time: {end: 1}
+materials: [{name: rubber, law: linear_first_piola, density: 1, youngs_modulus: 100, poisson_ratio: 0}]
+bodies:
+  - {name: bar, material: rubber, shape: {type: box, low: [0, 0], high: [10, 1]}, particles_per_cell: 6, velocity: ["0.1 * sin(pi * x / 20)", "0"]}
+boundaries: [{type: fixed, on: x_min}, {type: roller, on: y_min}, {type: roller, on: y_max}]
+outputs:
+  particles: {every: 0.25, fields: [velocity, stress, F, volume]}
+  mesh: {every: 0.5, fields: [mass, velocity, force, reaction]}
+  history: {every: 0.05, points: [{name: tip, at: [10, 0.5]}], fronts: [{name: reach, direction: +x, mass_share: 1}]}
+)";
+
+class Run : public Program {};
+
+TEST_F(Run, BarSwingsAsTheWaveEquationSays)
+{
+  write("bar.yaml", bar_scene);
+  const Outcome outcome = talus("run bar.yaml --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable table = history("runs/bar");
+  constexpr Real length = 10, speed = 10, v0 = 0.1;
+  const Real omega = std::numbers::pi * speed / (2 * length);
+  EXPECT_NEAR(first(table, "mass"), 10.0, 1e-11);
+  // int 1/2 rho v^2 over the bar; three-point sampling of a quarter sine per 0.5 m cell errs by far less than 0.1 %.
+  EXPECT_NEAR(first(table, "kinetic"), 0.25 * length * v0 * v0, 1e-3 * 0.25 * length * v0 * v0);
+  EXPECT_NEAR(last(table, "time"), 1.0, 1e-12);
+  // The particle nearest to the end lies up to a cell inside it, where the mode is flat; 2 % covers the coarse mesh.
+  EXPECT_NEAR(last(table, "tip_ux"), v0 / omega * std::sin(omega), 0.02 * v0 / omega);
+  EXPECT_NEAR(last(table, "tip_uy"), 0, 1e-3 * v0 / omega);
+  EXPECT_LT(std::abs(last(table, "energy_defect")), 1e-2 * first(table, "kinetic"));
+  EXPECT_NEAR(last(table, "kinetic") + last(table, "strain"), first(table, "kinetic"), 2e-2 * first(table, "kinetic"));
+  EXPECT_GT(last(table, "reach"), first(table, "reach"));
+}
+
+TEST_F(Run, LeavesEveryFileThatWasAskedFor)
+{
+  write("bar.yaml", bar_scene);
+  const Outcome outcome = talus("run bar.yaml --out there");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  for (const char* file : {"scene.yaml", "mesh.msh", "mesh.vtu", "summary.json", "history.csv", "particles.pvd", "particles_0000.vtp", "particles_0004.vtp", "mesh.pvd", "mesh_0000.vtu"})
+    EXPECT_TRUE(exists(std::string("there/") + file)) << file;
+  EXPECT_FALSE(exists("there/particles_0005.vtp"));
+  EXPECT_EQ(read("there/scene.yaml"), bar_scene);
+  EXPECT_THAT(read("there/summary.json"), HasSubstr("\"status\": \"done\""));
+  EXPECT_THAT(outcome.out, HasSubstr("defect/largest"));
+  EXPECT_THAT(outcome.out, HasSubstr("results in there"));
+}
+
+TEST_F(Run, GivesTheSameBitsForAnyNumberOfThreads)
+{
+  write("block.yaml", block_scene(R"(time: {end: 0.05}
+loads: [{type: gravity, acceleration: [0.3, -9.81]}]
+boundaries: [{type: friction, on: y_min, coefficient: 0.3}]
+outputs:
+  particles: {every: 0.05, fields: [velocity, displacement, stress, velocity_gradient]}
+  history: {every: 0.01}
+)"));
+  for (const int threads : {1, 2, 4}) {
+    const std::string run = "t" + std::to_string(threads);
+    const Outcome outcome = talus("run block.yaml --quiet --out " + run + " --threads " + std::to_string(threads));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(read(run + "/history.csv"), read("t1/history.csv"));
+    EXPECT_EQ(read(run + "/particles_0001.vtp"), read("t1/particles_0001.vtp"));
+  }
+}
+
+TEST_F(Run, SetChangesTheScene)
+{
+  write("bar.yaml", bar_scene);
+  const Outcome outcome = talus("run bar.yaml --quiet --set time.end=0.3 --set bodies[0].particles_per_cell=3 --set kernel=linear");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NEAR(last(history("runs/bar"), "time"), 0.3, 1e-12);
+  EXPECT_THAT(read("runs/bar/summary.json"), HasSubstr("\"kernel\": \"linear\""));
+}
+
+TEST_F(Run, StopsWhenAParticleLeavesTheMeshAndSaysWhich)
+{
+  write("block.yaml", block_scene("time: {end: 2}\noutputs: {particles: {every: 0.1}, history: {every: 0.1}}\n", ", velocity: [2, 0]"));
+  const Outcome outcome = talus("run block.yaml --quiet");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, testing::MatchesRegex("error: step [0-9]+, t = 0\\.2[0-9]* s: particle [0-9]+ of \"block\" \\(block\\.yaml:6:5\\) at \\(2\\.0[0-9]*, [0-9.]+\\) is outside the mesh; "
+                                                 "extend the mesh, close its boundary with a wall, or set on_exit: delete; last good output runs/block/particles_0002\\.vtp\n"));
+  EXPECT_THAT(read("runs/block/summary.json"), HasSubstr("\"status\": \"failed\""));
+  EXPECT_THAT(read("runs/block/summary.json"), HasSubstr("is outside the mesh"));
+}
+
+TEST_F(Run, KeepsAccountOfDeletedMass)
+{
+  write("block.yaml", block_scene("time: {end: 0.5}\non_exit: delete\noutputs: {particles: {every: 0.1}, history: {every: 0.1}}\n", ", velocity: [2, 0]"));
+  const Outcome outcome = talus("run block.yaml --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable table = history("runs/block");
+  // The block has gone 1 m with its front 0.5 m from the boundary: half of it is outside, give or take a column of particles.
+  EXPECT_NEAR(first(table, "mass"), 1000, 1e-9);
+  EXPECT_NEAR(last(table, "mass"), 500, 130);
+  EXPECT_THAT(read("runs/block/summary.json"), HasSubstr("\"particles_removed\": "));
+  EXPECT_THAT(read("runs/block/summary.json"), testing::Not(HasSubstr("\"particles_removed\": 0\n")));
+}
+
+TEST_F(Run, GeostaticStageEndsAtRestUnderItsOwnWeight)
+{
+  write("column.yaml", R"(title: Column
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 2], cells: [4, 8]}}
+materials: [{name: soil, law: hencky, density: 1000, youngs_modulus: 1.0e6, poisson_ratio: 0.25}]
+bodies: [{name: column, material: soil, region: all, particles_per_cell: 3}]
+loads: [{type: gravity, acceleration: [0, -10]}]
+boundaries: [{type: roller, on: x_min}, {type: roller, on: x_max}, {type: fixed, on: y_min}]
+stages:
+  - {type: geostatic, duration: 5, ramp: 0.2, residual: 1.0e-3}
+  - {type: run, duration: 0.02}
+outputs: {history: {every: 0.1, points: [{name: low, at: [0.5, 0.5]}]}}
+)");
+  const Outcome outcome = talus("run column.yaml --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable table = history("runs/column");
+  EXPECT_LT(last(table, "time"), 2.0) << "came to rest long before the stage was over";
+  const Real weight_above = 1000 * 10 * (2 - last(table, "low_y"));
+  EXPECT_NEAR(last(table, "low_syy"), -weight_above, 0.1 * weight_above);  // the stress of a cell is that of its centre, 0.08 m away
+  EXPECT_NEAR(last(table, "low_sxx"), last(table, "low_syy") / 3, 0.05 * weight_above);  // nu / (1 - nu)
+  EXPECT_LT(std::abs(last(table, "low_uy")), 1e-4) << "displacement counts from the state at rest";
+  EXPECT_NEAR(last(table, "reaction_y_min_y"), 20000, 0.05 * 20000);
+  EXPECT_THAT(read("runs/column/summary.json"), HasSubstr("\"at rest\""));
+}
+
+TEST_F(Run, GeostaticStageThatDoesNotComeToRestFails)
+{
+  write("block.yaml", block_scene(R"(loads: [{type: gravity, acceleration: [0, -9.81]}]
+boundaries: [{type: fixed, on: y_min}]
+stages: [{type: geostatic, duration: 0.02}]
+)"));
+  const Outcome outcome = talus("run block.yaml --quiet");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("stage \"geostatic\" (block.yaml:9:10) did not come to rest within 0.02 s"));
+}
+
+TEST_F(Run, TractionPushesItsOwnWay)
+{
+  for (const char* carrier : {"particles", "mesh"}) {
+    write("block.yaml", R"(title: Pulled block
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 1], cells: [4, 4]}}
+time: {end: 0.02}
+on_exit: delete
+materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]
+bodies: [{name: block, material: rubber, region: all, particles_per_cell: 3}]
+boundaries: [{type: fixed, on: y_min}]
+loads: [{type: traction, on: y_max, traction: [100, 0], carried_by: )" + std::string(carrier) + R"(}]
+outputs: {history: {every: 0.01, points: [{name: top, at: [0.5, 1]}]}}
+)");
+    const Outcome outcome = talus("run block.yaml --quiet");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const HistoryTable table = history("runs/block");
+    // The shear wave (6 m/s) has not come back from the floor: the impulse of 100 N over 0.02 s is all there is.
+    EXPECT_NEAR(last(table, "momentum_x"), 100 * 0.02, 1e-3) << carrier;
+    EXPECT_GT(last(table, "top_ux"), 0) << carrier;
+    EXPECT_GT(last(table, "load_work"), 0) << carrier;
+  }
+}
+
+TEST_F(Run, PressurePushesInwards)
+{
+  write("block.yaml", block_scene("time: {end: 0.01}\nloads: [{type: traction, on: y_min, pressure: 100}]\non_exit: delete\noutputs: {history: {every: 0.01}}\n"));
+  const Outcome outcome = talus("run block.yaml --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NEAR(last(history("runs/block"), "momentum_y"), 100 * 0.01, 0.01);
+  EXPECT_THAT(outcome.err, HasSubstr("warning: block.yaml:8:9: 50 % of the area of \"y_min\" has no particles behind it and carries no load"));
+}
+
+TEST_F(Run, QuickMakesAnySceneShort)
+{
+  write("bar.yaml", bar_scene);
+  const Outcome outcome = talus("run bar.yaml --quick --set time.end=1000 --quiet");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable table = history("runs/bar");
+  EXPECT_LT(last(table, "step"), 250);
+  EXPECT_GT(last(table, "step"), 100);
+  EXPECT_LT(table.rows(), 8u);
+  EXPECT_THAT(read("runs/bar/summary.json"), HasSubstr("\"result\": \"quick\""));
+}
+
+TEST_F(Run, ReplacesTheResultsOfAnEarlierRunOnly)
+{
+  write("bar.yaml", bar_scene);
+  ASSERT_EQ(talus("run bar.yaml --quiet --out there").code, 0);
+  write("there/notes.txt", "mine");
+  ASSERT_EQ(talus("run bar.yaml --quiet --out there --set time.end=0.25").code, 0);
+  EXPECT_TRUE(exists("there/particles_0001.vtp"));
+  EXPECT_FALSE(exists("there/particles_0002.vtp"));
+  EXPECT_EQ(read("there/notes.txt"), "mine");
+
+  std::filesystem::create_directory(folder_ / "other");
+  write("other/history.csv", "mine");
+  const Outcome outcome = talus("run bar.yaml --quiet --out other");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_EQ(outcome.err, "error: other is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out\n");
+  EXPECT_EQ(read("other/history.csv"), "mine");
+}
+
+TEST_F(Run, MomentumOfAClosedSystemIsAccountedFor)
+{
+  write("block.yaml", block_scene("time: {end: 0.05}\nloads: [{type: gravity, acceleration: [1, -2]}]\nboundaries: [{type: roller, on: y_min}]\noutputs: {history: {every: 0.05}}\n"));
+  const Outcome outcome = talus("run block.yaml");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("momentum closes to [0-9.]+e-1[0-9]"));
+}
+
+}  // namespace
+
+}  // namespace talus
