@@ -7,8 +7,9 @@
 namespace talus {
 
 inline Pack square_root(const Pack& a) noexcept { return Pack{std::sqrt(a[0]), std::sqrt(a[1]), std::sqrt(a[2]), std::sqrt(a[3])}; }
-/// max(a, 0), and 0 for NaN.
-inline Pack positive_part(const Pack& a) noexcept { return a > 0 ? a : Pack{}; }
+inline Pack broadcast(Real a) noexcept { return Pack{a, a, a, a}; }
+/// min(a, b), and b for a = NaN.
+inline Pack smaller(const Pack& a, Real b) noexcept { return a < broadcast(b) ? a : broadcast(b); }
 
 /// {sum of a, sum of b, sum of c, sum of d}
 inline Pack sums(const Pack& a, const Pack& b, const Pack& c, const Pack& d) noexcept

@@ -36,25 +36,21 @@ struct Moments {
   Symmetric<D> spread;  ///< W0^2 S, about the centroid of the weights
 };
 
-/// x from a point: coordinates as plain numbers, and the barycentric coordinates there.
+/// A particle in its cell.
 template <int D>
 struct Place {
-  Real x[D], from_origin[D], hat[D + 1];
+  Real x[D], from_origin[D];
+  Pack hat;  ///< barycentric coordinates, one vertex per lane
 };
 template <int D>
 [[gnu::always_inline]] inline Place<D> place_of(const typename Umls<D>::Cell& cell, const Vec<D>& x) noexcept
 {
   Place<D> at;
+  at.hat = Pack{1, 0, 0, 0};
   for (int d = 0; d < D; ++d) {
     at.x[d] = x[d];
     at.from_origin[d] = x[d] - cell.origin[d];
-  }
-  at.hat[0] = 1;
-  for (int a = 1; a <= D; ++a) {
-    at.hat[a] = 0;
-    for (int d = 0; d < D; ++d)
-      at.hat[a] += cell.slope[a][d] * at.from_origin[d];
-    at.hat[0] -= at.hat[a];
+    at.hat += at.from_origin[d] * load(cell.slope[d]);
   }
   return at;
 }
@@ -63,29 +59,40 @@ template <int D>
 /// truncated powers, without branch or division.  The common factor of all samples cancels in the estimate.
 [[gnu::always_inline]] inline Pack profile(const Pack& distance, Real radius) noexcept
 {
-  const Pack outer = positive_part(1.5 * radius - distance), inner = positive_part(0.5 * radius - distance);
+  const Real outer_end = 1.5 * radius, inner_end = 0.5 * radius;
+  const Pack outer = outer_end - smaller(distance, outer_end), inner = inner_end - smaller(distance, inner_end);
   return outer * outer - 3 * inner * inner;
 }
 
-/// Sample weights 2 R^2 W into `weight`, and their moments: the first sweep over the stencil.
+/// Sample weights 2 R^2 W.
 template <int D>
-[[gnu::always_inline]] inline Moments<D> sample(const typename Umls<D>::Cell& cell, const Place<D>& at, Real* weight) noexcept
+[[gnu::always_inline]] inline void sample(const typename Umls<D>::Cell& cell, const Place<D>& at, Real* weight) noexcept
 {
   Real radius = cell.radius;
   for (int d = 0; d < D; ++d)
     radius += cell.radius_slope[d] * at.from_origin[d];
+  for (int i = 0; i < cell.padded_size; i += pack_size) {
+    Pack r2{}, eta = at.hat[0] * load(cell.adjacent[0] + i);
+    for (int d = 0; d < D; ++d) {
+      const Pack r = load(cell.x[d] + i) - at.x[d];
+      r2 = d == 0 ? r * r : r2 + r * r;
+    }
+    for (int a = 1; a <= D; ++a)
+      eta += at.hat[a] * load(cell.adjacent[a] + i);
+    store(weight + i, eta * profile(square_root(r2), radius));
+  }
+}
 
+/// Their moments.  A loop of its own: in one with the square roots these sums would queue behind them.
+template <int D>
+[[gnu::always_inline]] inline Moments<D> moments(const typename Umls<D>::Cell& cell, const Place<D>& at, const Real* weight) noexcept
+{
   Pack w0{}, first[3]{}, second[6]{};
   for (int i = 0; i < cell.padded_size; i += pack_size) {
-    Pack r[D], r2{}, eta{};
-    for (int d = 0; d < D; ++d) {
+    const Pack w = load(weight + i);
+    Pack r[D];
+    for (int d = 0; d < D; ++d)
       r[d] = load(cell.x[d] + i) - at.x[d];
-      r2 += r[d] * r[d];
-    }
-    for (int a = 0; a <= D; ++a)
-      eta += at.hat[a] * load(cell.adjacent[a] + i);
-    const Pack w = eta * profile(square_root(r2), radius);
-    store(weight + i, w);
     w0 += w;
     for (int d = 0; d < D; ++d) {
       const Pack wr = w * r[d];
@@ -115,11 +122,10 @@ template <int D>
 void hats_instead(const typename Umls<D>::Cell& cell, const Place<D>& at, Weights<D, Umls<D>::max_nodes>& out) noexcept
 {
   std::fill_n(out.w, cell.padded_size, 0.0);
-  std::copy_n(at.hat, D + 1, out.w);
+  store(out.w, at.hat);
   for (int d = 0; d < D; ++d) {
     std::fill_n(out.dw[d], cell.padded_size, 0.0);
-    for (int a = 0; a <= D; ++a)
-      out.dw[d][a] = cell.slope[a][d];
+    store(out.dw[d], load(cell.slope[d]));
   }
 }
 
@@ -228,21 +234,22 @@ void Umls<D>::open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept
   cell.origin = mesh.node(cell.nodes[0]);
   const auto gradients = mesh.gradients(c);
   cell.radius = radius(cell.nodes[0]);
-  Vec<D> slope = Vec<D>::Zero();
-  for (std::size_t a = 0; a <= D; ++a) {
-    slope += radius(cell.nodes[a]) * gradients[a];
-    for (int d = 0; d < D; ++d)
-      cell.slope[a][d] = gradients[a][d];
+  for (int d = 0; d < D; ++d) {
+    cell.radius_slope[d] = 0;
+    std::fill_n(cell.slope[d], pack_size, 0.0);
+    for (std::size_t a = 0; a <= D; ++a) {
+      cell.slope[d][a] = gradients[a][d];
+      cell.radius_slope[d] += radius(cell.nodes[a]) * gradients[a][d];
+    }
   }
-  for (int d = 0; d < D; ++d)
-    cell.radius_slope[d] = slope[d];
 }
 
 template <int D>
 void Umls<D>::evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) const noexcept
 {
   const Place<D> at = place_of<D>(cell, x);
-  Moments<D> m = sample<D>(cell, at, out.w);
+  sample<D>(cell, at, out.w);
+  Moments<D> m = moments<D>(cell, at, out.w);
   const Real diagonal = regularisation * m.spread.trace();
   for (int d = 0; d < D; ++d)
     m.spread.entry[d] += diagonal;
@@ -255,19 +262,18 @@ void Umls<D>::evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>&
 
   // With k = S^-1 c:  G_v = W_v (S^-1 r_v - k)  and  w_v = W_v (1/W0 + k . c - k . r_v)
   const Real per_det = 1 / det, share = 1 / m.sum;
-  Symmetric<D> inverse;
+  Pack inverse[Symmetric<D>::size], k[D], at_x = broadcast(share);
   for (int j = 0; j < Symmetric<D>::size; ++j)
-    inverse.entry[j] = adjoint.entry[j] * per_det * m.sum;
-  Real k[D], at_x = share;
+    inverse[j] = adjoint.entry[j] * broadcast(per_det * m.sum);
   for (int d = 0; d < D; ++d) {
-    k[d] = 0;
+    Real sum = 0;
     for (int e = 0; e < D; ++e)
-      k[d] += adjoint(d, e) * m.first[e];
-    k[d] *= per_det;
-    at_x += k[d] * m.first[d] * share;
+      sum += adjoint(d, e) * m.first[e];
+    k[d] = broadcast(sum * per_det);
+    at_x += k[d] * (m.first[d] * share);
   }
   for (int i = 0; i < cell.padded_size; i += pack_size) {
-    Pack r[D], value = at_x - Pack{};
+    Pack r[D], value = at_x;
     for (int d = 0; d < D; ++d) {
       r[d] = load(cell.x[d] + i) - at.x[d];
       value -= k[d] * r[d];
@@ -275,9 +281,9 @@ void Umls<D>::evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>&
     const Pack w = load(out.w + i);
     store(out.w + i, w * value);
     for (int d = 0; d < D; ++d) {
-      Pack g = Pack{} - k[d];
+      Pack g = -k[d];
       for (int e = 0; e < D; ++e)
-        g += inverse(d, e) * r[e];
+        g += inverse[Symmetric<D>::place(d, e)] * r[e];
       store(out.dw[d] + i, w * g);
     }
   }
@@ -286,8 +292,10 @@ void Umls<D>::evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>&
 template <int D>
 Real Umls<D>::roundness(const Cell& cell, const Vec<D>& x) const noexcept
 {
-  alignas(64) Real unused[max_nodes];
-  const Symmetric<D> spread = sample<D>(cell, place_of<D>(cell, x), unused).spread;
+  alignas(64) Real weight[max_nodes];
+  const Place<D> at = place_of<D>(cell, x);
+  sample<D>(cell, at, weight);
+  const Symmetric<D> spread = moments<D>(cell, at, weight).spread;
   const Real round = determinant(spread, adjugate(spread)) / round_determinant(spread);
   return round > 0 ? round : 0;
 }

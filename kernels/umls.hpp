@@ -25,8 +25,8 @@ class Umls {
 
   struct Cell : StencilCell<D, max_nodes> {
     Vec<D> origin;                                ///< vertex 0 of the cell [m]
-    Real slope[D + 1][D];                         ///< gradients of the barycentric coordinates [1/m]
     Real radius, radius_slope[D];                 ///< R at vertex 0 [m], grad R [-]
+    alignas(64) Real slope[D][pack_size];         ///< gradients [1/m] of the barycentric coordinates of all vertices; padding 0
     alignas(64) Real adjacent[D + 1][max_nodes];  ///< 1 where the node is adjacent to the vertex, else 0; padding 0
   };
 

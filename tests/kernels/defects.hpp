@@ -133,12 +133,13 @@ Real slope_defect(const K& kernel, const Mesh<D>& mesh)
   return worst;
 }
 
-/// |int G_v dx| h_v / int w_v dx for every interior node v: mean and largest.  Quadrature with 54 (2-D) or 56 (3-D) points a cell.
+/// |int G_v dx| h_v / int w_v dx for every interior node v that lies farther than `margin` [m] inside the bounding box: mean and
+/// largest.  Quadrature with 54 (2-D) or 56 (3-D) points a cell.
 struct PatchDefect {
   Real mean = 0, largest = 0;
 };
 template <class K, int D>
-PatchDefect patch_defect(const K& kernel, const Mesh<D>& mesh)
+PatchDefect patch_defect(const K& kernel, const Mesh<D>& mesh, Real margin)
 {
   const auto points = seeding_points<D>(D == 2 ? 54 : 56).value();
   std::vector<Vec<D>> force(static_cast<std::size_t>(mesh.n_nodes()), Vec<D>::Zero());
@@ -158,7 +159,8 @@ PatchDefect patch_defect(const K& kernel, const Mesh<D>& mesh)
   PatchDefect defect;
   Real interior = 0;
   for (Index v = 0; v < mesh.n_nodes(); ++v) {
-    if (mesh.on_boundary(v))
+    const Vec<D> from_low = mesh.node(v) - mesh.low(), from_high = mesh.high() - mesh.node(v);
+    if (mesh.on_boundary(v) || std::min(from_low.minCoeff(), from_high.minCoeff()) < margin)
       continue;
     const auto i = static_cast<std::size_t>(v);
     const Real here = force[i].norm() * mesh.node_size(v) / share[i];

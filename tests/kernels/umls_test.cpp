@@ -179,14 +179,12 @@ TEST(Umls, GradientIsAnEstimateAndNotTheSlopeOfItsValues)
   EXPECT_GT(slope_defect(Umls<2>(mesh), mesh), 0.05);
 }
 
-TEST(Umls, FailsThePatchTestOnIrregularMeshesAndPassesItOnRegularOnes)
+TEST(Umls, FailsThePatchTestOnIrregularMeshesAndPassesItOnALattice)
 {
-  const auto inside = [](const Mesh<2>& mesh) {
-    const Umls<2> kernel(mesh);
-    return patch_defect(kernel, mesh).mean;
-  };
-  EXPECT_GT(inside(jittered_mesh<2>()), 0.03);
-  EXPECT_LT(inside(meshes<2>()[0].mesh), 0.5 * inside(jittered_mesh<2>()));
+  constexpr Real margin = 0.2;  // beyond the reach of the boundary's stencils on these meshes of twelve squares a side
+  const auto defect = [](const Mesh<2>& mesh) { return patch_defect(Umls<2>(mesh), mesh, margin); };
+  EXPECT_LT(defect(meshes<2>()[0].mesh).largest, 1e-12);
+  EXPECT_GT(defect(jittered_mesh<2>()).mean, 0.1);
 }
 
 TEST(Umls, HasNegativeValuesInBoundaryCells)
@@ -205,12 +203,23 @@ TEST(Umls, HasNegativeValuesInBoundaryCells)
   EXPECT_GE(inside, beside);
 }
 
-TEST(Umls, WallsKeepAFewPercentOfWeightOffTheWall)
+TEST(Umls, WallsLeaveAPercentOrTwoOfWeightToNodesOffTheWall)
 {
   const Mesh<2>& mesh = jittered_mesh<2>();
-  const Real leak = wall_leak(Umls<2>(mesh), mesh);
-  EXPECT_GT(leak, 0.005);
-  EXPECT_LT(leak, 0.1);
+  const Umls<2> kernel(mesh);
+  Probe<Umls<2>, 2> probe(kernel, mesh);
+  Real mean = 0;
+  for (const Facet facet : mesh.boundary_facets()) {
+    probe.enter(facet.cell);
+    const auto [v, w] = mesh.nodes_of(facet);
+    probe.evaluate(0.5 * (mesh.node(v) + mesh.node(w)));
+    for (int i = 0; i < probe.cell.size; ++i)
+      if (!mesh.on_boundary(probe.number(i)))
+        mean += std::abs(probe.weights.w[i]);
+  }
+  mean /= static_cast<Real>(mesh.boundary_facets().size());
+  EXPECT_GT(mean, 0.002);
+  EXPECT_LT(mean, 0.03);
 }
 
 }  // namespace
