@@ -9,6 +9,7 @@
 #include <functional>
 #include <typeindex>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "io/field_reader.hpp"
@@ -100,7 +101,9 @@ class Manual {
     while (!waiting_.empty()) {
       const auto next = std::move(waiting_.front());
       waiting_.erase(waiting_.begin());
-      text += next();
+      const auto later = std::exchange(waiting_, {});
+      text += next();  // what it mentions comes right behind it
+      waiting_.insert(waiting_.end(), later.begin(), later.end());
     }
     return text;
   }
@@ -122,9 +125,10 @@ class Manual {
   template <class T>
   std::string link(const std::string& path)
   {
-    const auto [title, is_new] = titles_.emplace(std::type_index(typeid(T)), path);
+    const std::string own = std::same_as<T, Shape> ? "shape" : std::same_as<T, Box> ? "box" : path;
+    const auto [title, is_new] = titles_.emplace(std::type_index(typeid(T)), own);
     if (is_new)
-      waiting_.push_back([this, path] { return section<T>(path, 2); });
+      waiting_.push_back([this, own] { return section<T>(own, 2); });
     std::string anchor;
     for (const char c : title->second)
       if (c != '.')
@@ -212,7 +216,7 @@ class Manual {
   {
     return {code(field.key),
             type(std::type_identity<Value>{}, prefix + std::string(field.key)),
-            std::string(field.unit),
+            HasFields<Value> ? "" : std::string(field.unit),
             to_string(field.range) == "any" ? "" : to_string(field.range),
             need(field.need, default_of(defaults.*field.member, field.range)),
             std::string(field.meaning)};

@@ -174,7 +174,8 @@ class TreeBuilder : public YAML::EventHandler {
 /// The parser's message, with what usually is the matter.
 std::string explained(const std::string& message)
 {
-  static constexpr std::array<std::array<std::string_view, 2>, 5> reasons{{
+  static constexpr std::array<std::array<std::string_view, 2>, 6> reasons{{
+      {"illegal EOF in scalar", "a quote is not closed"},
       {"illegal map value", "a text with a colon in it needs quotes"},
       {"end of sequence flow not found", "a bracket [ is not closed or a comma is missing"},
       {"end of map flow not found", "a brace { is not closed or a comma is missing"},

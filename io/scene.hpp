@@ -305,10 +305,11 @@ struct ParticleOutputSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
-                      optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
-                               "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, any "
-                               "history variable of a law")};
+    return std::tuple{
+        required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
+        optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
+                 "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, and any "
+                 "history variable of a law")};
   }
 };
 

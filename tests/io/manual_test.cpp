@@ -32,10 +32,8 @@ std::map<std::string, std::string> row(const std::string& title, const std::stri
   for (const std::string column : {"key", "type", "unit", "range", "default", "meaning"}) {
     std::string cell;
     std::getline(line, cell, '|');
-    cells[column] =
-        cell.substr(cell.find_first_not_of(' '), cell.find_last_not_of(' ') + 1 - std::min(cell.find_first_not_of(' '), cell.size()));
-    if (cell.find_first_not_of(' ') == cell.npos)
-      cells[column] = "";
+    const auto first = cell.find_first_not_of(' ');
+    cells[column] = first == cell.npos ? "" : cell.substr(first, cell.find_last_not_of(' ') + 1 - first);
   }
   return cells;
 }

@@ -172,7 +172,7 @@ TEST(Reader, ErrorsInOverridesQuoteTheOverride)
   EXPECT_EQ(complaint("title[0]=a"), "--set title[0]=a: error: title: there is no [0]: it is not a list" + end);
   EXPECT_EQ(complaint("title.name=a"), "--set title.name=a: error: title: there is no key \"name\": it is not a mapping" + end);
   EXPECT_THAT(complaint("title=[a"), StartsWith("--set title=[a: error: this is not YAML"));
-  EXPECT_EQ(complaint("title=\"a"), "--set title=\"a: error: the quote \" is not closed" + end);
+  EXPECT_EQ(complaint("title=\"a"), "--set title=\"a: error: this is not YAML: illegal EOF in scalar; a quote is not closed" + end);
   EXPECT_EQ(complaint("title=*a"), "--set title=*a: error: this is not YAML: the referenced anchor is not defined" + end);
   EXPECT_EQ(complaint("time={end: 1, end: 2}"), "--set time={end: 1, end: 2}: error: duplicate key \"end\"" + end);
 }
@@ -270,7 +270,7 @@ TEST(Reader, AnswersEveryDamagedSceneWithASceneOrWithErrors)
     }
   }
   // Some damage is none (blanks, comments, other numbers), most is.
-  EXPECT_GT(read, 300);
+  EXPECT_GT(read, 100);
   EXPECT_GT(refused, 1000);
 }
 

@@ -162,10 +162,10 @@ TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
 TEST(Scene, KnowsWhereEverythingWasAskedFor)
 {
   const Scene s = scene("plane.yaml");
-  EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":28:5");
+  EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":25:5");
   EXPECT_EQ(s.materials.at(1).where.path, "materials[1] \"rock\"");
   EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.path, "boundaries[3]");
-  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 40);
+  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 37);
   EXPECT_EQ(s.outputs.history.value().points.at(0).where.path, "outputs.history.points[0] \"top\"");
 }
 
@@ -222,9 +222,9 @@ TEST(Scene, ExamplesUseEveryKeyThereIs)
   Keys keys;
   keys.of(std::type_identity<Scene>{});
   EXPECT_GT(keys.all.size(), 60U);
+  keys.all.erase("geometry");  // another file; tests of the mesher read one
   for (const auto& key : keys.all)
-    if (key != "geometry")  // another file; tests of the mesher read one
-      EXPECT_THAT(text, testing::HasSubstr(key + ":"));
+    EXPECT_THAT(text, testing::HasSubstr(key + ":"));
 }
 
 bool holds(const Shape& shape, std::initializer_list<Real> x) { return contains(shape, std::span(x.begin(), x.size())); }
