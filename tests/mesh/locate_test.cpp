@@ -184,6 +184,32 @@ TEST(Locator, NotAPlaceIsNowhere)
       }
 }
 
+TEST(Locator, ProbeSaysDeepOnlyWhereTheAnswerIsItsCell)
+{
+  for (const auto& mesh : solid_meshes()) {
+    const Locator<3> locate(mesh);
+    Random random;
+    int deep = 0;
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+      const auto probe = locate.probe(mesh, c);
+      EXPECT_FALSE(probe.deep(mesh.node(mesh.cell(c)[1])));
+      EXPECT_FALSE(probe.deep(Vec<3>::Constant(std::numeric_limits<Real>::quiet_NaN())));
+      const auto s = mesh.corners(c);
+      EXPECT_TRUE(probe.deep(centroid<3>(s)));
+      for (int i = 0; i < 10; ++i) {
+        std::array<Real, 4> lambda{0, 1.2 * random() - 0.1, 0.6 * random() - 0.1, 0.4 * random() - 0.1};
+        lambda[0] = 1 - lambda[1] - lambda[2] - lambda[3];
+        const Vec<3> x = point<3>(s, lambda);
+        if (!probe.deep(x))
+          continue;
+        ++deep;
+        EXPECT_EQ(locate(mesh, x, none), c);
+      }
+    }
+    EXPECT_GT(deep, mesh.n_cells());  // of ten tries per cell
+  }
+}
+
 /// A square with a slot in the middle, and a second square that does not touch it.
 Mesh<2> slotted()
 {
