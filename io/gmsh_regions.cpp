@@ -38,7 +38,7 @@ class ShapeMaker {
     if constexpr (D == 2)
       return one(gmsh::model::occ::addDisk(centre[0], centre[1], 0, sphere.radius, sphere.radius));
     else
-      return one(gmsh::model::occ::addSphere(centre[0], centre[1], centre[2], sphere.radius));
+      return turned(gmsh::model::occ::addSphere(centre[0], centre[1], centre[2], sphere.radius), centre, {1, 2, 3});
   }
 
   gmsh::vectorpair operator()(const Cylinder& cylinder) const
@@ -49,7 +49,7 @@ class ShapeMaker {
       const Vec3 from = point(cylinder.from, "from"), axis = point(cylinder.to, "to") - from;
       if (!(axis.norm() > 0) || !(cylinder.radius > 0))
         refuse("a cylinder needs two different ends and a positive radius");
-      return one(gmsh::model::occ::addCylinder(from[0], from[1], from[2], axis[0], axis[1], axis[2], cylinder.radius));
+      return turned(gmsh::model::occ::addCylinder(from[0], from[1], from[2], axis[0], axis[1], axis[2], cylinder.radius), from, axis);
     }
   }
 
@@ -77,6 +77,14 @@ class ShapeMaker {
     throw SceneErrors(region_.where, fmt::format("region \"{}\": {}", region_.name, why));
   }
   static gmsh::vectorpair one(int tag) { return {{D, tag}}; }
+
+  /// A round solid turned about an axis of its own, so that its seam does not lie in the plane of another region's face: gmsh 4.8
+  /// cannot mesh a seam that was cut away.
+  static gmsh::vectorpair turned(int tag, const Vec3& centre, const Vec3& axis)
+  {
+    gmsh::model::occ::rotate({{3, tag}}, centre[0], centre[1], centre[2], axis[0], axis[1], axis[2], 0.7);
+    return one(tag);
+  }
 
   Vec3 point(const std::vector<Real>& numbers, std::string_view key) const
   {
@@ -197,6 +205,7 @@ MeshData<D> mesh_geometry(const MeshSpec& spec, const std::filesystem::path& fil
   GmshSession session(spec.where);
   return session.run([&] {
     gmsh::open(file.string());
+    session.check(fmt::format("opening \"{}\"", file.string()));
     if (imported.contains(kind)) {
       const std::vector<Named> parts = imported_solids(D);
       if (parts.empty())
@@ -222,6 +231,7 @@ MeshData<D> mesh_regions(const MeshSpec& spec)
       parts.push_back({region.name, std::visit(ShapeMaker<D>(region), region.shape)});
     }
     const std::string hidden = share_faces(D, parts);
+    session.check("cutting the regions along each other");
     for (const RegionSpec& region : spec.regions)
       if (region.name == hidden)
         throw SceneErrors(region.where, fmt::format("nothing is left of region \"{}\": earlier regions cover it", hidden));

@@ -11,16 +11,24 @@
 
 namespace talus {
 
+namespace {
+constexpr int delaunay = 1, hxt = 10;  // numbers of Mesh.Algorithm3D
+}  // namespace
+
 GmshSession::GmshSession(Where asked_by) : asked_by_(std::move(asked_by))
 {
   try {
     gmsh::initialize(0, nullptr, false);  // no configuration files: they would change the mesh behind the scene's back
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::logger::start();
-    gmsh::option::setNumber("General.NumThreads", 1);  // with more, HXT gives another mesh each time
+    // An error thrown inside the threads of the mesher would end the program: they are collected, and looked for after meshing.
+    gmsh::option::setNumber("General.AbortOnError", 0);
+    gmsh::option::setNumber("General.NumThreads", 1);
     gmsh::option::setNumber("Mesh.RandomSeed", 1);
     gmsh::option::setNumber("Mesh.Algorithm", 6);  // Frontal-Delaunay
-    gmsh::option::setNumber("Mesh.Algorithm3D", 10);  // HXT
+    // HXT is several times faster, but in 4.8 it keeps its random state between meshes and orders volumes by their addresses: no two
+    // meshes are equal.
+    gmsh::option::setNumber("Mesh.Algorithm3D", delaunay);
     gmsh::option::setString("Geometry.OCCTargetUnit", "M");
   } catch (const std::string& complaint) {
     throw EnvironmentError("gmsh does not start: " + complaint);
@@ -35,21 +43,29 @@ GmshSession::~GmshSession()
   }
 }
 
-std::string GmshSession::messages() const
+std::vector<std::string> GmshSession::errors() const
 {
   std::vector<std::string> lines;
   gmsh::logger::get(lines);
-  std::string text;
-  for (const std::string& line : lines)
-    if (line.starts_with("Error") && text.size() < 1000)
-      text += fmt::format("\n  gmsh: {}", line);
-  return text;
+  std::erase_if(lines, [](const std::string& line) { return !line.starts_with("Error"); });
+  return lines;
 }
 
 void GmshSession::fail(const std::string& complaint) const
 {
-  const std::string logged = messages();
-  throw SceneErrors(asked_by_, fmt::format("gmsh cannot make this mesh: {}{}", complaint, logged));
+  constexpr std::size_t enough = 5;
+  std::string text = "gmsh cannot make this mesh: " + complaint;
+  std::vector<std::string> lines = errors();
+  lines.resize(std::min(lines.size(), enough));
+  for (const std::string& line : lines)
+    text += "\n  gmsh: " + line;
+  throw SceneErrors(asked_by_, text);
+}
+
+void GmshSession::check(const std::string& doing) const
+{
+  if (!errors().empty())
+    fail(doing + " failed");
 }
 
 void GmshSession::set_sizes(const MeshSpec& spec, int dimension, bool points_count)
@@ -97,22 +113,20 @@ void GmshSession::set_sizes(const MeshSpec& spec, int dimension, bool points_cou
 
 void GmshSession::generate(int dimension)
 {
-  const auto has_cells = [&] {
-    std::vector<std::size_t> tags, nodes;
-    gmsh::model::mesh::getElementsByType(dimension == 2 ? 2 : 4, tags, nodes);
-    return !tags.empty();
-  };
-  try {
+  const auto generated = [&] {
+    const std::size_t before = errors().size();
     gmsh::model::mesh::generate(dimension);
-    if (dimension == 2 || has_cells())
+    return errors().size() == before;
+  };
+  if (generated())
+    return;
+  if (dimension == 3) {
+    gmsh::model::mesh::clear();
+    gmsh::option::setNumber("Mesh.Algorithm3D", hxt);
+    if (generated())
       return;
-  } catch (const std::string&) {
-    if (dimension == 2)
-      throw;
   }
-  gmsh::model::mesh::clear();
-  gmsh::option::setNumber("Mesh.Algorithm3D", 1);  // Delaunay
-  gmsh::model::mesh::generate(dimension);
+  fail("meshing failed");
 }
 
 template <int D>

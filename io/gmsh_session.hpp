@@ -1,5 +1,6 @@
 #pragma once
 // gmsh behind one door: silent, on one thread, its errors turned into SceneErrors.  One session at a time.
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,13 +21,15 @@ class GmshSession {
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
 
-  /// f(); what gmsh throws becomes SceneErrors with the errors it logged.
+  /// f(); what gmsh throws becomes SceneErrors with the errors it logged.  std::invalid_argument passes through.
   template <class F>
   auto run(F&& f)
   {
     try {
       return f();
     } catch (const SceneErrors&) {
+      throw;
+    } catch (const std::invalid_argument&) {  // what is wrong with the mesh, not with gmsh
       throw;
     } catch (const std::string& complaint) {  // gmsh 4.8 throws these
       fail(complaint);
@@ -35,18 +38,20 @@ class GmshSession {
     }
   }
   [[noreturn]] void fail(const std::string& complaint) const;
+  /// Throws if gmsh has logged an error: it does not throw them all.
+  void check(const std::string& doing) const;
 
   /// Edge lengths: `spec.size` everywhere, less in the boxes of `spec.refine`.  `points_count`: sizes given at the points of the
   /// geometry hold where they are smaller.
   void set_sizes(const MeshSpec& spec, int dimension, bool points_count);
-  /// Meshes the current model: Frontal-Delaunay in 2-D, HXT in 3-D (Delaunay where HXT fails).
+  /// Meshes the current model: Frontal-Delaunay in 2-D, Delaunay in 3-D (HXT where Delaunay fails).
   void generate(int dimension);
   /// The cells and physical groups of the current model.
   template <int D>
   MeshData<D> take();
 
  private:
-  std::string messages() const;
+  std::vector<std::string> errors() const;  ///< what gmsh logged as such
   Where asked_by_;
 };
 

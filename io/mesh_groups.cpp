@@ -70,7 +70,8 @@ template <int D>
 Vec<D> corner(const std::vector<Real>& numbers, std::string_view key, const GroupSpec& group)
 {
   if (numbers.size() != D)
-    throw SceneErrors(group.where, fmt::format("within.{} of group \"{}\" has {} numbers; the scene has dimension {}", key, group.name, numbers.size(), D));
+    throw SceneErrors(group.where, fmt::format("within.{} of group \"{}\" has {} numbers; the scene has dimension {}", key, group.name,
+                                               numbers.size(), D));
   return Eigen::Map<const Vec<D>>(numbers.data());
 }
 
@@ -121,7 +122,8 @@ void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
     if (data.facet_sets.contains(group.name))
       throw SceneErrors(group.where, fmt::format("the mesh has a facet group \"{}\" already", group.name));
     if (!(low.array() <= high.array()).all())
-      throw SceneErrors(group.where, fmt::format("group \"{}\": within.low {} is not below within.high {}", group.name, place<D>(low), place<D>(high)));
+      throw SceneErrors(group.where,
+                        fmt::format("group \"{}\": within.low {} is not below within.high {}", group.name, place<D>(low), place<D>(high)));
     std::vector<FacetNodes<D>> inside;
     std::copy_if(boundary.begin(), boundary.end(), std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
       return std::all_of(nodes.begin(), nodes.end(), [&](Index n) {
@@ -131,8 +133,9 @@ void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
     });
     if (inside.empty()) {
       const auto [from, to] = bounds_of(data);
-      throw SceneErrors(group.where, fmt::format("group \"{}\": no boundary facet has all its corners between {} and {}; the mesh goes from {} to {}",
-                                                 group.name, place<D>(low), place<D>(high), place<D>(from), place<D>(to)));
+      throw SceneErrors(group.where,
+                        fmt::format("group \"{}\": no boundary facet has all its corners between {} and {}; the mesh goes from {} to {}",
+                                    group.name, place<D>(low), place<D>(high), place<D>(from), place<D>(to)));
     }
     data.facet_sets.emplace(group.name, std::move(inside));
   }

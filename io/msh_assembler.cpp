@@ -1,7 +1,6 @@
 #include "io/msh_assembler.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -35,8 +34,10 @@ void sort_unique(std::vector<T>& items)
 int dimension_of_element(std::int64_t type, int highest)
 {
   const auto refuse_shape = [](const char* shape) {
-    refuse("{} are not supported: mesh with triangles and tetrahedra only (in gmsh: Mesh.RecombineAll = 0, no Recombine, no Transfinite volumes)",
-           shape);
+    refuse(
+        "{} are not supported: mesh with triangles and tetrahedra only (in gmsh: Mesh.RecombineAll = 0, no Recombine, no Transfinite "
+        "volumes)",
+        shape);
   };
   switch (type) {
     case 15: return 0;
@@ -53,7 +54,8 @@ int dimension_of_element(std::int64_t type, int highest)
     default: break;
   }
   if (type >= 8 && type <= 140)
-    refuse("elements of type {} (second order or higher) are not supported: mesh with straight simplices (in gmsh: Mesh.ElementOrder = 1)", type);
+    refuse("elements of type {} (second order or higher) are not supported: mesh with straight simplices (in gmsh: Mesh.ElementOrder = 1)",
+           type);
   refuse("there is no element type {}", type);
 }
 
@@ -88,7 +90,8 @@ void MshAssembler<D>::close_nodes()
     high = high.cwiseMax(x);
   }
   extent_ = (high - low).template head<2>().maxCoeff();
-  const bool consecutive = std::adjacent_find(node_tags_.begin(), node_tags_.end(), [](auto a, auto b) { return b != a + 1; }) == node_tags_.end();
+  const bool consecutive =
+      std::adjacent_find(node_tags_.begin(), node_tags_.end(), [](auto a, auto b) { return b != a + 1; }) == node_tags_.end();
   if (consecutive)
     return;
   by_tag_.resize(nodes_.size());
@@ -127,8 +130,8 @@ void MshAssembler<D>::check_cell(std::int64_t tag, const Cell& cell) const
     const Real plane = nodes_[cells_.empty() ? cell[0] : cells_[0][0]][2];
     for (const Index n : cell)
       if (!(std::abs(nodes_[n][2] - plane) <= 1e-9 * extent_))  // round-off of a plane that was turned
-        refuse("the mesh is not in a plane of constant z: z = {} at node {}, {} elsewhere; a scene of dimension 2 lies in x and y", nodes_[n][2],
-               node_tags_[n], plane);
+        refuse("the mesh is not in a plane of constant z: z = {} at node {}, {} elsewhere; a scene of dimension 2 lies in x and y",
+               nodes_[n][2], node_tags_[n], plane);
   }
   const Real longest = longest_edge<D>(corners);
   if (!(std::abs(signed_volume<D>(corners)) > flat_cell * std::pow(longest, D)))  // false for what overflows, too
@@ -136,7 +139,8 @@ void MshAssembler<D>::check_cell(std::int64_t tag, const Cell& cell) const
 }
 
 template <int D>
-void MshAssembler<D>::add_element(std::int64_t tag, int dimension, std::span<const std::int64_t> groups, std::span<const std::int64_t> node_tags)
+void MshAssembler<D>::add_element(std::int64_t tag, int dimension, std::span<const std::int64_t> groups,
+                                  std::span<const std::int64_t> node_tags)
 {
   std::array<Index, 4> nodes{};
   for (int a = 0; a <= dimension; ++a) {
@@ -246,7 +250,8 @@ MeshData<D> MshAssembler<D>::finish(bool repeats)
     for (auto facet : facets) {
       for (Index& n : facet) {
         if (node_number[n] == none)
-          refuse("a facet of group \"{}\" touches node {}, which belongs to no cell: the group must lie on cells", name_of(key), node_tags_[n]);
+          refuse("a facet of group \"{}\" touches node {}, which belongs to no cell: the group must lie on cells", name_of(key),
+                 node_tags_[n]);
         n = node_number[n];
       }
       set.push_back(facet);

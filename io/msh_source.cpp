@@ -15,7 +15,10 @@ namespace {
 
 constexpr std::string_view blanks = " \t\r\n\v\f";
 
-bool printable(std::string_view text) { return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; }); }
+bool printable(std::string_view text)
+{
+  return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
+}
 
 std::string read_file(const std::filesystem::path& file, const Where& asked_by)
 {
@@ -39,8 +42,7 @@ std::string read_file(const std::filesystem::path& file, const Where& asked_by)
 
 MshSource::MshSource(const std::filesystem::path& file, Where asked_by)
     : file_(file), asked_by_(std::move(asked_by)), bytes_(read_file(file, asked_by_))
-{
-}
+{}
 
 void MshSource::fail(const std::string& complaint) const
 {
