@@ -1,0 +1,12 @@
+#!/usr/bin/env bash
+# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+[ -x build/talus ] || { echo "build/talus is missing: make build" >&2; exit 3; }
+
+scenes=("$@")
+[ ${#scenes[@]} -gt 0 ] || mapfile -t scenes < <(cd scenes && ls -d -- */ | tr -d /)
+for name in "${scenes[@]}"; do
+  build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
+  build/talus render "runs/$name" --size 900x420 --out "scenes/$name/picture.png"
+done
