@@ -8,5 +8,7 @@ scenes=("$@")
 [ ${#scenes[@]} -gt 0 ] || mapfile -t scenes < <(cd scenes && ls -d -- */ | tr -d /)
 for name in "${scenes[@]}"; do
   build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
-  build/talus render "runs/$name" --size 900x420 --out "scenes/$name/picture.png"
+  frame=last
+  [ "$name" = cantilever ] && frame=14  # t = 0.7 s, its lowest point; at the end it is back up
+  build/talus render "runs/$name" --frames "$frame" --size 900x420 --out "scenes/$name/picture.png"
 done
