@@ -180,7 +180,7 @@ std::vector<Named> imported_solids(int dimension)
     std::string name;
     gmsh::model::getEntityName(solids[i].first, solids[i].second, name);
     name = name.substr(name.rfind('/') + 1);
-    if (name.empty())
+    if (name.empty() || name.starts_with("Open CASCADE"))  // what OpenCASCADE writes for want of a name
       name = fmt::format("part_{}", i + 1);
     by_name[name].name = name;
     by_name[name].solids.push_back(solids[i]);

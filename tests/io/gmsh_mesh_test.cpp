@@ -310,23 +310,24 @@ TEST_F(GmshGeometry, MeshErrorsOfFilesNameTheFile)
   EXPECT_THAT(complaint<2>(spec, folder_.path()), HasSubstr("scene.yaml:3:7: error: mesh: mesh file \"a.msh\": "));
 }
 
-TEST_F(GmshGeometry, FilesOfOpenCascadeBecomeGroupsThatShareFaces)
+TEST_F(GmshGeometry, SolidsOfAStepFileInMillimetresShareFacesInMetres)
 {
   gmsh::initialize(0, nullptr, false);
   gmsh::option::setNumber("General.Terminal", 0);
-  gmsh::model::occ::addBox(0, 0, 0, 1, 1, 1);
-  gmsh::model::occ::addBox(1, 0, 0, 1, 1, 1);
+  gmsh::model::occ::addBox(0, 0, 0, 1000, 1000, 1000);
+  gmsh::model::occ::addBox(1000, 0, 0, 1000, 1000, 1000);
   gmsh::model::occ::synchronize();
-  gmsh::write((folder_ / "two.brep").string());
+  gmsh::write((folder_ / "two.step").string());
   gmsh::finalize();
   MeshSpec spec;
   spec.where = place_of_mesh;
-  spec.geometry = "two.brep";
+  spec.geometry = "two.step";
   spec.size = 0.5;
   const Mesh<3> mesh = load_mesh<3>(spec, folder_.path());
   EXPECT_THAT(mesh.cell_set_names(), UnorderedElementsAre("part_1", "part_2"));
   EXPECT_NEAR(volume(mesh, "part_1"), 1, round_off);
   EXPECT_NEAR(volume(mesh, "part_2"), 1, round_off);
+  EXPECT_NEAR(mesh.high()[0], 2, 2 * round_off);
   const auto hull = mesh.facet_set("boundary");
   Real area = 0;
   for (const Facet f : hull.value())
