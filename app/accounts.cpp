@@ -79,7 +79,8 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
   now.loads = before_.loads + e.loads;
   now.walls = before_.walls + e.walls;
   now.transfer = transfer_before_ + e.transfer(now.kinetic + taken_out_);
-  now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction - now.damping - now.transfer;
+  now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction -
+               now.damping - now.transfer;
   return now;
 }
 

@@ -8,10 +8,10 @@ namespace talus {
 /// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + transfer + defect.
 struct EnergyNow {
   Real kinetic_start{}, kinetic{}, strain{}, plastic{};
-  Real friction{}, damping{};     ///< damping: with the motion that is taken out at the end of a geostatic stage
+  Real friction{}, damping{};  ///< damping: with the motion that is taken out at the end of a geostatic stage
   Real gravity{}, loads{}, walls{};
-  Real transfer{};                ///< lost between particles and nodes
-  Real defect{};                  ///< what the terms above leave unexplained
+  Real transfer{};  ///< lost between particles and nodes
+  Real defect{};    ///< what the terms above leave unexplained
 
   Real dissipated() const noexcept { return plastic + friction + damping; }
   Real largest_term() const noexcept;
@@ -33,7 +33,7 @@ class Accounts {
   bool momentum_closes() const noexcept { return !damped_; }
 
  private:
-  EnergyLedger before_;            // stages that are over, their kinetic_start and plastic_start unused
+  EnergyLedger before_;  // stages that are over, their kinetic_start and plastic_start unused
   Real kinetic_begin_ = 0, plastic_begin_ = 0, transfer_before_ = 0;
   Real kinetic_last_ = 0, taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;

@@ -25,9 +25,10 @@ void check(const Scene& scene)
     fmt::print(stderr, "warning: {}\n", warning);
   constexpr Real mega = 1e6;
   fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}", scene.title, D, scene.kernel, cells, nodes, particles, bodies);
-  fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps, static_cast<Real>(cost.steps) * particles / mega);
-  fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / mega, static_cast<Real>(cost.mesh_bytes) / mega,
-             static_cast<Real>(cost.node_bytes) / mega);
+  fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
+             static_cast<Real>(cost.steps) * particles / mega);
+  fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / mega,
+             static_cast<Real>(cost.mesh_bytes) / mega, static_cast<Real>(cost.node_bytes) / mega);
   fmt::print("{}: no errors\n", scene.file);
 }
 

@@ -26,8 +26,8 @@ void check_scene(const std::filesystem::path& scene, const std::vector<std::stri
 struct MeshOptions {
   std::filesystem::path file;  ///< a scene, a .msh, or a geometry
   std::vector<std::string> set;
-  std::optional<Real> size;            ///< edge length for a geometry [m]
-  std::optional<int> dimension;        ///< of a file; default: that of its largest cells
+  std::optional<Real> size;      ///< edge length for a geometry [m]
+  std::optional<int> dimension;  ///< of a file; default: that of its largest cells
   std::optional<std::filesystem::path> out;
 };
 /// Statistics and groups of a mesh; writes it if asked to.

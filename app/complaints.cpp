@@ -26,9 +26,11 @@ void Complaints::add(Where where, std::string_view key, std::string message)
   problems_.push_back({std::move(where), std::move(message), std::move(line)});
 }
 
-void Complaints::unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name, std::vector<std::string> known)
+void Complaints::unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
+                               std::vector<std::string> known)
 {
-  const std::string has = known.empty() ? fmt::format("; the mesh has no {} groups", kind) : fmt::format("; the mesh has {}", or_list(known));
+  const std::string has =
+      known.empty() ? fmt::format("; the mesh has no {} groups", kind) : fmt::format("; the mesh has {}", or_list(known));
   const auto near = closest_match(name, known);
   add(where, key, fmt::format("the mesh has no {} group \"{}\"{}", kind, name, near ? fmt::format(" — did you mean \"{}\"?", *near) : has));
 }

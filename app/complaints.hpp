@@ -14,7 +14,8 @@ class Complaints {
   /// About the value of `key` in the mapping at `where`; an empty key means the mapping itself.
   void add(Where where, std::string_view key, std::string message);
   /// There is no such group: names the nearest one, or all.
-  void unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name, std::vector<std::string> known);
+  void unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
+                     std::vector<std::string> known);
   void throw_if_any() const;
 
  private:

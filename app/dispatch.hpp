@@ -67,8 +67,9 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     m.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { cost.particle_bytes += bytes(column); });
     for (const AnyBatch& material : m.materials)
       std::visit([&](const auto& batch) { cost.particle_bytes += bytes(batch.history); }, material);
-    cost.mesh_bytes = static_cast<std::int64_t>(m.mesh.nodes().size_bytes() + m.mesh.cells().size_bytes()) + m.mesh.n_cells() * static_cast<std::int64_t>(2 * sizeof(Real)) +
-                      bytes(m.mesh.cells_of_node().item) + bytes(m.mesh.ring_of_node().item);
+    cost.mesh_bytes = static_cast<std::int64_t>(m.mesh.nodes().size_bytes() + m.mesh.cells().size_bytes()) +
+                      m.mesh.n_cells() * static_cast<std::int64_t>(2 * sizeof(Real)) + bytes(m.mesh.cells_of_node().item) +
+                      bytes(m.mesh.ring_of_node().item);
     cost.node_bytes = bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
   });
   return cost;

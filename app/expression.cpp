@@ -31,7 +31,8 @@ std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> pla
   }
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
-      throw std::invalid_argument(fmt::format("\"{}\" is {} at ({:.6g}, {:.6g}, {:.6g})", formula, values[i], places[i][0], places[i][1], places[i][2]));
+      throw std::invalid_argument(
+          fmt::format("\"{}\" is {} at ({:.6g}, {:.6g}, {:.6g})", formula, values[i], places[i][0], places[i][1], places[i][2]));
   return values;
 }
 

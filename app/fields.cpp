@@ -132,7 +132,8 @@ std::vector<Index> rows_by_id(const Particles<D>& particles)
 {
   std::vector<Index> rows(particles.id.size());
   std::iota(rows.begin(), rows.end(), Index{0});
-  std::sort(rows.begin(), rows.end(), [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
+  std::sort(rows.begin(), rows.end(),
+            [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
   return rows;
 }
 

@@ -34,7 +34,9 @@ std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bo
 {
   const Vec<D> at = Eigen::Map<const Vec<D>>(spec.at.data());
   std::pair<Real, std::int64_t> best{std::numeric_limits<Real>::infinity(), 0};
-  for_each_row(spec.body, bodies, [&](std::size_t p) { best = std::min(best, std::pair{(particles.x[p] - at).squaredNorm(), particles.id[p]}); });
+  for_each_row(spec.body, bodies, [&](std::size_t p) {
+    best = std::min(best, std::pair{(particles.x[p] - at).squaredNorm(), particles.id[p]});
+  });
   return best.second;
 }
 
@@ -72,7 +74,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
   for (std::size_t d = D == 2 ? 2 : 0; d < 3; ++d)
     all.push_back({fmt::format("angular_momentum_{}", axes[d]), "kg m^2/s"});
   vector("centre_", "m");
-  for (const char* energy : {"kinetic", "strain", "plastic", "friction", "damping", "gravity_work", "load_work", "wall_work", "transfer_loss", "energy_defect"})
+  for (const char* energy :
+       {"kinetic", "strain", "plastic", "friction", "damping", "gravity_work", "load_work", "wall_work", "transfer_loss", "energy_defect"})
     all.push_back({energy, "J"});
   all.push_back({"residual"});
   for (const Wall<D>& wall : start.walls.walls())
@@ -108,7 +111,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
     row.push_back(sums.angular[d]);
   put<D>(sums.centre / sums.mass, row);
   const EnergyNow e = accounts.energy(frame);
-  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer, e.defect, frame.residual});
+  row.insert(row.end(),
+             {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer, e.defect, frame.residual});
   const Real elapsed = clock.time - time_;
   for (std::size_t w = 0; w < impulse_.size(); ++w) {
     const Vec<D>& impulse = frame.walls.walls()[w].impulse;

@@ -27,7 +27,8 @@ template <int D>
 Real storage_of(const Frame<D>& frame)
 {
   std::size_t bytes = 0;
-  frame.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+  frame.particles.for_each_column(
+      [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
   for (const AnyBatch& material : frame.materials)
     std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
   return static_cast<Real>(bytes) / static_cast<Real>(frame.particles.size());
@@ -37,7 +38,8 @@ template <int D>
 BodySummary summary_of(const Frame<D>& frame, std::size_t b)
 {
   const Body& body = frame.bodies[b];
-  BodySummary summary{body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]), std::string(law_name(frame.materials[b])), body.size(), 0};
+  BodySummary summary{body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]),
+                      std::string(law_name(frame.materials[b])), body.size(), 0};
   for (Index row = body.begin; row < body.end; ++row)
     summary.mass += frame.particles.mass[static_cast<std::size_t>(row)];
   return summary;

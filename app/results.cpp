@@ -17,7 +17,8 @@ namespace {
 /// Files that a run writes, and the pictures drawn of them.
 bool is_result(const fs::path& file)
 {
-  static constexpr std::array<std::string_view, 7> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd", "mesh.msh", "mesh.vtu", "scene.yaml"};
+  static constexpr std::array<std::string_view, 7> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd",
+                                                         "mesh.msh",     "mesh.vtu",    "scene.yaml"};
   const std::string name = file.filename().string();
   for (const std::string_view known : names)
     if (name == known)
@@ -39,7 +40,8 @@ void prepare_results(const fs::path& folder)
 try {
   fs::create_directories(folder);
   if (!fs::is_empty(folder) && !fs::exists(folder / "summary.json"))
-    throw EnvironmentError(fmt::format("{} is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out", folder.string()));
+    throw EnvironmentError(fmt::format(
+        "{} is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out", folder.string()));
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     throw EnvironmentError(fmt::format("{} cannot be written", folder.string()));
   for (const auto& entry : fs::directory_iterator(folder))

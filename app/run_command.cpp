@@ -35,9 +35,11 @@ class Run {
     watch_.lap(build_seconds_);
     try {
       simulate(scene_, std::move(mesh), std::move(setup),
-               {[&](const Frame<D>& frame, Moment moment) { recorder.watch(frame, moment); }, [&](const StageResult& result) { recorder.stage_done(result); }});
+               {[&](const Frame<D>& frame, Moment moment) { recorder.watch(frame, moment); },
+                [&](const StageResult& result) { recorder.stage_done(result); }});
     } catch (const RunError& e) {
-      const std::string message = fmt::format("{}{}", e.what(), recorder.last_output().empty() ? "" : fmt::format("; last good output {}", recorder.last_output()));
+      const std::string message =
+          fmt::format("{}{}", e.what(), recorder.last_output().empty() ? "" : fmt::format("; last good output {}", recorder.last_output()));
       finish(recorder, RunStatus::failed, message);
       throw RunError(message);
     }
@@ -60,8 +62,8 @@ class Run {
     for (const std::string& warning : setup.warnings)
       fmt::print(stderr, "warning: {}\n", warning);
     if (!options_.quiet)
-      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {} thread{}\n", scene_.title, setup.particles.size(), mesh.n_cells(), mesh.n_nodes(), scene_.kernel,
-                 summary_.transfer, threads(), threads() == 1 ? "" : "s");
+      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {} thread{}\n", scene_.title, setup.particles.size(),
+                 mesh.n_cells(), mesh.n_nodes(), scene_.kernel, summary_.transfer, threads(), threads() == 1 ? "" : "s");
     std::fflush(stdout);
   }
 

@@ -30,9 +30,12 @@ class Seeder {
       fill(c, *points, spec, density);
     const Index end = seeds_.particles.size();
     if (begin == end)
-      complaints_.add(spec.where, "", fmt::format("the body has no particles: {}", spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
+      complaints_.add(spec.where, "",
+                      fmt::format("the body has no particles: {}",
+                                  spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
-    std::visit([&](const auto& law) { seeds_.materials.push_back(make_batch(law, begin, end, material->name, material->where)); }, material->law);
+    std::visit([&](const auto& law) { seeds_.materials.push_back(make_batch(law, begin, end, material->name, material->where)); },
+               material->law);
     set_velocity(spec, begin, end);
   }
 
@@ -52,7 +55,8 @@ class Seeder {
     for (const int n : seeding_counts<D>())
       known.push_back(std::to_string(n));
     complaints_.add(spec.where, "particles_per_cell",
-                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell, D == 2 ? "triangle" : "tetrahedron", or_list(known)));
+                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell,
+                                D == 2 ? "triangle" : "tetrahedron", or_list(known)));
   }
 
   std::optional<std::vector<Index>> cells_of(const BodySpec& spec)
@@ -71,7 +75,8 @@ class Seeder {
 
   const MaterialSpec* material_of(const BodySpec& spec) const
   {
-    const auto found = std::find_if(scene_.materials.begin(), scene_.materials.end(), [&](const MaterialSpec& m) { return m.name == spec.material; });
+    const auto found =
+        std::find_if(scene_.materials.begin(), scene_.materials.end(), [&](const MaterialSpec& m) { return m.name == spec.material; });
     return found == scene_.materials.end() ? nullptr : &*found;  // the reader has complained
   }
 
@@ -137,8 +142,8 @@ void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, std::vector<std:
     }
     for (std::size_t other = 0; other < b; ++other)
       if (shared[other] > 0)
-        warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(seeds.bodies[b].where), seeds.bodies[other].name, seeds.bodies[b].name,
-                                       shared[other], shared[other] == 1 ? "" : "s"));
+        warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(seeds.bodies[b].where),
+                                       seeds.bodies[other].name, seeds.bodies[b].name, shared[other], shared[other] == 1 ? "" : "s"));
   }
 }
 
@@ -153,7 +158,8 @@ Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, s
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!scene.bodies[i].region.empty() && scene.bodies[i].region == scene.bodies[j].region)
-        complaints.add(scene.bodies[i].where, "region", fmt::format("body \"{}\" fills the cell group \"{}\" already", scene.bodies[j].name, scene.bodies[i].region));
+        complaints.add(scene.bodies[i].where, "region",
+                       fmt::format("body \"{}\" fills the cell group \"{}\" already", scene.bodies[j].name, scene.bodies[i].region));
   Seeds<D> seeds = seeder.take();
   warn_of_shared_cells(seeds, mesh.n_cells(), warnings);
   return seeds;

@@ -94,9 +94,11 @@ class LoadBuilder {
       loaded += has_particles(facet.cell) ? mesh_.area_vector(facet).norm() : 0;
     }
     if (loaded == 0)
-      return complaints_.add(spec.where, "on", fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
+      return complaints_.add(spec.where, "on",
+                             fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
     if (loaded < area * (1 - 1e-9))  // sums of the same areas differ by round-off only
-      setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load", to_string(spec.where), 100 * (1 - loaded / area), spec.on));
+      setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
+                                            to_string(spec.where), 100 * (1 - loaded / area), spec.on));
     if (spec.carried_by == Carrier::particles)
       setup_.loads.on_particles.push_back(filled(carried_by_particles<D>(mesh_, *facets, particles_), spec));
     else
@@ -133,7 +135,11 @@ class LoadBuilder {
 
 bool can_start_from_stress(const AnyBatch& material)
 {
-  return std::visit([]<class L>(const Batch<L>& batch) { return requires(typename L::State& state) { batch.law.prestress(Mat3(), state); }; }, material);
+  return std::visit(
+      []<class L>(const Batch<L>& batch) {
+        return requires(typename L::State & state) { batch.law.prestress(Mat3(), state); };
+      },
+      material);
 }
 
 Stage stage_of(const std::string& name, Real duration, Real damping, const Where& where)
@@ -178,9 +184,10 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
   for (const Stage& stage : setup.stages)
     for (std::size_t b = 0; stage.k0 && b < setup.bodies.size(); ++b)
       if (!can_start_from_stress(setup.materials[b]))
-        complaints.add(stage.where, "initial_stress",
-                       fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)", law_name(setup.materials[b]),
-                                   setup.bodies[b].name));
+        complaints.add(
+            stage.where, "initial_stress",
+            fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
+                        law_name(setup.materials[b]), setup.bodies[b].name));
 }
 
 }  // namespace
@@ -216,7 +223,9 @@ void check_picture(const Scene& scene, Complaints& complaints)
   std::vector<std::string> known(particle_fields.begin(), particle_fields.end());
   known.emplace_back("body");
   for (const MaterialSpec& material : scene.materials)
-    std::visit([&]<class Law>(const Law&) { for_each_field<typename Law::State>([&](const auto& variable) { known.emplace_back(variable.key); }); }, material.law);
+    std::visit([&]<class Law>(
+                   const Law&) { for_each_field<typename Law::State>([&](const auto& variable) { known.emplace_back(variable.key); }); },
+               material.law);
   for (const std::string& name : particle_fields_of(scene.outputs))
     if (std::find(known.begin(), known.end(), name) == known.end())
       complaints.add(scene.where, "outputs.picture.field", fmt::format("there is no field \"{}\"{}", name, suggestion(name, known)));

@@ -16,8 +16,8 @@ struct Audience {
 
 /// What a model costs before it has made a step.
 struct Estimate {
-  Real dt;                  ///< first step [s]
-  std::int64_t steps;       ///< of all stages with that step
+  Real dt;             ///< first step [s]
+  std::int64_t steps;  ///< of all stages with that step
   std::int64_t particle_bytes, mesh_bytes, node_bytes;
 };
 

@@ -33,8 +33,17 @@ EnergyNow balance_of(const StageResult& stage)
 
 std::array<std::pair<std::string_view, Real>, 11> terms_of(const EnergyNow& e)
 {
-  return {{{"gravity_work", e.gravity}, {"load_work", e.loads}, {"wall_work", e.walls}, {"kinetic_start", e.kinetic_start}, {"kinetic", e.kinetic},
-           {"strain", e.strain}, {"plastic", e.plastic}, {"friction", e.friction}, {"damping", e.damping}, {"transfer_loss", e.transfer}, {"energy_defect", e.defect}}};
+  return {{{"gravity_work", e.gravity},
+           {"load_work", e.loads},
+           {"wall_work", e.walls},
+           {"kinetic_start", e.kinetic_start},
+           {"kinetic", e.kinetic},
+           {"strain", e.strain},
+           {"plastic", e.plastic},
+           {"friction", e.friction},
+           {"damping", e.damping},
+           {"transfer_loss", e.transfer},
+           {"energy_defect", e.defect}}};
 }
 
 Real share(Real part, Real whole) { return whole > 0 ? std::abs(part) / whole : 0; }
@@ -49,7 +58,10 @@ std::int64_t peak_memory()
 template <int D>
 std::vector<NamedValue> named(const MeshQuality<D>& q)
 {
-  return {{"smallest_mean_ratio", q.smallest_mean_ratio, ""}, {"smallest_altitude", q.smallest_altitude, "m"}, {"median_altitude", q.median_altitude, "m"}, {"gradation", q.gradation, ""}};
+  return {{"smallest_mean_ratio", q.smallest_mean_ratio, ""},
+          {"smallest_altitude", q.smallest_altitude, "m"},
+          {"median_altitude", q.median_altitude, "m"},
+          {"gradation", q.gradation, ""}};
 }
 
 template <int D>
@@ -103,7 +115,8 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.message = "the run did not end";
   s.dimension = scene.dimension;
   s.kernel = scene.kernel;
-  s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)], setup.transfer.musl ? ", musl" : "");
+  s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
+                           setup.transfer.musl ? ", musl" : "");
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
   s.mesh_cells = mesh.n_cells();
@@ -120,13 +133,20 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   s.files = recorder.files();
   for (const StageResult& stage : recorder.stages()) {
     const bool geostatic = stage.name == "geostatic";
-    s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, geostatic ? std::optional(stage.residual) : std::nullopt, quick ? "quick" : geostatic ? "at rest" : "done"});
+    s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, geostatic ? std::optional(stage.residual) : std::nullopt,
+                        quick       ? "quick"
+                        : geostatic ? "at rest"
+                                    : "done"});
   }
   s.steps = last.clock.step;
   s.simulated_time = last.clock.time;
   const Timings& t = last.timings;
-  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, Real>>{
-           {"locate", t.locate}, {"scatter", t.scatter}, {"nodes", t.nodes}, {"gather", t.gather}, {"stress", t.stress}, {"output", recorder.output_seconds()}})
+  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, Real>>{{"locate", t.locate},
+                                                                                       {"scatter", t.scatter},
+                                                                                       {"nodes", t.nodes},
+                                                                                       {"gather", t.gather},
+                                                                                       {"stress", t.stress},
+                                                                                       {"output", recorder.output_seconds()}})
     s.wall_seconds.push_back({name, value, ""});
   const Real in_steps = t.locate + t.scatter + t.nodes + t.gather + t.stress;
   s.particle_steps_per_second = in_steps > 0 ? t.particle_steps / in_steps : 0;
@@ -135,11 +155,13 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   if (!recorder.stages().empty()) {
     s.energy = audit(recorder);
     if (last.momentum_closes)
-      s.momentum = MomentumAudit{numbers<D>(last.momentum_start), numbers<D>(last.momentum), numbers<D>(last.impulse), momentum_closure(last), "momenta at the start and impulses"};
+      s.momentum = MomentumAudit{numbers<D>(last.momentum_start), numbers<D>(last.momentum), numbers<D>(last.impulse),
+                                 momentum_closure(last), "momenta at the start and impulses"};
   }
   s.mass = MassAudit{last.mass.start, last.mass.start - last.mass.deleted, last.mass.deleted, last.mass.deleted_count};
   if (last.mass.held_count > 0)
-    s.warnings.push_back(fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count, last.mass.held_most));
+    s.warnings.push_back(
+        fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count, last.mass.held_most));
 }
 
 template <int D>
@@ -166,7 +188,8 @@ std::string table(const Recorder<D>& recorder)
     text += '\n';
   };
   line("defect/largest", [](const EnergyNow& b) { return fmt::format("{:.2g}", share(b.defect, b.largest_term())); });
-  line("defect/dissip.", [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
+  line("defect/dissip.",
+       [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
   text += fmt::format("mass {:.6g} kg", last.mass.start);
   if (last.mass.deleted_count > 0)
     text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh", last.mass.deleted, last.mass.deleted_count);

@@ -29,16 +29,17 @@ TEST_F(Check, NamesTheGroupThatWasMeant)
   write("block.yaml", block_scene("time: {end: 0.1}\nboundaries:\n  - {type: fixed, on: y_mim}\n"));
   const Outcome outcome = talus("check block.yaml");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_EQ(outcome.err, R"(block.yaml:9:5: error: boundaries[0].on: the mesh has no node, facet or cell group "y_mim" — did you mean "y_min"?
+  EXPECT_EQ(outcome.err,
+            R"yaml(block.yaml:9:5: error: boundaries[0].on: the mesh has no node, facet or cell group "y_mim" — did you mean "y_min"?
     9 |   - {type: fixed, on: y_mim}
       |     ^
 1 error, nothing was run.
-)");
+)yaml");
 }
 
 TEST_F(Check, FindsEverythingThatTheMeshContradictsAtOnce)
 {
-  write("wrong.yaml", R"(title: Wrong
+  write("wrong.yaml", R"yaml(title: Wrong
 dimension: 2
 mesh: {grid: {low: [0, 0], high: [1, 1], cells: [2, 2]}}
 time: {end: 1}
@@ -52,16 +53,19 @@ boundaries:
   - {type: roller, on: all}
 loads:
   - {type: traction, on: y_max, pressure: 1}
-)");
+)yaml");
   const Outcome outcome = talus("check wrong.yaml");
   EXPECT_EQ(outcome.code, 2);
-  for (const char* line : {"wrong.yaml:7:5: error: bodies[0] \"one\".region: the mesh has no cell group \"sand\"; the mesh has all",
-                           "wrong.yaml:8:5: error: bodies[1] \"two\": the body has no particles: its shape contains no particle centre of the mesh",
-                           "wrong.yaml:9:5: error: bodies[2] \"three\".particles_per_cell: there is no symmetric set of 5 points in a triangle; there is 1, 3, 4",
-                           "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[0]: \"sin(q)\" is no formula of x, y and z: ",
-                           "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[1]: \"1 / (x - x)\" is inf at (",
-                           "wrong.yaml:12:5: error: boundaries[0].on: the mesh has no facet group \"all\"",
-                           "wrong.yaml:14:5: error: loads[0].on: there are no particles behind the facets of \"y_max\" to carry the load", "7 errors, nothing was run."})
+  for (const char* line :
+       {"wrong.yaml:7:5: error: bodies[0] \"one\".region: the mesh has no cell group \"sand\"; the mesh has all",
+        "wrong.yaml:8:5: error: bodies[1] \"two\": the body has no particles: its shape contains no particle centre of the mesh",
+        "wrong.yaml:9:5: error: bodies[2] \"three\".particles_per_cell: there is no symmetric set of 5 points in a triangle; there is 1, "
+        "3, 4",
+        "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[0]: \"sin(q)\" is no formula of x, y and z: ",
+        "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[1]: \"1 / (x - x)\" is inf at (",
+        "wrong.yaml:12:5: error: boundaries[0].on: the mesh has no facet group \"all\"",
+        "wrong.yaml:14:5: error: loads[0].on: there are no particles behind the facets of \"y_max\" to carry the load",
+        "7 errors, nothing was run."})
     EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 
@@ -78,7 +82,8 @@ TEST_F(Check, WarnsOfBodiesThatShareCells)
   write("two.yaml", block_scene("  - {name: other, material: rubber, shape: {type: box, low: [1.4, 0], high: [2, 1]}}\ntime: {end: 1}\n"));
   const Outcome outcome = talus("check two.yaml");
   EXPECT_EQ(outcome.code, 0);
-  EXPECT_THAT(outcome.err, testing::MatchesRegex("warning: two\\.yaml:7:5: bodies \"block\" and \"other\" share [0-9]+ cells at the start\n"));
+  EXPECT_THAT(outcome.err,
+              testing::MatchesRegex("warning: two\\.yaml:7:5: bodies \"block\" and \"other\" share [0-9]+ cells at the start\n"));
 }
 
 }  // namespace

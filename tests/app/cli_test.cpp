@@ -56,10 +56,10 @@ TEST_F(CommandLine, MeshShowsGroupsAndWritesAMeshThatReadsBack)
 
 TEST_F(CommandLine, DriveStretchesAPointAsTheLawSays)
 {
-  write("test.yaml", R"(material: {law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0}
+  write("test.yaml", R"yaml(material: {law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0}
 path:
   - {steps: 10, time: 1, controls: {xx: {quantity: strain_rate, value: 0.1}}}
-)");
+)yaml");
   const Outcome outcome = talus("drive test.yaml --out table.csv");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const HistoryTable table = read_history(folder_ / "table.csv");

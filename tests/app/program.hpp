@@ -50,12 +50,12 @@ inline Real last(const HistoryTable& table, std::string_view column)
 /// An elastic block of 1 x 1 m in a box of 2 x 2 m; `rest` adds loads, boundaries and so on.
 inline std::string block_scene(const std::string& rest, const std::string& velocity = "")
 {
-  return R"(title: Block
+  return R"yaml(title: Block
 dimension: 2
 mesh: {grid: {low: [0, 0], high: [2, 2], cells: [8, 8]}}
 materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]
 bodies:
-  - {name: block, material: rubber, shape: {type: box, low: [0.5, 0], high: [1.5, 1]}, particles_per_cell: 3)" +
+  - {name: block, material: rubber, shape: {type: box, low: [0.5, 0], high: [1.5, 1]}, particles_per_cell: 3)yaml" +
          velocity + "}\n" + rest;
 }
 
