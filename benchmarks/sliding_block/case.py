@@ -1,0 +1,57 @@
+"""A block on an inclined face of the mesh: distance slid with Coulomb friction, and rest where friction holds it."""
+import numpy as np
+
+import lab as tools
+
+CASE = "sliding_block"
+COEFFICIENTS = [0, 0.3, 0.5]
+SCHEMES = ["flip", "tpic"]
+
+
+def slid(history, angle):
+    """Distance of the centre of mass from its start, down a slope of `angle` [rad]."""
+    dx, dy = history["centre_x"] - history["centre_x"][0], history["centre_y"] - history["centre_y"][0]
+    return dx * np.cos(angle) - dy * np.sin(angle)
+
+
+def closed_form(time, data, friction):
+    """Distance slid by a rigid block."""
+    angle = np.radians(data["angle [deg]"])
+    return data["gravity [m/s^2]"] * (np.sin(angle) - friction * np.cos(angle)) * time**2 / 2
+
+
+def creep(run):
+    """Largest distance of the centre of mass from its place at the end of the geostatic stage [m]."""
+    after = run.history["stage"] == 1
+    x, y = run.history["centre_x"][after], run.history["centre_y"][after]
+    return float(np.max(np.hypot(x - x[0], y - y[0])))
+
+
+def draw(figure, runs, data):
+    """Distance over time, closed forms as lines, runs as marks."""
+    axis = figure.subplots()
+    angle = np.radians(data["angle [deg]"])
+    for colour, friction in enumerate(COEFFICIENTS):
+        time = runs["flip", friction].history["time"]
+        axis.plot(time, closed_form(time, data, friction), color=f"C{colour}", label=f"closed form, friction {friction}")
+        for mark, scheme in zip(("o", "+"), SCHEMES):
+            axis.plot(time[::10], slid(runs[scheme, friction].history, angle)[::10], mark, color=f"C{colour}", fillstyle="none",
+                      label=f"talus, {scheme}" if colour == 0 else None)
+    axis.set(xlabel="time [s]", ylabel="distance slid [m]")
+    axis.legend()
+
+
+def evaluate(lab):
+    """Results for three coefficients with two transfers, and the creep of a block that must not move."""
+    data, angle, results, runs = tools.reference(CASE), np.radians(tools.reference(CASE)["angle [deg]"]), [], {}
+    for scheme in SCHEMES:
+        for friction in COEFFICIENTS:
+            run = lab.run(f"{CASE}/scene.yaml", f"{scheme}_{friction}", {"boundaries[0].coefficient": friction, "transfer.scheme": scheme})
+            runs[scheme, friction] = run
+            results.append(tools.Result(CASE, f"distance slid, friction {friction}, {scheme}", "m", float(slid(run.history, angle)[-1]), "within", 0.01,
+                                        float(closed_form(run.history["time"][-1], data, friction)), data["source"], run))
+    rest = lab.run(f"{CASE}/scene_rest.yaml", "rest", {})
+    results.append(tools.Result(CASE, "creep in 1 s at 25 degrees, friction 0.5", "m", creep(rest), "at most", data["rest"]["largest creep [m]"],
+                                0.0, data["rest"]["source"], rest))
+    lab.figure(CASE, "verification_block", lambda figure: draw(figure, runs, data), caption="Distance slid down a face inclined by 45 degrees.")
+    return results

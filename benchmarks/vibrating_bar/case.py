@@ -1,0 +1,70 @@
+"""Axial vibration of a bar: error against the exact mode, and how it falls with the size of the cells."""
+import numpy as np
+
+import bar_mode
+import lab as tools
+
+CASE = "vibrating_bar"
+SIZES = {"quick": [1, 0.5, 0.25], "full": [1, 0.5, 0.25, 0.125]}
+SCHEMES = ["flip", "tpic"]
+PERIOD = 10  # s
+
+
+def settings(size, scheme, speed):
+    """Changes to the scene for square cells of `size` [m], two of them over the height, and an initial speed of `speed` [m/s]."""
+    return {"mesh.grid.cells": [round(30 / size), 2], "mesh.grid.high": [30, 2 * size], "bodies[0].shape.high": [25, 2 * size],
+            "transfer.scheme": scheme, "bodies[0].velocity": [f"{speed} * sin(pi * x / 50)", "0"]}
+
+
+def sweep(lab, data, scheme, speed):
+    """Runs and errors over all sizes of the level."""
+    sizes = SIZES[lab.level]
+    runs = [lab.run(f"{CASE}/scene.yaml", f"{scheme}_v{speed}_dx{size}", settings(size, scheme, speed)) for size in sizes]
+    return sizes, runs, [bar_mode.displacement_error(run.history, data, speed) for run in runs]
+
+
+def energy_change(run):
+    """Change of kinetic and strain energy from the first period to the last; means, as a row has velocities half a step behind positions."""
+    energy, time = run.history["kinetic"] + run.history["strain"], run.history["time"]
+    return float(abs(np.mean(energy[time > time[-1] - PERIOD]) / np.mean(energy[time <= PERIOD]) - 1))
+
+
+def draw_orders(figure, curves):
+    """Error over size of cell, one line per transfer and speed."""
+    axis = figure.subplots()
+    for (scheme, speed), (sizes, _, errors) in curves.items():
+        axis.loglog(sizes, np.array(errors) * 100, "o-" if speed == 0.1 else "s--", label=f"{scheme}, v0 = {speed} m/s")
+    axis.loglog([1, 0.25], [0.5, 0.5 / 16], "k:", label="order 2")
+    axis.loglog([0.5], [0.554], "kx", label="bound of Cao et al.")
+    tools.size_axis(axis, SIZES["full"])
+    axis.set_ylabel("error in displacement [% of amplitude]")
+    axis.legend(fontsize=8)
+
+
+def judge_errors(scheme, sizes, runs, errors, data):
+    """Errors at v0 = 0.1 m/s; the published bound is for cells of 0.5 m."""
+    published, results = data["published rmse at 0.5 m"], []
+    for size, run, value in zip(sizes, runs, errors):
+        judged = size == 0.5
+        results.append(tools.Result(CASE, f"displacement error, cells of {size} m, {scheme}", "-", value, "at most" if judged else "reported",
+                                    published["value"] if judged else None, 0.0, published["source"] if judged else data["source"], run))
+    half = runs[sizes.index(0.5)]
+    bound = data["published energy error at 0.5 m"]
+    results.append(tools.Result(CASE, f"change of energy in 40 s, cells of 0.5 m, {scheme}", "-", energy_change(half), "at most", bound["value"], 0.0,
+                                bound["source"], half))
+    return results
+
+
+def evaluate(lab):
+    """Results for both transfers at v0 = 0.1 m/s (particles cross cells) and 0.001 m/s (they do not: the mesh alone)."""
+    data = tools.reference(CASE)
+    curves = {(scheme, speed): sweep(lab, data, scheme, speed) for speed in (0.1, 0.001) for scheme in SCHEMES}
+    results = []
+    for (scheme, speed), (sizes, runs, errors) in curves.items():
+        if speed == 0.1:
+            results += judge_errors(scheme, sizes, runs, errors, data)
+        judged = speed == 0.001
+        results.append(tools.Result(CASE, f"order of convergence, {scheme}, v0 = {speed} m/s", "-", tools.observed_order(sizes, errors),
+                                    "at least" if judged else "reported", 1.8 if judged else None, 2.0, data["source"], runs[-1]))
+    lab.figure(CASE, "verification_bar", lambda figure: draw_orders(figure, curves), caption="Error of the displacement of the bar over 40 s.")
+    return results
