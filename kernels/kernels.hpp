@@ -8,7 +8,7 @@ namespace talus {
 
 /// Kernels on meshes of dimension D, one line each.
 template <int D>
-using Kernels = TypeList<Linear<D>,
-                         Umls<D>>;
+using Kernels = TypeList<Linear<D>,  // hats
+                         Umls<D>>;   // moving least squares
 
 }  // namespace talus

@@ -32,7 +32,7 @@ std::vector<Entry> transposed(const Csr& ring, const std::vector<Entry>& rows)
 
 template <int D>
 NodeOperators<D>::NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::vector<Vec<D>> gradients)
-  : ring_(mesh.ring_of_node()), S_row_(std::move(S)), D_row_(std::move(gradients))
+    : ring_(mesh.ring_of_node()), S_row_(std::move(S)), D_row_(std::move(gradients))
 {
   assert(S_row_.size() == ring_.item.size() && D_row_.size() == ring_.item.size());
   S_column_ = transposed(ring_, S_row_);

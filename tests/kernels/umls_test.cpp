@@ -169,7 +169,8 @@ TEST(Umls, RefusesAMeshWithTooManyNeighboursAndSaysWhereAndHowMany)
     const Umls<2> kernel(mesh);
     FAIL() << "accepted " << spokes + 1 << " nodes around one";
   } catch (const std::invalid_argument& error) {
-    EXPECT_THAT(error.what(), ::testing::MatchesRegex(R"(kernel umls: cell [0-9]+ at \([23]\.[0-9]+, [34]\.[0-9]+\) sees 51 nodes .* room for 48)"));
+    EXPECT_THAT(error.what(),
+                ::testing::MatchesRegex(R"(kernel umls: cell [0-9]+ at \([23]\.[0-9]+, [34]\.[0-9]+\) sees 51 nodes .* room for 48)"));
   }
 }
 
