@@ -59,10 +59,10 @@ def page(results, lab):
              "Written by `make verify`; do not edit. Every number is measured by running the built program on the scene of the benchmark.", "",
              f"Program {program['version']}, commit {program['commit']}, {program['compiler']}; level `{lab.level}`, {lab.threads} thread(s). "
              f"{len(results)} numbers, {sum(r.passed is True for r in results)} passed, {failed} failed, the others are reported without a verdict.", "",
-             "Seconds are wall time of the run on whatever machine this was; cells and particles are those of the run the number comes from."]
+             "Seconds are processor time of the run the number comes from, on whatever machine this was; cells and particles are those of that run."]
     for case, own in by_case(results).items():
         lines += ["", f"## {title(case)}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../benchmarks/{case}/README.md).", ""]
-        lines += table(own)
+        lines += [*table(own), "", f"References: {'; '.join(dict.fromkeys(r.source for r in own if r.source))}."]
         for name, caption in lab.figures.get(case, []):
             lines += ["", f"![{caption}](images/{name})", "", caption]
     return "\n".join(lines) + "\n"
