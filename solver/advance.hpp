@@ -38,34 +38,34 @@ void advance(Model<D, K>& m, Real dt)
     index_rows(m);
   if (m.health.worst())
     return;
-  apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);                                                //  2
+  apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
   watch.lap(m.timings.locate);
 
-  scatter(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);                      //  3
+  scatter(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);  //  3
   watch.lap(m.timings.scatter);
 
-  assemble(m.blocks, m.nodes.sum);                                                                          //  4
+  assemble(m.blocks, m.nodes.sum);  //  4
   const Vec<D> on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
-  m.slaves.lump(m.mesh, m.nodes);                                                                           //  5
-  integrate(gravity, m.stage.damping, dt, m.nodes);                                                         //  6
-  const WallWork wall_work = m.walls.apply(time, dt, m.nodes);                                              //  7
-  m.slaves.follow(m.mesh, m.nodes, m.walls, time + dt, m.nodes.motion);                                     //  8
+  m.slaves.lump(m.mesh, m.nodes);                                        //  5
+  integrate(gravity, m.stage.damping, dt, m.nodes);                      //  6
+  const WallWork wall_work = m.walls.apply(time, dt, m.nodes);           //  7
+  m.slaves.follow(m.mesh, m.nodes, m.walls, time + dt, m.nodes.motion);  //  8
   record(m, gravity, on_mesh, wall_work, dt);
   m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
   watch.lap(m.timings.nodes);
 
   if (m.transfer.musl) {
     gather_and_return_momentum(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles, m.blocks);  //  9
-    remap(m, dt);                                                                                                         // 10
+    remap(m, dt);                                                                                                                // 10
   } else {
-    gather(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles);                         //  9
+    gather(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles);  //  9
   }
   m.energy.loads += work(m.particles);
   watch.lap(m.timings.gather);
 
   m.crossing = std::numeric_limits<Real>::infinity();
   for (auto& batch : m.materials) {
-    const StressSums sums = update_stress(m.mesh, batch, dt, m.stage.elastic, m.particles, m.health);       // 11
+    const StressSums sums = update_stress(m.mesh, batch, dt, m.stage.elastic, m.particles, m.health);  // 11
     m.energy.internal += sums.work;
     m.crossing = std::min(m.crossing, sums.crossing);
   }

@@ -11,10 +11,10 @@ namespace talus {
 /// ascending order, so no two threads ever write the same row and sums do not depend on the number of threads.
 template <int D>
 struct BlockRows {
-  std::vector<Index> begin;          ///< block -> its first row; one more at the end
-  std::vector<std::uint16_t> slot;   ///< for every stencil entry of every cell: row within the block
-  std::vector<Index> slot_begin;     ///< cell -> its first entry in `slot`
-  Csr rows_of_node;                  ///< node -> its rows, ascending
+  std::vector<Index> begin;         ///< block -> its first row; one more at the end
+  std::vector<std::uint16_t> slot;  ///< for every stencil entry of every cell: row within the block
+  std::vector<Index> slot_begin;    ///< cell -> its first entry in `slot`
+  Csr rows_of_node;                 ///< node -> its rows, ascending
   std::vector<Index> block_of_row;
   std::vector<std::uint8_t> occupied;  ///< block holds particles in this step
   std::vector<NodeSum<D>> row;
@@ -22,12 +22,14 @@ struct BlockRows {
   Index size() const noexcept { return static_cast<Index>(occupied.size()); }
   std::span<NodeSum<D>> rows(Index b) noexcept
   {
-    const auto first = static_cast<std::size_t>(begin[static_cast<std::size_t>(b)]), last = static_cast<std::size_t>(begin[static_cast<std::size_t>(b) + 1]);
+    const auto first = static_cast<std::size_t>(begin[static_cast<std::size_t>(b)]),
+               last = static_cast<std::size_t>(begin[static_cast<std::size_t>(b) + 1]);
     return std::span(row).subspan(first, last - first);
   }
   std::span<const std::uint16_t> slots(Index cell) const noexcept
   {
-    const auto first = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(cell)]), last = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(cell) + 1]);
+    const auto first = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(cell)]),
+               last = static_cast<std::size_t>(slot_begin[static_cast<std::size_t>(cell) + 1]);
     return std::span(slot).subspan(first, last - first);
   }
 };

@@ -7,7 +7,8 @@
 
 namespace talus {
 
-void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells, CellOrder& order)
+void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
+                  CellOrder& order)
 {
   const auto at = [](auto& array, Index i) -> auto& { return array[static_cast<std::size_t>(i)]; };
   order.blocks = (n_cells + block_cells - 1) / block_cells;
@@ -33,7 +34,8 @@ void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id,
   // rows of a cell by id: a few items each, almost in order already
   const auto all = static_cast<Index>(bodies.size()) * order.blocks;
   parallel_for(all, [&](Index key) {
-    const auto rows = std::span(order.row).subspan(static_cast<std::size_t>(at(order.first, key)), static_cast<std::size_t>(at(order.first, key + 1) - at(order.first, key)));
+    const auto rows = std::span(order.row).subspan(static_cast<std::size_t>(at(order.first, key)),
+                                                   static_cast<std::size_t>(at(order.first, key + 1) - at(order.first, key)));
     for (std::size_t i = 1; i < rows.size(); ++i)
       for (std::size_t j = i; j > 0 && at(cell, rows[j]) == at(cell, rows[j - 1]) && at(id, rows[j]) < at(id, rows[j - 1]); --j)
         std::swap(rows[j], rows[j - 1]);

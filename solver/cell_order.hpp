@@ -26,7 +26,8 @@ struct CellOrder {
 };
 
 /// Sorts anew from `cell` and `id`; `order` keeps its buffers.  Linear in particles and cells.
-void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells, CellOrder& order);
+void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
+                  CellOrder& order);
 
 /// Share of the particles whose row is not their position in the order.
 Real disorder(const CellOrder& order) noexcept;

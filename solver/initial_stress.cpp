@@ -30,7 +30,8 @@ Real mass_above(const Mesh<D>& mesh, std::span<const Real> density, Vec<D> x, In
 }
 
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                   Particles<D>& particles)
 {
   const Real g = gravity.norm();
   if (!(g > 0))
@@ -48,8 +49,10 @@ void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const st
       const auto p = static_cast<std::size_t>(row);
       const Mat3 stress = -g * mass_above(mesh, density, particles.x[p], particles.cell[p], up) * shape;
       if (!prestress(materials[b], row - bodies[b].begin, stress))
-        throw SceneErrors(bodies[b].where,
-                          fmt::format("law \"{}\" of body \"{}\" cannot start from a K0 stress; leave initial_stress out and let gravity grow (ramp)", law_name(materials[b]), bodies[b].name));
+        throw SceneErrors(
+            bodies[b].where,
+            fmt::format("law \"{}\" of body \"{}\" cannot start from a K0 stress; leave initial_stress out and let gravity grow (ramp)",
+                        law_name(materials[b]), bodies[b].name));
       particles.stress[p] = pack(stress);
     }
 }

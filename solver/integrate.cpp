@@ -78,7 +78,8 @@ void Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D
 }
 
 template <int D>
-void Slaves<D>::follow_velocity(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const
+void Slaves<D>::follow_velocity(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time,
+                                std::span<NodeMotion<D>> motion) const
 {
   for (const Index slave : slaves_) {
     Vec<D> mean = Vec<D>::Zero();

@@ -7,13 +7,13 @@ namespace talus {
 
 /// Sums over a stage since it began [J], except where noted.
 struct EnergyLedger {
-  Real gravity{};        ///< work of gravity
-  Real loads{};          ///< work of tractions and pressures
-  Real walls{};          ///< work of walls other than friction: prescribed motion, inelastic arrival
-  Real friction{};       ///< work of friction, <= 0
-  Real damping{};        ///< work of local damping, <= 0
-  Real nodes{};          ///< change of the nodes' kinetic energy within the steps
-  Real internal{};       ///< stress power of the particles: strain energy plus what the laws dissipate
+  Real gravity{};                         ///< work of gravity
+  Real loads{};                           ///< work of tractions and pressures
+  Real walls{};                           ///< work of walls other than friction: prescribed motion, inelastic arrival
+  Real friction{};                        ///< work of friction, <= 0
+  Real damping{};                         ///< work of local damping, <= 0
+  Real nodes{};                           ///< change of the nodes' kinetic energy within the steps
+  Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
 
   /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles did not get.
@@ -26,20 +26,20 @@ struct EnergyLedger {
 };
 
 struct MassLedger {
-  Real start{};              ///< [kg]
-  Real deleted{};            ///< left the mesh [kg]
+  Real start{};    ///< [kg]
+  Real deleted{};  ///< left the mesh [kg]
   Index deleted_count{};
   std::int64_t held_count{};  ///< times a particle was set back onto a closed wall
-  Real held_most{};          ///< farthest such set-back [m]
+  Real held_most{};           ///< farthest such set-back [m]
 };
 
 /// Totals over the particles at one time.
 template <int D>
 struct Totals {
-  Real mass{}, kinetic{};                 ///< [kg], [J]
-  Vec<D> momentum = Vec<D>::Zero();       ///< [kg m/s]
-  Vec3 angular = Vec3::Zero();            ///< about the origin, with the affine part of the particle's own field left out [kg m^2/s]
-  Vec<D> centre = Vec<D>::Zero();         ///< first moment of mass [kg m]
+  Real mass{}, kinetic{};            ///< [kg], [J]
+  Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
+  Vec3 angular = Vec3::Zero();       ///< about the origin, with the affine part of the particle's own field left out [kg m^2/s]
+  Vec<D> centre = Vec<D>::Zero();    ///< first moment of mass [kg m]
   Totals& operator+=(const Totals& other) noexcept
   {
     mass += other.mass, kinetic += other.kinetic, momentum += other.momentum, angular += other.angular, centre += other.centre;

@@ -27,8 +27,8 @@ struct ParticleTraction {
   Real pressure{};                   ///< [Pa], positive pushes
   Table table;
   Where where;
-  std::vector<std::int64_t> id;      ///< particles that carry it
-  std::vector<Vec<D>> area;          ///< share of the outward area vector at the start [m^(D-1)]
+  std::vector<std::int64_t> id;  ///< particles that carry it
+  std::vector<Vec<D>> area;      ///< share of the outward area vector at the start [m^(D-1)]
 };
 
 /// Force per area on facets of the mesh, for as long as there is mass at their nodes.
@@ -38,9 +38,9 @@ struct MeshTraction {
   Real pressure{};
   Table table;
   Where where;
-  std::vector<Index> node;           ///< ascending
-  std::vector<Vec<D>> area;          ///< share of the outward area vector [m^(D-1)]
-  std::vector<Real> measure;         ///< share of the area [m^(D-1)]
+  std::vector<Index> node;    ///< ascending
+  std::vector<Vec<D>> area;   ///< share of the outward area vector [m^(D-1)]
+  std::vector<Real> measure;  ///< share of the area [m^(D-1)]
 };
 
 template <int D>

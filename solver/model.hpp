@@ -18,9 +18,9 @@ struct Clock {
 
 /// What a stage sets for every step it makes.
 struct StageState {
-  Real damping = 0;      ///< local, share of the unbalanced force
+  Real damping = 0;                    ///< local, share of the unbalanced force
   Real ramp_start = 0, ramp_time = 0;  ///< gravity and loads grow from 0 to 1 over [start, start + time] [s]
-  bool elastic = false;  ///< yielding suspended
+  bool elastic = false;                ///< yielding suspended
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - ramp_start) / ramp_time, Real{0}, Real{1}) : Real{1}; }
 };
 
@@ -41,7 +41,7 @@ struct Model {
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;  ///< one per body, same ranges
   CellOrder order;
-  std::vector<Index> row_of_id;     ///< kept only if somebody follows single particles; `none` when deleted
+  std::vector<Index> row_of_id;  ///< kept only if somebody follows single particles; `none` when deleted
 
   Nodes<D> nodes;
   std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, the step's own in `change`
@@ -109,7 +109,8 @@ void make_ready(Model<D, K>& m, bool by_id)
     m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
   const Totals<D> now = totals(m.particles);
   m.mass.start = now.mass;
-  m.nodes.mass_cut = (m.kernel.claims().non_negative ? mass_cut_share : mass_cut_share_of_signed_weights) * now.mass / static_cast<Real>(std::max<std::size_t>(n, 1));
+  m.nodes.mass_cut = (m.kernel.claims().non_negative ? mass_cut_share : mass_cut_share_of_signed_weights) * now.mass /
+                     static_cast<Real>(std::max<std::size_t>(n, 1));
   index_rows(m);
 }
 
@@ -119,7 +120,9 @@ Real plastic_work(const Model<D, K>& m)
 {
   Real total = 0;
   for (std::size_t b = 0; b < m.bodies.size(); ++b)
-    total += total_plastic_work(m.materials[b], std::span(m.particles.volume0).subspan(static_cast<std::size_t>(m.bodies[b].begin), static_cast<std::size_t>(m.bodies[b].size())));
+    total += total_plastic_work(
+        m.materials[b],
+        std::span(m.particles.volume0).subspan(static_cast<std::size_t>(m.bodies[b].begin), static_cast<std::size_t>(m.bodies[b].size())));
   return total;
 }
 

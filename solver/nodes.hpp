@@ -9,9 +9,9 @@ namespace talus {
 /// What the particles around a node add up to.  One cache line.
 template <int D>
 struct alignas(64) NodeSum {
-  Real mass{};                           ///< [kg]
-  Vec<D> momentum = Vec<D>::Zero();      ///< [kg m/s]
-  Vec<D> force = Vec<D>::Zero();         ///< internal force and loads, without gravity [N]
+  Real mass{};                       ///< [kg]
+  Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
+  Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   NodeSum& operator+=(const NodeSum& other) noexcept
   {
     mass += other.mass;

@@ -92,8 +92,8 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
 }  // namespace
 
 template <int D>
-bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
-              CellOrder& order, MassLedger& mass, Health& health)
+bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger& mass, Health& health)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
@@ -165,7 +165,9 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
   return true;
 }
 
-template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger&, Health&);
-template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger&, Health&);
+template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
+                          CellOrder&, MassLedger&, Health&);
+template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
+                          CellOrder&, MassLedger&, Health&);
 
 }  // namespace talus

@@ -20,10 +20,12 @@ struct Exits {
 /// not vanish beside a wall, so round-off of a cell's size may carry a particle across.  Others are reported lost or deleted.
 /// Afterwards `order` is sorted, and the arrays follow it when too many rows are out of place.  True if rows changed place.
 template <int D>
-bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
-              CellOrder& order, MassLedger& mass, Health& health);
+bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger& mass, Health& health);
 
-extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger&, Health&);
-extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger&, Health&);
+extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
+                                 CellOrder&, MassLedger&, Health&);
+extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
+                                 CellOrder&, MassLedger&, Health&);
 
 }  // namespace talus

@@ -11,12 +11,12 @@ namespace talus {
 /// A phase of the analysis.
 struct Stage {
   std::string name;
-  Real duration{};                    ///< [s]
+  Real duration{};  ///< [s]
   Real damping{};
-  Real ramp{};                        ///< [s]
+  Real ramp{};  ///< [s]
   bool elastic = false;
-  std::optional<Real> residual;       ///< geostatic: ends when the unbalanced force is below this share of the loads
-  std::optional<Real> k0;             ///< start from a K0 stress
+  std::optional<Real> residual;  ///< geostatic: ends when the unbalanced force is below this share of the loads
+  std::optional<Real> k0;        ///< start from a K0 stress
   bool reset_displacement = false;
   Where where;
 };
@@ -30,9 +30,9 @@ struct StepLimits {
 /// How a stage went.
 struct StageResult {
   std::string name;
-  Real start{}, end{};     ///< [s]
+  Real start{}, end{};  ///< [s]
   std::int64_t steps{};
-  Real residual{};         ///< at its end
+  Real residual{};  ///< at its end
   EnergyLedger energy;
   Real kinetic_end{}, plastic_end{};  ///< [J]
 };
@@ -76,11 +76,10 @@ void stop_if_unwell(const Model<D, K>& m)
       what = fmt::format("{} is outside the mesh; extend the mesh, close its boundary with a wall, or set on_exit: delete", who);
       break;
     case Trouble::inverted:
-      what = fmt::format("{} turned inside out, det F = {:.4g}; refine the mesh there, take more particles per cell or a smaller time.cfl", who, J);
+      what = fmt::format("{} turned inside out, det F = {:.4g}; refine the mesh there, take more particles per cell or a smaller time.cfl",
+                         who, J);
       break;
-    case Trouble::no_answer:
-      what = fmt::format("the law of {} returned no finite stress, det F = {:.4g}", who, J);
-      break;
+    case Trouble::no_answer: what = fmt::format("the law of {} returned no finite stress, det F = {:.4g}", who, J); break;
     case Trouble::not_finite:
       what = fmt::format("{} has a position, velocity or deformation that is not finite; the step may be too long (time.cfl)", who);
       break;
@@ -107,8 +106,9 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
     const Real wanted = std::min(limits.cfl * m.crossing, limits.longest);
     if (!(wanted >= limits.shortest)) {
       const Index row = slowest_particle(m.mesh, m.materials, m.particles);
-      throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step, m.clock.time,
-                                 row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted, limits.shortest));
+      throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step,
+                                 m.clock.time, row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted,
+                                 limits.shortest));
     }
     const Real left = end - m.clock.time;
     const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
@@ -122,8 +122,11 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
   const Real kinetic = totals(m.particles).kinetic;
   const StageResult result{stage.name, begin, m.clock.time, m.clock.step - first_step, m.residual, m.energy, kinetic, plastic_work(m)};
   if (stage.residual && balanced < steps_in_balance)
-    throw RunError(fmt::format("step {}, t = {:.6g} s: stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it more duration or damping",
-                               m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration, m.residual, *stage.residual));
+    throw RunError(
+        fmt::format("step {}, t = {:.6g} s: stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, "
+                    "asked {:.3g}; give it more duration or damping",
+                    m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "",
+                    stage.duration, m.residual, *stage.residual));
   if (stage.residual)
     for (auto& v : m.particles.v)
       v.setZero();

@@ -15,8 +15,8 @@ enum class Scheme : std::uint8_t {
 
 struct Transfer {
   Scheme scheme = Scheme::flip;
-  bool musl = true;                       ///< momentum goes back to the nodes before L is taken   [Sulsky, Zhou & Schreyer 1995]
-  std::optional<Real> pic_damping_time;   ///< flip: each step takes the share dt/time from plain PIC [s]
+  bool musl = true;                      ///< momentum goes back to the nodes before L is taken   [Sulsky, Zhou & Schreyer 1995]
+  std::optional<Real> pic_damping_time;  ///< flip: each step takes the share dt/time from plain PIC [s]
 
   bool affine() const noexcept { return scheme != Scheme::flip; }
   /// Share of plain PIC in a step of length dt.

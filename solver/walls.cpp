@@ -52,7 +52,9 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> fac
     for (const Index n : mesh.nodes_of(facet)) {
       auto& planes = roller ? rule(n).rollers : rule(n).frictions;
       // until settle(), a plane's normal is the sum of the area vectors it stands for
-      const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) { return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm(); });
+      const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) {
+        return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm();
+      });
       if (same != planes.end())
         same->normal += area;
       else
@@ -175,7 +177,9 @@ template <int D>
 std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
 {
   std::vector<Facet> closed = facets_;
-  const auto whole = [&](Index n) { return binds(n) && rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(n)])].whole != none; };
+  const auto whole = [&](Index n) {
+    return binds(n) && rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(n)])].whole != none;
+  };
   for (const Facet facet : mesh.boundary_facets()) {
     const auto nodes = mesh.nodes_of(facet);
     if (std::all_of(nodes.begin(), nodes.end(), whole))

@@ -22,11 +22,11 @@ template <int D>
 struct Wall {
   std::string name;
   WallKind kind;
-  Real friction{};                      ///< coefficient [-]
-  Vec<D> velocity = Vec<D>::Zero();     ///< [m/s], times table(t)
+  Real friction{};                   ///< coefficient [-]
+  Vec<D> velocity = Vec<D>::Zero();  ///< [m/s], times table(t)
   Table table;
   Where where;
-  Vec<D> impulse = Vec<D>::Zero();      ///< exerted on the bodies since the last reset [N s]
+  Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the last reset [N s]
 };
 
 /// What walls did to the energy of the bodies in a step [J].
@@ -58,7 +58,10 @@ class Walls {
 
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
-  bool binds(Index node) const noexcept { return static_cast<std::size_t>(node) < rule_of_node_.size() && rule_of_node_[static_cast<std::size_t>(node)] != none; }
+  bool binds(Index node) const noexcept
+  {
+    return static_cast<std::size_t>(node) < rule_of_node_.size() && rule_of_node_[static_cast<std::size_t>(node)] != none;
+  }
   /// Facets of rollers and friction walls, and facets whose nodes are all held or moved: no particle passes them.
   std::vector<Facet> closed_facets(const Mesh<D>& mesh) const;
 
@@ -69,10 +72,10 @@ class Walls {
   };
   struct NodeRule {
     Index node;
-    Index whole = none;       ///< wall that sets all components
-    std::vector<Plane> rollers;   ///< normals made orthonormal
+    Index whole = none;          ///< wall that sets all components
+    std::vector<Plane> rollers;  ///< normals made orthonormal
     std::vector<Plane> frictions;
-    bool rubs = false;        ///< the last apply() found it pressed against a friction wall
+    bool rubs = false;  ///< the last apply() found it pressed against a friction wall
   };
   NodeRule& rule(Index node);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;

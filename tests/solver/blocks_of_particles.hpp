@@ -11,8 +11,9 @@ namespace talus::testing {
 
 /// Fills the cells whose centroid `inside` accepts with `per_cell` particles of `law`, as one more body of the model.
 template <int D, Kernel<D> K, class L>
-void add_body(Model<D, K>& m, const std::string& name, const L& law, int per_cell, const std::function<bool(const Vec<D>&)>& inside,
-              const std::function<Vec<D>(const Vec<D>&)>& velocity = [](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); })
+void add_body(
+    Model<D, K>& m, const std::string& name, const L& law, int per_cell, const std::function<bool(const Vec<D>&)>& inside,
+    const std::function<Vec<D>(const Vec<D>&)>& velocity = [](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); })
 {
   auto& p = m.particles;
   const Index begin = p.size();

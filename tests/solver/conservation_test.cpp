@@ -35,10 +35,12 @@ struct Case {
 template <class C>
 class EveryKernelAndTransfer : public ::testing::Test {};
 
-using Cases = ::testing::Types<Case<2, Linear<2>, Scheme::flip, true>, Case<2, Linear<2>, Scheme::flip, false>, Case<2, Linear<2>, Scheme::apic, false>, Case<2, Linear<2>, Scheme::tpic, false>,
-                               Case<2, Umls<2>, Scheme::flip, true>, Case<2, Umls<2>, Scheme::flip, false>, Case<2, Umls<2>, Scheme::apic, false>, Case<2, Umls<2>, Scheme::tpic, false>,
-                               Case<2, Umls<2>, Scheme::tpic, true>, Case<3, Linear<3>, Scheme::flip, true>, Case<3, Linear<3>, Scheme::tpic, false>, Case<3, Umls<3>, Scheme::flip, true>,
-                               Case<3, Umls<3>, Scheme::apic, false>, Case<3, Umls<3>, Scheme::tpic, false>>;
+using Cases =
+    ::testing::Types<Case<2, Linear<2>, Scheme::flip, true>, Case<2, Linear<2>, Scheme::flip, false>,
+                     Case<2, Linear<2>, Scheme::apic, false>, Case<2, Linear<2>, Scheme::tpic, false>, Case<2, Umls<2>, Scheme::flip, true>,
+                     Case<2, Umls<2>, Scheme::flip, false>, Case<2, Umls<2>, Scheme::apic, false>, Case<2, Umls<2>, Scheme::tpic, false>,
+                     Case<2, Umls<2>, Scheme::tpic, true>, Case<3, Linear<3>, Scheme::flip, true>, Case<3, Linear<3>, Scheme::tpic, false>,
+                     Case<3, Umls<3>, Scheme::flip, true>, Case<3, Umls<3>, Scheme::apic, false>, Case<3, Umls<3>, Scheme::tpic, false>>;
 TYPED_TEST_SUITE(EveryKernelAndTransfer, Cases);
 
 /// Hats have no bound on force over mass at a node that a particle has only just come to see: without MUSL they live a short time.

@@ -91,7 +91,8 @@ Model<2, Linear<2>> leaving(OnExitPolicy policy, bool wall)
 {
   Model<2, Linear<2>> m(unit_box<2>(6, 0.1));
   m.exits.policy = policy;
-  add_body<2>(m, "block", rubber(100, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.6; }, [](const Vec<2>&) { return Vec<2>(2, 0); });
+  add_body<2>(
+      m, "block", rubber(100, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.6; }, [](const Vec<2>&) { return Vec<2>(2, 0); });
   if (wall) {
     Wall<2> right;
     right.name = "x_max";
@@ -193,7 +194,8 @@ TEST(Loads, PressureOnParticlesIsTheStressBelow)
       for (Index k = 0; k < 3; ++k) {
         const Facet f{c, k};
         const auto nodes = m.mesh.nodes_of(f);
-        if (std::abs(m.mesh.node(nodes[0])[1] - 1.5) < 0.06 && std::abs(m.mesh.node(nodes[1])[1] - 1.5) < 0.06 && m.mesh.area_vector(f)[1] > 0)
+        if (std::abs(m.mesh.node(nodes[0])[1] - 1.5) < 0.06 && std::abs(m.mesh.node(nodes[1])[1] - 1.5) < 0.06 &&
+            m.mesh.area_vector(f)[1] > 0)
           top.push_back(f);
       }
     ASSERT_EQ(top.size(), 4U);

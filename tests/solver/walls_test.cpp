@@ -24,7 +24,8 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
   const Mesh<3> mesh(box<3>(Vec3::Zero(), Vec3::Ones(), {2, 2, 2}));
   Walls<3> walls;
   for (const auto& [face, w] : faces)
-    w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, *mesh.node_set(face)) : walls.add(w, mesh, *mesh.facet_set(face));
+    w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, *mesh.node_set(face))
+                                                              : walls.add(w, mesh, *mesh.facet_set(face));
   walls.settle();
   Nodes<3> nodes;
   nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
@@ -71,9 +72,9 @@ TEST(Walls, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
 {
   const auto face = [](Real mu) { return std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", mu)}; };
   const Vec3 at(0.5, 0, 0.5);
-  EXPECT_LT(after({face(0.5)}, at, {0.4, -1, 0}).norm(), 1e-15);                                  // 0.4 < 0.5 * 1: held
-  EXPECT_LT((after({face(0.5)}, at, {0.8, -1, 0}) - Vec3(0.3, 0, 0)).norm(), 1e-15);              // 0.8 - 0.5 * 1 is left
-  EXPECT_LT((after({face(0.5)}, at, {0.8, 1, 0}) - Vec3(0.8, 1, 0)).norm(), 1e-15);               // leaving: free
+  EXPECT_LT(after({face(0.5)}, at, {0.4, -1, 0}).norm(), 1e-15);                      // 0.4 < 0.5 * 1: held
+  EXPECT_LT((after({face(0.5)}, at, {0.8, -1, 0}) - Vec3(0.3, 0, 0)).norm(), 1e-15);  // 0.8 - 0.5 * 1 is left
+  EXPECT_LT((after({face(0.5)}, at, {0.8, 1, 0}) - Vec3(0.8, 1, 0)).norm(), 1e-15);   // leaving: free
 }
 
 TEST(Walls, FrictionWallsOfACornerLeaveNoPenetration)
@@ -90,14 +91,18 @@ TEST(Walls, FrictionWallsOfACornerLeaveNoPenetration)
 /// A mesh whose floor is inclined by `angle`; a rubber block lies on it.  Distances along and off the floor.
 struct Incline {
   Real angle;
-  Vec<2> along(const Vec<2>& x) const { return {std::cos(angle) * x[0] - std::sin(angle) * x[1], std::sin(angle) * x[0] + std::cos(angle) * x[1]}; }
+  Vec<2> along(const Vec<2>& x) const
+  {
+    return {std::cos(angle) * x[0] - std::sin(angle) * x[1], std::sin(angle) * x[0] + std::cos(angle) * x[1]};
+  }
   Model<2, Umls<2>> block(Real mu) const
   {
     MeshData<2> data = jittered(box<2>({0, 0}, {12, 2}, {36, 6}), 0.15, 1);
     for (Vec<2>& x : data.nodes)
       x = Vec<2>(std::cos(angle) * x[0] + std::sin(angle) * x[1], -std::sin(angle) * x[0] + std::cos(angle) * x[1]);
     Model<2, Umls<2>> m{Mesh<2>(std::move(data))};
-    add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 4, [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
+    add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 4,
+                [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
     m.walls.add(wall<2>(WallKind::friction, "floor", mu), m.mesh, *m.mesh.facet_set("y_min"));
     m.loads.gravity.acceleration = {0, -10};
     make_ready(m, false);
