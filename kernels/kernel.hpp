@@ -7,7 +7,8 @@
 #include <cstddef>
 #include <string_view>
 
-#include "core/lanes.hpp"
+#include "kernels/pack.hpp"
+#include "kernels/symmetric.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
@@ -24,34 +25,77 @@ struct Claims {
   bool closed_walls;         ///< on a boundary facet only its own nodes have weight
 };
 
-/// Values and gradients [1/m] of one particle over a stencil, as arrays of numbers; lives on the stack.
+/// Values and gradients [1/m] of one particle over a stencil, node by node.
 template <int D, int N>
-struct Weights {
+struct NodeWeights {
   alignas(64) Real w[N];
   alignas(64) Real dw[D][N];
+};
+
+/// The weights of up to four particles of a cell in factors.  With numbers s_v and y_v of the nodes and the rest common to all nodes,
+///
+///     w_v = s_v (value - slope . y_v)        G_v = s_v (H y_v - shift)
+///
+/// H is symmetric.  Sums over a stencil then need products with s_v and s_v y_v only, and H is applied once per particle.  Lanes of
+/// packs are particles; those of particles that are not there repeat the last one.  Lives on the stack; y belongs to the open cell.
+template <int D, int N>
+struct Weights {
+  alignas(64) Real s[pack_size][N];
+  const Real* y[pack_size][D];  ///< per component the numbers of all nodes, aligned like s
+  int padded_size[pack_size];   ///< whole packs of nodes that may have weight: the first ones of the stencil, or all
+  Pack value, slope[D], shift[D];
+  Symmetric<D, Pack> H;
+
+  /// What the factors stand for.
+  void spell_out(int lane, NodeWeights<D, N>& out) const noexcept
+  {
+    out = {};
+    for (int i = 0; i < padded_size[lane]; ++i) {
+      const Real s_i = s[lane][i];
+      out.w[i] = s_i * value[lane];
+      for (int d = 0; d < D; ++d) {
+        out.w[i] -= s_i * slope[d][lane] * y[lane][d][i];
+        out.dw[d][i] = -s_i * shift[d][lane];
+        for (int e = 0; e < D; ++e)
+          out.dw[d][i] += s_i * H(d, e)[lane] * y[lane][e][i];
+      }
+    }
+  }
 };
 
 /// What all particles of a cell share.  `K::Cell` is this or extends it.
 template <int D, int N>
 struct StencilCell {
   Index cell;
-  int size;                       ///< nodes in the stencil
-  int padded_size;                ///< rounded up to whole packs; entries beyond `size` carry zero weight
-  std::span<const Index> nodes;   ///< their numbers
-  alignas(64) Real x[D][N];       ///< their coordinates [m]; padding repeats the first node
+  int size;                      ///< nodes in the stencil
+  int padded_size;               ///< rounded up to whole packs; entries beyond `size` carry zero weight
+  std::span<const Index> nodes;  ///< their numbers
+  Vec<D> origin;                 ///< a point of the cell [m]
+  alignas(64) Real x[D][N];      ///< coordinates of the nodes about the origin [m]; padding repeats the first node
 };
 
+template <int D>
+Vec<D> centroid(const Mesh<D>& mesh, Index c) noexcept
+{
+  Vec<D> sum = Vec<D>::Zero();
+  for (const Index v : mesh.cell(c))
+    sum += mesh.node(v);
+  return sum / (D + 1);
+}
+
+// Version 14 of the formatter does not know requires-expressions.
+// clang-format off
 /// A kernel on meshes of dimension D.  Tables are built once by the constructor; the mesh is an argument, never kept.
 template <class K, int D>
-concept Kernel = requires(const K k, const Mesh<D>& mesh, Index c, const Vec<D>& x, typename K::Cell& cell, Weights<D, K::max_nodes>& out) {
+concept Kernel = requires(const K k, const Mesh<D>& mesh, Index c, const Pack (&x)[D], typename K::Cell& cell, Weights<D, K::max_nodes>& out) {
   { K::name } -> std::convertible_to<std::string_view>;
   { K::summary } -> std::convertible_to<std::string_view>;
   { K::max_nodes } -> std::convertible_to<int>;  // room for one stencil, whole packs; the constructor refuses a mesh that needs more
   K(mesh);                                       // may throw std::invalid_argument naming cell, place and number
   { k.claims() } noexcept -> std::same_as<Claims>;
   { k.stencil(mesh, c) } noexcept -> std::same_as<std::span<const Index>>;  // nodes: a function of the cell only
-  { k.open(mesh, c, cell) } noexcept;                                 // fills what the particles of the cell share
-  { k.evaluate(cell, x, out) } noexcept;                              // w and dw of a particle at x, padding zeroed
+  { k.open(mesh, c, cell) } noexcept;                                        // fills what the particles of the cell share
+  { k.evaluate(cell, x, 4, out) } noexcept;                                  // weights of four particles at x, or fewer; s = 0 in the padding
   requires K::max_nodes % pack_size == 0;
 };
 
@@ -63,5 +107,6 @@ template <class K, int D>
 concept HasNodePart = requires(const K k) {
   { k.node_part() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
+// clang-format on
 
 }  // namespace talus

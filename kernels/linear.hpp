@@ -13,10 +13,8 @@ class Linear {
   static constexpr std::string_view summary = "piecewise linear hats; cheapest, gradient jumps between cells";
   static constexpr int max_nodes = padded(D + 1);
 
-  /// The affine map x -> barycentric coordinates, w_a = w_a(origin) + G_a . (x - origin), with origin = vertex 0.
+  /// The origin is the centroid, so w_a = 1 / (D + 1) + G_a . (x - origin).
   struct Cell : StencilCell<D, max_nodes> {
-    Vec<D> origin;
-    alignas(64) Real w_origin[max_nodes];
     alignas(64) Real dw[D][max_nodes];
   };
 
@@ -42,32 +40,33 @@ class Linear {
     cell.size = D + 1;
     cell.padded_size = max_nodes;
     cell.nodes = stencil(mesh, c);
-    cell.origin = mesh.node(cell.nodes[0]);
+    cell.origin = centroid(mesh, c);
     const auto gradients = mesh.gradients(c);
     for (int a = 0; a < max_nodes; ++a) {
       const bool real = a <= D;
       const Vec<D>& at = mesh.node(cell.nodes[real ? static_cast<std::size_t>(a) : 0]);
-      cell.w_origin[a] = a == 0 ? 1 : 0;
       for (int d = 0; d < D; ++d) {
-        cell.x[d][a] = at[d];
+        cell.x[d][a] = at[d] - cell.origin[d];
         cell.dw[d][a] = real ? gradients[static_cast<std::size_t>(a)][d] : 0;
       }
     }
   }
 
-  void evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) const noexcept
+  /// Factors y_a = G_a, H = I.
+  void evaluate(const Cell& cell, const Pack (&x)[D], int, Weights<D, max_nodes>& out) const noexcept
   {
-    Real r[D];
-    for (int d = 0; d < D; ++d)
-      r[d] = x[d] - cell.origin[d];
-#pragma omp simd
-    for (int a = 0; a < max_nodes; ++a) {
-      Real w = cell.w_origin[a];
-      for (int d = 0; d < D; ++d) {
-        w += cell.dw[d][a] * r[d];
-        out.dw[d][a] = cell.dw[d][a];
-      }
-      out.w[a] = w;
+    for (int lane = 0; lane < pack_size; ++lane) {
+      store(out.s[lane], D == 2 ? Pack{1, 1, 1, 0} : broadcast(1));
+      out.padded_size[lane] = max_nodes;
+      for (int d = 0; d < D; ++d)
+        out.y[lane][d] = cell.dw[d];
+    }
+    out.value = broadcast(1.0 / (D + 1));
+    out.H = {};
+    for (int d = 0; d < D; ++d) {
+      out.H.entry[d] = broadcast(1);
+      out.slope[d] = cell.origin[d] - x[d];
+      out.shift[d] = Pack{};
     }
   }
 };

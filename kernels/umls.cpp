@@ -28,29 +28,28 @@ constexpr auto bits_of = [] {
   return bits;
 }();
 
-/// Moments of the sample weights.
+/// Moments of the sample weights of four particles, about the origin of the cell.
 template <int D>
 struct Moments {
-  Real sum;             ///< W0
-  Real first[D];        ///< W0 c, about the particle
-  Symmetric<D> spread;  ///< W0^2 S, about the centroid of the weights
+  Pack sum;                   ///< W0
+  Pack first[D];              ///< W0 c
+  Symmetric<D, Pack> spread;  ///< W0^2 S, about the centroid of the weights
 };
 
 /// A particle in its cell.
 template <int D>
 struct Place {
-  Real x[D], from_origin[D];
-  Pack hat;  ///< barycentric coordinates, one vertex per lane
+  Real x[D];  ///< about the origin of the cell
+  Pack hat;   ///< barycentric coordinates, one vertex per lane
 };
 template <int D>
-[[gnu::always_inline]] inline Place<D> place_of(const typename Umls<D>::Cell& cell, const Vec<D>& x) noexcept
+[[gnu::always_inline]] inline Place<D> place_of(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane) noexcept
 {
   Place<D> at;
-  at.hat = Pack{1, 0, 0, 0};
+  at.hat = D == 2 ? Pack{1, 1, 1, 0} / 3 : broadcast(0.25);
   for (int d = 0; d < D; ++d) {
-    at.x[d] = x[d];
-    at.from_origin[d] = x[d] - cell.origin[d];
-    at.hat += at.from_origin[d] * load(cell.slope[d]);
+    at.x[d] = x[d][lane] - cell.origin[d];
+    at.hat += at.x[d] * load(cell.slope[d]);
   }
   return at;
 }
@@ -70,7 +69,7 @@ template <int D>
 {
   Real radius = cell.radius;
   for (int d = 0; d < D; ++d)
-    radius += cell.radius_slope[d] * at.from_origin[d];
+    radius += cell.radius_slope[d] * at.x[d];
   for (int i = 0; i < cell.padded_size; i += pack_size) {
     Pack r2{}, eta = at.hat[0] * load(cell.adjacent[0] + i);
     for (int d = 0; d < D; ++d) {
@@ -83,49 +82,74 @@ template <int D>
   }
 }
 
-/// Their moments.  A loop of its own: in one with the square roots these sums would queue behind them.
+/// Sums of W, W y and W y (x) y of one particle, four nodes a lane.
 template <int D>
-[[gnu::always_inline]] inline Moments<D> moments(const typename Umls<D>::Cell& cell, const Place<D>& at, const Real* weight) noexcept
+struct RawMoments {
+  static constexpr int size = 1 + D + Symmetric<D>::size;
+  Pack entry[size];
+};
+/// A loop of its own: in one with the square roots these sums would queue behind them.
+template <int D>
+[[gnu::always_inline]] inline RawMoments<D> raw_moments(const typename Umls<D>::Cell& cell, const Real* weight) noexcept
 {
-  Pack w0{}, first[3]{}, second[6]{};
+  Pack w0{}, first[D]{}, second[Symmetric<D>::size]{};
   for (int i = 0; i < cell.padded_size; i += pack_size) {
     const Pack w = load(weight + i);
-    Pack r[D];
-    for (int d = 0; d < D; ++d)
-      r[d] = load(cell.x[d] + i) - at.x[d];
     w0 += w;
     for (int d = 0; d < D; ++d) {
-      const Pack wr = w * r[d];
-      first[d] += wr;
+      const Pack wy = w * load(cell.x[d] + i);
+      first[d] += wy;
       for (int e = d; e < D; ++e)
-        second[Symmetric<D>::place(d, e)] += wr * r[e];
+        second[Symmetric<D>::place(d, e)] += wy * load(cell.x[e] + i);
     }
   }
-  const Pack low = sums(w0, first[0], first[1], first[2]);
-  const Pack middle = sums(second[0], second[1], second[2], second[3]);
-  const Pack high = sums(second[4], second[5], second[4], second[5]);
+  RawMoments<D> raw;
+  raw.entry[0] = w0;
+  std::copy_n(first, D, raw.entry + 1);
+  std::copy_n(second, Symmetric<D>::size, raw.entry + 1 + D);
+  return raw;
+}
 
+/// Sample weights of `count` particles into `weight`, and their moments.
+template <int D>
+[[gnu::always_inline]] inline Moments<D> moments(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int count,
+                                                 Real (*weight)[Umls<D>::max_nodes]) noexcept
+{
+  RawMoments<D> raw[pack_size];
+  for (int lane = 0; lane < count; ++lane) {
+    sample<D>(cell, place_of<D>(cell, x, lane), weight[lane]);
+    raw[lane] = raw_moments<D>(cell, weight[lane]);
+  }
+  for (int lane = count; lane < pack_size; ++lane)
+    raw[lane] = raw[count - 1];
+
+  Pack total[RawMoments<D>::size];
+  for (int k = 0; k < RawMoments<D>::size; ++k)
+    total[k] = sums(raw[0].entry[k], raw[1].entry[k], raw[2].entry[k], raw[3].entry[k]);
   Moments<D> m;
-  m.sum = low[0];
+  m.sum = total[0];
+  std::copy_n(total + 1, D, m.first);
   for (int d = 0; d < D; ++d)
-    m.first[d] = low[d + 1];
-  for (int k = 0; k < Symmetric<D>::size; ++k)
-    m.spread.entry[k] = m.sum * (k < pack_size ? middle[k] : high[k - pack_size]);
-  for (int d = 0; d < D; ++d)
-    for (int e = d; e < D; ++e)
-      m.spread.entry[Symmetric<D>::place(d, e)] -= m.first[d] * m.first[e];
+    for (int e = d; e < D; ++e) {
+      const int k = Symmetric<D>::place(d, e);
+      m.spread.entry[k] = m.sum * total[1 + D + k] - m.first[d] * m.first[e];
+    }
   return m;
 }
 
-/// The hats of the cell, in the room of the whole stencil.
+/// The hats of the cell in one lane, as factors: see Linear.
 template <int D>
-void hats_instead(const typename Umls<D>::Cell& cell, const Place<D>& at, Weights<D, Umls<D>::max_nodes>& out) noexcept
+void hats_instead(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane, Weights<D, Umls<D>::max_nodes>& out) noexcept
 {
-  std::fill_n(out.w, cell.padded_size, 0.0);
-  store(out.w, at.hat);
+  store(out.s[lane], D == 2 ? Pack{1, 1, 1, 0} : broadcast(1));
+  out.padded_size[lane] = pack_size;
+  out.value[lane] = 1.0 / (D + 1);
+  for (int j = 0; j < Symmetric<D>::size; ++j)
+    out.H.entry[j][lane] = j < D ? 1 : 0;
   for (int d = 0; d < D; ++d) {
-    std::fill_n(out.dw[d], cell.padded_size, 0.0);
-    store(out.dw[d], load(cell.slope[d]));
+    out.y[lane][d] = cell.slope[d];
+    out.slope[d][lane] = cell.origin[d] - x[d][lane];
+    out.shift[d][lane] = 0;
   }
 }
 
@@ -168,7 +192,8 @@ void Umls<D>::build_stencils(const Mesh<D>& mesh)
       std::string place;
       for (int d = 0; d < D; ++d)
         place += fmt::format("{}{:.6g}", d ? ", " : "", at[d]);
-      throw std::invalid_argument(fmt::format("kernel umls: cell {} at ({}) sees {} nodes around its vertices; there is room for {}", c, place, size, max_nodes));
+      throw std::invalid_argument(
+          fmt::format("kernel umls: cell {} at ({}) sees {} nodes around its vertices; there is room for {}", c, place, size, max_nodes));
     }
   }
   stencil_.item.shrink_to_fit();
@@ -220,20 +245,22 @@ void Umls<D>::open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept
   cell.nodes = stencil_[c];
   cell.size = static_cast<int>(cell.nodes.size());
   cell.padded_size = padded(cell.size);
+  cell.origin = centroid(mesh, c);
   const Index* nodes = cell.nodes.data();
   const std::uint8_t* adjacency = adjacency_.data() + stencil_.begin[static_cast<std::size_t>(c)];
   for (int i = 0; i < cell.padded_size; ++i) {
     const bool real = i < cell.size;
     const Vec<D>& x = mesh.node(nodes[real ? i : 0]);
     for (int d = 0; d < D; ++d)
-      cell.x[d][i] = x[d];
+      cell.x[d][i] = x[d] - cell.origin[d];
     const auto& bits = bits_of[real ? adjacency[i] : 0];
     for (std::size_t a = 0; a <= D; ++a)
       cell.adjacent[a][i] = bits[a];
   }
-  cell.origin = mesh.node(cell.nodes[0]);
   const auto gradients = mesh.gradients(c);
-  cell.radius = radius(cell.nodes[0]);
+  cell.radius = 0;
+  for (std::size_t a = 0; a <= D; ++a)
+    cell.radius += radius(cell.nodes[a]) / (D + 1);
   for (int d = 0; d < D; ++d) {
     cell.radius_slope[d] = 0;
     std::fill_n(cell.slope[d], pack_size, 0.0);
@@ -245,58 +272,48 @@ void Umls<D>::open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept
 }
 
 template <int D>
-void Umls<D>::evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) const noexcept
+void Umls<D>::evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept
 {
-  const Place<D> at = place_of<D>(cell, x);
-  sample<D>(cell, at, out.w);
-  Moments<D> m = moments<D>(cell, at, out.w);
-  const Real diagonal = regularisation * m.spread.trace();
+  Moments<D> m = moments<D>(cell, x, count, out.s);
+  const Pack diagonal = regularisation * m.spread.trace();
   for (int d = 0; d < D; ++d)
     m.spread.entry[d] += diagonal;
-  const Symmetric<D> adjoint = adjugate(m.spread);
-  const Real det = determinant(m.spread, adjoint);
-  if (!(det > unusable_roundness * round_determinant(m.spread))) {  // NaN too
-    hats_instead<D>(cell, at, out);
-    return;
-  }
+  const auto adjoint = adjugate(m.spread);
+  const Pack det = determinant(m.spread, adjoint), least = unusable_roundness * round_determinant(m.spread);
 
-  // With k = S^-1 c:  G_v = W_v (S^-1 r_v - k)  and  w_v = W_v (1/W0 + k . c - k . r_v)
-  const Real per_det = 1 / det, share = 1 / m.sum;
-  Pack inverse[Symmetric<D>::size], k[D], at_x = broadcast(share);
+  // About the origin, with k = S^-1 (c - x):  G_v = W_v (S^-1 y_v - S^-1 c)  and  w_v = W_v (1/W0 + k . c - k . y_v)
+  const Pack per_det = 1 / det, share = 1 / m.sum;
+  out.value = share;
   for (int j = 0; j < Symmetric<D>::size; ++j)
-    inverse[j] = adjoint.entry[j] * broadcast(per_det * m.sum);
+    out.H.entry[j] = adjoint.entry[j] * (per_det * m.sum);
   for (int d = 0; d < D; ++d) {
-    Real sum = 0;
-    for (int e = 0; e < D; ++e)
-      sum += adjoint(d, e) * m.first[e];
-    k[d] = broadcast(sum * per_det);
-    at_x += k[d] * (m.first[d] * share);
+    Pack k{}, shift{};
+    for (int e = 0; e < D; ++e) {
+      k += adjoint(d, e) * (m.first[e] - m.sum * (x[e] - cell.origin[e]));
+      shift += adjoint(d, e) * m.first[e];
+    }
+    out.slope[d] = k * per_det;
+    out.shift[d] = shift * per_det;
+    out.value += out.slope[d] * (m.first[d] * share);
   }
-  for (int i = 0; i < cell.padded_size; i += pack_size) {
-    Pack r[D], value = at_x;
-    for (int d = 0; d < D; ++d) {
-      r[d] = load(cell.x[d] + i) - at.x[d];
-      value -= k[d] * r[d];
-    }
-    const Pack w = load(out.w + i);
-    store(out.w + i, w * value);
-    for (int d = 0; d < D; ++d) {
-      Pack g = -k[d];
-      for (int e = 0; e < D; ++e)
-        g += inverse[Symmetric<D>::place(d, e)] * r[e];
-      store(out.dw[d] + i, w * g);
-    }
+  for (int lane = 0; lane < count; ++lane) {
+    out.padded_size[lane] = cell.padded_size;
+    for (int d = 0; d < D; ++d)
+      out.y[lane][d] = cell.x[d];
+    if (!(det[lane] > least[lane]))  // NaN too
+      hats_instead<D>(cell, x, lane, out);
   }
 }
 
 template <int D>
 Real Umls<D>::roundness(const Cell& cell, const Vec<D>& x) const noexcept
 {
-  alignas(64) Real weight[max_nodes];
-  const Place<D> at = place_of<D>(cell, x);
-  sample<D>(cell, at, weight);
-  const Symmetric<D> spread = moments<D>(cell, at, weight).spread;
-  const Real round = determinant(spread, adjugate(spread)) / round_determinant(spread);
+  alignas(64) Real weight[1][max_nodes];
+  Pack at[D];
+  for (int d = 0; d < D; ++d)
+    at[d] = broadcast(x[d]);
+  const auto spread = moments<D>(cell, at, 1, weight).spread;
+  const Real round = (determinant(spread, adjugate(spread)) / round_determinant(spread))[0];
   return round > 0 ? round : 0;
 }
 

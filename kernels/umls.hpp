@@ -24,8 +24,7 @@ class Umls {
   static constexpr int max_nodes = D == 2 ? 48 : 128;
 
   struct Cell : StencilCell<D, max_nodes> {
-    Vec<D> origin;                                ///< vertex 0 of the cell [m]
-    Real radius, radius_slope[D];                 ///< R at vertex 0 [m], grad R [-]
+    Real radius, radius_slope[D];                 ///< R at the origin, which is the centroid [m]; grad R [-]
     alignas(64) Real slope[D][pack_size];         ///< gradients [1/m] of the barycentric coordinates of all vertices; padding 0
     alignas(64) Real adjacent[D + 1][max_nodes];  ///< 1 where the node is adjacent to the vertex, else 0; padding 0
   };
@@ -48,7 +47,7 @@ class Umls {
   /// The vertices of the cell in their order, then the rest of the ring.
   std::span<const Index> stencil(const Mesh<D>&, Index c) const noexcept { return stencil_[c]; }
   void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept;
-  void evaluate(const Cell& cell, const Vec<D>& x, Weights<D, max_nodes>& out) const noexcept;
+  void evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept;
 
   Real radius(Index node) const noexcept { return radius_[static_cast<std::size_t>(node)]; }  ///< R_v [m]
 

@@ -35,44 +35,32 @@ struct CellSums {
   }
 };
 
-/// m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v.
-/// A is the affine field, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
-/// MUSL) only momentum is summed.
-template <bool affine, bool loaded, bool forces, int D, int N>
-void deposit(const Particles<D>& particles, std::size_t p, const Mat<D>& A, const StencilCell<D, N>& cell, const Weights<D, N>& weights, CellSums<D, N>& sums) noexcept
+/// Up to four particles of one cell.
+struct Bunch {
+  std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
+  int count;
+
+  /// f(p) of every lane.
+  template <class F>
+  Pack lanes(F&& f) const noexcept
+  {
+    return Pack{f(p[0]), f(p[1]), f(p[2]), f(p[3])};
+  }
+};
+
+/// f(bunch, x) for the particles of a run, four at a time.
+template <int D, class F>
+void for_each_bunch(std::span<const Index> run, const std::vector<Vec<D>>& places, F&& f)
 {
-  const Real m = particles.mass[p];
-  const Vec<D> x = particles.x[p], mv = m * particles.v[p];
-  const Mat<D> mA = m * A;
-  Mat<D> tension;  // V_p sigma_p [N m]
-  if constexpr (forces)
-    tension = particles.volume[p] * unpack(particles.stress[p]).template topLeftCorner<D, D>();
-  for (int a = 0; a < cell.padded_size; a += pack_size) {
-    const Pack w = load(weights.w + a);
-    Pack r[D], G[D];
-    for (int j = 0; j < D; ++j) {
-      if constexpr (affine)
-        r[j] = load(cell.x[j] + a) - x[j];
-      if constexpr (forces)
-        G[j] = load(weights.dw[j] + a);
-    }
-    if constexpr (forces)
-      store(sums.mass + a, load(sums.mass + a) + w * m);
-    for (int i = 0; i < D; ++i) {
-      Pack momentum = Pack{} + mv[i];
-      if constexpr (affine)
-        for (int j = 0; j < D; ++j)
-          momentum += mA(i, j) * r[j];
-      store(sums.momentum[i] + a, load(sums.momentum[i] + a) + w * momentum);
-      if constexpr (forces) {
-        Pack force = load(sums.force[i] + a);
-        if constexpr (loaded)
-          force += w * particles.applied[p][i];
-        for (int j = 0; j < D; ++j)
-          force -= tension(i, j) * G[j];
-        store(sums.force[i] + a, force);
-      }
-    }
+  for (std::size_t begin = 0; begin < run.size(); begin += pack_size) {
+    Bunch bunch;
+    bunch.count = static_cast<int>(std::min<std::size_t>(pack_size, run.size() - begin));
+    for (std::size_t lane = 0; lane < pack_size; ++lane)
+      bunch.p[lane] = static_cast<std::size_t>(run[std::min(begin + lane, run.size() - 1)]);
+    Pack x[D];
+    for (int d = 0; d < D; ++d)
+      x[d] = bunch.lanes([&](std::size_t p) { return places[p][d]; });
+    f(std::as_const(bunch), std::as_const(x));
   }
 }
 
@@ -83,10 +71,111 @@ const Mat<D>& affine_field(const Particles<D>& particles, std::size_t p, Scheme 
   return scheme == Scheme::apic ? particles.C[p] : particles.L[p];
 }
 
+/// V sigma G_v = s_v (slope y_v - shift) [N] of four particles: the stress of each applied to the factors of its weights.
+template <int D>
+struct Tension {
+  Pack slope[D][D], shift[D];
+};
+template <int D, int N>
+Tension<D> tension_of(const Particles<D>& particles, const Bunch& bunch, const Weights<D, N>& weights) noexcept
+{
+  const Pack volume = bunch.lanes([&](std::size_t p) { return particles.volume[p]; });
+  Pack T[D][D];
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j)
+      T[i][j] = T[j][i] = volume * bunch.lanes([&](std::size_t p) { return particles.stress[p][Symmetric<3>::place(i, j)]; });
+  Tension<D> tension;
+  for (int i = 0; i < D; ++i) {
+    tension.shift[i] = Pack{};
+    for (int j = 0; j < D; ++j) {
+      tension.shift[i] += T[i][j] * weights.shift[j];
+      tension.slope[i][j] = Pack{};
+      for (int k = 0; k < D; ++k)
+        tension.slope[i][j] += T[i][k] * weights.H(k, j);
+    }
+  }
+  return tension;
+}
+
+/// m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v.
+/// A is the affine field, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
+/// MUSL) only momentum is summed.  A sweep per component: all that a sweep needs of the particle stays in registers.
+template <bool affine, bool loaded, bool forces, int D, int N>
+void deposit(const Particles<D>& particles, const Bunch& bunch, Scheme scheme, const StencilCell<D, N>& cell, const Weights<D, N>& weights,
+             CellSums<D, N>& sums) noexcept
+{
+  Tension<D> tension;
+  if constexpr (forces)
+    tension = tension_of(particles, bunch, weights);
+  alignas(64) Real share[N];  // m_p w_v
+  for (int lane = 0; lane < bunch.count; ++lane) {
+    const std::size_t p = bunch.p[lane];
+    const int n = weights.padded_size[lane];
+    const Real* const s = weights.s[lane];
+    const Real* y[D];
+    std::copy_n(weights.y[lane], D, y);
+    const bool y_is_x = y[0] == cell.x[0];
+    const Real m = particles.mass[p];
+    Pack slope[D];
+    for (int j = 0; j < D; ++j)
+      slope[j] = broadcast(-m * weights.slope[j][lane]);
+    const Pack value = broadcast(m * weights.value[lane]);
+    for (int a = 0; a < n; a += pack_size) {
+      Pack w = value;
+      for (int j = 0; j < D; ++j)
+        w += slope[j] * load(y[j] + a);
+      w *= load(s + a);
+      store(share + a, w);
+      if constexpr (forces)
+        store(sums.mass + a, load(sums.mass + a) + w);
+    }
+    const Mat<D>& A = affine_field(particles, p, scheme);
+    for (int i = 0; i < D; ++i) {
+      Real v_origin = particles.v[p][i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
+      Pack A_i[D], T_i[D];
+      for (int j = 0; j < D; ++j) {
+        if constexpr (affine) {
+          A_i[j] = broadcast(A(i, j));
+          v_origin -= A(i, j) * (particles.x[p][j] - cell.origin[j]);
+        }
+        if constexpr (forces)
+          T_i[j] = broadcast(-tension.slope[i][j][lane]);
+      }
+      const Pack v = broadcast(v_origin);
+      Pack shift, per_mass;
+      if constexpr (forces)
+        shift = broadcast(tension.shift[i][lane]);
+      if constexpr (loaded)
+        per_mass = broadcast(particles.applied[p][i] / m);
+      Real* const to_momentum = sums.momentum[i];
+      Real* const to_force = sums.force[i];
+      for (int a = 0; a < n; a += pack_size) {
+        const Pack w = load(share + a);
+        Pack momentum = v, force = shift;
+        for (int j = 0; j < D; ++j) {
+          const Pack y_j = load(y[j] + a);
+          if constexpr (forces)
+            force += T_i[j] * y_j;
+          if constexpr (affine)
+            momentum += A_i[j] * (y_is_x ? y_j : load(cell.x[j] + a));
+        }
+        store(to_momentum + a, load(to_momentum + a) + w * momentum);
+        if constexpr (forces) {
+          Pack sum = load(to_force + a) + load(s + a) * force;
+          if constexpr (loaded)
+            sum += w * per_mass;
+          store(to_force + a, sum);
+        }
+      }
+    }
+  }
+}
+
 namespace detail {
 
 template <bool affine, bool loaded, bool forces, int D, Kernel<D> K>
-void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order, Scheme scheme, BlockRows<D>& blocks)
+void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order, Scheme scheme,
+             BlockRows<D>& blocks)
 {
   parallel_for_uneven(blocks.size(), [&](Index b) {
     const auto rows = blocks.rows(b);
@@ -100,11 +189,10 @@ void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles
           std::fill(rows.begin(), rows.end(), NodeSum<D>{});
         kernel.open(mesh, c, cell);
         sums.clear(cell.padded_size);
-        for (const Index row : run) {
-          const auto p = static_cast<std::size_t>(row);
-          kernel.evaluate(cell, particles.x[p], weights);
-          deposit<affine, loaded, forces>(particles, p, affine_field(particles, p, scheme), cell, weights, sums);
-        }
+        for_each_bunch<D>(run, particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+          kernel.evaluate(cell, x, bunch.count, weights);
+          deposit<affine, loaded, forces>(particles, bunch, scheme, cell, weights, sums);
+        });
         sums.add_to(rows, blocks.slots(c));
       });
     blocks.occupied[static_cast<std::size_t>(b)] = occupied ? 1 : 0;
@@ -115,10 +203,13 @@ void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles
 
 /// Mass, momentum and force of every particle, into the rows of its block.
 template <int D, Kernel<D> K>
-void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order, const Transfer& transfer, BlockRows<D>& blocks)
+void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles, Index n_bodies, const CellOrder& order,
+             const Transfer& transfer, BlockRows<D>& blocks)
 {
   const bool loaded = !particles.applied.empty();
-  const auto run = [&]<bool affine, bool with_loads>() { detail::scatter<affine, with_loads, true>(kernel, mesh, particles, n_bodies, order, transfer.scheme, blocks); };
+  const auto run = [&]<bool affine, bool with_loads>() {
+    detail::scatter<affine, with_loads, true>(kernel, mesh, particles, n_bodies, order, transfer.scheme, blocks);
+  };
   if (transfer.affine())
     loaded ? run.template operator()<true, true>() : run.template operator()<true, false>();
   else

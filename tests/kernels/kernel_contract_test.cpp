@@ -86,7 +86,44 @@ TYPED_TEST(KernelContract, StencilHoldsTheCellOnceAndCellRepeatsIt)
         if (real) {
           ASSERT_EQ(probe.number(i), stencil[static_cast<std::size_t>(i)]);
         }
-        ASSERT_EQ(probe.node(i), mesh.node(stencil[real ? static_cast<std::size_t>(i) : 0]));
+        const Vec<D> about_origin = mesh.node(stencil[real ? static_cast<std::size_t>(i) : 0]) - probe.cell.origin;
+        for (int d = 0; d < D; ++d)
+          ASSERT_EQ(probe.cell.x[d][i], about_origin[d]);
+      }
+    }
+  }
+}
+
+TYPED_TEST(KernelContract, SeveralParticlesAtATimeWeighTheSameAsOneByOne)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  const Mesh<D>& mesh = jittered_mesh<D>();
+  const K kernel(mesh);
+  Probe<K, D> one(kernel, mesh);
+  const auto points = seeding_points<D>(4).value();
+  for (Index c = 0; c < mesh.n_cells(); ++c) {
+    one.enter(c);
+    for (int count = 1; count <= pack_size; ++count) {
+      const auto point = [&](int lane) {
+        return place(mesh, c, points[static_cast<std::size_t>(std::min(lane, count - 1)) % points.size()]);
+      };
+      Pack x[D]{};
+      for (int lane = 0; lane < pack_size; ++lane)
+        for (int d = 0; d < D; ++d)
+          x[d][lane] = point(lane)[d];
+      Weights<D, K::max_nodes> together;
+      kernel.evaluate(one.cell, x, count, together);
+      for (int lane = 0; lane < count; ++lane) {
+        one.evaluate(point(lane));
+        NodeWeights<D, K::max_nodes> weights;
+        together.spell_out(lane, weights);
+        for (int i = 0; i < one.cell.padded_size; ++i) {
+          ASSERT_NEAR(weights.w[i], one.weights.w[i], round_off) << "cell " << c << ", lane " << lane << " of " << count;
+          for (int d = 0; d < D; ++d)
+            ASSERT_NEAR(weights.dw[d][i], one.weights.dw[d][i], round_off / mesh.altitude(c))
+                << "cell " << c << ", lane " << lane << " of " << count;
+        }
       }
     }
   }
@@ -102,7 +139,8 @@ TYPED_TEST(KernelContract, WeightsSumToOneAndGradientsToZeroOnNodesEdgesFacesAnd
       Real sum = 0, size = 0, gradient_size = 0;
       Vec<D> gradient = Vec<D>::Zero();
       for (int i = 0; i < probe.cell.padded_size; ++i) {
-        ASSERT_TRUE(std::isfinite(probe.weights.w[i]) && probe.gradient(i).allFinite()) << at << ", cell " << c << ", x = " << x.transpose();
+        ASSERT_TRUE(std::isfinite(probe.weights.w[i]) && probe.gradient(i).allFinite())
+            << at << ", cell " << c << ", x = " << x.transpose();
         sum += probe.weights.w[i];
         size += std::abs(probe.weights.w[i]);
         gradient += probe.gradient(i);
@@ -150,7 +188,8 @@ TYPED_TEST(KernelContract, GradientsOfLinearFieldsAreExactIfClaimed)
 {
   using K = typename TypeParam::K;
   constexpr int D = TypeParam::D;
-  prove<D>(K(jittered_mesh<D>()).claims().linear_gradients, round_off, [](const Mesh<D>& mesh) { return linear_gradient_defect(K(mesh), mesh); });
+  prove<D>(K(jittered_mesh<D>()).claims().linear_gradients, round_off,
+           [](const Mesh<D>& mesh) { return linear_gradient_defect(K(mesh), mesh); });
 }
 
 TYPED_TEST(KernelContract, ValuesAreContinuousAcrossFacesIfClaimed)
@@ -164,7 +203,8 @@ TYPED_TEST(KernelContract, GradientIsContinuousAcrossFacesIfClaimed)
 {
   using K = typename TypeParam::K;
   constexpr int D = TypeParam::D;
-  prove<D>(K(jittered_mesh<D>()).claims().continuous_gradient, round_off, [](const Mesh<D>& mesh) { return jumps(K(mesh), mesh).gradient; });
+  prove<D>(K(jittered_mesh<D>()).claims().continuous_gradient, round_off,
+           [](const Mesh<D>& mesh) { return jumps(K(mesh), mesh).gradient; });
 }
 
 TYPED_TEST(KernelContract, GradientIsTheSlopeOfTheValuesIfClaimed)
@@ -179,7 +219,8 @@ TYPED_TEST(KernelContract, GradientsIntegrateToZeroAtInteriorNodesIfClaimed)
 {
   using K = typename TypeParam::K;
   constexpr int D = TypeParam::D;
-  prove<D>(K(jittered_mesh<D>()).claims().patch_test, round_off, [](const Mesh<D>& mesh) { return patch_defect(K(mesh), mesh, 0).largest; });
+  prove<D>(K(jittered_mesh<D>()).claims().patch_test, round_off,
+           [](const Mesh<D>& mesh) { return patch_defect(K(mesh), mesh, 0).largest; });
 }
 
 TYPED_TEST(KernelContract, WallsAreClosedIfClaimed)

@@ -95,7 +95,14 @@ class Probe {
  public:
   Probe(const K& kernel, const Mesh<D>& mesh) : kernel_(kernel), mesh_(mesh) {}
   void enter(Index c) { kernel_.open(mesh_, c, cell); }
-  void evaluate(const Vec<D>& x) { kernel_.evaluate(cell, x, weights); }
+  void evaluate(const Vec<D>& x)
+  {
+    Pack at[D];
+    for (int d = 0; d < D; ++d)
+      at[d] = broadcast(x[d]);
+    kernel_.evaluate(cell, at, 1, factors_);
+    factors_.spell_out(0, weights);
+  }
   Vec<D> gradient(int i) const
   {
     Vec<D> g;
@@ -107,15 +114,16 @@ class Probe {
   {
     Vec<D> x;
     for (int d = 0; d < D; ++d)
-      x[d] = cell.x[d][i];
+      x[d] = cell.origin[d] + cell.x[d][i];
     return x;
   }
   Index number(int i) const { return cell.nodes[static_cast<std::size_t>(i)]; }
 
   typename K::Cell cell;
-  Weights<D, K::max_nodes> weights;
+  NodeWeights<D, K::max_nodes> weights;
 
  private:
+  Weights<D, K::max_nodes> factors_;
   const K& kernel_;
   const Mesh<D>& mesh_;
 };

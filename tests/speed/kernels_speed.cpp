@@ -68,8 +68,12 @@ void run(benchmark::State& state)
       kernel.open(mesh<D>(), particles.cell[c], cell);
       benchmark::DoNotOptimize(&cell);
       if constexpr (evaluates) {
-        for (std::size_t p = 0; p < per_cell; ++p) {
-          kernel.evaluate(cell, particles.x[c * per_cell + p], weights);
+        for (std::size_t p = 0; p < per_cell; p += pack_size) {
+          Pack x[D]{};
+          for (int d = 0; d < D; ++d)
+            for (std::size_t lane = 0; lane < pack_size; ++lane)
+              x[d][lane] = particles.x[c * per_cell + p + lane][d];
+          kernel.evaluate(cell, x, pack_size, weights);
           benchmark::DoNotOptimize(&weights);
         }
       }
@@ -78,7 +82,7 @@ void run(benchmark::State& state)
   }
   const auto items = static_cast<double>(particles.cell.size()) * (evaluates ? per_cell : 1);
   state.counters[evaluates ? "per_particle" : "per_cell"] =
-    benchmark::Counter(items, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+      benchmark::Counter(items, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
   state.counters["nodes"] = particles.mean_nodes;
 }
 
