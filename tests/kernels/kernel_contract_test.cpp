@@ -108,10 +108,9 @@ TYPED_TEST(KernelContract, SeveralParticlesAtATimeWeighTheSameAsOneByOne)
       const auto point = [&](int lane) {
         return place(mesh, c, points[static_cast<std::size_t>(std::min(lane, count - 1)) % points.size()]);
       };
-      Pack x[D]{};
-      for (int lane = 0; lane < pack_size; ++lane)
-        for (int d = 0; d < D; ++d)
-          x[d][lane] = point(lane)[d];
+      Pack x[D];
+      for (int d = 0; d < D; ++d)
+        x[d] = Pack{point(0)[d], point(1)[d], point(2)[d], point(3)[d]};
       Weights<D, K::max_nodes> together;
       kernel.evaluate(one.cell, x, count, together);
       for (int lane = 0; lane < count; ++lane) {

@@ -69,10 +69,10 @@ void run(benchmark::State& state)
       benchmark::DoNotOptimize(&cell);
       if constexpr (evaluates) {
         for (std::size_t p = 0; p < per_cell; p += pack_size) {
-          Pack x[D]{};
+          const Vec<D>* const at = &particles.x[c * per_cell + p];
+          Pack x[D];
           for (int d = 0; d < D; ++d)
-            for (std::size_t lane = 0; lane < pack_size; ++lane)
-              x[d][lane] = particles.x[c * per_cell + p + lane][d];
+            x[d] = Pack{at[0][d], at[1][d], at[2][d], at[3][d]};
           kernel.evaluate(cell, x, pack_size, weights);
           benchmark::DoNotOptimize(&weights);
         }
