@@ -293,7 +293,7 @@ void gather_gradient(const K& kernel, const Mesh<D>& mesh, Index n_bodies, const
                      Real dt, Particles<D>& particles)
 {
   detail::for_each_seen(kernel, mesh, particles, n_bodies, order, nodes,
-                        [&](const Bunch& bunch, const auto& cell, const auto& motion, const auto& weights) {
+                        [&](const Bunch& bunch, const auto&, const auto& motion, const auto& weights) {
                           const Seen<D> seen = see<true, true>(motion, weights, bunch.count);
                           for (int lane = 0; lane < bunch.count; ++lane)
                             particles.L[bunch.p[lane]] = lane_of<D>(seen.L, lane);
