@@ -4,18 +4,18 @@ namespace talus {
 
 template <int D>
 template <class F>
-void Slaves<D>::for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Index slave, F&& f)
+void Slaves<D>::for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Index slave, F&& f) const
 {
   const auto masters_of = [&](auto&& visit) {
     for (const Index n : mesh.ring_of_node()[slave])
       if (nodes.active[static_cast<std::size_t>(n)])
-        visit(n, nodes.sum[static_cast<std::size_t>(n)].mass);
+        visit(n, mass_[static_cast<std::size_t>(n)]);
   };
   const auto second_ring = [&](auto&& visit) {  // a node may be met more than once, which only weighs it
     for (const Index between : mesh.ring_of_node()[slave])
       for (const Index n : mesh.ring_of_node()[between])
         if (nodes.active[static_cast<std::size_t>(n)])
-          visit(n, nodes.sum[static_cast<std::size_t>(n)].mass);
+          visit(n, mass_[static_cast<std::size_t>(n)]);
   };
   Real total = 0;
   const auto add = [&](Index, Real mass) { total += mass; };
@@ -35,8 +35,9 @@ void Slaves<D>::lump(const Mesh<D>& mesh, Nodes<D>& nodes)
 {
   slaves_.reserve(nodes.sum.size());
   slaves_.clear();
+  mass_.resize(nodes.sum.size());
   for (std::size_t n = 0; n < nodes.sum.size(); ++n) {
-    const Real mass = nodes.sum[n].mass;
+    const Real mass = mass_[n] = nodes.sum[n].mass;
     nodes.active[n] = mass > nodes.mass_cut ? 1 : 0;
     if (!nodes.active[n] && (mass != 0 || !nodes.sum[n].force.isZero(0)))
       slaves_.push_back(static_cast<Index>(n));

@@ -36,8 +36,9 @@ class Slaves {
  private:
   /// f(master, share) for the active nodes a slave hangs on; nothing if there are none within two rings.
   template <class F>
-  static void for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Index slave, F&& f);
+  void for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Index slave, F&& f) const;
   std::vector<Index> slaves_;
+  std::vector<Real> mass_;  ///< of every node before anything was handed on: shares must be the same there and back
 };
 
 extern template class Slaves<2>;
