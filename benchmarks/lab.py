@@ -12,6 +12,7 @@ import resource
 import subprocess
 
 import matplotlib
+import matplotlib.ticker
 import numpy as np
 
 import vtp
@@ -78,7 +79,7 @@ class Result:
         """What results.json holds of it."""
         own = {key: getattr(self, key) for key in ("case", "metric", "unit", "value", "reference", "source", "criterion", "tolerance")}
         return {**own, "pass": self.passed, "mesh": f"{self.run.cells} cells", "particles": self.run.particles,
-                "processor_seconds": round(self.run.seconds, 2), "threads": self.run.summary["cost"]["threads"],
+                "processor_seconds": self.run.seconds, "threads": self.run.summary["cost"]["threads"],
                 "commit": self.run.summary["program"]["commit"]}
 
 
@@ -174,5 +175,5 @@ def size_axis(axis, sizes):
     """Ticks of a logarithmic axis at the sizes of cells and nowhere else."""
     axis.set_xscale("log")
     axis.set_xticks(sizes, [f"{size:g}" for size in sizes])
-    axis.minorticks_off()
+    axis.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
     axis.set_xlabel("cell size [m]")

@@ -12,6 +12,11 @@ def number(value):
     return "-" if value is None else f"{value:.4g}"
 
 
+def quantity(result):
+    """The value with its unit, if it has one."""
+    return number(result.value) + ("" if result.unit == "-" else f" {result.unit}")
+
+
 def criterion(result):
     """What was asked, in words."""
     if result.criterion == "reported":
@@ -26,7 +31,7 @@ def criterion(result):
 def line(result):
     """One result as a line for the terminal."""
     verdict = VERDICTS[result.passed].strip("*")
-    return f"{verdict:5s} {result.metric}: {number(result.value)} {result.unit} (reference {number(result.reference)}; {criterion(result)})"
+    return f"{verdict:5s} {result.metric}: {quantity(result)} (reference {number(result.reference)}; {criterion(result)})"
 
 
 def table(results):
@@ -34,7 +39,7 @@ def table(results):
     rows = ["| measured | value | unit | reference | asked | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
     for r in results:
         rows.append(f"| {r.metric} | {number(r.value)} | {r.unit} | {number(r.reference)} | {criterion(r)} | {VERDICTS[r.passed]} "
-                    f"| {r.run.cells} | {r.run.particles} | {r.run.seconds:.1f} |")
+                    f"| {r.run.cells} | {r.run.particles} | {number(r.run.seconds)} |")
     return rows
 
 
@@ -72,7 +77,7 @@ def summary(results, case):
     """One row for README.md: the first number of a case that is judged, and how many of those passed."""
     judged = [r for r in results if r.passed is not None]
     example = judged[0]
-    return (f"| [{title(case)}](benchmarks/{case}/README.md) | {example.metric} | {number(example.value)} {example.unit} | "
+    return (f"| [{title(case)}](benchmarks/{case}/README.md) | {example.metric} | {quantity(example)} | "
             f"{number(example.reference)} | {criterion(example)} | {sum(r.passed is True for r in judged)} of {len(judged)} |")
 
 

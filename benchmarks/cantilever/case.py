@@ -26,6 +26,11 @@ def energy_change(run, gravity):
     return float(np.max(np.abs(history["kinetic"] + history["strain"] + potential)) / np.max(history["strain"]))
 
 
+def ledger_defect(run):
+    """Largest defect that the program's own energy ledger shows, over the largest strain energy."""
+    return float(np.max(np.abs(run.history["energy_defect"])) / np.max(run.history["strain"]))
+
+
 def draw(figure, runs, curve):
     """Deflection of the tip over time."""
     axis = figure.subplots()
@@ -49,7 +54,8 @@ def judge(size, run, curve, data):
         tools.Result(CASE, f"rms error of the tip over 4 s, cells of {size} m", "-", history_error(run.history, curve, data), "at most" if judged else "reported",
                      0.03 if judged else None, 0.0, source, run),
         tools.Result(CASE, f"change of energy, cells of {size} m", "-", energy_change(run, data["gravity [m/s^2]"]), "at most" if judged else "reported",
-                     0.005 if judged else None, 0.0, "conserved by the exact solution", run)]
+                     0.005 if judged else None, 0.0, "conserved by the exact solution", run),
+        tools.Result(CASE, f"defect in the program's energy ledger, cells of {size} m", "-", ledger_defect(run), "reported", None, 0.0, "energy balance", run)]
 
 
 def evaluate(lab):
