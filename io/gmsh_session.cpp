@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "core/parallel.hpp"
 #include "io/msh_assembler.hpp"
 
 namespace talus {
@@ -15,7 +16,7 @@ namespace {
 constexpr int delaunay = 1, hxt = 10;  // numbers of Mesh.Algorithm3D
 }  // namespace
 
-GmshSession::GmshSession(Where asked_by) : asked_by_(std::move(asked_by))
+GmshSession::GmshSession(Where asked_by) : asked_by_(std::move(asked_by)), threads_(threads())
 {
   try {
     gmsh::initialize(0, nullptr, false);  // no configuration files: they would change the mesh behind the scene's back
@@ -41,6 +42,7 @@ GmshSession::~GmshSession()
     gmsh::finalize();
   } catch (...) {  // NOLINT(bugprone-empty-catch): nothing is left to be lost
   }
+  set_threads(threads_);
 }
 
 std::vector<std::string> GmshSession::errors() const

@@ -53,6 +53,7 @@ class GmshSession {
  private:
   std::vector<std::string> errors() const;  ///< what gmsh logged as such
   Where asked_by_;
+  int threads_;  ///< those of the program: gmsh sets the number for everybody
 };
 
 extern template MeshData<2> GmshSession::take<2>();

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "core/parallel.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus {
@@ -52,6 +53,15 @@ std::string complaint(const MeshSpec& spec, const std::filesystem::path& directo
 }
 
 constexpr Real round_off = 1e-12;  // relative, of sums over some thousand cells
+
+TEST(GmshMesh, LeavesTheNumberOfThreadsAlone)
+{
+  const int before = threads();
+  set_threads(3);
+  load_mesh<2>(regions(0.5, {region("a", Box{{0, 0}, {1, 1}})}), ".");
+  EXPECT_EQ(threads(), 3) << "gmsh sets it for the whole program";
+  set_threads(before);
+}
 
 TEST(GmshMesh, PlaneRegionsHaveTheirAreas)
 {
