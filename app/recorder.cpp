@@ -138,6 +138,7 @@ void Recorder<D>::write_particles_file(const Frame<D>& frame)
   for (const std::string& name : particle_fields_of(outputs_))
     columns.push_back(particle_column(frame, rows, name));
   std::vector<std::int64_t> ids;
+  ids.reserve(rows.size());
   for (const Index row : rows)
     ids.push_back(frame.particles.id[static_cast<std::size_t>(row)]);
   const auto file = folder_ / fmt::format("particles_{:04}.vtp", particle_files_++);
