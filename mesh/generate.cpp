@@ -55,7 +55,7 @@ MeshData<D> box_nodes(Vec<D> low, Vec<D> high, std::array<Index, D> cells)
     ++count[d];
     total *= cells[d];
   }
-  if (total > std::numeric_limits<Index>::max() / (D + 1))
+  if (total * (D + 1) > std::numeric_limits<Index>::max())
     throw std::invalid_argument(fmt::format("a box of {:.3g} cells is more than 32-bit numbers can count", total));
   MeshData<D> data;
   Grid<D>::for_each(count, [&](const std::array<Index, D>& at) {
