@@ -34,8 +34,15 @@ class Seeder {
                       fmt::format("the body has no particles: {}",
                                   spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
-    std::visit([&](const auto& law) { seeds_.materials.push_back(make_batch(law, begin, end, material->name, material->where)); },
-               material->law);
+    AnyBatch batch =
+        std::visit([&](const auto& law) { return make_any_batch(law, begin, end, material->name, material->where); }, material->law);
+    std::visit(
+        [&](auto& typed) {
+          typed.viscosity = material->bulk_viscosity;
+          typed.averages_volume = spec.f_bar.value_or(false);
+        },
+        batch);
+    seeds_.materials.push_back(std::move(batch));
     set_velocity(spec, begin, end);
   }
 

@@ -33,6 +33,8 @@ struct Particles {
   std::vector<Vec<D>> x0;        ///< where displacement counts from [m]
   std::vector<Vec<D>> applied;   ///< force of tractions [N]
   std::vector<Real> applied_at;  ///< applied . x before the move [J]
+  std::vector<Real> volume_ratio;  ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
+  std::vector<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
 
@@ -57,6 +59,7 @@ struct Particles {
     f("deformation_gradient", "-", self.F), f("stress", "Pa", self.stress), f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0),
         f("volume", "m^D", self.volume);
     f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied), f("applied_at", "J", self.applied_at);
+    f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous);
   }
 };
 

@@ -17,6 +17,18 @@ constexpr void for_each_type(TypeList<T...>, F&& f)
   (f.template operator()<T>(), ...);
 }
 
+/// The lists one behind the other.
+template <class... T>
+constexpr TypeList<T...> joined(TypeList<T...>)
+{
+  return {};
+}
+template <class... T, class... U, class... Rest>
+constexpr auto joined(TypeList<T...>, TypeList<U...>, Rest... rest)
+{
+  return joined(TypeList<T..., U...>{}, rest...);
+}
+
 namespace detail {
 template <class List, template <class> class Wrap>
 struct VariantOf;

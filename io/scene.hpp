@@ -139,11 +139,14 @@ struct TransferSpec {
 
 struct MaterialSpec {
   std::string name;
+  std::optional<BulkViscosity> bulk_viscosity;
   AnyLaw law;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
+                      group("bulk_viscosity", &MaterialSpec::bulk_viscosity,
+                            "artificial viscous pressure where the volume shrinks, against ringing behind shocks; default none"),
                       alternative("law", &MaterialSpec::law, "constitutive law; its parameters are keys of the same mapping")};
   }
 };
@@ -154,6 +157,7 @@ struct BodySpec {
   std::string region;
   std::optional<Shape> shape;
   Index particles_per_cell = 4;
+  std::optional<bool> f_bar;
   std::vector<std::string> velocity;
   Where where;
   static constexpr auto fields()
@@ -164,6 +168,8 @@ struct BodySpec {
                       optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
                       optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
                                "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, ..."),
+                      optional("f_bar", &BodySpec::f_bar, any, "-",
+                               "against locking: the law sees the volume ratio averaged over the cells around nodes; default false"),
                       optional("velocity", &BodySpec::velocity, any, "m/s",
                                "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
   }

@@ -11,19 +11,6 @@
 
 namespace talus {
 
-namespace detail {
-struct NoConstants {};
-template <class L>
-struct ConstantsOf {
-  using type = NoConstants;
-};
-template <class L>
-requires requires { typename L::Constants; }
-struct ConstantsOf<L> {
-  using type = typename L::Constants;
-};
-}  // namespace detail
-
 /// Particles [begin, end) of the model follow `law`.  Every index i below counts from 0 inside the body.
 template <class L>
 struct Batch {
@@ -32,37 +19,63 @@ struct Batch {
   using State = typename L::State;
 
   L law{};
+  typename L::Constants constants{};  ///< of `law`: to be renewed when its parameters change
   Index begin{}, end{};
   std::vector<State> history{};
   Where where{};
   std::string name{};
-  std::optional<typename detail::ConstantsOf<L>::type> constants{};  ///< of make_batch(); reset when parameters of `law` change
-  std::vector<State> scratch{};                                      ///< of permute()
+  std::optional<BulkViscosity> viscosity{};
+  bool averages_volume = false;  ///< F-bar through nodes
+  std::vector<State> scratch{};  ///< of permute()
 
   Index size() const noexcept { return end - begin; }
   /// Cauchy stress [Pa] of particle i at the end of the step; changes its history.
   Mat3 update(Index i, const Increment& in) noexcept
   {
-    State& state = history[static_cast<std::size_t>(i)];
-    if constexpr (requires { typename L::Constants; })
-      if (constants)
-        return law.update(in, state, *constants);
-    return law.update(in, state);
+    return law.update(in, history[static_cast<std::size_t>(i)], constants);
   }
+  Real wave_speed(const Mat3& F) const noexcept { return law.wave_speed(F, constants); }
 };
 
 /// A body at rest: history as a particle starts with it.
 template <class L>
 Batch<L> make_batch(L law, Index begin, Index end, std::string name, Where where = {})
 {
-  Batch<L> batch{.law = std::move(law), .begin = begin, .end = end, .where = std::move(where), .name = std::move(name)};
+  const auto constants = law.constants();
+  Batch<L> batch{
+      .law = std::move(law), .constants = constants, .begin = begin, .end = end, .where = std::move(where), .name = std::move(name)};
   batch.history.resize(static_cast<std::size_t>(batch.size()));
-  if constexpr (requires { typename L::Constants; })
-    batch.constants = batch.law.constants();
   return batch;
 }
 
-using AnyBatch = variant_of<Laws, Batch>;
+namespace detail {
+template <class L>
+constexpr auto kinds_of()
+{
+  if constexpr (requires { typename L::Kinds; })
+    return typename L::Kinds{};
+  else
+    return TypeList<L>{};
+}
+template <class... L>
+constexpr auto all_kinds(TypeList<L...>)
+{
+  return joined(kinds_of<L>()...);
+}
+}  // namespace detail
+
+/// The laws of the list, each in all its kinds.
+using AnyBatch = variant_of<decltype(detail::all_kinds(Laws{})), Batch>;
+
+/// The batch of a law as a scene gives it, of the kind that its parameters ask for.
+template <class L>
+AnyBatch make_any_batch(const L& law, Index begin, Index end, const std::string& name, const Where& where = {})
+{
+  if constexpr (requires { law.kind(); })
+    return std::visit([&](const auto& kind) { return AnyBatch(make_batch(kind, begin, end, name, where)); }, law.kind());
+  else
+    return make_batch(law, begin, end, name, where);
+}
 
 /// One history variable of all particles of a body: column[i] is a Real or a Sym3.
 template <class State, class Value>
@@ -162,7 +175,15 @@ inline Real density(const AnyBatch& batch) noexcept
 }
 inline Real wave_speed(const AnyBatch& batch, const Mat3& F) noexcept
 {
-  return std::visit([&](const auto& typed) { return typed.law.wave_speed(F); }, batch);
+  return std::visit([&](const auto& typed) { return typed.wave_speed(F); }, batch);
+}
+inline bool averages_volume(const AnyBatch& batch) noexcept
+{
+  return std::visit([](const auto& typed) { return typed.averages_volume; }, batch);
+}
+inline bool has_bulk_viscosity(const AnyBatch& batch) noexcept
+{
+  return std::visit([](const auto& typed) { return typed.viscosity.has_value(); }, batch);
 }
 inline std::string_view law_name(const AnyBatch& batch) noexcept
 {

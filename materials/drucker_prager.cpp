@@ -109,8 +109,9 @@ DruckerPrager::Constants DruckerPrager::constants() const noexcept
   const Cone peak = cone_of(friction_angle, cohesion);
   const Cone residual = cone_of(residual_friction_angle.value_or(friction_angle), residual_cohesion.value_or(cohesion));
   const Real strain = softening_strain.value_or(never);
-  return {.bulk = youngs_modulus / (3 * (1 - 2 * poisson_ratio)),
-          .shear = youngs_modulus / (2 * (1 + poisson_ratio)),
+  const Moduli elastic = moduli();
+  return {.bulk = elastic.bulk,
+          .shear = elastic.shear,
           .peak = peak,
           .residual = residual,
           .slope = {(residual.q - peak.q) / strain, (residual.k - peak.k) / strain},
@@ -168,14 +169,14 @@ Real DruckerPrager::yield(const Mat3&, const State& state) const noexcept
   return tau + now.q * c.bulk * trace(strain) - now.k;
 }
 
-Real DruckerPrager::wave_speed(const Mat3& F) const noexcept
+Real DruckerPrager::wave_speed(const Mat3& F, const Constants& c) const noexcept
 {
-  const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
-  return std::sqrt((lambda + 2 * mu) * (1 + std::max(-std::log(F.determinant()), Real{0})) / density);
+  return std::sqrt((c.bulk + 4 * c.shear / 3) * (1 + std::max(-std::log(F.determinant()), Real{0})) / density);
 }
 
 void DruckerPrager::check(std::vector<std::string>& problems) const
 {
+  Elasticity::check(problems);
   const Real residual_friction = residual_friction_angle.value_or(friction_angle);
   if (dilation_angle > friction_angle)
     problems.push_back(fmt::format("dilation_angle {} is above friction_angle {}", dilation_angle, friction_angle));

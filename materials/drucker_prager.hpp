@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "materials/elasticity.hpp"
 #include "materials/law.hpp"
 #include "materials/logarithm.hpp"
 
@@ -25,21 +26,18 @@ struct Cone {
 /// isotropy makes the return act on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens where the
 /// mean stress reaches the cut-off or the tip of the cone: the opened volume is kept, and closes at zero mean stress before
 /// compression is felt again.  Formulas and numbers: docs/materials.md.
-struct DruckerPrager {
+struct DruckerPrager : Elasticity {
   static constexpr std::string_view name = "drucker_prager";
   static constexpr std::string_view summary =
       "Drucker-Prager cone on logarithmic elasticity: non-associated, tension cut-off, apex, linear softening (Drucker & Prager 1952).";
-  Real density{}, youngs_modulus{}, poisson_ratio{}, friction_angle{}, cohesion{};
+  Real density{}, friction_angle{}, cohesion{};
   ConeMatch match{};
   Real dilation_angle = 0;
   std::optional<Real> tension_cutoff, residual_friction_angle, residual_cohesion, softening_strain;
   static constexpr auto fields()
   {
     using Law = DruckerPrager;
-    return std::tuple{
-        required("density", &Law::density, positive, "kg/m^3", "mass density at rest"),
-        required("youngs_modulus", &Law::youngs_modulus, positive, "Pa", "Young's modulus"),
-        required("poisson_ratio", &Law::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio"),
+    return std::tuple_cat(std::tuple{required("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(), std::tuple{
         required("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg",
                  "angle of friction of the Mohr-Coulomb soil that is matched"),
         required("cohesion", &Law::cohesion, non_negative, "Pa", "cohesion of the Mohr-Coulomb soil that is matched"),
@@ -52,7 +50,7 @@ struct DruckerPrager {
         optional("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
                  "cohesion after softening; without it the cohesion stays"),
         optional("softening_strain", &Law::softening_strain, positive, "-",
-                 "plastic_strain at which the residual strength is reached, linear before; without it nothing softens")};
+                 "plastic_strain at which the residual strength is reached, linear before; without it nothing softens")});
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;
@@ -92,13 +90,12 @@ struct DruckerPrager {
   };
   Constants constants() const noexcept;
 
-  Mat3 update(const Increment& in, State& state) const noexcept { return update(in, state, constants()); }
   Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, State& state) const noexcept;
   /// tau + q s - k of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is that over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
   /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
-  Real wave_speed(const Mat3& F) const noexcept;
+  Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

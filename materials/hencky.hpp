@@ -2,44 +2,45 @@
 // Elasticity in logarithmic strain: what Drucker-Prager is inside its cone.
 #include <string_view>
 
+#include "materials/elasticity.hpp"
 #include "materials/law.hpp"
 #include "materials/logarithm.hpp"
 
 namespace talus {
 
 /// Hencky solid: J stress = lambda tr(e) I + 2 mu e with e = ln(F F^T) / 2.
-struct Hencky {
+struct Hencky : Elasticity {
   static constexpr std::string_view name = "hencky";
   static constexpr std::string_view summary =
       "Hencky solid, J stress = lambda tr(e) I + 2 mu e with the logarithmic strain e = ln(F F^T) / 2.";
-  Real density{}, youngs_modulus{}, poisson_ratio{};
+  Real density{};
   static constexpr auto fields()
   {
-    return std::tuple{required("density", &Hencky::density, positive, "kg/m^3", "mass density at rest"),
-                      required("youngs_modulus", &Hencky::youngs_modulus, positive, "Pa", "Young's modulus at small strain"),
-                      required("poisson_ratio", &Hencky::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio at small strain")};
+    return std::tuple_cat(std::tuple{required("density", &Hencky::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Hencky>());
   }
   using State = NoHistory;
+  using Constants = Moduli;
+  Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&) const noexcept
+  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
   {
     const Real J = in.F.determinant();
-    return J > 0 ? Mat3(kirchhoff(in.F) / J) : no_answer();
+    return J > 0 ? Mat3(kirchhoff(in.F, c) / J) : no_answer();
   }
 
   /// Along a principal axis n rho_0 c^2 = lambda + 2 mu - J stress_nn; across, from n towards m, mu r ln(r) / (r - 1) with r = b_n / b_m,
   /// which is at most mu (1 + ln r).
-  Real wave_speed(const Mat3& F) const noexcept
+  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
   {
-    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
-    const Real stress = largest_eigenvalue_bound(kirchhoff(F));
+    const Real lambda = c.lambda, mu = c.shear;
+    const Real stress = largest_eigenvalue_bound(kirchhoff(F, c));
     return std::sqrt(std::max(lambda + 2 * mu + stress, mu + 2 * stress) / density);
   }
 
  private:
-  Mat3 kirchhoff(const Mat3& F) const noexcept
+  static Mat3 kirchhoff(const Mat3& F, const Moduli& c) noexcept
   {
-    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    const Real lambda = c.lambda, mu = c.shear;
     const Sym3 strain = scale_and_shift(0.5, log1p(push_forward(F - Mat3::Identity(), Sym3::Zero())), 0);
     return unpack(scale_and_shift(2 * mu, strain, lambda * trace(strain)));
   }

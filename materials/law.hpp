@@ -16,7 +16,18 @@ struct Increment {
   const Mat3& L;       ///< velocity gradient of the step [1/s]; F = (I + dt L) F_old
   const Mat3& stress;  ///< Cauchy stress at its beginning [Pa], tension positive
   Real dt;             ///< [s]
+  Real viscous;        ///< artificial viscous pressure of the step [Pa], not in `stress`; it works on what keeps internal energy
   bool elastic;        ///< true in a stage that suspends yielding: answer elastically, leave hardening variables alone
+};
+
+/// Artificial viscous pressure against the ringing behind shocks, for any law; the numbers are those of most impact codes.
+struct BulkViscosity {
+  Real linear = 0.06, quadratic = 1.5;
+  static constexpr auto fields()
+  {
+    return std::tuple{optional("linear", &BulkViscosity::linear, non_negative, "-", "times density, cell size, wave speed and rate of volume"),
+                      optional("quadratic", &BulkViscosity::quadratic, non_negative, "-", "times density and (cell size times rate of volume)^2")};
+  }
 };
 
 /// History of a law that has none.
@@ -24,25 +35,28 @@ struct NoHistory {
   static constexpr auto fields() { return std::tuple{}; }
 };
 
-/// A law.  `update` returns the Cauchy stress [Pa] at the end of the step and changes the history; it never throws, prints or
+/// A law.  `constants` is what follows from the parameters alone, worked out once per body.  `update` returns the Cauchy stress [Pa] at the end of the step and changes the history; it never throws, prints or
 /// allocates, and answers NaN where it has no answer (for instance det F <= 0).  `wave_speed` [m/s] is an upper bound of the
 /// speed of sound in the state F.  Optional members, found by `requires`:
 ///   void check(std::vector<std::string>& problems) const            rules between parameters, in words
 ///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
 ///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
-///   Constants constants() const;  Mat3 update(in, state, const Constants&) const     what a batch computes once from the parameters
+///   Real diffusivity(const Constants&) const noexcept               largest viscosity over density [m^2/s]: bounds the step as well
+///   using Kinds = TypeList<...>;  std::variant<...> kind() const    laws to be run instead, where the parameters decide which history
+///                                                                   there is; the law itself is the kind that has all of it
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
 /// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
 // clang-format off
 template <class L>
-concept Law = requires(const L law, const Increment& in, typename L::State& state) {
+concept Law = requires(const L law, const Increment& in, typename L::State& state, const typename L::Constants& constants) {
   { L::name } -> std::convertible_to<std::string_view>;
   { L::summary } -> std::convertible_to<std::string_view>;  // one sentence with the source, for the manual
   L::fields();
   L::State::fields();
   { law.density } -> std::convertible_to<Real>;  // kg/m^3 at rest
-  { law.update(in, state) } noexcept -> std::same_as<Mat3>;
-  { law.wave_speed(in.F) } noexcept -> std::same_as<Real>;
+  { law.constants() } noexcept -> std::same_as<typename L::Constants>;
+  { law.update(in, state, constants) } noexcept -> std::same_as<Mat3>;
+  { law.wave_speed(in.F, constants) } noexcept -> std::same_as<Real>;
 };
 // clang-format on
 

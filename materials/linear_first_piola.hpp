@@ -2,6 +2,7 @@
 // A law for one purpose: bars whose exact solution holds at any amplitude.
 #include <string_view>
 
+#include "materials/elasticity.hpp"
 #include "materials/law.hpp"
 #include "materials/logarithm.hpp"
 
@@ -10,35 +11,34 @@ namespace talus {
 /// First Piola stress linear in the displacement gradient, P = lambda tr(F - I) I + 2 mu (F - I): in uniaxial strain the wave
 /// equation in initial coordinates is then linear, P = M (F - 1), however large the strain.  For verification only: a rotation
 /// makes stress.  The Cauchy stress is P F^T / J; its skew part, which is zero for diagonal F, is dropped.
-struct LinearFirstPiola {
+struct LinearFirstPiola : Elasticity {
   static constexpr std::string_view name = "linear_first_piola";
   static constexpr std::string_view summary =
       "First Piola stress linear in F, P = lambda tr(F - I) I + 2 mu (F - I); not objective, for the verification of bars only.";
   static constexpr bool objective = false;
-  Real density{}, youngs_modulus{}, poisson_ratio{};
+  Real density{};
   static constexpr auto fields()
   {
-    return std::tuple{
-        required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest"),
-        required("youngs_modulus", &LinearFirstPiola::youngs_modulus, positive, "Pa", "Young's modulus at small strain"),
-        required("poisson_ratio", &LinearFirstPiola::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio at small strain")};
+    return std::tuple_cat(std::tuple{required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<LinearFirstPiola>());
   }
   using State = NoHistory;
+  using Constants = Moduli;
+  Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&) const noexcept
+  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
   {
     const Real J = in.F.determinant();
     if (!(J > 0))
       return no_answer();
-    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    const Real lambda = c.lambda, mu = c.shear;
     const Mat3 G = in.F - Mat3::Identity();
     const Mat3 P = lambda * G.trace() * Mat3::Identity() + 2 * mu * G;
     return sym(P * in.F.transpose()) / J;
   }
 
-  Real wave_speed(const Mat3& F) const noexcept
+  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
   {
-    const auto [lambda, mu] = lame(youngs_modulus, poisson_ratio);
+    const Real lambda = c.lambda, mu = c.shear;
     return std::sqrt((lambda + 2 * mu) * largest_eigenvalue_bound(F * F.transpose()) / density);
   }
 };

@@ -24,7 +24,7 @@ struct PointState {
 template <class L>
 class StepSolver {
  public:
-  StepSolver(const L& law, const std::array<Control, 6>& controls, Real dt) : law_(law), dt_(dt)
+  StepSolver(const Batch<L>& batch, const std::array<Control, 6>& controls, Real dt) : law_(batch.law), constants_(batch.constants), dt_(dt)
   {
     for (std::size_t k = 0; k < 6; ++k) {
       const auto [i, j] = places[k];
@@ -46,7 +46,7 @@ class StepSolver {
     PointState<L> end = deform(state, x);
     if (!end.stress.allFinite())
       end = deform(state, x.setZero());
-    const Real stiffness = law_.density * std::pow(law_.wave_speed(state.F), 2);
+    const Real stiffness = law_.density * std::pow(law_.wave_speed(state.F, constants_), 2);
     Unknowns residual = missing(end, target);
     // Aimed at 1e-12 of the stress; what rounding of a stress made of stiffness times differences from one allows is good enough.
     const auto relative = [&] { return residual.norm() / std::max(target.norm(), end.stress.norm()); };
@@ -74,7 +74,7 @@ class StepSolver {
     }
     PointState<L> to = from;
     to.F += H * from.F;
-    to.stress = law_.update({to.F, H / dt_, from.stress, dt_, false}, to.history);
+    to.stress = law_.update({to.F, H / dt_, from.stress, dt_, 0, false}, to.history, constants_);
     return to;
   }
 
@@ -124,6 +124,7 @@ class StepSolver {
   }
 
   const L& law_;
+  const typename L::Constants& constants_;
   Real dt_;
   Mat3 prescribed_ = Mat3::Zero();
   std::vector<std::size_t> free_;
@@ -172,7 +173,7 @@ PointTable drive(Batch<L>& batch, std::span<const PointPath> paths, const Mat3& 
     const PointPath& path = paths[n];
     const auto controls = path.controls.all();
     const Real dt = path.time / path.steps;
-    StepSolver<L> solver(batch.law, controls, dt);
+    StepSolver<L> solver(batch, controls, dt);
     const Sym3 start = pack(state.stress);
     for (Index step = 1; step <= path.steps; ++step) {
       Sym3 target = start;

@@ -2,6 +2,7 @@
 // The algorithm: one explicit step, stress last.  Numbers are those of docs/algorithm.md.
 #include <chrono>
 
+#include "solver/average_volume.hpp"
 #include "solver/gather.hpp"
 #include "solver/model.hpp"
 #include "solver/update_stress.hpp"
@@ -64,8 +65,11 @@ void advance(Model<D, K>& m, Real dt)
   watch.lap(m.timings.gather);
 
   m.crossing = std::numeric_limits<Real>::infinity();
-  for (auto& batch : m.materials) {
-    const StressSums sums = update_stress(m.mesh, batch, dt, m.stage.elastic, m.particles, m.health);  // 11
+  for (Index body = 0; body < m.n_bodies(); ++body) {
+    AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
+    if (averages_volume(material))
+      average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
+    const StressSums sums = update_stress(m.mesh, material, dt, m.stage.elastic, m.averaged, m.particles, m.health);  // 11
     m.energy.internal += sums.work;
     m.crossing = std::min(m.crossing, sums.crossing);
   }

@@ -1,11 +1,10 @@
 #pragma once
 // How long a step may be: a share of the time in which a wave crosses the cell of a particle.
-#include "materials/batch.hpp"
-#include "mesh/mesh.hpp"
+#include "solver/update_stress.hpp"
 
 namespace talus {
 
-/// Smallest altitude of a particle's cell / (wave speed + |v|), over all particles [s]; infinite without particles.  Every step
+/// Smallest crossing_time over all particles [s]; infinite without particles.  Every step
 /// finds it anew while it has the particles at hand (update_stress); this is for the first one.
 template <int D>
 Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
@@ -16,7 +15,7 @@ Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
         [&](const auto& batch) {
           least = parallel_min(batch.size(), least, [&](Index i) {
             const auto p = static_cast<std::size_t>(batch.begin + i);
-            return mesh.altitude(particles.cell[p]) / (batch.law.wave_speed(particles.F[p]) + particles.v[p].norm());
+            return crossing_time(mesh, batch, particles, p, batch.wave_speed(particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
           });
         },
         material);
@@ -34,7 +33,7 @@ Index slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
         [&](const auto& batch) {
           for (Index row = batch.begin; row < batch.end; ++row) {
             const auto p = static_cast<std::size_t>(row);
-            const Real own = mesh.altitude(particles.cell[p]) / (batch.law.wave_speed(particles.F[p]) + particles.v[p].norm());
+            const Real own = crossing_time(mesh, batch, particles, p, batch.wave_speed(particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
             if (own < least) {
               least = own;
               slowest = row;

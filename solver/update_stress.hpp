@@ -1,6 +1,7 @@
 #pragma once
 // Deformation and stress of every particle at the end of the step.
 #include "core/health.hpp"
+#include "core/particles.hpp"
 #include "materials/batch.hpp"
 #include "mesh/mesh.hpp"
 
@@ -18,37 +19,37 @@ struct StressSums {
   }
 };
 
-/// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history).  One dispatch per body, then a plain typed loop.
+/// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history) - q_p I.  One dispatch per body, then a plain typed loop.
+///
+/// A body that averages its volume (`averaged` holds the new ratios, see average_volume) tells its law F and I + dt L with their
+/// in-plane volume ratio replaced; F_p itself stays what the motion made it.  q_p is the artificial viscous pressure of a body that
+/// has one:  q = rho h |d| (quadratic h |d| + linear c) where the volume shrinks at the rate d = tr L, h the altitude of the cell
+/// (von Neumann & Richtmyer 1950; linear term of Landshoff 1955).
+///
+/// The crossing counts viscosity nu and q by the damping of the wave of one cell: speed = Q + sqrt(Q^2 + c^2) with
+/// Q = D nu / h + quadratic h |d| + linear c, exact for a chain of equal cells.
 template <int D>
-StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, Real dt, bool elastic, Particles<D>& particles, Health& health)
+StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, Real dt, bool elastic, const std::vector<Real>& averaged,
+                         Particles<D>& particles, Health& health);
+
+extern template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, Real, bool, const std::vector<Real>&, Particles<2>&, Health&);
+extern template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, Real, bool, const std::vector<Real>&, Particles<3>&, Health&);
+
+/// Altitude / (effective wave speed + |v|) of a particle [s].  `shrinking` is max(-tr L, 0) [1/s].
+template <int D, class L>
+Real crossing_time(const Mesh<D>& mesh, const Batch<L>& batch, const Particles<D>& particles, std::size_t p, Real wave_speed,
+                   Real shrinking) noexcept
 {
-  return std::visit(
-      [&](auto& batch) {
-        return parallel_sum<StressSums>(
-            batch.size(), [&](Index i) __attribute__((flatten))->StressSums {
-              const auto p = static_cast<std::size_t>(batch.begin + i);
-              const Mat3 L = embed<D>(particles.L[p]), F_old = particles.F[p];
-              const Mat3 before = unpack(particles.stress[p]);
-              const Real volume_before = particles.volume[p];
-              const Mat3 F = F_old + dt * (L * F_old);
-              particles.F[p] = F;
-              const Real J = F.determinant();
-              if (!(J > 0)) {
-                health.report(particles.id[p], std::isfinite(J) ? Trouble::inverted : Trouble::not_finite);
-                return {};
-              }
-              const Mat3 after = batch.update(i, Increment{F, L, before, dt, elastic});
-              const Sym3 stress = pack(after);
-              if (!std::isfinite(stress.sum()))
-                health.report(particles.id[p], Trouble::no_answer);
-              particles.stress[p] = stress;
-              particles.volume[p] = J * particles.volume0[p];
-              const Mat3 mean = 0.5 * (volume_before * before + particles.volume[p] * after);
-              return {dt * mean.cwiseProduct(L).sum(),
-                      mesh.altitude(particles.cell[p]) / (batch.law.wave_speed(F) + particles.v[p].norm())};
-            });
-      },
-      material);
+  const Real h = mesh.altitude(particles.cell[p]);
+  Real speed = wave_speed;
+  Real damping = 0;
+  if constexpr (requires { batch.law.diffusivity(batch.constants); })
+    damping += D * batch.law.diffusivity(batch.constants) / h;
+  if (batch.viscosity && shrinking > 0)
+    damping += batch.viscosity->quadratic * h * shrinking + batch.viscosity->linear * wave_speed;
+  if (damping > 0)
+    speed = damping + std::sqrt(damping * damping + wave_speed * wave_speed);
+  return h / (speed + particles.v[p].norm());
 }
 
 }  // namespace talus

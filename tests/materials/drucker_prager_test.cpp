@@ -181,7 +181,7 @@ TEST(DruckerPrager, DilationOfSeparatedSoilFillsTheGapFirst)
   H(0, 1) = 1e-11;
   H(1, 1) = -1e-12;
   point.strain(H);
-  EXPECT_LT(point.stress.norm(), machine * 1e-10 * point.law.youngs_modulus);  // of the stress these strains would make
+  EXPECT_LT(point.stress.norm(), machine * 1e-10 * *point.law.youngs_modulus);  // of the stress these strains would make
   EXPECT_LT(point.state.opened_volume, open);
   EXPECT_GT(point.state.opened_volume, 0);
 }

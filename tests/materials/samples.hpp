@@ -20,7 +20,7 @@ L sample()
     law.youngs_modulus = sample_stiffness;
     law.poisson_ratio = 0.3;
   }
-  if constexpr (requires { law.friction_angle; }) {
+  if constexpr (requires { law.match; }) {
     law.friction_angle = 30;
     law.cohesion = 5e3;
     law.match = ConeMatch::plane_strain;
@@ -63,6 +63,7 @@ inline Mat3 rotation_about(const Vec3& axis, Real angle)
 template <class L>
 struct Point {
   L law;
+  typename L::Constants constants = law.constants();
   Mat3 F = Mat3::Identity(), stress = Mat3::Zero();
   typename L::State state{};
 
@@ -71,13 +72,13 @@ struct Point {
   {
     const Mat3 L_step = (f - Mat3::Identity()) / dt;
     F = f * F;
-    stress = law.update({F, L_step, stress, dt, elastic}, state);
+    stress = law.update({F, L_step, stress, dt, 0, elastic}, state, constants);
   }
   /// Deforms by the displacement gradient `H` of the step: exact for the smallest strains.
   void strain(const Mat3& H)
   {
     F = F + H * F;
-    stress = law.update({F, H, stress, 1.0, false}, state);
+    stress = law.update({F, H, stress, 1.0, 0, false}, state, constants);
   }
   void prestress(const Mat3& start)
   {

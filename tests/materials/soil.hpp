@@ -27,7 +27,7 @@ inline constexpr Real stiffening = 1e10;
 inline DruckerPrager soil(ConeMatch match, Real friction, Real cohesion, Real dilation = 0)
 {
   DruckerPrager law = soft_soil(match, friction, cohesion, dilation);
-  law.youngs_modulus *= stiffening;
+  *law.youngs_modulus *= stiffening;
   return law;
 }
 
