@@ -1,0 +1,67 @@
+#pragma once
+// Pressure of strongly compressed solids.
+#include <algorithm>
+#include <cmath>
+
+#include "core/fields.hpp"
+
+namespace talus {
+
+/// Pressure from compression and energy, about the Hugoniot shock speed = c0 + s (particle speed).  With e = 1 - V/V0 and the internal
+/// energy E per initial volume
+///     p = rho0 c0^2 e (1 - gamma e / 2) / (1 - s e)^2 + gamma E    in compression,
+///     p = rho0 c0^2 (V0/V - 1) + gamma E                           in tension.       [Meyers 1994, ch. 5]
+/// Beyond 90 % of the pole e = 1/s the cold part goes on along its tangent.
+struct MieGruneisen {
+  Real c0{}, s{}, gamma{};
+  static constexpr auto fields()
+  {
+    return std::tuple{required("c0", &MieGruneisen::c0, positive, "m/s", "speed of a weak shock: the bulk modulus at rest is density c0^2"),
+                      required("s", &MieGruneisen::s, non_negative, "-",
+                               "gain of shock speed by particle speed; the curve is straight beyond 90 % of the compression 1/s"),
+                      required("gamma", &MieGruneisen::gamma, non_negative, "-", "Grueneisen parameter, pressure by energy density")};
+  }
+};
+
+/// The same with its density.
+struct MieGruneisenCurve {
+  Real bulk;  ///< rho0 c0^2 [Pa]
+  Real s, gamma;
+  Real straight;                           ///< the compression where the straight part begins
+  Real straight_pressure, straight_slope;  ///< there [Pa]
+
+  MieGruneisenCurve(const MieGruneisen& solid, Real density) noexcept
+      : bulk(density * solid.c0 * solid.c0), s(solid.s), gamma(solid.gamma), straight(0.9 / s)
+  {
+    const Real margin = 1 - s * straight;
+    straight_pressure = bulk * straight * (1 - 0.5 * gamma * straight) / (margin * margin);
+    straight_slope = bulk * (1 + (s - gamma) * straight) / (margin * margin * margin);
+  }
+
+  /// Pressure without energy [Pa] at the compression e = 1 - V/V0.
+  Real cold_pressure(Real e) const noexcept
+  {
+    if (e < 0)
+      return bulk * e / (1 - e);
+    if (e > straight)
+      return straight_pressure + straight_slope * (e - straight);
+    const Real margin = 1 - s * e;
+    return bulk * e * (1 - 0.5 * gamma * e) / (margin * margin);
+  }
+  /// The compression that has a cold pressure [Pa] on the curved part; NaN in tension beyond -bulk, which no volume has.
+  Real compression_at(Real pressure) const noexcept
+  {
+    if (pressure < 0)
+      return pressure > -bulk ? pressure / (bulk + pressure) : std::numeric_limits<Real>::quiet_NaN();
+    const Real b = bulk + 2 * s * pressure, discriminant = bulk * (bulk + 2 * pressure * (2 * s - gamma));
+    return 2 * pressure / (b + std::sqrt(discriminant));
+  }
+  /// Upper bound of the slope of pressure by e along the isentrope through a state on the Hugoniot or below it [Pa].
+  Real stiffness(Real e) const noexcept
+  {
+    const Real at = std::clamp(e, Real{0}, straight), margin = 1 - s * at;
+    return bulk * (1 + s * at) / (margin * margin * margin);
+  }
+};
+
+}  // namespace talus

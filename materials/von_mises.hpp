@@ -1,0 +1,95 @@
+#pragma once
+// Metal and undrained clay: shear strength that hardens with plastic strain and with its rate, on logarithmic elasticity.
+#include <optional>
+#include <string_view>
+
+#include "materials/elasticity.hpp"
+#include "materials/law.hpp"
+
+namespace talus {
+
+/// Hardening that saturates: Q (1 - exp(-b p)).       [Voce 1948, J. Inst. Metals 74, 537]
+struct VoceHardening {
+  Real saturation{}, exponent{};
+  static constexpr auto fields()
+  {
+    return std::tuple{required("saturation", &VoceHardening::saturation, positive, "Pa", "Q, what is gained at large plastic strain"),
+                      required("exponent", &VoceHardening::exponent, positive, "-", "b, the inverse of the plastic strain it takes")};
+  }
+};
+
+/// Hardening K p^n.       [Ludwik 1909]
+struct PowerHardening {
+  Real coefficient{}, exponent{};
+  static constexpr auto fields()
+  {
+    return std::tuple{required("coefficient", &PowerHardening::coefficient, positive, "Pa", "K, what is gained at plastic strain 1"),
+                      required("exponent", &PowerHardening::exponent, positive, "-", "n; below 1 the hardening starts infinitely steep")};
+  }
+};
+
+/// Factor 1 + (plastic rate / D)^(1/q).       [Cowper & Symonds 1957, Brown University TR 28]
+struct CowperSymonds {
+  Real reference_rate{}, exponent{};
+  static constexpr auto fields()
+  {
+    return std::tuple{required("reference_rate", &CowperSymonds::reference_rate, positive, "1/s", "D, the rate that doubles the strength"),
+                      required("exponent", &CowperSymonds::exponent, positive, "-", "q")};
+  }
+};
+
+/// Von Mises plasticity, associated, with the return by backward Euler.  The Cauchy stress yields where
+///     sqrt(3 J2) = (yield_stress + H p + Q (1 - exp(-b p)) + K p^n) (1 + (rate / D)^(1/q)),
+/// p the accumulated plastic strain and `rate` that of the step.  Closed form where only H is given.
+struct VonMises : Elasticity {
+  static constexpr std::string_view name = "von_mises";
+  static constexpr std::string_view summary =
+      "Von Mises plasticity on logarithmic elasticity: linear, saturating (Voce 1948) and power hardening, rate factor of Cowper & Symonds "
+      "(1957); yields in Cauchy stress.";
+  Real density{}, yield_stress{}, hardening_modulus = 0;
+  std::optional<VoceHardening> voce;
+  std::optional<PowerHardening> power;
+  std::optional<CowperSymonds> rate;
+  static constexpr auto fields()
+  {
+    using Law = VonMises;
+    return std::tuple_cat(
+        std::tuple{required("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        std::tuple{required("yield_stress", &Law::yield_stress, positive, "Pa", "Cauchy stress of first yield in slow uniaxial tension"),
+                   optional("hardening_modulus", &Law::hardening_modulus, non_negative, "Pa", "H, linear gain by plastic strain"),
+                   group("voce", &Law::voce, "hardening Q (1 - exp(-b p)) that saturates"), group("power", &Law::power, "hardening K p^n"),
+                   group("rate", &Law::rate, "factor 1 + (rate / D)^(1/q) on the strength, of the plastic strain rate")});
+  }
+
+  struct State {
+    Sym3 elastic_left = Sym3::Zero();
+    Real plastic_strain = 0, plastic_work = 0;
+    static constexpr auto fields()
+    {
+      return std::tuple{
+          history("elastic_left", &State::elastic_left, "-", "elastic left Cauchy-Green tensor minus identity: xx, yy, zz, xy, yz, xz"),
+          history("plastic_strain", &State::plastic_strain, "-", "p, accumulated plastic strain, integral of sqrt(2/3 e:e)"),
+          history("plastic_work", &State::plastic_work, "J/m^3", "dissipated energy per initial volume")};
+    }
+  };
+
+  struct Constants {
+    Real bulk, shear;   ///< Pa
+    bool closed_form;   ///< linear hardening, no rate
+    Real rate_inverse;  ///< 1/D [s]; 0 without a rate factor
+    Real rate_power;    ///< 1/q
+  };
+  Constants constants() const noexcept;
+
+  /// Strength at a plastic strain [-] and a plastic strain rate [1/s], in Pa of Cauchy stress.
+  Real flow_stress(Real plastic_strain, Real plastic_rate) const noexcept;
+
+  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
+  void prestress(const Mat3& stress, State& state) const noexcept;
+  /// sqrt(3 J2) less the strength of slow loading: above zero, by what the rate adds, while a law with `rate` flows.
+  Real yield(const Mat3& stress, const State& state) const noexcept;
+  /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
+  Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
+};
+
+}  // namespace talus
