@@ -72,8 +72,8 @@ MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directo
 {
   return located(spec, [&] {
     MeshData<D> data = make_unnamed<D>(spec, directory);
-    add_groups<D>(data, spec.groups);
     add_automatic_groups<D>(data);
+    add_groups<D>(data, spec.groups);
     return data;
   });
 }

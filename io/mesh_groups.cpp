@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "core/words.hpp"
 #include "mesh/check.hpp"
 #include "mesh/connectivity.hpp"
 #include "mesh/simplex.hpp"
@@ -75,6 +76,15 @@ Vec<D> corner(const std::vector<Real>& numbers, std::string_view key, const Grou
   return Eigen::Map<const Vec<D>>(numbers.data());
 }
 
+template <class Sets>
+std::vector<std::string> names(const Sets& sets)
+{
+  std::vector<std::string> all;
+  for (const auto& [name, facets] : sets)
+    all.push_back(name);
+  return all;
+}
+
 }  // namespace
 
 template <int D>
@@ -111,21 +121,20 @@ void add_automatic_groups(MeshData<D>& data)
 template <int D>
 void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
 {
-  if (groups.empty())
-    return;
-  const FacetMatch<D> match = match_of(data);
-  if (match.crowded)
+  if (!data.facet_sets.contains("boundary"))
     return;  // no mesh at all, as its constructor will say
-  const auto boundary = boundary_of(data, match);
   for (const GroupSpec& group : groups) {
     const Vec<D> low = corner<D>(group.within.low, "low", group), high = corner<D>(group.within.high, "high", group);
     if (data.facet_sets.contains(group.name))
       throw SceneErrors(group.where, fmt::format("the mesh has a facet group \"{}\" already", group.name));
+    const auto source = data.facet_sets.find(group.of);
+    if (source == data.facet_sets.end())
+      throw SceneErrors(group.where, fmt::format("of: the mesh has no facet group \"{}\"{}", group.of, suggestion(group.of, names(data.facet_sets))));
     if (!(low.array() <= high.array()).all())
       throw SceneErrors(group.where,
                         fmt::format("group \"{}\": within.low {} is not below within.high {}", group.name, place<D>(low), place<D>(high)));
     std::vector<FacetNodes<D>> inside;
-    std::copy_if(boundary.begin(), boundary.end(), std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
+    std::copy_if(source->second.begin(), source->second.end(), std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
       return std::all_of(nodes.begin(), nodes.end(), [&](Index n) {
         const Vec<D>& x = data.nodes[n];
         return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
@@ -134,8 +143,8 @@ void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
     if (inside.empty()) {
       const auto [from, to] = bounds_of(data);
       throw SceneErrors(group.where,
-                        fmt::format("group \"{}\": no boundary facet has all its corners between {} and {}; the mesh goes from {} to {}",
-                                    group.name, place<D>(low), place<D>(high), place<D>(from), place<D>(to)));
+                        fmt::format("group \"{}\": no facet of \"{}\" has all its corners between {} and {}; the mesh goes from {} to {}",
+                                    group.name, group.of, place<D>(low), place<D>(high), place<D>(from), place<D>(to)));
     }
     data.facet_sets.emplace(group.name, std::move(inside));
   }

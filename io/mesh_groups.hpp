@@ -13,8 +13,8 @@ namespace talus {
 template <int D>
 void add_automatic_groups(MeshData<D>& data);
 
-/// Adds the facet sets of the scene, in order.  Throws SceneErrors for a box that is none or holds no boundary facet, and for a name
-/// the mesh has already.
+/// Adds the facet sets of the scene, in order, chosen from sets that exist: call it after add_automatic_groups().  Throws SceneErrors
+/// for a box that is none or holds no facet, for a name the mesh has already, and for a set to choose from that it has not.
 template <int D>
 void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups);
 

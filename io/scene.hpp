@@ -33,15 +33,17 @@ struct RegionSpec {
   }
 };
 
-/// Names the boundary facets whose corners all lie in a box.
+/// Names the facets whose corners all lie in a box.
 struct GroupSpec {
-  std::string name;
+  std::string name, of = "boundary";
   Box within;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &GroupSpec::name, any, "-", "name of the facets: boundaries and loads refer to it"),
-                      group("within", &GroupSpec::within, "boundary facets with all corners in this box (give it some slack)")};
+                      optional("of", &GroupSpec::of, any, "-",
+                               "facet group to choose from: the outline of a region is region:boundary, that of the mesh boundary"),
+                      group("within", &GroupSpec::within, "facets with all corners in this box (give it some slack)")};
   }
 };
 
@@ -92,7 +94,7 @@ struct MeshSpec {
         optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
         optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
         optional_list("groups", &MeshSpec::groups,
-                      "names for parts of the boundary, added to those of the mesh; x_min, x_max, y_min, ... and boundary always exist"),
+                      "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... and boundary always exist"),
         group("grid", &MeshSpec::grid, "built-in box")};
   }
   void check(std::vector<std::string>& problems) const;

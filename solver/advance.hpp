@@ -39,19 +39,19 @@ void advance(Model<D, K>& m, Real dt)
     index_rows(m);
   if (m.health.worst())
     return;
-  apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
+  const Real on_particles = apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
   watch.lap(m.timings.locate);
 
   scatter(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);  //  3
   watch.lap(m.timings.scatter);
 
   assemble(m.blocks, m.nodes.sum);  //  4
-  const Vec<D> on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
+  const Real on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
   m.slaves.lump(m.mesh, m.nodes);                                        //  5
   integrate(gravity, m.stage.damping, dt, m.nodes);                      //  6
   const WallWork wall_work = m.walls.apply(time, dt, m.nodes);           //  7
   m.slaves.follow(m.mesh, m.nodes, m.walls, time + dt, m.nodes.motion);  //  8
-  record(m, gravity, on_mesh, wall_work, dt);
+  record(m, gravity, on_particles + on_mesh, wall_work, dt);
   m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
   watch.lap(m.timings.nodes);
 
@@ -98,7 +98,7 @@ void remap(Model<D, K>& m, Real dt)
 
 /// Work terms and residual of the step, for the audit.
 template <int D, Kernel<D> K>
-void record(Model<D, K>& m, const Vec<D>& gravity, const Vec<D>& on_mesh, const WallWork& wall_work, Real dt)
+void record(Model<D, K>& m, const Vec<D>& gravity, Real tractions, const WallWork& wall_work, Real dt)
 {
   const NodeWork work = node_work(gravity, m.stage.damping, dt, m.nodes);
   m.energy.gravity += work.gravity;
@@ -106,7 +106,7 @@ void record(Model<D, K>& m, const Vec<D>& gravity, const Vec<D>& on_mesh, const 
   m.energy.walls += wall_work.other;
   m.energy.friction += wall_work.friction;
   m.energy.nodes += work.kinetic_after - work.kinetic_before;
-  m.residual = unbalanced(gravity, dt, m.nodes, on_mesh);
+  m.residual = unbalanced(gravity, dt, m.nodes, tractions);
 }
 
 }  // namespace talus

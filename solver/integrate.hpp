@@ -93,16 +93,16 @@ NodeWork node_work(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>&
   });
 }
 
-/// Sum over active nodes of |net force with wall reactions, without damping| over that of |gravity and loads|: zero at rest
-/// in equilibrium.
+/// Sum over active nodes of |net force with wall reactions, without damping| over that of |gravity and loads|, or of |reactions| where
+/// walls alone load the bodies: zero at rest in equilibrium.  `other_loads` [N] are those of tractions.
 template <int D>
-Real unbalanced(const Vec<D>& gravity, Real dt, const Nodes<D>& nodes, const Vec<D>& other_loads)
+Real unbalanced(const Vec<D>& gravity, Real dt, const Nodes<D>& nodes, Real other_loads)
 {
   struct Sums {
-    Real net{}, load{};
+    Real net{}, load{}, reaction{};
     Sums& operator+=(const Sums& other) noexcept
     {
-      net += other.net, load += other.load;
+      net += other.net, load += other.load, reaction += other.reaction;
       return *this;
     }
   };
@@ -111,11 +111,13 @@ Real unbalanced(const Vec<D>& gravity, Real dt, const Nodes<D>& nodes, const Vec
     if (!nodes.active[i])
       return Sums{};
     const NodeSum<D>& sum = nodes.sum[i];
-    const Vec<D> net = nodes.bound[i] ? Vec<D>(sum.mass / dt * nodes.motion[i].change) : Vec<D>(sum.force + sum.mass * gravity);
-    return Sums{net.norm(), sum.mass * gravity.norm()};
+    const Vec<D> force = sum.force + sum.mass * gravity;
+    const Vec<D> net = nodes.bound[i] ? Vec<D>(sum.mass / dt * nodes.motion[i].change) : force;
+    return Sums{net.norm(), sum.mass * gravity.norm(), (net - force).norm()};
   });
-  const Real load = sums.load + other_loads.norm();
-  return load > 0 ? sums.net / load : 0;
+  const Real load = sums.load + other_loads;
+  const Real scale = load > 0 ? load : sums.reaction;
+  return scale > 0 ? sums.net / scale : 0;
 }
 
 }  // namespace talus

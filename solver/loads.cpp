@@ -53,10 +53,9 @@ MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> face
 }
 
 template <int D>
-void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
+Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
 {
-  if (particles.applied.empty())
-    return;
+  Real size = 0;
   std::fill(particles.applied.begin(), particles.applied.end(), Vec<D>::Zero());
   for (const auto& load : loads.on_particles) {
     const Real factor = ramp * load.table(time);
@@ -71,7 +70,8 @@ void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
     }
   }
   for (std::size_t p = 0; p < particles.applied.size(); ++p)
-    particles.applied_at[p] = particles.applied[p].dot(particles.x[p]);
+    particles.applied_at[p] = particles.applied[p].dot(particles.x[p]), size += particles.applied[p].norm();
+  return size;
 }
 
 namespace {
@@ -90,16 +90,16 @@ void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
 }  // namespace
 
 template <int D>
-Vec<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept
+Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept
 {
-  Vec<D> total = Vec<D>::Zero();
+  Real size = 0;
   for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
     if (sum[node].mass <= 0)
       return;
     sum[node].force += force;
-    total += force;
+    size += force.norm();
   });
-  return total;
+  return size;
 }
 
 template <int D>
@@ -115,13 +115,13 @@ Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& 
 
 template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<const Facet>, const Particles<2>&);
 template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
-template void apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, Particles<2>&) noexcept;
-template Vec<2> apply<2>(const Loads<2>&, Real, Real, std::span<NodeSum<2>>) noexcept;
+template Real apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, Particles<2>&) noexcept;
+template Real apply<2>(const Loads<2>&, Real, Real, std::span<NodeSum<2>>) noexcept;
 template Real work<2>(const Loads<2>&, Real, Real, Real, const Nodes<2>&) noexcept;
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
-template void apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, Particles<3>&) noexcept;
-template Vec<3> apply<3>(const Loads<3>&, Real, Real, std::span<NodeSum<3>>) noexcept;
+template Real apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, Particles<3>&) noexcept;
+template Real apply<3>(const Loads<3>&, Real, Real, std::span<NodeSum<3>>) noexcept;
 template Real work<3>(const Loads<3>&, Real, Real, Real, const Nodes<3>&) noexcept;
 
 }  // namespace talus

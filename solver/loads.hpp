@@ -59,17 +59,17 @@ template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
 
 /// Writes particles.applied [N] anew; does nothing for a scene without particle tractions.  `row_of_id` finds a particle, or
-/// `none` for one that was deleted.
+/// `none` for one that was deleted.  Returns the sum of the sizes of the forces [N].
 template <int D>
-void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
+Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
 
 /// Work [J] of mesh tractions over a step, from the nodes' mean velocity.
 template <int D>
 Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& nodes) noexcept;
 
-/// Adds mesh tractions to the force of nodes that have mass.  Returns their sum [N].
+/// Adds mesh tractions to the force of nodes that have mass.  Returns the sum of the sizes of the forces [N].
 template <int D>
-Vec<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept;
+Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept;
 
 /// Work [J] of particle tractions since apply(): force times displacement.
 template <int D>

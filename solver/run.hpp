@@ -116,7 +116,7 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
     stop_if_unwell(m);
     watch(m, Moment::step_done);
     const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
-                      totals(m.particles).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity);
+                      totals(m.particles).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
     balanced = calm ? balanced + 1 : 0;
   }
   const Real kinetic = totals(m.particles).kinetic;
