@@ -42,8 +42,7 @@ std::string csv_of(const PointTable& table)
 void drive_law(const std::filesystem::path& file, const std::vector<std::string>& set, const std::optional<std::filesystem::path>& out)
 {
   const PointTest test = read_point_path(file, set);
-  AnyBatch batch =
-      std::visit([&](const auto& law) { return make_any_batch(law, 0, 1, "point", test.material.where); }, test.material.law);
+  AnyBatch batch = std::visit([&](const auto& law) { return make_any_batch(law, 0, 1, "point", test.material.where); }, test.material.law);
   const Sym3 start = Eigen::Map<const Sym3>(test.initial_stress.data());
   const std::string text = csv_of(drive(std::move(batch), test.path, unpack(start)));
   if (out)

@@ -129,7 +129,8 @@ void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
       throw SceneErrors(group.where, fmt::format("the mesh has a facet group \"{}\" already", group.name));
     const auto source = data.facet_sets.find(group.of);
     if (source == data.facet_sets.end())
-      throw SceneErrors(group.where, fmt::format("of: the mesh has no facet group \"{}\"{}", group.of, suggestion(group.of, names(data.facet_sets))));
+      throw SceneErrors(group.where,
+                        fmt::format("of: the mesh has no facet group \"{}\"{}", group.of, suggestion(group.of, names(data.facet_sets))));
     if (!(low.array() <= high.array()).all())
       throw SceneErrors(group.where,
                         fmt::format("group \"{}\": within.low {} is not below within.high {}", group.name, place<D>(low), place<D>(high)));

@@ -86,16 +86,16 @@ struct MeshSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{
-        optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
-        optional("geometry", &MeshSpec::geometry, any, "-",
-                 "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
-        optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry and regions"),
-        optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
-        optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
-        optional_list("groups", &MeshSpec::groups,
-                      "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... and boundary always exist"),
-        group("grid", &MeshSpec::grid, "built-in box")};
+    return std::tuple{optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
+                      optional("geometry", &MeshSpec::geometry, any, "-",
+                               "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
+                      optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry and regions"),
+                      optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
+                      optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
+                      optional_list("groups", &MeshSpec::groups,
+                                    "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... "
+                                    "and boundary always exist"),
+                      group("grid", &MeshSpec::grid, "built-in box")};
   }
   void check(std::vector<std::string>& problems) const;
 };

@@ -30,10 +30,7 @@ struct Batch {
 
   Index size() const noexcept { return end - begin; }
   /// Cauchy stress [Pa] of particle i at the end of the step; changes its history.
-  Mat3 update(Index i, const Increment& in) noexcept
-  {
-    return law.update(in, history[static_cast<std::size_t>(i)], constants);
-  }
+  Mat3 update(Index i, const Increment& in) noexcept { return law.update(in, history[static_cast<std::size_t>(i)], constants); }
   Real wave_speed(const Mat3& F) const noexcept { return law.wave_speed(F, constants); }
 };
 
@@ -44,7 +41,10 @@ Batch<L> make_batch(L law, Index begin, Index end, std::string name, Where where
   const auto constants = law.constants();
   Batch<L> batch{
       .law = std::move(law), .constants = constants, .begin = begin, .end = end, .where = std::move(where), .name = std::move(name)};
-  batch.history.resize(static_cast<std::size_t>(batch.size()));
+  if constexpr (requires { batch.law.initial_state(); })
+    batch.history.assign(static_cast<std::size_t>(batch.size()), batch.law.initial_state());
+  else
+    batch.history.resize(static_cast<std::size_t>(batch.size()));
   return batch;
 }
 
@@ -184,6 +184,16 @@ inline bool averages_volume(const AnyBatch& batch) noexcept
 inline bool has_bulk_viscosity(const AnyBatch& batch) noexcept
 {
   return std::visit([](const auto& typed) { return typed.viscosity.has_value(); }, batch);
+}
+inline bool conducts_heat(const AnyBatch& batch) noexcept
+{
+  return std::visit(
+      [](const auto& typed) {
+        if constexpr (requires { typed.law.conductivity; })
+          return typed.law.conductivity.has_value();
+        return false;
+      },
+      batch);
 }
 inline std::string_view law_name(const AnyBatch& batch) noexcept
 {

@@ -16,7 +16,8 @@ struct Corotated : Elasticity {
   Real density{};
   static constexpr auto fields()
   {
-    return std::tuple_cat(std::tuple{required("density", &Corotated::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Corotated>());
+    return std::tuple_cat(std::tuple{required("density", &Corotated::density, positive, "kg/m^3", "mass density at rest")},
+                          elastic_fields<Corotated>());
   }
   using State = NoHistory;
   using Constants = Moduli;

@@ -37,20 +37,24 @@ struct DruckerPrager : Elasticity {
   static constexpr auto fields()
   {
     using Law = DruckerPrager;
-    return std::tuple_cat(std::tuple{required("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(), std::tuple{
-        required("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg",
-                 "angle of friction of the Mohr-Coulomb soil that is matched"),
-        required("cohesion", &Law::cohesion, non_negative, "Pa", "cohesion of the Mohr-Coulomb soil that is matched"),
-        required_choice("match", &Law::match,
-                        "which strength the cone shares with Mohr-Coulomb: triaxial compression (outer), extension (inner), plane strain"),
-        optional("dilation_angle", &Law::dilation_angle, from_to_below(0, 90), "deg", "angle of dilation, at most every angle of friction"),
-        optional("tension_cutoff", &Law::tension_cutoff, non_negative, "Pa", "largest mean stress; without it the tip of the cone"),
-        optional("residual_friction_angle", &Law::residual_friction_angle, from_to_below(0, 90), "deg",
-                 "angle of friction after softening; without it the friction stays"),
-        optional("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
-                 "cohesion after softening; without it the cohesion stays"),
-        optional("softening_strain", &Law::softening_strain, positive, "-",
-                 "plastic_strain at which the residual strength is reached, linear before; without it nothing softens")});
+    return std::tuple_cat(
+        std::tuple{required("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        std::tuple{
+            required("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg",
+                     "angle of friction of the Mohr-Coulomb soil that is matched"),
+            required("cohesion", &Law::cohesion, non_negative, "Pa", "cohesion of the Mohr-Coulomb soil that is matched"),
+            required_choice(
+                "match", &Law::match,
+                "which strength the cone shares with Mohr-Coulomb: triaxial compression (outer), extension (inner), plane strain"),
+            optional("dilation_angle", &Law::dilation_angle, from_to_below(0, 90), "deg",
+                     "angle of dilation, at most every angle of friction"),
+            optional("tension_cutoff", &Law::tension_cutoff, non_negative, "Pa", "largest mean stress; without it the tip of the cone"),
+            optional("residual_friction_angle", &Law::residual_friction_angle, from_to_below(0, 90), "deg",
+                     "angle of friction after softening; without it the friction stays"),
+            optional("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
+                     "cohesion after softening; without it the cohesion stays"),
+            optional("softening_strain", &Law::softening_strain, positive, "-",
+                     "plastic_strain at which the residual strength is reached, linear before; without it nothing softens")});
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;

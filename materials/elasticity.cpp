@@ -10,7 +10,8 @@ namespace {
 
 Moduli from_bulk_and_shear(Real K, Real G) noexcept
 {
-  return {.youngs = 9 * K * G / (3 * K + G), .poisson = (3 * K - 2 * G) / (2 * (3 * K + G)), .bulk = K, .shear = G, .lambda = K - 2 * G / 3};
+  return {
+      .youngs = 9 * K * G / (3 * K + G), .poisson = (3 * K - 2 * G) / (2 * (3 * K + G)), .bulk = K, .shear = G, .lambda = K - 2 * G / 3};
 }
 Moduli from_youngs_and_poisson(Real E, Real nu) noexcept
 {
@@ -72,8 +73,8 @@ void Elasticity::check(std::vector<std::string>& problems) const
                                         : fmt::format("there are {}", fmt::join(given, ", "))));
   const Moduli m = moduli();
   if (!(m.poisson > -1 && m.poisson < 0.5 && m.shear > 0 && m.bulk > 0))
-    problems.push_back(fmt::format("{} {:.6g} and {} {:.6g} make Poisson's ratio {:.6g}, which must lie in (-1, 0.5)", given[0],
-                                   values[0], given[1], values[1], m.poisson));
+    problems.push_back(fmt::format("{} {:.6g} and {} {:.6g} make Poisson's ratio {:.6g}, which must lie in (-1, 0.5)", given[0], values[0],
+                                   given[1], values[1], m.poisson));
 }
 
 }  // namespace talus

@@ -35,8 +35,7 @@ constexpr auto elastic_fields()
       constant("youngs_modulus", &Law::youngs_modulus, positive, "Pa", "Young's modulus; with poisson_ratio or bulk_modulus"),
       constant("poisson_ratio", &Law::poisson_ratio, between(-1, 0.5), "-", "Poisson's ratio; with youngs_modulus or shear_modulus"),
       constant("bulk_modulus", &Law::bulk_modulus, positive, "Pa", "bulk modulus; with shear_modulus or youngs_modulus"),
-      constant("shear_modulus", &Law::shear_modulus, positive, "Pa",
-               "shear modulus; with poisson_ratio, bulk_modulus or lame_lambda"),
+      constant("shear_modulus", &Law::shear_modulus, positive, "Pa", "shear modulus; with poisson_ratio, bulk_modulus or lame_lambda"),
       constant("lame_lambda", &Law::lame_lambda, any, "Pa", "first constant of Lame; with shear_modulus")};
 }
 

@@ -16,7 +16,8 @@ struct Hencky : Elasticity {
   Real density{};
   static constexpr auto fields()
   {
-    return std::tuple_cat(std::tuple{required("density", &Hencky::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Hencky>());
+    return std::tuple_cat(std::tuple{required("density", &Hencky::density, positive, "kg/m^3", "mass density at rest")},
+                          elastic_fields<Hencky>());
   }
   using State = NoHistory;
   using Constants = Moduli;

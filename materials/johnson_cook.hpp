@@ -54,6 +54,8 @@ struct JohnsonCookMetal : Elasticity {
   /// Strength at a plastic strain [-], plastic strain rate [1/s] and temperature [K], in Pa of Cauchy stress.
   Real flow_stress(Real plastic_strain, Real plastic_rate, Real temperature) const noexcept;
   Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
+  /// Of heat.
+  Real diffusivity(const Constants&) const noexcept { return conductivity ? *conductivity / (density * specific_heat) : 0; }
 
  protected:
   /// The temperature a history says [K]: that of the parameters while it says nothing.

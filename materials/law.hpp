@@ -25,8 +25,9 @@ struct BulkViscosity {
   Real linear = 0.06, quadratic = 1.5;
   static constexpr auto fields()
   {
-    return std::tuple{optional("linear", &BulkViscosity::linear, non_negative, "-", "times density, cell size, wave speed and rate of volume"),
-                      optional("quadratic", &BulkViscosity::quadratic, non_negative, "-", "times density and (cell size times rate of volume)^2")};
+    return std::tuple{
+        optional("linear", &BulkViscosity::linear, non_negative, "-", "times density, cell size, wave speed and rate of volume"),
+        optional("quadratic", &BulkViscosity::quadratic, non_negative, "-", "times density and (cell size times rate of volume)^2")};
   }
 };
 
@@ -39,9 +40,10 @@ struct NoHistory {
 /// allocates, and answers NaN where it has no answer (for instance det F <= 0).  `wave_speed` [m/s] is an upper bound of the
 /// speed of sound in the state F.  Optional members, found by `requires`:
 ///   void check(std::vector<std::string>& problems) const            rules between parameters, in words
+///   State initial_state() const                                     history of a particle at rest, where zero is not it
 ///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
 ///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
-///   Real diffusivity(const Constants&) const noexcept               largest viscosity over density [m^2/s]: bounds the step as well
+///   Real diffusivity(const Constants&) const noexcept               largest diffusivity, of momentum or heat [m^2/s]: bounds the step
 ///   using Kinds = TypeList<...>;  std::variant<...> kind() const    laws to be run instead, where the parameters decide which history
 ///                                                                   there is; the law itself is the kind that has all of it
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)

@@ -19,7 +19,8 @@ struct LinearElastic : Elasticity {
   Real density{};
   static constexpr auto fields()
   {
-    return std::tuple_cat(std::tuple{required("density", &LinearElastic::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<LinearElastic>());
+    return std::tuple_cat(std::tuple{required("density", &LinearElastic::density, positive, "kg/m^3", "mass density at rest")},
+                          elastic_fields<LinearElastic>());
   }
   using State = NoHistory;
   using Constants = Moduli;

@@ -19,7 +19,8 @@ struct LinearFirstPiola : Elasticity {
   Real density{};
   static constexpr auto fields()
   {
-    return std::tuple_cat(std::tuple{required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<LinearFirstPiola>());
+    return std::tuple_cat(std::tuple{required("density", &LinearFirstPiola::density, positive, "kg/m^3", "mass density at rest")},
+                          elastic_fields<LinearFirstPiola>());
   }
   using State = NoHistory;
   using Constants = Moduli;

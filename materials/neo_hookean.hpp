@@ -16,7 +16,8 @@ struct NeoHookean : Elasticity {
   Real density{};
   static constexpr auto fields()
   {
-    return std::tuple_cat(std::tuple{required("density", &NeoHookean::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<NeoHookean>());
+    return std::tuple_cat(std::tuple{required("density", &NeoHookean::density, positive, "kg/m^3", "mass density at rest")},
+                          elastic_fields<NeoHookean>());
   }
   using State = NoHistory;
   using Constants = Moduli;

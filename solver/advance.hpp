@@ -70,6 +70,8 @@ void advance(Model<D, K>& m, Real dt)
     if (averages_volume(material))
       average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
     const StressSums sums = update_stress(m.mesh, material, dt, m.stage.elastic, m.averaged, m.particles, m.health);  // 11
+    if (m.heat)
+      conduct_heat(m.mesh, material, m.order, body, dt, m.particles, *m.heat);
     m.energy.internal += sums.work;
     m.crossing = std::min(m.crossing, sums.crossing);
   }

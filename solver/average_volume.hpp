@@ -11,15 +11,18 @@ namespace talus {
 /// constraint per cell and locks; averaged over stars it has one per node, as many as in mixed elements of equal order
 /// (de Souza Neto et al. 2005, IJNME 62, 353: patches of simplices; Zhao, Jiang & Choo 2023, IJNME 124, 5334: in MPM).
 template <int D>
-void average_volume(const Mesh<D>& mesh, const CellOrder& order, Index body, Real dt, const Particles<D>& particles,
-                    StarSums<D, 2>& sums, std::vector<Real>& averaged)
+void average_volume(const Mesh<D>& mesh, const CellOrder& order, Index body, Real dt, const Particles<D>& particles, StarSums<D, 2>& sums,
+                    std::vector<Real>& averaged)
 {
-  sums.gather(mesh, order, body, particles, [&](Index row, const auto& hats, auto& corners) {
-    const auto p = static_cast<std::size_t>(row);
-    const Real volume = (Mat<D>::Identity() + dt * particles.L[p]).determinant() * particles.volume[p];
-    for (std::size_t a = 0; a <= D; ++a) {
-      corners[a][0] += hats[a] * volume;
-      corners[a][1] += hats[a] * particles.volume0[p];
+  sums.gather(mesh, order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
+    for (const Index row : run) {
+      const auto p = static_cast<std::size_t>(row);
+      const auto hats = hats_inside(mesh, c, particles.x[p]);
+      const Real volume = (Mat<D>::Identity() + dt * particles.L[p]).determinant() * particles.volume[p];
+      for (std::size_t a = 0; a <= D; ++a) {
+        corners[a][0] += hats[a] * volume;
+        corners[a][1] += hats[a] * particles.volume0[p];
+      }
     }
   });
   parallel_for_uneven(order.blocks, [&](Index block) {

@@ -1,11 +1,11 @@
 #pragma once
 // Everything a run is made of, by value.
 #include "solver/blocks.hpp"
+#include "solver/conduct_heat.hpp"
 #include "solver/integrate.hpp"
 #include "solver/ledger.hpp"
 #include "solver/loads.hpp"
 #include "solver/relocate.hpp"
-#include "solver/star_sums.hpp"
 #include "solver/transfer.hpp"
 #include "solver/walls.hpp"
 
@@ -47,7 +47,8 @@ struct Model {
   Nodes<D> nodes;
   std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, the step's own in `change`
   Slaves<D> slaves;
-  std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume or conducts heat
+  std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
+  std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
   std::vector<Real> averaged;           ///< volume ratios of average_volume(), scratch
 
   Transfer transfer;
@@ -99,12 +100,15 @@ void make_ready(Model<D, K>& m, bool by_id)
     m.particles.C.assign(n, Mat<D>::Zero());
   if (!m.loads.on_particles.empty())
     m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
-  if (std::any_of(m.materials.begin(), m.materials.end(), [](const AnyBatch& material) { return averages_volume(material); })) {
+  const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) { return std::any_of(m.materials.begin(), m.materials.end(), has); };
+  if (any_material(conducts_heat))
+    m.heat.emplace(m.mesh);
+  if (any_material(averages_volume)) {
     m.particles.volume_ratio.assign(n, 1);
     m.averaged.resize(n);
     m.stars.emplace(m.mesh);
   }
-  if (std::any_of(m.materials.begin(), m.materials.end(), [](const AnyBatch& material) { return has_bulk_viscosity(material); }))
+  if (any_material(has_bulk_viscosity))
     m.particles.viscous.assign(n, 0);
   if (m.transfer.musl)
     m.remapped.resize(m.nodes.sum.size());

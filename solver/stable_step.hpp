@@ -33,7 +33,8 @@ Index slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
         [&](const auto& batch) {
           for (Index row = batch.begin; row < batch.end; ++row) {
             const auto p = static_cast<std::size_t>(row);
-            const Real own = crossing_time(mesh, batch, particles, p, batch.wave_speed(particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
+            const Real own =
+                crossing_time(mesh, batch, particles, p, batch.wave_speed(particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
             if (own < least) {
               least = own;
               slowest = row;

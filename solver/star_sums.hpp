@@ -33,17 +33,14 @@ class StarSums {
       : of_corner_(static_cast<std::size_t>(mesh.n_cells())), of_node_(static_cast<std::size_t>(mesh.n_nodes()))
   {}
 
-  /// Clears, then add(p, hats, corner rows) for every particle of one body, hats taken at its place in its cell.
+  /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
   template <class Add>
   void gather(const Mesh<D>& mesh, const CellOrder& order, Index body, const Particles<D>& particles, Add&& add)
   {
     parallel_for(mesh.n_cells(), [&](Index c) { of_corner_[static_cast<std::size_t>(c)] = {}; });
     parallel_for_uneven(order.blocks, [&](Index block) {
-      for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
-        auto& corners = of_corner_[static_cast<std::size_t>(c)];
-        for (const Index p : run)
-          add(p, hats_inside(mesh, c, particles.x[static_cast<std::size_t>(p)]), corners);
-      });
+      for_each_run(order.rows(body, block), particles.cell,
+                   [&](Index c, std::span<const Index> run) { add(c, run, of_corner_[static_cast<std::size_t>(c)]); });
     });
     parallel_for(mesh.n_nodes(), [&](Index n) {
       Row total{};
@@ -58,7 +55,6 @@ class StarSums {
   }
 
   const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
-  Row& operator[](Index node) noexcept { return of_node_[static_cast<std::size_t>(node)]; }
 
  private:
   std::vector<std::array<Row, D + 1>> of_corner_;

@@ -66,8 +66,8 @@ StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, Real dt, bool 
 {
   return std::visit(
       [&](auto& batch) {
-        return parallel_sum<StressSums>(
-            batch.size(), [&](Index i) { return update_particle(mesh, batch, i, dt, elastic, averaged, particles, health); });
+        return parallel_sum<StressSums>(batch.size(),
+                                        [&](Index i) { return update_particle(mesh, batch, i, dt, elastic, averaged, particles, health); });
       },
       material);
 }
