@@ -89,7 +89,8 @@ struct ReturnMap {
     const Real going_on = std::max(start.value, von_mises(stress_before));  // flow that goes on hardens from there at the same rate
     const Real hardening = start.by_strain + start.by_temperature * c.heat * J * going_on;
     const Real x = positive_root(*this, mises / stiffness, (mises - going_on) / (stiffness + hardening));
-    return {x, mises - stiffness * x, work(x, tried_factor.value + tried_factor.slope * (x - tried))};  // exact: the last step is 1e-6 of x
+    return {x, std::max(mises - stiffness * x, Real{0}),
+            work(x, tried_factor.value + tried_factor.slope * (x - tried))};  // exact: the last step is 1e-6 of x
   }
 };
 
