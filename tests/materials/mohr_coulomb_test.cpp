@@ -1,0 +1,536 @@
+// The planes, edges, corners and apex of Mohr and Coulomb against closed forms.  Stiffnesses are 1e10 times those of soil where the
+// closed form is one of small strain: strains of 1e-11 make Kirchhoff and Cauchy stress equal to the tolerance, and cost no digits.
+#include "materials/mohr_coulomb.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+
+#include "materials/point_path.hpp"
+#include "tests/materials/soil.hpp"
+
+namespace talus {
+namespace {
+
+using testing::Dice;
+using testing::Point;
+using testing::radians;
+using testing::stiffening;
+
+constexpr Real machine = 1e-10;  // relative: what the closed forms claim
+constexpr Real p0 = 1e5;
+const Real root3 = std::sqrt(3.0);
+
+/// E = 10 MPa, nu = 0.3.
+MohrCoulomb soft_soil(Real friction, Real cohesion, Real dilation = 0)
+{
+  MohrCoulomb law;
+  law.density = 2000;
+  law.youngs_modulus = 1e7;
+  law.poisson_ratio = 0.3;
+  law.friction_angle = friction;
+  law.cohesion = cohesion;
+  law.dilation_angle = dilation;
+  return law;
+}
+/// The same, stiffened.
+MohrCoulomb soil(Real friction, Real cohesion, Real dilation = 0)
+{
+  MohrCoulomb law = soft_soil(friction, cohesion, dilation);
+  *law.youngs_modulus *= stiffening;
+  return law;
+}
+MohrCoulomb softening(MohrCoulomb law, Real friction, Real cohesion, Real strain)
+{
+  law.residual_friction_angle = friction;
+  law.residual_cohesion = cohesion;
+  law.softening_strain = strain;
+  return law;
+}
+MohrCoulomb with_cutoff(MohrCoulomb law, Real cutoff)
+{
+  law.tension_cutoff = cutoff;
+  return law;
+}
+
+/// In falling order.
+Vec3 principal(const Mat3& stress) { return Eigen::SelfAdjointEigenSolver<Mat3>(stress).eigenvalues().reverse(); }
+Real mean(const Mat3& stress) { return stress.trace() / 3; }
+
+constexpr Control rate(Real value) { return {Controlled::strain_rate, value}; }
+constexpr Control gradient(Real value) { return {Controlled::velocity_gradient, value}; }
+constexpr Control held(Real value) { return {Controlled::stress, value}; }
+
+std::vector<PointRow> test_of(const MohrCoulomb& law, const Controls& controls, Index steps, const Mat3& start = -p0 * Mat3::Identity())
+{
+  const PointPath path{.steps = steps, .controls = controls};
+  return drive(make_batch(law, 0, 1, "sample"), {&path, 1}, start).rows;
+}
+/// Axial (zz) strain in units of soil strains under constant cell pressure p0.
+std::vector<PointRow> triaxial(const MohrCoulomb& law, Real axial_strain)
+{
+  return test_of(law, {.xx = held(-p0), .yy = held(-p0), .zz = rate(axial_strain / stiffening)}, 50);
+}
+Vec3 log_strain(const PointRow& row) { return row.F.diagonal().array().log(); }
+
+TEST(MohrCoulomb, TriaxialStrengthsAreThoseOfTheBook)
+{
+  for (const Real psi : {0.0, 10.0, 30.0}) {
+    const MohrCoulomb law = soil(30, 5e3, psi);
+    const Real sine = 0.5, strength = 2 * (5e3 * std::cos(radians(30)) + p0 * sine);
+    EXPECT_NEAR(triaxial(law, -0.2).back().q, strength / (1 - sine), machine * p0);
+    EXPECT_NEAR(triaxial(law, 0.2).back().q, strength / (1 + sine), machine * p0);
+    EXPECT_NEAR(triaxial(law, -0.2).back().q, 217320.5, 0.06);
+    EXPECT_NEAR(triaxial(law, 0.2).back().q, 72440.2, 0.06);
+  }
+}
+
+TEST(MohrCoulomb, PlaneStrainStrengthDoesNotDependOnTheStressOutOfPlane)
+{
+  for (const Real psi : {0.0, 10.0, 30.0}) {
+    const Mat3 end = test_of(soil(30, 5e3, psi), {.xx = held(-p0), .zz = rate(-0.08 / stiffening)}, 100).back().stress;
+    EXPECT_NEAR(end(0, 0) - end(2, 2), 217320.5, 0.06) << psi;
+    EXPECT_GT(end(1, 1), end(2, 2));
+    EXPECT_LT(end(1, 1), end(0, 0));
+  }
+}
+
+TEST(MohrCoulomb, VolumeGrowsByTheAngleOfDilation)
+{
+  // Softer than the others, for strains of 1e-5, hundreds of times those at yield; rounding of F in 1000 steps leaves 1e-8 of them.
+  constexpr Real softer = 1e-4, tolerance = 1e-7;
+  MohrCoulomb law = soil(30, 5e3, 10);
+  *law.youngs_modulus *= softer;
+  const auto slope = [&](Controls controls, Real axial_strain) {
+    controls.zz = rate(axial_strain / (stiffening * softer));
+    const auto rows = test_of(law, controls, 2000);
+    const Vec3 change = log_strain(rows.back()) - log_strain(rows[1000]);
+    return change.sum() / change[2];
+  };
+  const Controls cell{.xx = held(-p0), .yy = held(-p0)};
+  const Real sine = std::sin(radians(10));
+  EXPECT_NEAR(slope(cell, -10), -2 * sine / (1 - sine), tolerance);
+  EXPECT_NEAR(slope(cell, -10), -0.420277, 1e-6);
+  EXPECT_NEAR(slope(cell, 10), 2 * sine / (1 + sine), tolerance);
+  EXPECT_NEAR(slope({.xx = held(-p0)}, -10), -2 * sine / (1 - sine), tolerance);
+}
+
+TEST(MohrCoulomb, OedometerIsElasticOrAtActiveEarthPressure)
+{
+  const auto k0 = [](const MohrCoulomb& law) {
+    const Mat3 end = test_of(law, {.zz = rate(-0.02 / stiffening)}, 20, Mat3::Zero()).back().stress;
+    EXPECT_EQ(end(0, 0), end(1, 1));
+    return end(0, 0) / end(2, 2);
+  };
+  EXPECT_NEAR(k0(soil(30, 0)), 0.3 / 0.7, machine) << "above Rankine's 1/3";
+  const Real rankine = (1 - std::sin(radians(20))) / (1 + std::sin(radians(20)));
+  ASSERT_GT(rankine, 0.3 / 0.7);
+  EXPECT_NEAR(k0(soil(20, 0)), rankine, machine);
+  EXPECT_NEAR(k0(soil(20, 0, 20)), rankine, machine);
+}
+
+/// Friction tau/sigma_n and dilation d eps_y/d gamma of drained simple shear at the end.
+std::array<Real, 2> drained_simple_shear(const MohrCoulomb& law)
+{
+  const auto rows = test_of(law, {.yy = held(-p0), .xy = gradient(3e6 / stiffening)}, 1500);
+  const auto &last = rows.back(), &before = rows[rows.size() - 500];
+  return {last.stress(0, 1) / -last.stress(1, 1), std::log(last.F(1, 1) / before.F(1, 1)) / (last.F(0, 1) - before.F(0, 1))};
+}
+
+TEST(MohrCoulomb, SimpleShearMobilisesTheFrictionOfDavis)
+{
+  // tan(beta) = sin(phi) cos(psi) / (1 - sin(phi) sin(psi)): Davis 1968, in Lee (ed.), Soil Mechanics: Selected Topics, 341.
+  for (const auto& [phi, psi] : {std::array{30.0, 0.0}, std::array{30.0, 30.0}, std::array{35.0, 12.0}, std::array{20.0, 5.0}}) {
+    const auto [friction, dilation] = drained_simple_shear(soil(phi, 0, psi));
+    const Real sine = std::sin(radians(phi)), flow = radians(psi);
+    EXPECT_NEAR(friction, sine * std::cos(flow) / (1 - sine * std::sin(flow)), 2e-6) << phi << " " << psi;
+    EXPECT_NEAR(dilation, std::tan(flow), 1e-3 * std::tan(flow) + 1e-6) << phi << " " << psi;
+  }
+  EXPECT_NEAR(std::atan(drained_simple_shear(soil(30, 0))[0]) / radians(1), 26.57, 0.006);
+  EXPECT_NEAR(drained_simple_shear(soil(30, 0, 30))[0], std::tan(radians(30)), 2e-6);
+}
+
+TEST(MohrCoulomb, IsTheOuterConeInTriaxialCompressionAndTheInnerInExtension)
+{
+  for (const auto& [match, sign] : {std::pair{ConeMatch::outer, -1.0}, std::pair{ConeMatch::inner, 1.0}}) {
+    Point<MohrCoulomb> planes{.law = soft_soil(30, 5e3, 10)};
+    Point<DruckerPrager> cone{.law = testing::soft_soil(match, 30, 5e3, 10)};
+    planes.prestress(-p0 * Mat3::Identity());
+    cone.prestress(-p0 * Mat3::Identity());
+    for (int n = 0; n < 100; ++n) {
+      const Mat3 f = Vec3(1 - sign * 4e-4, 1 - sign * 4e-4, 1 + sign * 1e-3).asDiagonal();
+      planes.step(f);
+      cone.step(f);
+      ASSERT_LE((planes.stress - cone.stress).norm(), machine * p0);
+    }
+    EXPECT_GT(planes.state.plastic_strain, 0.04);
+    EXPECT_NEAR(planes.state.plastic_strain, cone.state.plastic_strain, machine);
+    EXPECT_NEAR(planes.state.plastic_work, cone.state.plastic_work, machine * p0);
+    EXPECT_LE((planes.state.elastic_left - cone.state.elastic_left).norm(), machine * 0.1);
+  }
+}
+
+/// Smallest |flow x - strain| / |strain| over x >= 0, by all sets of up to three columns.
+Real distance_from_cone(const std::vector<Vec3>& flow, const Vec3& strain)
+{
+  Real least = strain.norm();
+  const auto attempt = [&](const Eigen::MatrixXd& columns) {
+    const Eigen::VectorXd x = columns.completeOrthogonalDecomposition().solve(Eigen::VectorXd(strain));
+    if (x.minCoeff() >= -machine * strain.norm())
+      least = std::min(least, (columns * x - strain).norm());
+  };
+  for (std::size_t a = 0; a < flow.size(); ++a)
+    for (std::size_t b = a; b < flow.size(); ++b)
+      for (std::size_t d = b; d < flow.size(); ++d) {
+        Eigen::MatrixXd columns(3, 3);
+        columns << flow[a], flow[b], flow[d];
+        if (b == a)
+          attempt(columns.leftCols(1));
+        else
+          attempt(columns.leftCols(d == b ? 2 : 3));
+      }
+  return least / strain.norm();
+}
+
+/// Flow vectors of what is active at principal stresses `s`, in their order.
+std::vector<Vec3> active_flow(const MohrCoulomb& law, const Vec3& s, Real tolerance)
+{
+  const auto c = law.constants();
+  std::vector<Vec3> flow;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i != j && (s[i] - s[j]) + (s[i] + s[j]) * c.peak.sine - 2 * c.peak.cohesive > -tolerance) {
+        flow.emplace_back(Vec3::Zero());
+        flow.back()[i] = 1 + c.sin_psi;
+        flow.back()[j] = -(1 - c.sin_psi);
+      }
+  if (flow.size() == 6)  // the apex opens
+    flow.emplace_back(Vec3::Ones());
+  for (int i = 0; i < 3; ++i)
+    if (s[i] > c.cutoff - tolerance)
+      flow.emplace_back(Vec3::Unit(i));
+  return flow;
+}
+
+TEST(MohrCoulomb, PlasticStrainIsMadeOfTheFlowOfActivePlanes)
+{
+  // Koiter's rule, whatever the region: independent of how the return finds it.
+  Dice dice(1);
+  const std::vector<MohrCoulomb> soils{soil(30, 5e3, 12),
+                                       soil(30, 5e3),
+                                       soil(40, 0, 40),
+                                       soil(0, 5e3),
+                                       soil(25, 5e3),
+                                       with_cutoff(soil(30, 5e3, 12), 2e3),
+                                       with_cutoff(soil(30, 5e3), 0),
+                                       with_cutoff(soil(0, 5e3), 4e3)};
+  std::array<int, 8> regions{};
+  for (int n = 0; n < 8000; ++n) {
+    const MohrCoulomb& law = soils[static_cast<std::size_t>(n) % soils.size()];
+    const auto c = law.constants();
+    const Real size = std::pow(10.0, dice.real(3, 6));
+    Vec3 trial = Vec3::NullaryExpr([&] { return dice.real(-size, size); }) + dice.real(-2, 1) * size * Vec3::Ones();
+    if (n % 5 == 0)
+      trial[1] = trial[n % 2 == 0 ? 0 : 2];
+    const Mat3 axes = dice.rotation(), wanted = axes * trial.asDiagonal() * axes.transpose();
+    Point<MohrCoulomb> point{.law = law};
+    point.strain(dev(wanted) / (2 * c.shear) + wanted.trace() / (9 * c.bulk) * Mat3::Identity());
+    const Mat3 along = axes.transpose() * point.stress * axes, gone = Mat3(trial.asDiagonal()) - along;
+    const Vec3 end = along.diagonal(), plastic = (dev(gone) / (2 * c.shear) + gone.trace() / (9 * c.bulk) * Mat3::Identity()).diagonal();
+    ASSERT_LE((along - Mat3(end.asDiagonal())).norm(), machine * size) << "not along the axes of the trial state";
+    ASSERT_LE(law.yield(point.stress, point.state), machine * size);
+    if (plastic.norm() < 1e-8 * size / c.shear)
+      continue;
+    const auto flow = active_flow(law, end, 1e-9 * size);
+    ++regions[std::min(flow.size(), regions.size() - 1)];
+    ASSERT_LE(distance_from_cone(flow, plastic), 1e-7) << n << ": " << trial.transpose() << " to " << end.transpose();
+    const Real deviatoric = std::sqrt(2.0 / 3) * (plastic.array() - plastic.mean()).matrix().norm();
+    ASSERT_NEAR(point.state.plastic_strain, deviatoric, machine * size / c.shear);
+    ASSERT_NEAR(point.state.plastic_work, end.dot(plastic), machine * size * size / c.shear);
+  }
+  for (const std::size_t active : {1u, 2u, 3u, 4u, 7u})
+    EXPECT_GT(regions[active], 50) << active << " active planes";
+}
+
+TEST(MohrCoulomb, EndsOnOrInsideTheYieldSurfaceFromAnyTrialState)
+{
+  Dice dice(2);
+  const std::vector<MohrCoulomb> soils{soil(0, 5e3),
+                                       soil(30, 0, 30),
+                                       soil(0, 0),
+                                       with_cutoff(soil(35, 5e3, 10), 2e3),
+                                       with_cutoff(soil(35, 5e3, 10), 5e3 / std::tan(radians(35)) * (1 - 1e-15)),
+                                       softening(soil(35, 5e3, 10), 20, 0, 0.01 / stiffening),
+                                       softening(with_cutoff(soil(35, 5e3, 15), 6e3), 15, 4e3, 0.03 / stiffening),
+                                       softening(soil(60, 5e3), 0, 5e3, 0.03 / stiffening)};
+  constexpr int trials = 100000;
+  for (int n = 0; n < trials; ++n) {
+    const MohrCoulomb& law = soils[static_cast<std::size_t>(n) % soils.size()];
+    Point<MohrCoulomb> point{.law = law};
+    point.state.plastic_strain = dice.real(0, 0.02) / stiffening;
+    point.state.opened_volume = n % 3 == 0 ? dice.real(0, 1e-3) / stiffening : 0;
+    const Real size = std::pow(10.0, dice.real(-12, 0)) / stiffening;
+    Mat3 H = dice.matrix(size);
+    if (n % 10 == 0)  // equal principal stresses: all three, or two of them along the axes
+      H = n % 20 == 0 ? Mat3(dice.real(-size, size) * Mat3::Identity()) : Mat3(Vec3(H(0, 0), H(1, 1), H(0, 0)).asDiagonal());
+    const Real before = point.state.plastic_strain;
+    const Real trial_stress = law.constants().bulk * (H.norm() + point.state.opened_volume);
+    point.strain(H);
+    ASSERT_TRUE(point.stress.allFinite());
+    ASSERT_LE(law.yield(point.stress, point.state), machine * trial_stress) << n;
+    ASSERT_GE(point.state.plastic_strain, before);
+    ASSERT_GE(point.state.plastic_work, 0);
+    ASSERT_GE(point.state.opened_volume, 0);
+  }
+}
+
+TEST(MohrCoulomb, YieldsWhereTheExactSurfaceSaysSo)
+{
+  Dice dice(3);
+  int inside = 0;
+  for (int n = 0; n < 20000; ++n) {
+    Point<MohrCoulomb> point{.law = with_cutoff(soil(30, 5e3, 10), 3e3)};
+    Mat3 stress = dice.symmetric(6e4);
+    if (n % 4 == 0)
+      stress = Vec3(stress(0, 0), stress(0, 0), stress(1, 1)).asDiagonal();
+    point.prestress(stress - 5e4 * Mat3::Identity());
+    const Real f = point.law.yield(point.stress, point.state);
+    point.strain(Mat3::Zero());
+    if (f < 0) {
+      ASSERT_EQ(point.state.plastic_strain, 0) << n;
+    }
+    if (f > 1e-8 * p0) {
+      ASSERT_GT(point.state.plastic_strain, 0) << n;
+    }
+    inside += f < 0;
+  }
+  EXPECT_GT(inside, 4000);
+  EXPECT_LT(inside, 16000);
+}
+
+TEST(MohrCoulomb, IsotropicExtensionEndsAtTheApex)
+{
+  for (const Real cohesion : {0.0, 5e3})
+    for (const Real psi : {0.0, 10.0, 30.0})
+      for (const Real size : {1e-9, 1e-3, 1.0, 10.0}) {  // in units of 1e-12
+        Point<MohrCoulomb> point{.law = soil(30, cohesion, psi)};
+        point.strain(size * 1e-12 * Mat3::Identity());
+        const Real apex = cohesion / std::tan(radians(30));
+        const Real elastic = 3 * point.law.constants().bulk * size * 1e-12;
+        EXPECT_LE((point.stress - std::min(apex, elastic) * Mat3::Identity()).norm(), machine * apex);
+      }
+}
+
+TEST(MohrCoulomb, SeparatedCohesionlessSoilStaysFreeOfStressUntilItCloses)
+{
+  Point<MohrCoulomb> point{.law = soil(30, 0, 10)};
+  const auto by = [&](Real log_volume) { point.step(std::exp(log_volume / 3) * Mat3::Identity()); };
+  for (int n = 0; n < 10; ++n) {
+    by(0.02);
+    EXPECT_EQ(point.stress.norm(), 0);
+  }
+  EXPECT_NEAR(point.state.opened_volume, 0.2, 1e-14);
+  for (int n = 0; n < 9; ++n) {
+    by(-0.02);
+    EXPECT_EQ(point.stress.norm(), 0);
+  }
+  by(-0.02 - 1e-13);
+  by(-1e-12);
+  EXPECT_EQ(point.state.opened_volume, 0);
+  EXPECT_NEAR(point.stress(0, 0), -1.1e-12 * point.law.constants().bulk, 2e-14 * point.law.constants().bulk);
+  EXPECT_EQ(point.state.plastic_work, 0);
+}
+
+TEST(MohrCoulomb, CohesiveCrackClosesWithoutTensionAndWithoutGivingWorkBack)
+{
+  for (const bool cut : {false, true}) {
+    Point<MohrCoulomb> point{.law = cut ? with_cutoff(soil(30, 5e3), 3e3) : soil(30, 5e3)};
+    const Real limit = cut ? 3e3 : 5e3 / std::tan(radians(30)), elastic = limit / point.law.constants().bulk;
+    point.strain(100 * elastic / 3 * Mat3::Identity());
+    const Real work = point.state.plastic_work;
+    EXPECT_NEAR(point.state.opened_volume, 99 * elastic, machine * 100 * elastic);
+    EXPECT_NEAR(work, 99 * elastic * limit, machine * work);
+    point.strain(-50 * elastic / 3 * Mat3::Identity());
+    EXPECT_NEAR(point.stress.norm(), 0, machine * limit);
+    EXPECT_NEAR(point.state.opened_volume, 50 * elastic, machine * 100 * elastic);
+    point.strain(-51 * elastic / 3 * Mat3::Identity());
+    EXPECT_NEAR(point.stress(0, 0), -limit, 100 * machine * limit);
+    EXPECT_EQ(point.state.opened_volume, 0);
+    EXPECT_EQ(point.state.plastic_work, work);
+  }
+}
+
+TEST(MohrCoulomb, DilationOfSeparatedSoilFillsTheGapFirst)
+{
+  Point<MohrCoulomb> point{.law = soil(30, 5e3, 20)};
+  point.strain(1e-10 * Mat3::Identity());
+  const Real open = point.state.opened_volume, G = point.law.constants().shear;
+  point.strain(-1.1 * 5e3 / std::tan(radians(30)) / (3 * point.law.constants().bulk) * Mat3::Identity());
+  const Real closing = point.state.opened_volume;
+  EXPECT_LT(closing, open);
+  Mat3 H = Mat3::Zero();
+  const Real gamma = 2e-13, epsilon = 1e-14;  // shear strength is reached at 1.1e-13
+  H(0, 1) = gamma;
+  H(1, 1) = -epsilon;
+  point.strain(H);
+  // At zero mean stress the shear on the plane is half of (s1 - s3): c cos(phi), but for the mean of s1 and s3 that epsilon makes.
+  EXPECT_NEAR(mean(point.stress), 0, machine * G * gamma);
+  const Vec3 s = principal(point.stress);
+  const auto c = point.law.constants();
+  const Real J = point.F.determinant();
+  EXPECT_NEAR(J * ((s[0] - s[2]) + (s[0] + s[2]) * c.peak.sine), 2 * c.peak.cohesive, machine * G * gamma);
+  const Real plastic_shear = std::hypot(gamma, epsilon) - (s[0] - s[2]) / (2 * G);
+  EXPECT_NEAR(point.state.opened_volume, closing - epsilon - c.sin_psi * plastic_shear, 1e-6 * plastic_shear);
+}
+
+TEST(MohrCoulomb, TensionCutoffLimitsTheLargestPrincipalStress)
+{
+  const MohrCoulomb law = with_cutoff(soil(30, 5e3), 2e3);
+  const auto c = law.constants();
+  const Real lambda = c.bulk - 2 * c.shear / 3;
+  const auto after = [&](const Vec3& trial) {
+    Point<MohrCoulomb> point{.law = law};
+    const Vec3 strain = (trial.array() - trial.mean()) / (2 * c.shear) + trial.mean() / (3 * c.bulk);
+    point.strain(strain.asDiagonal());
+    return point;
+  };
+  const Real ratio = lambda / (lambda + 2 * c.shear);  // of the stresses in uniaxial strain
+  const auto one = after({5e3, 5e3 * ratio, 5e3 * ratio});
+  EXPECT_LE((one.stress - Mat3(Vec3(2e3, 2e3 * ratio, 2e3 * ratio).asDiagonal())).norm(), machine * 5e3) << "as if less had been pulled";
+  EXPECT_EQ(one.state.opened_volume, 0);
+  const auto three = after({5e3, 5e3, 5e3});
+  EXPECT_LE((three.stress - 2e3 * Mat3::Identity()).norm(), machine * 5e3);
+  EXPECT_NEAR(three.state.opened_volume, 3e3 / c.bulk, machine * 3e3 / c.bulk);
+  EXPECT_NEAR(three.state.plastic_strain, 0, machine * 3e3 / c.bulk);
+  const Real s3 = (2e3 * 1.5 - 2 * c.peak.cohesive) / 0.5;  // of the plane at s1 = 2 kPa
+  const auto corner = after({4e4, 3.9e4, -3e4});
+  EXPECT_LE((corner.stress - Mat3(Vec3(2e3, 2e3, s3).asDiagonal())).norm(), machine * 4e4);
+  // On the edge x cracks and the plane flows by psi = 0: s2 = trial - lambda crack, (crack, plane) from s1 and s3.
+  const auto edge = after({3e4, 3e3, -3e4});
+  const Real total = 3e4 - 2e3 - 3e4 - s3;  // fall of s1 + s3 = 2 (lambda + mu) crack
+  EXPECT_LE((edge.stress - Mat3(Vec3(2e3, 3e3 - lambda * total / (2 * (lambda + c.shear)), s3).asDiagonal())).norm(), machine * 3e4);
+}
+
+TEST(MohrCoulombSoftening, ShearStressFallsLinearlyToResidualWhateverTheSteps)
+{
+  const MohrCoulomb law = softening(soil(0, 10e3), 0, 4e3, 0.05 / stiffening);
+  const Real G = law.constants().shear, fall = 6e3 / (root3 * *law.softening_strain);  // of the stress per plastic shear
+  for (const int steps : {1, 3, 200})
+    for (const Real gamma : {0.01, 0.05, 0.2}) {
+      Point<MohrCoulomb> point{.law = law};
+      Mat3 H = Mat3::Zero();
+      H(0, 1) = gamma / stiffening / steps;
+      for (int n = 0; n < steps; ++n)
+        point.strain(H);
+      const Real plastic = (gamma / stiffening - 10e3 / G) / (1 - fall / G);
+      EXPECT_NEAR(point.stress(0, 1), std::max(10e3 - fall * plastic, 4e3), machine * 1e4) << gamma << " in " << steps;
+    }
+}
+
+TEST(MohrCoulombSoftening, FrictionAndDilationSatisfyTheSoftenedPlanesAtTheEnd)
+{
+  const MohrCoulomb law = softening(soil(35, 5e3, 10), 25, 0, 0.05 / stiffening);
+  Point<MohrCoulomb> point{.law = law};
+  point.prestress(-p0 * Mat3::Identity());
+  Mat3 H = Mat3::Zero();
+  H(0, 1) = 1e-3 / stiffening;
+  Real highest = 0;
+  for (int n = 0; n < 200; ++n) {
+    point.strain(H);
+    const Vec3 s = principal(point.stress);
+    const ShearStrength now = law.constants().strength_at(point.state.plastic_strain);
+    const Real f = 0.5 * (s[0] - s[2]) + 0.5 * (s[0] + s[2]) * now.sine - now.cohesive;
+    EXPECT_LE(f, machine * p0);
+    if (point.state.plastic_strain > 0) {
+      EXPECT_GE(f, -machine * p0);
+    }
+    highest = std::max(highest, (s[0] - s[2]) / -(s[0] + s[2]));
+  }
+  EXPECT_GT(point.state.plastic_strain, *law.softening_strain);
+  const Vec3 s = principal(point.stress);
+  EXPECT_NEAR((s[0] - s[2]) / -(s[0] + s[2]), std::sin(radians(25)), machine);
+  EXPECT_GT(highest, std::sin(radians(25)));
+}
+
+TEST(MohrCoulombSoftening, BrittleSoilDropsToResidualAtOnce)
+{
+  const MohrCoulomb law = softening(soil(0, 10e3), 0, 1e3, 1e-6 / stiffening);  // shorter than the elastic strain that is released
+  Point<MohrCoulomb> point{.law = law};
+  Mat3 H = Mat3::Zero();
+  H(0, 1) = 1.01 * 10e3 / law.constants().shear;
+  point.strain(H);
+  EXPECT_NEAR(point.stress(0, 1), 1e3, machine * 10e3);
+  EXPECT_GT(point.state.plastic_strain, *law.softening_strain);
+}
+
+TEST(MohrCoulomb, PlasticWorkIsStressTimesPlasticShear)
+{
+  Point<MohrCoulomb> point{.law = soil(25, 8e3)};
+  point.prestress(-5e4 * Mat3::Identity());
+  const auto c = point.law.constants();
+  const Real strength = c.peak.cohesive + c.peak.sine * 5e4, gamma = 0.05 / stiffening;
+  Mat3 H = Mat3::Zero();
+  H(0, 1) = gamma / 20;
+  for (int n = 0; n < 20; ++n)
+    point.strain(H);
+  const Real plastic = gamma - strength / c.shear;
+  EXPECT_NEAR(point.stress(0, 1), strength, machine * strength);
+  EXPECT_NEAR(point.state.plastic_strain, plastic / root3, machine * plastic);
+  EXPECT_NEAR(point.state.plastic_work, strength * plastic, machine * strength * plastic);
+}
+
+TEST(MohrCoulomb, QuarterTurnInAnyNumberOfStepsKeepsPrincipalStresses)
+{
+  const Mat3 start = Vec3(-1e5, -6e4, -8e4).asDiagonal();
+  for (const int steps : {1, 10, 100}) {
+    Point<MohrCoulomb> point{.law = soft_soil(40, 5e3)};
+    point.prestress(start);
+    for (int n = 0; n < steps; ++n)
+      point.step(testing::rotation_about(Vec3::UnitZ(), std::acos(0.0) / steps));
+    EXPECT_LE((point.stress - Mat3(Vec3(-6e4, -1e5, -8e4).asDiagonal())).norm(), 1e-15 * steps * 1e7);  // rounding of f - I times E
+  }
+}
+
+TEST(MohrCoulomb, SuperposedRotationTurnsTheStressWhileItYields)
+{
+  Dice dice(4);
+  for (int path = 0; path < 200; ++path) {
+    Point<MohrCoulomb> still{.law = soft_soil(30, 5e3, 10)}, turned = still;
+    const Mat3 Q = dice.rotation();
+    for (int n = 0; n < 5; ++n) {
+      const Mat3 f = Mat3::Identity() + dice.matrix(0.02);
+      still.step(f);
+      turned.step(Q * f * Q.transpose());
+      ASSERT_LE((turned.stress - Q * still.stress * Q.transpose()).norm(), 1e-13 * 1e7);  // rounding of strains times E
+    }
+  }
+}
+
+TEST(MohrCoulombRules, ContradictionsAreToldInWords)
+{
+  const auto problems = [](auto change) {
+    MohrCoulomb law = soil(30, 5e3, 10);
+    change(law);
+    std::vector<std::string> found;
+    law.check(found);
+    return found;
+  };
+  using Problems = std::vector<std::string>;
+  EXPECT_EQ(problems([](auto&) {}), Problems{});
+  EXPECT_EQ(problems([](auto& law) { law.dilation_angle = 31; }), Problems{"dilation_angle 31 is above friction_angle 30"});
+  EXPECT_EQ(problems([](auto& law) { law.tension_cutoff = 9e3; }), Problems{"tension_cutoff 9000 is above the apex, 8660.25 Pa"});
+  EXPECT_EQ(problems([](auto& law) { law.residual_cohesion = 6e3, law.softening_strain = 0.1; }),
+            Problems{"residual_cohesion 6000 is above cohesion 5000"});
+  EXPECT_EQ(problems([](auto& law) { law.residual_cohesion = 0; }),
+            Problems{"residual_friction_angle and residual_cohesion need softening_strain"});
+  EXPECT_EQ(problems([](auto& law) { law.softening_strain = 0.1; }),
+            Problems{"softening_strain needs residual_friction_angle or residual_cohesion"});
+  EXPECT_EQ(problems([](auto& law) { law.residual_friction_angle = 5, law.softening_strain = 0.1; }),
+            Problems{"dilation_angle 10 is above residual_friction_angle 5"});
+  EXPECT_EQ(problems([](auto& law) { law.residual_friction_angle = 35, law.softening_strain = 0.1; }),
+            Problems{"residual_friction_angle 35 is above friction_angle 30"});
+  EXPECT_EQ(problems([](auto& law) { law.bulk_modulus = 1e7; }).size(), 1u) << "elastic constants in three";
+}
+
+}  // namespace
+}  // namespace talus
