@@ -1,0 +1,85 @@
+#pragma once
+// Mud, debris, fresh concrete: a fluid that flows above a yield stress, with a viscosity that depends on the rate.
+#include <fmt/format.h>
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "materials/weakly_compressible.hpp"
+
+namespace talus {
+
+/// stress = -p(J) I + 2 eta dev(D),    eta = k g^(n-1) + tau_y (1 - exp(-m g)) / g,    g = sqrt(2 dev(D):dev(D)).
+/// [Herschel & Bulkley 1926, Kolloid-Z. 39, 291; Papanastasiou 1987, J. Rheol. 31, 385].  Below yield the fluid creeps with the
+/// viscosity tau_y m.  The power law keeps its viscosity below g = 1/m if n < 1, above g = highest_rate if n > 1: so the viscosity is
+/// bounded, and with it the step.  Bingham's fluid is n = 1.
+struct HerschelBulkley : WeaklyCompressible {
+  static constexpr std::string_view name = "herschel_bulkley";
+  static constexpr std::string_view summary =
+      "Weakly compressible fluid with yield stress, tau = tau_y + k g^n (Herschel & Bulkley 1926, regularised after Papanastasiou 1987).";
+  Real yield_stress{}, consistency{}, flow_index{}, regularisation{};
+  std::optional<Real> highest_rate;
+  static constexpr auto fields()
+  {
+    using Law = HerschelBulkley;
+    return std::tuple_cat(
+        fluid_fields<Law>(),
+        std::tuple{
+            required("yield_stress", &Law::yield_stress, non_negative, "Pa", "shear stress tau_y below which it hardly flows"),
+            required("consistency", &Law::consistency, non_negative, "Pa s^n", "k; the viscosity if flow_index is 1"),
+            required("flow_index", &Law::flow_index, positive, "-", "n; 1 Bingham, below 1 shear-thinning, above 1 shear-thickening"),
+            required("regularisation", &Law::regularisation, positive, "s",
+                     "m; the yield stress is there within 5 % from the shear rate 3/m on, and below yield the viscosity is tau_y m"),
+            optional("highest_rate", &Law::highest_rate, positive, "1/s",
+                     "shear rate above which the power law keeps its viscosity; for a flow_index above 1, and needed there")});
+  }
+  /// A power law that thickens needs an end.
+  void check(std::vector<std::string>& problems) const
+  {
+    if (flow_index > 1 && !highest_rate)
+      problems.push_back(fmt::format("flow_index {} is above 1 and needs highest_rate: without it no step is short enough", flow_index));
+    if (flow_index <= 1 && highest_rate)
+      problems.push_back(fmt::format("highest_rate needs a flow_index above 1, here {}", flow_index));
+  }
+
+  using State = FluidHistory;
+  struct Constants {
+    Real slowest, fastest;  ///< shear rates between which the power law holds [1/s]
+  };
+  Constants constants() const noexcept
+  {
+    return {.slowest = flow_index < 1 ? 1 / regularisation : 0, .fastest = highest_rate.value_or(std::numeric_limits<Real>::infinity())};
+  }
+
+  /// Pa s at a shear rate [1/s].
+  Real viscosity(Real rate, const Constants& c) const noexcept
+  {
+    const Real power = flow_index == 1 ? 1 : std::pow(std::clamp(rate, c.slowest, c.fastest), flow_index - 1);
+    const Real yielding = rate > 0 ? -std::expm1(-regularisation * rate) / rate : regularisation;
+    return consistency * power + yield_stress * yielding;
+  }
+
+  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept
+  {
+    const Real J = in.F.determinant();
+    if (!(J > 0))
+      return no_answer();
+    const Sym3 D = rate_of_deformation(in);
+    const Sym3 shear = add_diagonal(D, -trace(D) / 3);
+    const Real rate = std::sqrt(2 * squared_norm(shear)), eta = viscosity(rate, c);
+    state.plastic_work += J * in.dt * eta * rate * rate;
+    return unpack(scale_and_shift(2 * eta, shear, -pressure(J, in.elastic)));
+  }
+  Real wave_speed(const Mat3& F, const Constants&) const noexcept { return sound_speed(F.determinant()); }
+  /// 4/3 of the largest viscosity over density; that of a shear-thickening fluid is counted as if rest and highest_rate met.
+  Real diffusivity(const Constants& c) const noexcept
+  {
+    const Real power = std::pow(flow_index > 1 ? c.fastest : c.slowest, flow_index - 1);
+    return 4 * (consistency * power + yield_stress * regularisation) / (3 * density);
+  }
+};
+
+}  // namespace talus

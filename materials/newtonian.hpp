@@ -1,0 +1,49 @@
+#pragma once
+// Water, oil, slurry: a weakly compressible fluid of constant viscosity.
+#include <string_view>
+
+#include "materials/weakly_compressible.hpp"
+
+namespace talus {
+
+/// stress = -p(J) I + 2 mu dev(D) + zeta tr(D) I.        [Landau & Lifshitz, Fluid Mechanics, section 15]
+/// Without tension the mean stress never exceeds zero.  The viscous stress is that of the whole step: the step is explicit in the
+/// viscosity, which bounds it through diffusivity().
+struct Newtonian : WeaklyCompressible {
+  static constexpr std::string_view name = "newtonian";
+  static constexpr std::string_view summary =
+      "Weakly compressible fluid of constant viscosity, stress = -p I + 2 mu dev(D), p = (K / n) (J^-n - 1) (Monaghan 1994).";
+  Real viscosity{}, volume_viscosity = 0;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(
+        fluid_fields<Newtonian>(),
+        std::tuple{required("viscosity", &Newtonian::viscosity, non_negative, "Pa s", "dynamic viscosity mu; 0 for an inviscid fluid"),
+                   optional("volume_viscosity", &Newtonian::volume_viscosity, non_negative, "Pa s",
+                            "viscosity zeta against change of volume, apart from that of shear")});
+  }
+  using State = FluidHistory;
+  /// The fluid itself: nothing is worth working out in advance.
+  struct Constants {};
+  Constants constants() const noexcept { return {}; }
+
+  Mat3 update(const Increment& in, State& state, const Constants&) const noexcept
+  {
+    const Real J = in.F.determinant();
+    if (!(J > 0))
+      return no_answer();
+    const Sym3 D = rate_of_deformation(in);
+    const Real growth = trace(D), p = pressure(J, in.elastic);
+    Real resistance = volume_viscosity * growth;
+    if (!(tension || in.elastic))
+      resistance = std::min(resistance, p);
+    const Sym3 shear = add_diagonal(D, -growth / 3);
+    state.plastic_work += J * in.dt * (2 * viscosity * squared_norm(shear) + resistance * growth);
+    return unpack(scale_and_shift(2 * viscosity, shear, resistance - p));
+  }
+  Real wave_speed(const Mat3& F, const Constants&) const noexcept { return sound_speed(F.determinant()); }
+  /// Of a wave of compression: (4/3 mu + zeta) / density.
+  Real diffusivity(const Constants&) const noexcept { return (4 * viscosity / 3 + volume_viscosity) / density; }
+};
+
+}  // namespace talus

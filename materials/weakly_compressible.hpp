@@ -1,0 +1,59 @@
+#pragma once
+// What fluids have in common: pressure by volume, and a rate of deformation that a rotation leaves at zero.
+#include <algorithm>
+#include <cmath>
+
+#include "materials/law.hpp"
+#include "materials/logarithm.hpp"
+
+namespace talus {
+
+/// Pressure of a liquid that is hardly compressible: what fluids inherit.
+///     p = K / n (J^-n - 1)       [Cole 1948, Underwater Explosions, eq. 2.17; Monaghan 1994, J. Comput. Phys. 110, 399]
+/// K may be far below that of the liquid as long as c = sqrt(K / density) is ten times the largest velocity: then J stays within 1 %.
+struct WeaklyCompressible {
+  Real density{}, bulk_modulus{}, exponent = 7;
+  bool tension = false;
+
+  /// Pa at volume ratio J, negative in tension; `elastic` suspends the cut at zero.
+  Real pressure(Real J, bool elastic) const noexcept
+  {
+    const Real p = bulk_modulus / exponent * (std::pow(J, -exponent) - 1);
+    return tension || elastic ? p : std::max(p, Real{0});
+  }
+  /// sqrt(dp / d density), without the cut at zero.
+  Real sound_speed(Real J) const noexcept { return std::sqrt(bulk_modulus / density * std::pow(J, 1 - exponent)); }
+};
+
+/// The fields of a law that inherits WeaklyCompressible, to be joined with its own by std::tuple_cat.
+template <class Law>
+constexpr auto fluid_fields()
+{
+  constexpr auto real = [](Real Law::*member) { return member; };
+  constexpr auto flag = [](bool Law::*member) { return member; };
+  return std::tuple{required("density", real(&Law::density), positive, "kg/m^3", "mass density at rest"),
+                    required("bulk_modulus", real(&Law::bulk_modulus), positive, "Pa",
+                             "bulk modulus at rest; may be lowered until the speed of sound is ten times the largest velocity"),
+                    optional("exponent", real(&Law::exponent), at_least(1), "-", "exponent of the volume; 7 for water"),
+                    optional("tension", flag(&Law::tension), any, "-",
+                             "true: the pressure may be negative; false: the fluid opens freely and closes before pressure is felt")};
+}
+
+/// What a fluid remembers.
+struct FluidHistory {
+  Real plastic_work = 0;
+  static constexpr auto fields()
+  {
+    return std::tuple{history("plastic_work", &FluidHistory::plastic_work, "J/m^3", "energy dissipated by viscosity per initial volume")};
+  }
+};
+
+/// Rate of deformation of a step [1/s]: ln(f f^T) / (2 dt) with f = I + dt L, so that a finite rotation has none; sym(L) if dt = 0.
+inline Sym3 rate_of_deformation(const Increment& in) noexcept
+{
+  if (!(in.dt > 0))
+    return pack(sym(in.L));
+  return scale_and_shift(0.5 / in.dt, log1p(push_forward(in.dt * in.L, Sym3::Zero())), 0);
+}
+
+}  // namespace talus
