@@ -4,9 +4,15 @@
 #include "materials/corotated.hpp"
 #include "materials/drucker_prager.hpp"
 #include "materials/hencky.hpp"
+#include "materials/herschel_bulkley.hpp"
+#include "materials/johnson_cook.hpp"
 #include "materials/linear_elastic.hpp"
 #include "materials/linear_first_piola.hpp"
+#include "materials/mohr_coulomb.hpp"
+#include "materials/mu_i.hpp"
 #include "materials/neo_hookean.hpp"
+#include "materials/newtonian.hpp"
+#include "materials/von_mises.hpp"
 
 namespace talus {
 
@@ -17,6 +23,12 @@ using Laws = TypeList<
     Corotated,
     Hencky,
     DruckerPrager,
+    MohrCoulomb,
+    MuI,
+    Newtonian,
+    HerschelBulkley,
+    VonMises,
+    JohnsonCook,
     LinearFirstPiola>;
 // clang-format on
 
