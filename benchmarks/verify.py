@@ -12,7 +12,8 @@ import time
 import lab as tools
 import report
 
-CASES = ["vibrating_bar", "irregular_bar", "self_weight_column", "sliding_block", "colliding_disks", "cantilever", "slope_failure_2d"]
+CASES = ["vibrating_bar", "irregular_bar", "self_weight_column", "sliding_block", "colliding_disks", "cantilever", "slope_failure_2d",
+         "shock", "taylor_bar"]
 
 
 def load(case):
