@@ -8,6 +8,7 @@
 #include "materials/johnson_cook.hpp"
 #include "materials/linear_elastic.hpp"
 #include "materials/linear_first_piola.hpp"
+#include "materials/modified_cam_clay.hpp"
 #include "materials/mohr_coulomb.hpp"
 #include "materials/mu_i.hpp"
 #include "materials/neo_hookean.hpp"
@@ -24,6 +25,7 @@ using Laws = TypeList<
     Hencky,
     DruckerPrager,
     MohrCoulomb,
+    ModifiedCamClay,
     MuI,
     Newtonian,
     HerschelBulkley,

@@ -34,6 +34,19 @@ L sample()
 }
 
 template <>
+inline ModifiedCamClay sample<ModifiedCamClay>()
+{
+  ModifiedCamClay law;
+  law.density = 1800;
+  law.shear_modulus = 4e6;
+  law.compression_index = 0.2;
+  law.swelling_index = 0.05;
+  law.critical_state_slope = 1.1;
+  law.preconsolidation_pressure = 1e5;
+  law.reference_pressure = 0.05 * sample_stiffness;
+  return law;
+}
+template <>
 inline MohrCoulomb sample<MohrCoulomb>()
 {
   MohrCoulomb law;
@@ -56,8 +69,8 @@ inline MuI sample<MuI>()
   law.density = 1500;
   law.youngs_modulus = sample_stiffness;
   law.poisson_ratio = 0.3;
-  law.static_friction = 0.38;
-  law.limiting_friction = 0.64;
+  law.static_friction = 0.5;
+  law.limiting_friction = 0.7;
   law.inertial_number = 0.279;
   law.grain_diameter = 0.5e-3;
   law.grain_density = 2500;
