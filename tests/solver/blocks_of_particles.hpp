@@ -40,7 +40,7 @@ void add_body(
     }
   }
   m.bodies.push_back({name, begin, p.size(), {}});
-  m.materials.push_back(make_batch(law, begin, p.size(), name));
+  m.materials.push_back(make_any_batch(law, begin, p.size(), name));
 }
 
 /// Seeds the affine field too, so that a rigid or linear motion starts exact.

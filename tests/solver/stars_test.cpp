@@ -1,0 +1,220 @@
+// What is averaged or conducted over the stars of nodes, and artificial viscosity: the additions to the stress of the last step.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <random>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus {
+namespace {
+
+using testing::add_body;
+using testing::rubber;
+using testing::unit_box;
+
+template <int D, class L>
+Model<D, Linear<D>> block(const L& law, Index cells, Real jitter = 0.2)
+{
+  Model<D, Linear<D>> m(unit_box<D>(cells, jitter));
+  add_body<D>(m, "block", law, D + 1, [](const Vec<D>&) { return true; });
+  m.transfer.musl = false;
+  return m;
+}
+
+/// Sorts the particles by cell, as a step does before anything else.
+template <int D>
+void sort(Model<D, Linear<D>>& m)
+{
+  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
+}
+
+JohnsonCook metal(std::optional<Real> conductivity)
+{
+  JohnsonCook law;
+  law.density = 8000;
+  law.youngs_modulus = 1e11;
+  law.poisson_ratio = 0.3;
+  law.yield_stress = 1e8;
+  law.hardening_exponent = law.thermal_exponent = 1;
+  law.room_temperature = 300;
+  law.melting_temperature = 1500;
+  law.specific_heat = 400;
+  law.conductivity = conductivity;
+  return law;
+}
+
+template <int D>
+void averages_volumes()
+{
+  auto m = block<D>(rubber(1e5, 0.3, 1000), 4);
+  m.particles.volume = m.particles.volume0;
+  sort(m);
+  StarSums<D, 2> sums(m.mesh);
+  std::vector<Real> averaged(m.particles.id.size());
+  constexpr Real dt = 1e-3;
+
+  const Mat<D> uniform = -5 * Mat<D>::Identity();
+  for (auto& L : m.particles.L)
+    L = uniform;
+  average_volume(m.mesh, m.order, 0, dt, m.particles, sums, averaged);
+  const Real ratio = (Mat<D>::Identity() + dt * uniform).determinant();
+  for (const Real J : averaged)
+    EXPECT_NEAR(J, ratio, 1e-14);
+
+  std::mt19937 bits(1);
+  std::uniform_real_distribution<Real> any_rate(-20, 20);
+  Real volume = 0, kept = 0, spread = 0, spread_averaged = 0;
+  for (std::size_t p = 0; p < averaged.size(); ++p)
+    m.particles.L[p] = any_rate(bits) * Mat<D>::Identity();
+  average_volume(m.mesh, m.order, 0, dt, m.particles, sums, averaged);
+  for (std::size_t p = 0; p < averaged.size(); ++p) {
+    const Real own = (Mat<D>::Identity() + dt * m.particles.L[p]).determinant();
+    volume += own * m.particles.volume0[p];
+    kept += averaged[p] * m.particles.volume0[p];
+    spread += std::pow(own - 1, 2);
+    spread_averaged += std::pow(averaged[p] - 1, 2);
+  }
+  EXPECT_NEAR(kept, volume, 1e-13);          // the volume of the body is no matter of averaging
+  EXPECT_LT(spread_averaged, 0.1 * spread);  // a star has more than ten particles
+}
+TEST(AverageVolume, KeepsUniformRatiosAndTheTotalAndSmoothsTheRestIn2D) { averages_volumes<2>(); }
+TEST(AverageVolume, KeepsUniformRatiosAndTheTotalAndSmoothsTheRestIn3D) { averages_volumes<3>(); }
+
+TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
+{
+  const auto stress_of = [](const auto& law) {
+    auto m = block<2>(law, 3);
+    std::visit([](auto& batch) { batch.averages_volume = true; }, m.materials[0]);
+    make_ready(m, false);
+    sort(m);
+    std::mt19937 bits(2);
+    std::uniform_real_distribution<Real> any_rate(-10, 10);
+    for (int step = 0; step < 5; ++step) {
+      for (auto& L : m.particles.L)
+        L = Mat<2>::NullaryExpr([&] { return any_rate(bits); });
+      average_volume(m.mesh, m.order, 0, 1e-3, m.particles, *m.stars, m.averaged);
+      update_stress(m.mesh, m.materials[0], 1e-3, false, m.averaged, m.particles, m.health);
+    }
+    return m.particles.stress;
+  };
+  Hencky total;
+  VonMises incremental;
+  total.density = incremental.density = 1000;
+  total.youngs_modulus = incremental.youngs_modulus = 1e6;
+  total.poisson_ratio = incremental.poisson_ratio = 0.4;
+  incremental.yield_stress = 1e12;
+  const auto by_total = stress_of(total), by_increments = stress_of(incremental);
+  for (std::size_t p = 0; p < by_total.size(); ++p)
+    EXPECT_LE((by_total[p] - by_increments[p]).norm(), 1e-12 * 1e6);  // rounding of five steps
+}
+
+TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
+{
+  LinearElastic law;
+  law.density = 1000;
+  law.youngs_modulus = 1e6;
+  law.poisson_ratio = 0;
+  auto plain = block<2>(law, 2, 0), viscous = block<2>(law, 2, 0);
+  const BulkViscosity viscosity{.linear = 0.3, .quadratic = 2};
+  std::visit([&](auto& batch) { batch.viscosity = viscosity; }, viscous.materials[0]);
+  make_ready(plain, false);
+  make_ready(viscous, false);
+  constexpr Real dt = 1e-4, rate = 3;
+  for (const Real sign : {-1.0, -1.0, 1.0, 0.0}) {
+    for (auto* m : {&plain, &viscous}) {
+      for (auto& L : m->particles.L)
+        L = Mat<2>{{sign * rate, 0}, {0, 0}};
+      update_stress(m->mesh, m->materials[0], dt, false, m->averaged, m->particles, m->health);
+    }
+    const Real h = viscous.mesh.altitude(viscous.particles.cell[0]);
+    const Real density = viscous.particles.mass[0] / viscous.particles.volume[0];
+    const Real c = wave_speed(viscous.materials[0], viscous.particles.F[0]);
+    const Real q = sign < 0 ? density * h * rate * (viscosity.quadratic * h * rate + viscosity.linear * c) : 0;
+    for (int k = 0; k < 3; ++k)
+      EXPECT_NEAR(plain.particles.stress[0][k] - viscous.particles.stress[0][k], q, 1e-12 * 1e6);
+  }
+}
+
+TEST(BulkViscosity, ShortensTheStep)
+{
+  auto m = block<2>(rubber(1e6, 0, 1000), 2, 0);
+  make_ready(m, false);
+  for (auto& L : m.particles.L)
+    L = -Mat<2>::Identity();
+  const Real without = shortest_crossing(m.mesh, m.materials, m.particles);
+  std::visit([](auto& batch) { batch.viscosity = BulkViscosity{.linear = 1, .quadratic = 0}; }, m.materials[0]);
+  const Real with = shortest_crossing(m.mesh, m.materials, m.particles);
+  EXPECT_NEAR(without / with, 1 + std::sqrt(2), 1e-12);  // Q = c:  Q + sqrt(Q^2 + c^2)
+}
+
+/// Mean of T cos(pi x) over the block, twice: the amplitude of the first mode.
+template <int D>
+Real first_mode(const Model<D, Linear<D>>& m, const auto& history)
+{
+  Real sum = 0;
+  for (std::size_t p = 0; p < history.size(); ++p)
+    sum += 2 * m.particles.volume0[p] * history[p].temperature * std::cos(std::numbers::pi * m.particles.x[p][0]);
+  return sum;
+}
+
+TEST(ConductHeat, DecaysAsTheHeatEquationSaysAndKeepsTheHeat)
+{
+  const JohnsonCook law = metal(200);
+  auto m = block<2>(law, 20);
+  make_ready(m, false);
+  sort(m);
+  auto& batch = std::get<Batch<JohnsonCookOf<false, false>>>(m.materials[0]);
+  for (std::size_t p = 0; p < batch.history.size(); ++p)
+    batch.history[p].temperature = 400 + 50 * std::cos(std::numbers::pi * m.particles.x[p][0]);
+  const auto heat = [&] {
+    Real sum = 0;
+    for (std::size_t p = 0; p < batch.history.size(); ++p)
+      sum += m.particles.mass[p] * batch.history[p].temperature;
+    return sum;
+  };
+  const Real before = heat(), mode_before = first_mode(m, batch.history);
+  const Real diffusivity = 200.0 / (8000 * 400), duration = 0.5 / (diffusivity * std::pow(std::numbers::pi, 2));
+  constexpr int steps = 300;
+  for (int step = 0; step < steps; ++step)
+    conduct_heat(m.mesh, m.materials[0], m.order, 0, duration / steps, m.particles, *m.heat);
+  EXPECT_NEAR(heat() / before, 1, 1e-13);
+  EXPECT_NEAR(first_mode(m, batch.history) / mode_before, std::exp(-0.5), 0.005 * std::exp(-0.5));  // twenty cells a half wave: h^2 terms
+}
+
+TEST(ConductHeat, NeedsAConductivity)
+{
+  EXPECT_TRUE(conducts_heat(make_any_batch(metal(200), 0, 1, "rod")));
+  EXPECT_FALSE(conducts_heat(make_any_batch(metal(std::nullopt), 0, 1, "rod")));
+  auto m = block<2>(metal(std::nullopt), 2);
+  make_ready(m, false);
+  EXPECT_FALSE(m.heat.has_value());
+}
+
+TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
+{
+  auto m = block<2>(rubber(1e6, 0, 1000), 4, 0);
+  Wall<2> clamp;
+  clamp.name = "x_min";
+  clamp.kind = WallKind::roller;
+  m.walls.add(std::move(clamp), m.mesh, *m.mesh.facet_set("x_min"));
+  auto load = carried_by_particles<2>(m.mesh, *m.mesh.facet_set("x_max"), m.particles);
+  load.traction = {-100, 0};
+  m.loads.on_particles.push_back(std::move(load));
+  make_ready(m, false);
+  Stage stage = testing::test_stage(10);
+  stage.damping = 0.5;
+  stage.residual = 1e-3;
+  const StageResult result = run_stage(m, stage, StepLimits{}, [](const auto&, Moment) {});
+  EXPECT_LT(result.end, 10);
+  Real inside = 0, outside = 0;  // virial: sum V stress_xx = sum f_x x, the roller being at x = 0
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    inside += m.particles.stress[p][0] * m.particles.volume[p];
+    outside += m.particles.applied[p][0] * m.particles.x[p][0];
+  }
+  EXPECT_NEAR(inside, outside, 0.01 * 100);
+  EXPECT_LT(outside, -80);
+}
+
+}  // namespace
+}  // namespace talus
