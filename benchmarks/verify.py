@@ -13,7 +13,7 @@ import lab as tools
 import report
 
 CASES = ["vibrating_bar", "irregular_bar", "self_weight_column", "sliding_block", "colliding_disks", "cantilever", "slope_failure_2d",
-         "shock", "taylor_bar"]
+         "shock", "taylor_bar", "cook_membrane"]
 
 
 def load(case):

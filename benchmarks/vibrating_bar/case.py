@@ -5,7 +5,7 @@ import bar_mode
 import lab as tools
 
 CASE = "vibrating_bar"
-SIZES = {"quick": [1, 0.5, 0.25], "full": [1, 0.5, 0.25, 0.125]}
+SIZES = [1, 0.5, 0.25, 0.125]  # m
 SCHEMES = ["flip", "tpic"]
 PERIOD = 10  # s
 
@@ -16,10 +16,11 @@ def settings(size, scheme, speed):
             "transfer.scheme": scheme, "bodies[0].velocity": [f"{speed} * sin(pi * x / 50)", "0"]}
 
 
-def sweep(lab, data, scheme, speed):
-    """Runs and errors over all sizes of the level."""
-    sizes = SIZES[lab.level]
-    runs = [lab.run(f"{CASE}/scene.yaml", f"{scheme}_v{speed}_dx{size}", settings(size, scheme, speed)) for size in sizes]
+def sweep(lab, data, scheme, speed, kernel="umls"):
+    """Runs and errors over all sizes."""
+    sizes = SIZES if kernel == "umls" else SIZES[:3]
+    runs = [lab.run(f"{CASE}/scene.yaml", f"{kernel}_{scheme}_v{speed}_dx{size}", {**settings(size, scheme, speed), "kernel": kernel})
+            for size in sizes]
     return sizes, runs, [bar_mode.displacement_error(run.history, data, speed) for run in runs]
 
 
@@ -36,9 +37,21 @@ def draw_orders(figure, curves):
         axis.loglog(sizes, np.array(errors) * 100, "o-" if speed == 0.1 else "s--", label=f"{scheme}, v0 = {speed} m/s")
     axis.loglog([1, 0.25], [0.5, 0.5 / 16], "k:", label="order 2")
     axis.loglog([0.5], [0.554], "kx", label="bound of Cao et al.")
-    tools.size_axis(axis, SIZES["full"])
+    tools.size_axis(axis, SIZES)
     axis.set_ylabel("error in displacement [% of amplitude]")
     axis.legend(fontsize=8)
+
+
+def draw_prices(figure, curves):
+    """Error over processor time, one line per kernel and transfer, marks by size of cell."""
+    axis = figure.subplots()
+    for name, (sizes, runs, errors) in curves.items():
+        seconds = [run.seconds for run in runs]
+        axis.loglog(seconds, np.array(errors) * 100, "o-", label=name)
+        for size, x, y in zip(sizes, seconds, errors):
+            axis.annotate(f"{size:g} m", (x, y * 100), textcoords="offset points", xytext=(5, 4), fontsize=7)
+    axis.set(xlabel="processor time [s]", ylabel="error in displacement [% of amplitude]")
+    axis.legend()
 
 
 def judge_errors(scheme, sizes, runs, errors, data):
@@ -66,5 +79,8 @@ def evaluate(lab):
         judged = speed == 0.001
         results.append(tools.Result(CASE, f"order of convergence, {scheme}, v0 = {speed} m/s", "-", tools.observed_order(sizes, errors),
                                     "at least" if judged else "reported", 1.8 if judged else None, 2.0, data["source"], runs[-1]))
+    prices = {f"umls, {scheme}": curves[scheme, 0.1] for scheme in SCHEMES}
+    prices["linear, flip"] = sweep(lab, data, "flip", 0.1, "linear")
+    lab.figure(CASE, "speed_accuracy", lambda figure: draw_prices(figure, prices), caption="What accuracy costs: error over processor time, by size of cell.")
     lab.figure(CASE, "verification_bar", lambda figure: draw_orders(figure, curves), caption="Error of the displacement of the bar over 40 s.")
     return results

@@ -1,0 +1,56 @@
+"""Cook's membrane: lift of the corner towards incompressibility, with and without averaging of volumes over the stars of nodes."""
+import numpy as np
+
+import lab as tools
+
+CASE = "cook_membrane"
+
+
+def lift(run, corner):
+    """Upward displacement of a corner of the body [m]: no particle sits there, so a plane through the twelve nearest ones is extended."""
+    frame = run.last_frame()
+    start = frame["Points"][:, :2] - frame["displacement"][:, :2]
+    nearest = np.argsort(np.hypot(*(start - corner).T))[:12]
+    plane = np.c_[np.ones(12), start[nearest] - corner]
+    return float(np.linalg.lstsq(plane, frame["displacement"][nearest, 1], rcond=None)[0][0])
+
+
+def checkerboard(run):
+    """Scatter of pressure within cells over the scatter of their means: 0 for a smooth pressure, large for a checkerboard."""
+    frame = run.last_frame()
+    cell, pressure = frame["cell"].astype(int), frame["pressure"]
+    count = np.bincount(cell)
+    mean = np.bincount(cell, pressure) / np.maximum(count, 1)
+    return float(np.std(pressure - mean[cell]) / np.std(mean[count > 0]))
+
+
+def draw(figure, runs):
+    """Pressure of the particles of two runs."""
+    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
+        frame = run.last_frame()
+        dots = axis.scatter(frame["Points"][:, 0], frame["Points"][:, 1], c=frame["pressure"], s=4, vmin=-0.2, vmax=0.2, cmap="viridis")
+        axis.set(title=name, aspect="equal", xlabel="x [m]")
+    figure.colorbar(dots, label="pressure [Pa]")
+
+
+def evaluate(lab):
+    """Four Poisson's ratios; the averaging off for the first two, finer cells for the second, at full level for the last as well."""
+    data, results, pictured = tools.reference(CASE), [], {}
+    corner = np.array(data["corner"], dtype=float)
+    plan = [("0.3", 4, False), ("0.3", 2, True), ("0.499", 4, False), ("0.499", 4, True), ("0.499", 2, True), ("0.4999", 4, True), ("0.49999", 4, True)]
+    if lab.level == "full":
+        plan += [("0.499", 2, False), ("0.499", 1, True), ("0.49999", 2, True), ("0.49999", 4, False)]
+    asked = {("0.499", 2, True): 0.02, ("0.499", 1, True): 0.02, ("0.49999", 4, True): 0.05, ("0.49999", 2, True): 0.05}
+    for nu, size, averaged in plan:
+        name = f"nu {nu}, cells of {size} m, {'averaged' if averaged else 'plain'}"
+        run = lab.run(f"{CASE}/scene.yaml", name.replace(" ", "_").replace(",", ""),
+                      {"materials[0].poisson_ratio": float(nu), "mesh.size": size, "bodies[0].f_bar": averaged})
+        tolerance = asked.get((nu, size, averaged))
+        results.append(tools.Result(CASE, f"lift of the corner, {name}", "m", lift(run, corner), "within" if tolerance else "reported", tolerance,
+                                    data["lift [m]"][nu], data["source"], run))
+        results.append(tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", checkerboard(run), "reported", None, None, "", run))
+        if (nu, size) == ("0.499", 4):
+            pictured["averaged" if averaged else "plain"] = run
+    lab.figure(CASE, "verification_cook", lambda figure: draw(figure, pictured), size=(7.4, 3.4),
+               caption="Pressure in Cook's membrane at Poisson's ratio 0.499 without and with averaging of volumes.")
+    return results
