@@ -37,9 +37,9 @@ class Seeder {
     AnyBatch batch =
         std::visit([&](const auto& law) { return make_any_batch(law, begin, end, material->name, material->where); }, material->law);
     std::visit(
-        [&](auto& typed) {
+        [&]<class L>(Batch<L>& typed) {
           typed.viscosity = material->bulk_viscosity;
-          typed.averages_volume = spec.f_bar.value_or(false);
+          typed.averages_volume = spec.f_bar.value_or(is_isochoric<L>());
         },
         batch);
     seeds_.materials.push_back(std::move(batch));

@@ -164,16 +164,18 @@ struct BodySpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("name", &BodySpec::name, any, "-", "name in messages and output"),
-                      required("material", &BodySpec::material, any, "-", "name of a material"),
-                      optional("region", &BodySpec::region, any, "-", "the body fills this cell group of the mesh"),
-                      optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
-                      optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
-                               "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, ..."),
-                      optional("f_bar", &BodySpec::f_bar, any, "-",
-                               "against locking: the law sees the volume ratio averaged over the cells around nodes; default false"),
-                      optional("velocity", &BodySpec::velocity, any, "m/s",
-                               "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
+    return std::tuple{
+        required("name", &BodySpec::name, any, "-", "name in messages and output"),
+        required("material", &BodySpec::material, any, "-", "name of a material"),
+        optional("region", &BodySpec::region, any, "-", "the body fills this cell group of the mesh"),
+        optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
+        optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
+                 "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, ..."),
+        optional("f_bar", &BodySpec::f_bar, any, "-",
+                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
+                 "johnson_cook, whose flow keeps the volume, false otherwise"),
+        optional("velocity", &BodySpec::velocity, any, "m/s",
+                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
   }
   void check(std::vector<std::string>& problems) const;
 };

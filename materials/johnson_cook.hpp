@@ -90,6 +90,7 @@ struct EnergyHistory<false> {};
 template <bool with_damage, bool with_energy>
 struct JohnsonCookOf : JohnsonCookMetal {
   static constexpr std::string_view name = "johnson_cook";
+  static constexpr bool isochoric = true;
   static constexpr std::string_view summary =
       "Metal under impact: strength by plastic strain, rate and temperature, adiabatic heating, fracture, Mie-Grueneisen pressure (Johnson "
       "& Cook 1983, 1985).";

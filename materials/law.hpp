@@ -47,6 +47,7 @@ struct NoHistory {
 ///   Real diffusivity(const Constants&) const noexcept               largest diffusivity, of momentum or heat [m^2/s]: bounds the step
 ///   using Kinds = TypeList<...>;  std::variant<...> kind() const    laws to be run instead, where the parameters decide which history
 ///                                                                   there is; the law itself is the kind that has all of it
+///   static constexpr bool isochoric = true                          plastic flow keeps the volume: its bodies average it by default
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
 /// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
 // clang-format off
@@ -65,6 +66,16 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
 
 /// What a law answers where it has no answer.
 inline Mat3 no_answer() noexcept { return Mat3::Constant(std::numeric_limits<Real>::quiet_NaN()); }
+
+/// True if the law says that its flow keeps the volume, which locks simplices.
+template <class L>
+constexpr bool is_isochoric() noexcept
+{
+  if constexpr (requires { L::isochoric; })
+    return L::isochoric;
+  else
+    return false;
+}
 
 /// True unless the law says that it is not: the contract tests prove the claim, and its opposite, for every law.
 template <class L>

@@ -43,6 +43,7 @@ struct CowperSymonds {
 /// p the accumulated plastic strain and `rate` that of the step.  Closed form where only H is given.
 struct VonMises : Elasticity {
   static constexpr std::string_view name = "von_mises";
+  static constexpr bool isochoric = true;
   static constexpr std::string_view summary =
       "Von Mises plasticity on logarithmic elasticity: linear, saturating (Voce 1948) and power hardening, rate factor of Cowper & Symonds "
       "(1957); yields in Cauchy stress.";
