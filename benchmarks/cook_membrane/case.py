@@ -34,13 +34,13 @@ def draw(figure, runs):
 
 
 def evaluate(lab):
-    """Four Poisson's ratios; the averaging off for the first two, finer cells for the second, at full level for the last as well."""
+    """Four Poisson's ratios; the averaging off for the first two, finer cells for the second, the last two at full level: their steps are short."""
     data, results, pictured = tools.reference(CASE), [], {}
     corner = np.array(data["corner"], dtype=float)
-    plan = [("0.3", 4, False), ("0.3", 2, True), ("0.499", 4, False), ("0.499", 4, True), ("0.499", 2, True), ("0.4999", 4, True), ("0.49999", 4, True)]
+    plan = [("0.3", 4, False), ("0.3", 2, True), ("0.499", 4, False), ("0.499", 4, True), ("0.499", 2, True)]
     if lab.level == "full":
-        plan += [("0.499", 2, False), ("0.499", 1, True), ("0.49999", 2, True), ("0.49999", 4, False)]
-    asked = {("0.499", 2, True): 0.02, ("0.499", 1, True): 0.02, ("0.49999", 4, True): 0.05, ("0.49999", 2, True): 0.05}
+        plan += [("0.499", 2, False), ("0.499", 1, True), ("0.4999", 4, True), ("0.49999", 4, True)]
+    asked = {("0.499", 2, True): 0.02, ("0.499", 1, True): 0.02, ("0.49999", 4, True): 0.05}
     for nu, size, averaged in plan:
         name = f"nu {nu}, cells of {size} m, {'averaged' if averaged else 'plain'}"
         run = lab.run(f"{CASE}/scene.yaml", name.replace(" ", "_").replace(",", ""),
