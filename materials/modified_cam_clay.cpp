@@ -11,7 +11,7 @@ namespace {
 
 /// Elastic compression [-] below which the material counts as free of stress: rounding of the strain, so that shear of constant volume from
 /// rest does not depend on it.
-constexpr Real rounding = 1e-14;
+constexpr Real no_compression = 1e-14;
 
 /// Stress measures [Pa] and the plastic compaction [-] of a return that ends in them.
 struct Ending {
@@ -22,7 +22,7 @@ struct Ending {
 ///     p = p(compression - x),   pc = start exp(x / plastic),   q = q_trial / (1 + 6 G m / M^2),   multiplier m = x / (2 p - pc).
 /// On either side of the critical state x runs from 0 to where 2 p = pc; m grows from 0 to infinity, q falls to 0, so that the ellipse is
 /// crossed in between.
-struct ReturnMap {
+struct EllipseReturn {
   const ModifiedCamClay::Constants& c;
   Real compression, q_trial, start;
   Real slope2 = c.slope * c.slope, shear_rate = 6 * c.shear / slope2;
@@ -93,7 +93,7 @@ Mat3 ModifiedCamClay::update(const Increment& in, State& state, const Constants&
   const bool was_open = state.opened_volume > 0;
   const Real compression = -trial.volume_strain - state.opened_volume;  // what is open fills first
   state.opened_volume = std::max(-compression, Real{0});
-  if (compression <= rounding) {
+  if (compression <= no_compression) {
     state.elastic_left = Sym3::Zero();
     state.plastic_strain += trial.shear;
     return Mat3::Zero();
@@ -103,7 +103,7 @@ Mat3 ModifiedCamClay::update(const Increment& in, State& state, const Constants&
   Ending end{c.pressure(compression), q_trial, 0};
   const bool yields = !(end.p <= start && q_trial * q_trial <= c.slope * c.slope * end.p * (start - end.p));
   if (yields)
-    end = ReturnMap{c, compression, q_trial, start}();
+    end = EllipseReturn{c, compression, q_trial, start}();
   const Real kept = q_trial > 0 ? end.q / q_trial : 0;
   if (yields || was_open)
     state.elastic_left = expm1(scale_and_shift(2 * kept, trial.shear_strain, -2 * (compression - end.compaction) / 3));

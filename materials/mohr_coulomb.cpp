@@ -10,17 +10,17 @@ namespace talus {
 
 namespace {
 
-constexpr Real root3 = std::numbers::sqrt3;
-constexpr Real never = std::numeric_limits<Real>::infinity();
+constexpr Real square_root_of_3 = std::numbers::sqrt3;
+constexpr Real infinite = std::numeric_limits<Real>::infinity();
 
-Real radians(Real degrees) noexcept { return degrees * (std::numbers::pi / 180); }
+Real in_radians(Real degrees) noexcept { return degrees * (std::numbers::pi / 180); }
 
 ShearStrength strength_of(Real friction, Real cohesion) noexcept
 {
-  return {std::sin(radians(friction)), cohesion * std::cos(radians(friction))};
+  return {std::sin(in_radians(friction)), cohesion * std::cos(in_radians(friction))};
 }
 /// The mean stress of the apex.
-Real apex(const ShearStrength& strength) noexcept { return strength.sine > 0 ? strength.cohesive / strength.sine : never; }
+Real apex(const ShearStrength& strength) noexcept { return strength.sine > 0 ? strength.cohesive / strength.sine : infinite; }
 
 /// Twice the excess of the stress over the plane between s1 and s3.
 Real excess(Real s1, Real s3, const ShearStrength& strength) noexcept
@@ -123,7 +123,7 @@ struct Surface {
 };
 
 /// The return with a strength that falls while it goes on.
-struct ReturnMap {
+struct SofteningReturn {
   const MohrCoulomb::Constants& c;
   const Vec3& trial;
   bool closing;  ///< what is open fills, so the mean stress stays at or below zero
@@ -143,7 +143,7 @@ struct ReturnMap {
   Real plastic_strain(const Landing& end) const noexcept
   {
     const Vec3 gone = trial - end.stress;
-    return (gone.array() - gone.mean()).matrix().norm() / (std::numbers::sqrt2 * root3 * c.shear);
+    return (gone.array() - gone.mean()).matrix().norm() / (std::numbers::sqrt2 * square_root_of_3 * c.shear);
   }
 
   /// The landing with the strength that it leaves, and its plastic strain: 0 = g(x) = start + plastic_strain - x by secants from the
@@ -194,11 +194,12 @@ Real lode_cosine(const ElasticTrial& trial) noexcept
 bool surely_inside(const ElasticTrial& trial, Real mean, Real tau, const ShearStrength& strength, Real cutoff) noexcept
 {
   if (tau * std::sqrt(1 + strength.sine * strength.sine / 3) + strength.sine * mean <= strength.cohesive &&
-      mean + 2 / root3 * tau <= cutoff)
+      mean + 2 / square_root_of_3 * tau <= cutoff)
     return true;
   constexpr Real blur = 1e-7;
   const Real angle = std::acos(lode_cosine(trial)) / 3, margin = blur * tau;
-  const Real s1 = mean + 2 / root3 * tau * std::cos(angle), s3 = mean - 2 / root3 * tau * std::cos(std::numbers::pi / 3 - angle);
+  const Real s1 = mean + 2 / square_root_of_3 * tau * std::cos(angle),
+             s3 = mean - 2 / square_root_of_3 * tau * std::cos(std::numbers::pi / 3 - angle);
   return excess(s1, s3, strength) < -margin && s1 < cutoff - margin;
 }
 
@@ -220,7 +221,7 @@ MohrCoulomb::Constants MohrCoulomb::constants() const noexcept
 {
   const ShearStrength peak = strength_of(friction_angle, cohesion);
   const ShearStrength residual = strength_of(residual_friction_angle.value_or(friction_angle), residual_cohesion.value_or(cohesion));
-  const Real strain = softening_strain.value_or(never);
+  const Real strain = softening_strain.value_or(infinite);
   const Moduli elastic = moduli();
   return {.bulk = elastic.bulk,
           .shear = elastic.shear,
@@ -228,8 +229,8 @@ MohrCoulomb::Constants MohrCoulomb::constants() const noexcept
           .residual = residual,
           .slope = {(residual.sine - peak.sine) / strain, (residual.cohesive - peak.cohesive) / strain},
           .softening_strain = strain,
-          .sin_psi = std::sin(radians(dilation_angle)),
-          .cutoff = tension_cutoff.value_or(never)};
+          .sin_psi = std::sin(in_radians(dilation_angle)),
+          .cutoff = tension_cutoff.value_or(infinite)};
 }
 
 Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) const noexcept
@@ -242,7 +243,7 @@ Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) 
   // What opened before fills first, and carries no tension while it does.
   const bool closing = !in.elastic && state.opened_volume > 0 && mean < 0;
   const ShearStrength strength = c.strength_at(state.plastic_strain);
-  if (in.elastic || (!closing && surely_inside(trial, mean, c.shear * root3 * trial.shear, strength, c.cutoff))) {
+  if (in.elastic || (!closing && surely_inside(trial, mean, c.shear * square_root_of_3 * trial.shear, strength, c.cutoff))) {
     state.elastic_left = trial.left;
     return unpack(scale_and_shift(2 * c.shear / J, trial.shear_strain, mean / J));
   }
@@ -251,9 +252,9 @@ Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) 
 
   const Eigen::SelfAdjointEigenSolver<Mat3> axes = principal_axes(trial);
   const Vec3 start = mean + 2 * c.shear * axes.eigenvalues().reverse().array();
-  const ReturnMap map{c, start, closing};
+  const SofteningReturn map{c, start, closing};
   Landing end = map.land(strength);
-  if (c.softening_strain < never && end.stress != start)
+  if (c.softening_strain < infinite && end.stress != start)
     std::tie(end, state.plastic_strain) = map.softened(end, state.plastic_strain);
   else
     state.plastic_strain += map.plastic_strain(end);
