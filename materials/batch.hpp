@@ -31,7 +31,14 @@ struct Batch {
   Index size() const noexcept { return end - begin; }
   /// Cauchy stress [Pa] of particle i at the end of the step; changes its history.
   Mat3 update(Index i, const Increment& in) noexcept { return law.update(in, history[static_cast<std::size_t>(i)], constants); }
-  Real wave_speed(const Mat3& F) const noexcept { return law.wave_speed(F, constants); }
+  /// Upper bound of the speed of sound [m/s] in particle i, deformed by F.
+  Real wave_speed(Index i, const Mat3& F) const noexcept
+  {
+    if constexpr (requires { law.wave_speed(F, history.front(), constants); })
+      return law.wave_speed(F, history[static_cast<std::size_t>(i)], constants);
+    else
+      return law.wave_speed(F, constants);
+  }
 };
 
 /// A body at rest: history as a particle starts with it.
@@ -175,7 +182,7 @@ inline Real density(const AnyBatch& batch) noexcept
 }
 inline Real wave_speed(const AnyBatch& batch, const Mat3& F) noexcept
 {
-  return std::visit([&](const auto& typed) { return typed.wave_speed(F); }, batch);
+  return std::visit([&](const auto& typed) { return typed.law.wave_speed(F, typed.constants); }, batch);
 }
 inline bool averages_volume(const AnyBatch& batch) noexcept
 {

@@ -44,6 +44,7 @@ struct NoHistory {
 ///   State initial_state() const                                     history of a particle at rest, where zero is not it
 ///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
 ///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
+///   Real wave_speed(const Mat3& F, const State&, const Constants&) const noexcept   the bound where the history decides; told before the step
 ///   Real diffusivity(const Constants&) const noexcept               largest diffusivity, of momentum or heat [m^2/s]: bounds the step
 ///   using Kinds = TypeList<...>;  std::variant<...> kind() const    laws to be run instead, where the parameters decide which history
 ///                                                                   there is; the law itself is the kind that has all of it

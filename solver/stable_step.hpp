@@ -15,7 +15,8 @@ Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
         [&](const auto& batch) {
           least = parallel_min(batch.size(), least, [&](Index i) {
             const auto p = static_cast<std::size_t>(batch.begin + i);
-            return crossing_time(mesh, batch, particles, p, batch.wave_speed(particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
+            return crossing_time(mesh, batch, particles, p, batch.wave_speed(i, particles.F[p]),
+                                 std::max(-particles.L[p].trace(), Real{0}));
           });
         },
         material);
@@ -33,8 +34,8 @@ Index slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
         [&](const auto& batch) {
           for (Index row = batch.begin; row < batch.end; ++row) {
             const auto p = static_cast<std::size_t>(row);
-            const Real own =
-                crossing_time(mesh, batch, particles, p, batch.wave_speed(particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
+            const Real own = crossing_time(mesh, batch, particles, p, batch.wave_speed(row - batch.begin, particles.F[p]),
+                                           std::max(-particles.L[p].trace(), Real{0}));
             if (own < least) {
               least = own;
               slowest = row;

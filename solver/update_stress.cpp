@@ -40,7 +40,7 @@ template <int D, class L>
     for (int d = 0; d < D; ++d)
       told_L(d, d) += (s - 1) / dt;
   }
-  const Real wave_speed = batch.wave_speed(told_F);
+  const Real wave_speed = batch.wave_speed(i, told_F);
   Real q = 0;
   if (batch.viscosity) {
     const Real h = mesh.altitude(particles.cell[p]), density = particles.mass[p] / particles.volume[p];
