@@ -8,7 +8,7 @@ namespace talus {
 
 namespace {
 
-constexpr Real root3 = std::numbers::sqrt3;
+using std::numbers::sqrt3;
 constexpr Real never = std::numeric_limits<Real>::infinity();
 
 Real radians(Real degrees) noexcept { return degrees * (std::numbers::pi / 180); }
@@ -27,10 +27,10 @@ struct ReturnMap {
   const DruckerPrager::Constants& c;
   Real plastic_strain;
   Cone start = c.cone_at(plastic_strain);
-  Real left = root3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
-  Cone slope{c.slope.q / root3, c.slope.k / root3};           ///< of the cone by multiplier, while some is left
+  Real left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
+  Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};           ///< of the cone by multiplier, while some is left
 
-  Cone cone_after(Real multiplier) const noexcept { return c.cone_at(plastic_strain + multiplier / root3); }
+  Cone cone_after(Real multiplier) const noexcept { return c.cone_at(plastic_strain + multiplier / sqrt3); }
 
   /// Along the cone, tau falls by G and the mean stress by K q_psi per multiplier.  While the cone shrinks linearly the consistency
   /// condition is a m^2 - b m + excess = 0, of which the smallest root counts; without one the strength drops to residual at once.
@@ -82,9 +82,9 @@ Real DruckerPrager::dilation_slope() const noexcept
 {
   const Real sine = std::sin(radians(dilation_angle));
   switch (match) {
-    case ConeMatch::outer: return 2 * root3 * sine / (3 - sine);
-    case ConeMatch::inner: return 2 * root3 * sine / (3 + sine);
-    case ConeMatch::plane_strain: return root3 * sine / std::sqrt(3 + sine * sine);
+    case ConeMatch::outer: return 2 * sqrt3 * sine / (3 - sine);
+    case ConeMatch::inner: return 2 * sqrt3 * sine / (3 + sine);
+    case ConeMatch::plane_strain: return sqrt3 * sine / std::sqrt(3 + sine * sine);
   }
   return 0;
 }
@@ -94,8 +94,8 @@ Cone DruckerPrager::cone_of(Real friction, Real soil_cohesion) const noexcept
   const Real sine = std::sin(radians(friction)), cosine = std::cos(radians(friction));
   const auto scaled = [&](Real factor) { return Cone{factor * sine, factor * soil_cohesion * cosine}; };
   switch (match) {
-    case ConeMatch::outer: return scaled(2 * root3 / (3 - sine));
-    case ConeMatch::inner: return scaled(2 * root3 / (3 + sine));
+    case ConeMatch::outer: return scaled(2 * sqrt3 / (3 - sine));
+    case ConeMatch::inner: return scaled(2 * sqrt3 / (3 + sine));
     case ConeMatch::plane_strain: break;
   }
   const Real q_psi = dilation_slope();  // flow without strain out of plane fixes where on the circle the stress sits
@@ -147,7 +147,7 @@ Mat3 DruckerPrager::update(const Increment& in, State& state, const Constants& c
     state.elastic_left = expm1(scale_and_shift(2 * kept, shear_strain, 2 * end.mean / (3 * c.bulk)));
   else
     state.elastic_left = b;
-  state.plastic_strain += end.multiplier / root3;
+  state.plastic_strain += end.multiplier / sqrt3;
   const Real work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
   state.plastic_work += std::max(work, Real{0});  // associated flow without cohesion dissipates nothing, up to rounding
   state.opened_volume = (closing ? 0 : state.opened_volume) + end.opening;
