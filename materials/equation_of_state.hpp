@@ -2,6 +2,7 @@
 // Pressure of strongly compressed solids.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/fields.hpp"
 

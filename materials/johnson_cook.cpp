@@ -9,9 +9,9 @@ namespace talus {
 
 namespace {
 
-using Constants = JohnsonCookMetal::Constants;
+using MetalConstants = JohnsonCookMetal::Constants;
 
-Real homologous(const JohnsonCookMetal& metal, Real temperature, const Constants& c) noexcept
+Real homologous(const JohnsonCookMetal& metal, Real temperature, const MetalConstants& c) noexcept
 {
   return std::clamp((temperature - metal.room_temperature) * c.range_inverse, Real{0}, Real{1});
 }
@@ -24,10 +24,10 @@ struct Strength {
 /// Strength at slow rates, fast near the state before the step.
 struct SlowStrength {
   const JohnsonCookMetal& metal;
-  const Constants& c;
+  const MetalConstants& c;
   PowerNear hardening, softening;
 
-  SlowStrength(const JohnsonCookMetal& of, const Constants& constants, Real plastic_strain, Real temperature) noexcept
+  SlowStrength(const JohnsonCookMetal& of, const MetalConstants& constants, Real plastic_strain, Real temperature) noexcept
       : metal(of),
         c(constants),
         hardening(plastic_strain, of.hardening_exponent),
@@ -45,19 +45,19 @@ struct SlowStrength {
 };
 
 /// Plastic flow of one step.
-struct Flow {
+struct PlasticFlow {
   Real strain = 0;  ///< plastic
   Real mises = 0;   ///< Cauchy stress at the end [Pa]
   Real work = 0;    ///< per initial volume [J/m^3]
 };
 
 /// Backward Euler from a trial stress above the strength before the step.
-struct ReturnMap {
+struct JohnsonCookReturn {
   const JohnsonCookMetal& metal;
-  const Constants& c;
+  const MetalConstants& c;
   const SlowStrength& slow;
-  Strength start;  ///< before the step
-  Real J;
+  Strength start;                    ///< before the step
+  Real J, J_before;                  ///< at the end of the step and before
   Real mises, stiffness;             ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
   Real plastic_strain, temperature;  ///< before the step
   Real relative;                     ///< plastic rate over the reference, by plastic strain of the step
@@ -69,8 +69,8 @@ struct ReturnMap {
     const Real rate = relative * x;
     return rate > 1 ? ValueAndSlope{1 + metal.rate_coefficient * std::log(rate), metal.rate_coefficient / x} : ValueAndSlope{1, 0};
   }
-  /// Trapezoidal: the strength before and after the step, at the rate of the step.
-  Real work(Real x, Real factor) const noexcept { return 0.5 * J * x * (factor * start.value + mises - stiffness * x); }
+  /// Trapezoidal in the Kirchhoff stress: the strength before and after the step, at the rate of the step.
+  Real work(Real x, Real factor, Real end) const noexcept { return 0.5 * x * (J_before * factor * start.value + J * end); }
 
   /// Stress less strength if the plastic strain of the step is x.
   ValueAndSlope operator()(Real x) noexcept
@@ -78,19 +78,20 @@ struct ReturnMap {
     const ValueAndSlope factor = rate_factor(x);
     tried = x;
     tried_factor = factor;
-    const Real heated = temperature + c.heat * work(x, factor.value);
-    const Real heating = 0.5 * c.heat * J * (factor.value * start.value + mises - 2 * stiffness * x + x * factor.slope * start.value);
+    const Real heated = temperature + c.heat * work(x, factor.value, mises - stiffness * x);
+    const Real heating = 0.5 * c.heat * (J_before * start.value * (factor.value + x * factor.slope) + J * (mises - 2 * stiffness * x));
     const Strength end = slow(plastic_strain + x, heated);
     return {mises - stiffness * x - factor.value * end.value,
             -stiffness - factor.slope * end.value - factor.value * (end.by_strain + end.by_temperature * heating)};
   }
-  Flow flow(const Mat3& stress_before) noexcept
+  PlasticFlow flow(const Mat3& stress_before) noexcept
   {
     const Real going_on = std::max(start.value, von_mises(stress_before));  // flow that goes on hardens from there at the same rate
     const Real hardening = start.by_strain + start.by_temperature * c.heat * J * going_on;
     const Real x = positive_root(*this, mises / stiffness, (mises - going_on) / (stiffness + hardening));
-    return {x, std::max(mises - stiffness * x, Real{0}),
-            work(x, tried_factor.value + tried_factor.slope * (x - tried))};  // exact: the last step is 1e-6 of x
+    const Real factor = tried_factor.value + tried_factor.slope * (x - tried);  // exact: the last step is 1e-6 of x
+    const Real end = std::max(mises - stiffness * x, Real{0});
+    return {x, end, work(x, factor, end)};
   }
 };
 
@@ -99,13 +100,11 @@ struct EnergyStep {
   Real volume_change;  ///< by initial volume
   Real rest;           ///< energy at the end, but for the work of the pressure there [J/m^3]
 
-  /// What shear keeps is known, 3/2 t:t / (6 G) of the Kirchhoff deviator t; what it loses is plastic work.
-  EnergyStep(const Increment& in, Real J, Real volume, Real energy_before, Real kirchhoff_mises, Real plastic_work, Real shear) noexcept
+  /// What shear stores is known by the Kirchhoff stress `mises`, mises^2 / (6 G); what it loses is plastic work.
+  EnergyStep(const Increment& in, Real change, Real energy_before, Real mises_before, Real mises, Real plastic_work, Real shear) noexcept
+      : volume_change(change)
   {
-    const Real growth = (Mat3::Identity() + in.dt * in.L).determinant();
-    volume_change = volume * (1 - 1 / growth);
-    const Real mises_before = von_mises(in.stress) * J / growth;
-    const Real stored = (kirchhoff_mises - mises_before) * (kirchhoff_mises + mises_before) / (6 * shear);
+    const Real stored = (mises - mises_before) * (mises + mises_before) / (6 * shear);
     rest = energy_before + stored + plastic_work + (in.stress.trace() / 6 - in.viscous) * volume_change;
   }
   Real energy(Real pressure) const noexcept { return rest - 0.5 * pressure * volume_change; }
@@ -160,11 +159,12 @@ Mat3 JohnsonCookMetal::update(const Increment& in, const Memory& memory, const C
   const bool failed_before = memory.damage && *memory.damage >= 1;
   const Real stiffness = 3 * c.shear / J, mises = stiffness * trial.shear, relative = c.rate_inverse / in.dt;
   const Real temperature = started(memory.temperature);
-  Flow flow{.mises = failed_before ? 0 : mises};
+  PlasticFlow flow{.mises = failed_before ? 0 : mises};
   if (!in.elastic && !failed_before) {
     const SlowStrength slow(*this, c, memory.plastic_strain, temperature);
     if (const Strength start = slow(memory.plastic_strain, temperature); mises > start.value)
-      flow = ReturnMap{*this, c, slow, start, J, mises, stiffness, memory.plastic_strain, temperature, relative}.flow(in.stress);
+      flow = JohnsonCookReturn{*this, c, slow, start, J, J / trial.growth, mises, stiffness, memory.plastic_strain, temperature, relative}
+                 .flow(in.stress);
   }
   memory.plastic_strain += flow.strain;
   memory.plastic_work += flow.work;
@@ -174,7 +174,8 @@ Mat3 JohnsonCookMetal::update(const Increment& in, const Memory& memory, const C
   std::optional<EnergyStep> step;
   if (c.curve && memory.energy) {
     const Real compression = -std::expm1(trial.volume_strain);
-    step.emplace(in, J, 1 - compression, *memory.energy, J * flow.mises, flow.work, c.shear);
+    step.emplace(in, (1 - compression) * (1 - 1 / trial.growth), *memory.energy, von_mises(in.stress) * J / trial.growth, J * flow.mises,
+                 flow.work, c.shear);
     pressure = step->pressure(*c.curve, compression);
   }
 

@@ -15,8 +15,10 @@ struct ElasticTrial {
   Sym3 shear_strain;   ///< deviator of the elastic logarithmic strain
   Real volume_strain;  ///< logarithm of the elastic volume ratio
   Real shear;          ///< sqrt(2/3) |shear_strain|, the equivalent strain
+  Real growth;         ///< volume at the end of the step over that before
 
-  ElasticTrial(const Increment& in, const Sym3& elastic_left) noexcept : left(push_forward(in.dt * in.L, elastic_left))
+  ElasticTrial(const Increment& in, const Sym3& elastic_left) noexcept
+      : left(push_forward(in.dt * in.L, elastic_left)), growth((Mat3::Identity() + in.dt * in.L).determinant())
   {
     const Sym3 twice_strain = log1p(left);
     volume_strain = 0.5 * trace(twice_strain);

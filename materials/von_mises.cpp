@@ -8,11 +8,11 @@ namespace talus {
 namespace {
 
 /// Strength in slow loading by plastic strain, fast near that before the step; the slope is that at positive plastic strain.
-struct SlowStrength {
+struct Hardening {
   const VonMises& law;
   PowerNear gain;
 
-  SlowStrength(const VonMises& of, Real plastic_strain) noexcept
+  Hardening(const VonMises& of, Real plastic_strain) noexcept
       : law(of), gain(of.power ? plastic_strain : 0, of.power ? of.power->exponent : 1)
   {}
   ValueAndSlope operator()(Real plastic_strain) const noexcept
@@ -33,9 +33,9 @@ struct SlowStrength {
 };
 
 /// Backward Euler from a trial stress above the strength before the step.
-struct ReturnMap {
+struct VonMisesReturn {
   const VonMises& law;
-  const SlowStrength& slow;
+  const Hardening& slow;
   ValueAndSlope start;    ///< strength before the step [Pa]
   Real mises, stiffness;  ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
   Real plastic_strain;    ///< before the step
@@ -62,7 +62,7 @@ struct ReturnMap {
 };
 
 /// Cauchy stress with the share `kept` of the shear.
-Mat3 stress_of(const ElasticTrial& trial, Real J, Real kept, const VonMises::Constants& c) noexcept
+Mat3 stress_with(const ElasticTrial& trial, Real J, Real kept, const VonMises::Constants& c) noexcept
 {
   return unpack(scale_and_shift(2 * c.shear * kept / J, trial.shear_strain, c.bulk * trial.volume_strain / J));
 }
@@ -82,7 +82,7 @@ VonMises::Constants VonMises::constants() const noexcept
 Real VonMises::flow_stress(Real plastic_strain, Real plastic_rate) const noexcept
 {
   const Real factor = rate ? 1 + std::pow(plastic_rate / rate->reference_rate, 1 / rate->exponent) : 1;
-  return SlowStrength(*this, plastic_strain)(plastic_strain).value * factor;
+  return Hardening(*this, plastic_strain)(plastic_strain).value * factor;
 }
 
 Mat3 VonMises::update(const Increment& in, State& state, const Constants& c) const noexcept
@@ -92,19 +92,20 @@ Mat3 VonMises::update(const Increment& in, State& state, const Constants& c) con
   if (!(J > 0 && trial.is_finite()))
     return no_answer();
   const Real stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // Cauchy stress by equivalent strain: J stays in the return
-  const SlowStrength slow(*this, state.plastic_strain);
+  const Hardening slow(*this, state.plastic_strain);
   const ValueAndSlope start = slow(state.plastic_strain);
   if (in.elastic || !(mises > start.value)) {
     state.elastic_left = trial.left;
-    return stress_of(trial, J, 1, c);
+    return stress_with(trial, J, 1, c);
   }
-  const ReturnMap map{*this, slow, start, mises, stiffness, state.plastic_strain, c.rate_inverse / in.dt, c.rate_power};
+  const VonMisesReturn map{*this, slow, start, mises, stiffness, state.plastic_strain, c.rate_inverse / in.dt, c.rate_power};
   const Real x = c.closed_form ? (mises - start.value) / (stiffness + hardening_modulus) : map.plastic_increment(in.stress);
   const Real end = mises - stiffness * x;
   state.elastic_left = trial.left_with(end / mises);
   state.plastic_strain += x;
-  state.plastic_work += 0.5 * J * x * (map.rate_factor(x).value * start.value + end);  // trapezoidal: exact for linear hardening
-  return stress_of(trial, J, end / mises, c);
+  // Trapezoidal in the Kirchhoff stress, exact for linear hardening: the strength before and after the step, at the rate of the step.
+  state.plastic_work += 0.5 * x * J * (map.rate_factor(x).value * start.value / trial.growth + end);
+  return stress_with(trial, J, end / mises, c);
 }
 
 void VonMises::prestress(const Mat3& stress, State& state) const noexcept

@@ -197,7 +197,7 @@ TEST(VonMises, AHundredThousandRandomStepsEndOnOrInsideTheYieldSurface)
     const Real slow = expected_strength(slow_law, p, 0), slow_before = expected_strength(slow_law, before, 0);
     if (work > 0) {
       // The strain of the step, without the digits that p - before has lost: work is the mean of the strengths at its ends times it.
-      const Real increment = work / (0.5 * point.F.determinant() * (q / slow * slow_before + q));
+      const Real increment = work / (0.5 * (q / slow * slow_before + point.F.determinant() * q));
       ASSERT_NEAR(p, before + increment, machine * p);
       ASSERT_NEAR(q / expected_strength(law, p, increment / dt), 1, 1e-10) << n;
       ++flowing;
