@@ -159,7 +159,7 @@ class Manual {
   std::string alternative_section(std::string_view key, const std::string& path)
   {
     std::vector<Row> rows;
-    add_rows<T>(rows, path + ".");
+    add_rows<T>(rows, (path.empty() ? std::string(T::name) : path) + ".");
     std::string text = heading(3, fmt::format("{}: {}", key, T::name));
     if constexpr (requires { T::summary; })
       text += sentence(T::summary) + "\n\n";
