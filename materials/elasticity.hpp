@@ -29,7 +29,7 @@ struct Elasticity {
 template <class Law>
 constexpr auto elastic_fields()
 {
-  const auto constant = [](std::string_view key, std::optional<Real> Law::*member, Range range, std::string_view unit,
+  const auto constant = [](std::string_view key, std::optional<Real> Law::*member, const Range& range, std::string_view unit,
                            std::string_view meaning) { return optional(key, member, range, unit, meaning); };
   return std::tuple{
       constant("youngs_modulus", &Law::youngs_modulus, positive, "Pa", "Young's modulus; with poisson_ratio or bulk_modulus"),
