@@ -210,7 +210,7 @@ TEST(GmshMesh, GridIsABoxWithNamedSides)
 TEST(GmshMesh, GroupsOfTheSceneNameBoundaryFacetsInBoxes)
 {
   MeshSpec spec = grid();
-  spec.groups = {{"footing", Box{{0.4, 0.9}, {1.6, 1.1}}, Where{"scene.yaml", 9, 5, ""}}};
+  spec.groups = {{"footing", "boundary", Box{{0.4, 0.9}, {1.6, 1.1}}, Where{"scene.yaml", 9, 5, ""}}};
   const Mesh<2> mesh = load_mesh<2>(spec, ".");
   const auto facets = mesh.facet_set("footing");
   ASSERT_EQ(facets.value().size(), 2U);
@@ -218,17 +218,58 @@ TEST(GmshMesh, GroupsOfTheSceneNameBoundaryFacetsInBoxes)
     EXPECT_EQ(mesh.area_vector(f), Vec<2>(0, 0.5));
 }
 
+/// Soil below air, with the facets of `of` that lie on the surface between them as group "surface".
+MeshSpec surface_of(const std::string& of)
+{
+  MeshSpec spec = regions(0.25, {region("soil", Box{{0, 0}, {2, 1}}), region("air", Box{{0, 1}, {2, 2}})});
+  spec.groups = {{"surface", of, Box{{-0.1, 0.9}, {2.1, 1.1}}, Where{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
+  return spec;
+}
+
+TEST(GmshMesh, GroupsAreChosenFromTheOutlineOfARegion)
+{
+  for (const std::string of : {"soil:boundary", "air:boundary"}) {
+    const Mesh<2> mesh = load_mesh<2>(surface_of(of), ".");
+    const auto facets = mesh.facet_set("surface");
+    Real width = 0;
+    for (const Facet f : facets.value()) {
+      for (const Index n : mesh.nodes_of(f))
+        EXPECT_NEAR(mesh.node(n)[1], 1, round_off);
+      width += mesh.area_vector(f).norm();
+    }
+    EXPECT_NEAR(width, 2, 2 * round_off);
+  }
+}
+
+TEST(GmshMesh, GroupsAreChosenFromEarlierGroups)
+{
+  MeshSpec spec = surface_of("soil:boundary");
+  spec.groups.push_back({"half", "surface", Box{{0.9, 0}, {3, 3}}, Where{}});
+  const Mesh<2> mesh = load_mesh<2>(spec, ".");
+  EXPECT_EQ(2 * mesh.facet_set("half").value().size(), mesh.facet_set("surface").value().size());
+}
+
+TEST(GmshMesh, GroupsOfUnknownGroupsAreRefusedAtTheirPlace)
+{
+  EXPECT_EQ(complaint<2>(surface_of("soil:boundar")),
+            "scene.yaml:9:5: error: mesh.groups[0]: of: the mesh has no facet group \"soil:boundar\" — did you mean \"soil:boundary\"?\n"
+            "1 error, nothing was run.");
+  EXPECT_THAT(complaint<2>(surface_of("surface")), HasSubstr("of: the mesh has no facet group \"surface\"")) << "itself";
+  EXPECT_THAT(complaint<2>(surface_of("soil")), HasSubstr("of: the mesh has no facet group \"soil\"")) << "a group of cells";
+  EXPECT_THAT(complaint<2>(surface_of("boundary")), HasSubstr("group \"surface\": no facet of \"boundary\" has all its corners"))
+      << "the surface is inside the mesh";
+}
+
 TEST(GmshMesh, WrongGroupsAreRefusedAtTheirPlace)
 {
   const auto said = [](const std::string& name, const Box& within) {
     MeshSpec spec = grid();
-    spec.groups = {{name, within, Where{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
+    spec.groups = {{name, "boundary", within, Where{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
     return complaint<2>(spec);
   };
   EXPECT_EQ(said("top", Box{{0, 3}, {1, 4}}),
-            "scene.yaml:9:5: error: mesh.groups[0]: group \"top\": no boundary facet has all its corners between (0, 3) and (1, 4); the "
-            "mesh goes "
-            "from (0, 0) to (2, 1)\n1 error, nothing was run.");
+            "scene.yaml:9:5: error: mesh.groups[0]: group \"top\": no facet of \"boundary\" has all its corners between (0, 3) and (1, "
+            "4); the mesh goes from (0, 0) to (2, 1)\n1 error, nothing was run.");
   EXPECT_THAT(said("top", Box{{0, 1, 0}, {1, 1}}), HasSubstr("within.low of group \"top\" has 3 numbers; the scene has dimension 2"));
   EXPECT_THAT(said("top", Box{{0, 2}, {1, 1}}), HasSubstr("within.low (0, 2) is not below within.high (1, 1)"));
   EXPECT_THAT(said("x_min", Box{{0, 0}, {2, 1}}), HasSubstr("the mesh has a facet group \"x_min\" already"));

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -79,6 +80,21 @@ TEST(Manual, HasASectionForEveryLawWithItsParametersAndHistory)
   EXPECT_EQ(row("law: drucker_prager", "friction_angle").at("unit"), "deg");
 }
 
+TEST(Manual, GroupsOfALawHaveTheirOwnSection)
+{
+  EXPECT_EQ(row("law: johnson_cook", "damage").at("type"), "[johnson_cook.damage](#johnson_cookdamage)");
+  EXPECT_EQ(row("johnson_cook.damage", "d2").at("range"), ">= 0");
+  EXPECT_EQ(row("von_mises.rate", "reference_rate").at("unit"), "1/s");
+  EXPECT_EQ(row("materials.bulk_viscosity", "linear").at("default"), "0.5");
+}
+
+TEST(Manual, ElasticConstantsAreOptionalOneByOne)
+{
+  for (const std::string key : {"youngs_modulus", "poisson_ratio", "bulk_modulus", "shear_modulus", "lame_lambda"})
+    EXPECT_EQ(row("law: linear_elastic", key).at("default"), "none");
+  EXPECT_EQ(row("law: mohr_coulomb", "poisson_ratio").at("range"), "(-1, 0.5)");
+}
+
 TEST(Manual, NamesEveryKernel)
 {
   for (const auto& kernel : kernel_names())
@@ -110,6 +126,22 @@ TEST(Schema, KnowsKeysTypesRangesAndWords)
   EXPECT_EQ(keys.at("loads").at("items").at("oneOf").at(0).at("properties").at("type").at("const"), "gravity");
   EXPECT_THAT(schema.at("required").get<std::vector<std::string>>(),
               testing::UnorderedElementsAre("title", "dimension", "mesh", "materials", "bodies"));
+}
+
+TEST(Schema, KnowsGroupsOfLawsAndOptionsOfBodies)
+{
+  const auto keys = nlohmann::json::parse(scene_schema()).at("properties");
+  const auto& laws = keys.at("materials").at("items").at("oneOf");
+  const auto metal =
+      std::find_if(laws.begin(), laws.end(), [](const auto& law) { return law.at("properties").at("law").at("const") == "johnson_cook"; });
+  ASSERT_NE(metal, laws.end());
+  const auto& damage = metal->at("properties").at("damage");
+  EXPECT_EQ(damage.at("properties").at("d2").at("minimum"), 0);
+  EXPECT_THAT(damage.at("required").get<std::vector<std::string>>(), testing::UnorderedElementsAre("d1", "d2", "d3", "d4", "d5"));
+  const auto required = metal->at("required").get<std::vector<std::string>>();
+  EXPECT_THAT(required, testing::Contains("thermal_exponent"));
+  EXPECT_THAT(required, testing::Not(testing::AnyOf(testing::Contains("damage"), testing::Contains("youngs_modulus"))));
+  EXPECT_EQ(keys.at("bodies").at("items").at("properties").at("f_bar").at("type"), "boolean");
 }
 
 }  // namespace

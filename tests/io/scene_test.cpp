@@ -51,6 +51,7 @@ TEST(Scene, ReadsInlineGeometry)
   EXPECT_THAT(mesh.refine[0].within.low, ElementsAre(3, 3));
   ASSERT_EQ(mesh.groups.size(), 1U);
   EXPECT_EQ(mesh.groups[0].name, "crest");
+  EXPECT_EQ(mesh.groups[0].of, "soil:boundary");
   EXPECT_THAT(mesh.groups[0].within.high, ElementsAre(4.1, 5.1));
   EXPECT_FALSE(mesh.grid.has_value());
 }
@@ -76,7 +77,31 @@ TEST(Scene, ReadsMaterialsWithTheKeysOfTheirLaws)
   EXPECT_EQ(clay.friction_angle, 31);
   EXPECT_EQ(clay.dilation_angle, 1);
   EXPECT_EQ(words(clay.match)[static_cast<std::size_t>(clay.match)], "plane_strain");
-  EXPECT_EQ(std::get<LinearElastic>(s.materials[1].law).density, 2650);
+  const auto& rock = std::get<LinearElastic>(s.materials[1].law);
+  EXPECT_EQ(rock.density, 2650);
+  EXPECT_EQ(rock.bulk_modulus, 3e9);
+  EXPECT_EQ(rock.shear_modulus, 2e9);
+  EXPECT_FALSE(rock.youngs_modulus || rock.poisson_ratio || rock.lame_lambda);
+}
+
+TEST(Scene, ReadsGroupsOfALaw)
+{
+  const Scene s = scene("solid.yaml");
+  const auto& copper = std::get<JohnsonCook>(s.materials.at(1).law);
+  EXPECT_EQ(copper.reference_rate, JohnsonCook{}.reference_rate);
+  EXPECT_EQ(copper.conductivity, 386);
+  EXPECT_EQ(copper.damage.value().d3, -3.03);
+  EXPECT_EQ(copper.mie_gruneisen.value().s, 1.489);
+  EXPECT_FALSE(copper.initial_temperature.has_value());
+}
+
+TEST(Scene, ReadsArtificialViscosity)
+{
+  const Scene plane = scene("plane.yaml"), solid = scene("solid.yaml");
+  EXPECT_FALSE(plane.materials.at(0).bulk_viscosity.has_value());
+  EXPECT_EQ(plane.materials.at(1).bulk_viscosity.value().linear, 0.06);
+  EXPECT_EQ(plane.materials.at(1).bulk_viscosity.value().quadratic, 1.5);
+  EXPECT_EQ(solid.materials.at(1).bulk_viscosity.value().linear, BulkViscosity{}.linear);
 }
 
 TEST(Scene, ReadsBodies)
@@ -87,6 +112,9 @@ TEST(Scene, ReadsBodies)
   EXPECT_EQ(plane.bodies.at(0).particles_per_cell, 6);
   EXPECT_THAT(plane.bodies.at(0).velocity, ElementsAre("0.1 * sin(x)", "0"));
   EXPECT_FALSE(plane.bodies.at(0).shape.has_value());
+  EXPECT_EQ(plane.bodies.at(0).f_bar, true);
+  EXPECT_EQ(solid.bodies.at(1).f_bar, false);
+  EXPECT_FALSE(plane.bodies.at(1).f_bar.has_value());
   EXPECT_EQ(std::get<Sphere>(plane.bodies.at(1).shape.value()).radius, 0.4);
   EXPECT_EQ(plane.bodies.at(1).particles_per_cell, BodySpec{}.particles_per_cell);
   EXPECT_THAT(std::get<Cylinder>(solid.bodies.at(0).shape.value()).from, ElementsAre(1, 1, -0.5));
