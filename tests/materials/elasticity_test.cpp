@@ -1,11 +1,13 @@
 // Elastic constants in any pair: conversions, and what is said of pairs that make no solid.
 #include "materials/elasticity.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 namespace talus {
 namespace {
 
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
 using Problems = std::vector<std::string>;
 
 Problems problems(const Elasticity& elastic)
@@ -39,7 +41,7 @@ TEST(Elasticity, EveryPairGivesTheSameModuli)
 {
   for (const Solid solid : {Solid{1e7 / 1.2, 1e7 / 2.6}, Solid{2e9, 1e6}, Solid{1e6, 2e6}, Solid{1e5, 7e5}})
     for (const Elasticity& pair : pairs_of(solid)) {
-      EXPECT_EQ(problems(pair), Problems{});
+      EXPECT_THAT(problems(pair), IsEmpty());
       const Moduli m = pair.moduli();
       const Real exact = 1e-14 * (1 + solid.K / solid.G);  // Poisson's ratio near 0.5 hides K behind G
       EXPECT_NEAR(m.bulk / solid.K, 1, exact);
@@ -76,13 +78,13 @@ constexpr std::string_view one_pair =
 TEST(ElasticityRules, AnythingButOneKnownPairIsToldInWords)
 {
   Elasticity elastic;
-  EXPECT_EQ(problems(elastic), Problems{std::string(one_pair) + "there is none"});
+  EXPECT_THAT(problems(elastic), ElementsAre(std::string(one_pair) + "there is none"));
   elastic.shear_modulus = 1e7;
-  EXPECT_EQ(problems(elastic), Problems{std::string(one_pair) + "there is shear_modulus alone"});
+  EXPECT_THAT(problems(elastic), ElementsAre(std::string(one_pair) + "there is shear_modulus alone"));
   elastic.youngs_modulus = 1e7;
-  EXPECT_EQ(problems(elastic), Problems{std::string(one_pair) + "there are youngs_modulus, shear_modulus"});
+  EXPECT_THAT(problems(elastic), ElementsAre(std::string(one_pair) + "there are youngs_modulus, shear_modulus"));
   elastic.poisson_ratio = 0.3;
-  EXPECT_EQ(problems(elastic), Problems{std::string(one_pair) + "there are youngs_modulus, poisson_ratio, shear_modulus"});
+  EXPECT_THAT(problems(elastic), ElementsAre(std::string(one_pair) + "there are youngs_modulus, poisson_ratio, shear_modulus"));
 }
 
 TEST(ElasticityRules, UnstablePairsAreToldWithTheirPoissonRatio)
@@ -90,15 +92,15 @@ TEST(ElasticityRules, UnstablePairsAreToldWithTheirPoissonRatio)
   Elasticity stretchy, squashy;
   stretchy.shear_modulus = 1e6;
   stretchy.lame_lambda = -0.9e6;
-  EXPECT_EQ(problems(stretchy),
-            Problems{"shear_modulus 1e+06 and lame_lambda -900000 make Poisson's ratio -4.5, which must lie in (-1, 0.5)"});
+  EXPECT_THAT(problems(stretchy),
+              ElementsAre("shear_modulus 1e+06 and lame_lambda -900000 make Poisson's ratio -4.5, which must lie in (-1, 0.5)"));
   stretchy.lame_lambda = -0.6e6;
-  EXPECT_EQ(problems(stretchy), Problems{});
+  EXPECT_THAT(problems(stretchy), IsEmpty());
   squashy.youngs_modulus = 9.5e6, squashy.bulk_modulus = 1e6;
-  EXPECT_EQ(problems(squashy),
-            Problems{"youngs_modulus 9.5e+06 and bulk_modulus 1e+06 make Poisson's ratio -1.08333, which must lie in (-1, 0.5)"});
+  EXPECT_THAT(problems(squashy),
+              ElementsAre("youngs_modulus 9.5e+06 and bulk_modulus 1e+06 make Poisson's ratio -1.08333, which must lie in (-1, 0.5)"));
   squashy.youngs_modulus = 8.5e6;
-  EXPECT_EQ(problems(squashy), Problems{});
+  EXPECT_THAT(problems(squashy), IsEmpty());
 }
 
 }  // namespace
