@@ -164,8 +164,9 @@ TYPED_TEST(LawContract, DiffusivityBoundsTheViscosityOfEveryWaveAndIsReachedAtRe
       ASSERT_LE(viscosity, bound * (1 + 1e-5) + rounding * shear / rate);  // the rate is that of the logarithm: off by the shear
       most = std::max(most, viscosity);
     }
-    if constexpr (!requires(const TypeParam law) { law.conductivity; })  // the bound may be that of heat
+    if constexpr (!requires(const TypeParam law) { law.conductivity; }) {  // the bound may be that of heat
       EXPECT_GE(most, (1 - 1e-5) * bound);
+    }
   }
 }
 
