@@ -34,7 +34,7 @@ void update(benchmark::State& timer, Regime regime)
     batch.history = start;
     for (Index i = 0; i < n; ++i) {
       const auto p = static_cast<std::size_t>(i);
-      stress[p] = batch.update(i, {F[p], gradient[p], stress[p], 1.0, false});
+      stress[p] = batch.update(i, {F[p], gradient[p], stress[p], 1.0, 0, false});
     }
     benchmark::DoNotOptimize(stress.data());
   }
