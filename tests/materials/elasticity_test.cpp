@@ -79,13 +79,13 @@ constexpr std::string_view one_pair =
 TEST(ElasticityRules, AnythingButOneKnownPairIsToldInWords)
 {
   Elasticity elastic;
-  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there is none"));
+  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there is none")));
   elastic.shear_modulus = 1e7;
-  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there is shear_modulus alone"));
+  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there is shear_modulus alone")));
   elastic.youngs_modulus = 1e7;
-  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there are youngs_modulus, shear_modulus"));
+  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there are youngs_modulus, shear_modulus")));
   elastic.poisson_ratio = 0.3;
-  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there are youngs_modulus, poisson_ratio, shear_modulus"));
+  EXPECT_THAT(problems(elastic), ElementsAre(fmt::format("{}{}", one_pair, "there are youngs_modulus, poisson_ratio, shear_modulus")));
 }
 
 TEST(ElasticityRules, UnstablePairsAreToldWithTheirPoissonRatio)
