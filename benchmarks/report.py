@@ -85,7 +85,8 @@ def block(results):
     """The table for README.md."""
     rows = ["| benchmark | for example | measured | reference | asked | passed |", "|---|---|---|---|---|---|"]
     rows += [summary(own, case) for case, own in by_case(results).items()]
-    return "\n".join([*rows, "", "All numbers, also those that are not good: [docs/verification.md](docs/verification.md)."])
+    commit = results[0].run.summary["program"]["commit"]
+    return "\n".join([*rows, "", f"Measured at commit {commit}. All numbers, also those that are not good: [docs/verification.md](docs/verification.md)."])
 
 
 def replace_block(text, content):
