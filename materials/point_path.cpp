@@ -32,20 +32,40 @@ class StepSolver {
       if (quantity == Controlled::stress)
         free_.push_back(k);
       else
-        prescribed_(i, j) = value * dt;
+        rate_(i, j) = value;
       if (quantity == Controlled::strain_rate)
-        prescribed_(j, i) = value * dt;
+        rate_(j, i) = value;
     }
-    last_ = Unknowns::Zero(static_cast<Eigen::Index>(free_.size()));
+    last_rate_ = Unknowns::Zero(static_cast<Eigen::Index>(free_.size()));
   }
 
-  /// The next state, or why there is none.  `target`: stresses at the end of the step, used where stress is controlled.
+  /// The next state, or why there is none.  `target`: stresses at the end of the step, used where stress is controlled.  A step that
+  /// is too long to be solved is cut into more and more parts.
   std::optional<std::string> advance(PointState<L>& state, const Sym3& target)
   {
-    Unknowns x = last_;
-    PointState<L> end = deform(state, x);
+    const Sym3 start = pack(state.stress);
+    std::optional<std::string> problem;
+    constexpr Index most_parts = 256;
+    for (Index parts = 1; parts <= most_parts; parts *= 4) {
+      PointState<L> end = state;
+      for (Index part = 1; part <= parts; ++part)
+        if (problem = advance(end, start + (target - start) * part / parts, dt_ / parts); problem)
+          break;
+      if (!problem) {
+        state = end;
+        break;
+      }
+    }
+    return problem;
+  }
+
+ private:
+  std::optional<std::string> advance(PointState<L>& state, const Sym3& target, Real dt)
+  {
+    Unknowns x = last_rate_ * dt;
+    PointState<L> end = deform(state, x, dt);
     if (!end.stress.allFinite())
-      end = deform(state, x.setZero());
+      end = deform(state, x.setZero(), dt);
     const Real stiffness = law_.density * std::pow(law_.wave_speed(state.F, constants_), 2);
     Unknowns residual = missing(end, target);
     // Aimed at 1e-12 of the stress; what rounding of a stress made of stiffness times differences from one allows is good enough.
@@ -53,28 +73,27 @@ class StepSolver {
     const auto good_enough = [&] { return residual.norm() <= 1e-14 * stiffness || relative() <= 1e-10; };
     constexpr int newton_steps = 60;
     for (int iteration = 0; iteration < newton_steps && residual.norm() > 0 && relative() > 1e-12; ++iteration)
-      if (!improve(state, target, x, residual, end, end.stress.norm() / stiffness))
+      if (!improve(state, target, dt, x, residual, end, end.stress.norm() / stiffness))
         break;
     if (!end.stress.allFinite())
       return "the law has no answer";
     if (!good_enough())
       return unreachable(residual, target);
     state = end;
-    last_ = x;
+    last_rate_ = x / dt;
     return std::nullopt;
   }
 
- private:
-  PointState<L> deform(const PointState<L>& from, const Unknowns& x) const
+  PointState<L> deform(const PointState<L>& from, const Unknowns& x, Real dt) const
   {
-    Mat3 H = prescribed_;
+    Mat3 H = rate_ * dt;
     for (std::size_t a = 0; a < free_.size(); ++a) {
       const auto [i, j] = places[free_[a]];
       H(i, j) = H(j, i) = x[static_cast<Eigen::Index>(a)];
     }
     PointState<L> to = from;
     to.F += H * from.F;
-    to.stress = law_.update({to.F, H / dt_, from.stress, dt_, 0, false}, to.history, constants_);
+    to.stress = law_.update({to.F, H / dt, from.stress, dt, 0, false}, to.history, constants_);
     return to;
   }
 
@@ -87,7 +106,8 @@ class StepSolver {
   }
 
   /// One Newton step, halved until the residual falls.  The tangent is probed over a small part of the strain the stress stands for.
-  bool improve(const PointState<L>& from, const Sym3& target, Unknowns& x, Unknowns& residual, PointState<L>& end, Real strain) const
+  bool improve(const PointState<L>& from, const Sym3& target, Real dt, Unknowns& x, Unknowns& residual, PointState<L>& end,
+               Real strain) const
   {
     const Real probe = std::clamp(1e-4 * strain, 1e-15, 1e-6);
     Tangent tangent(x.size(), x.size());
@@ -95,14 +115,14 @@ class StepSolver {
       Unknowns ahead = x, behind = x;
       ahead[a] += probe;
       behind[a] -= probe;
-      tangent.col(a) = (missing(deform(from, ahead), target) - missing(deform(from, behind), target)) / (2 * probe);
+      tangent.col(a) = (missing(deform(from, ahead, dt), target) - missing(deform(from, behind, dt), target)) / (2 * probe);
     }
     const Unknowns direction = -tangent.fullPivLu().solve(residual);
     constexpr int halvings = 30;
     Real share = 1;
     for (int i = 0; i < halvings; ++i, share /= 2) {
       const Unknowns trial = x + share * direction;
-      const PointState<L> reached = deform(from, trial);
+      const PointState<L> reached = deform(from, trial, dt);
       const Unknowns left = missing(reached, target);
       if (left.allFinite() && left.norm() < residual.norm()) {
         x = trial;
@@ -126,9 +146,9 @@ class StepSolver {
   const L& law_;
   const typename L::Constants& constants_;
   Real dt_;
-  Mat3 prescribed_ = Mat3::Zero();
+  Mat3 rate_ = Mat3::Zero();  ///< prescribed part of the velocity gradient [1/s]
   std::vector<std::size_t> free_;
-  Unknowns last_;
+  Unknowns last_rate_;  ///< of the components with prescribed stress [1/s]
 };
 
 template <class L>

@@ -179,6 +179,17 @@ TEST(PointPath, PathsFollowOneAnother)
   EXPECT_EQ(table.history_names.back(), "opened_volume");
 }
 
+TEST(PointPath, AStepTooLongToBeSolvedIsCutIntoParts)
+{
+  // Extension of stiff sand by five times its cell pressure over stiffness in one step: Newton's first trial states are all open.
+  const DruckerPrager law = soil(ConeMatch::outer, 30, 5e3);
+  const Real strain = 5 * p0 / *law.youngs_modulus;
+  const PointPath path{.steps = 1, .controls = {.xx = stress(-p0), .yy = stress(-p0), .zz = rate(strain)}};
+  const auto row = drive_one(law, path, -p0 * Mat3::Identity()).rows.back();
+  EXPECT_NEAR(row.q / (root3 * (law.cone(0).k + law.cone(0).q * p0) / (1 + law.cone(0).q / root3)), 1, 1e-9);
+  EXPECT_NEAR(std::log(row.F(2, 2)) / strain, 1, 1e-3);  // rounding of F - I = 5e-12
+}
+
 TEST(PointPath, SaysWhereAStressCannotBeReached)
 {
   PointPath path{.steps = 10, .controls = {.xx = stress(1e6), .yy = stress(1e6), .zz = stress(1e6)}};
