@@ -13,6 +13,9 @@ namespace {
 constexpr int usage_error = 2;
 constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
 
+constexpr auto test_help = "triaxial_compression, triaxial_extension, simple_shear, oedometer or uniaxial_strain_rate";
+constexpr int most_steps = 10'000'000;
+
 /// Commands and the options they fill; lives as long as the parse.
 class CommandLine {
  public:
@@ -76,11 +79,20 @@ class CommandLine {
 
   void add_drive()
   {
-    CLI::App* drive = app_.add_subcommand("drive", "drive one law along a path of strains and stresses");
-    drive->add_option("file", drive_file_, "material and paths (.yaml)")->required();
-    drive->add_option("--out", drive_out_, "write the table to this .csv instead of the screen");
-    drive->add_option("--set", drive_set_, set_help);
-    drive->callback([this] { drive_law(drive_file_, drive_set_, drive_out_); });
+    CLI::App* drive = app_.add_subcommand("drive", "drive one law along a path of strains and stresses, or through a laboratory test");
+    drive->add_option("file", drive_.file, "material and paths (.yaml); with --test a scene")->required();
+    drive->add_option("--out", drive_.out, "write the table to this .csv; default the screen, and with --test nowhere");
+    drive->add_option("--set", drive_.set, set_help);
+    CLI::Option* test = drive->add_option("--test", drive_.test, test_help);
+    const auto of_test = [&](const char* name, auto& value, const char* help) { return drive->add_option(name, value, help)->needs(test); };
+    of_test("--material", drive_.material, "material of the scene; may be left out where there is one");
+    of_test("--pressure", drive_.pressure, "stress at the start, equal in all directions [Pa]; default 1e5, for the last two tests 0")
+        ->check(CLI::NonNegativeNumber);
+    of_test("--strain", drive_.strain, "axial or shear strain at the end; default 0.2, 0.2, 0.5, 0.05, 0.2")->check(CLI::PositiveNumber);
+    of_test("--rate", drive_.rate, "of this strain [1/s]; default 0.001")->check(CLI::PositiveNumber);
+    of_test("--plot", drive_.plot, "draw the curve and the closed forms into this .png");
+    of_test("--steps", drive_.steps, "default 500")->check(CLI::Range(1, most_steps));
+    drive->callback([this] { drive_law(drive_); });
   }
 
   void add_render()
@@ -98,9 +110,9 @@ class CommandLine {
 
   CLI::App app_;
   RunOptions run_;
-  std::filesystem::path check_scene_, drive_file_;
-  std::vector<std::string> check_set_, drive_set_;
-  std::optional<std::filesystem::path> drive_out_;
+  std::filesystem::path check_scene_;
+  std::vector<std::string> check_set_;
+  DriveOptions drive_;
   MeshOptions mesh_;
   RenderOptions render_;
   bool schema_ = false;

@@ -33,8 +33,17 @@ struct MeshOptions {
 /// Statistics and groups of a mesh; writes it if asked to.
 void show_mesh(const MeshOptions& options);
 
+struct DriveOptions {
+  std::filesystem::path file;  ///< of a material and paths; with `test`, a scene
+  std::vector<std::string> set;
+  std::optional<std::filesystem::path> out, plot;
+  std::optional<std::string> test, material;  ///< standard test, on this material of the scene
+  std::optional<Real> pressure, strain, rate;
+  std::optional<Index> steps;
+};
 /// Drives the law of a file along its paths; CSV to `out`, or to standard output.
-void drive_law(const std::filesystem::path& file, const std::vector<std::string>& set, const std::optional<std::filesystem::path>& out);
+/// With a test: runs it on a material of a scene, prints strengths beside closed forms; CSV to `out` if asked to.
+void drive_law(const DriveOptions& options);
 
 struct RenderOptions {
   std::filesystem::path folder;

@@ -2,11 +2,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/error.hpp"
 #include "io/render.hpp"
+#include "io/render_chart.hpp"
 
 // Exit codes as those of talus: 0 done, 1 unforeseen, 2 wrong arguments, 3 wrong environment.
 int main(int argc, char** argv)
@@ -17,10 +19,17 @@ int main(int argc, char** argv)
       fmt::print("{}\n", talus::render::usage());
       return 0;
     }
-    talus::render::make_pictures(talus::render::parse(arguments), [](const std::filesystem::path& picture) {
+    const auto announce = [](const std::filesystem::path& picture) {
       fmt::print("picture: {}\n", picture.string());  // io/launch_render.cpp looks for these lines
       std::fflush(stdout);
-    });
+    };
+    if (!arguments.empty() && arguments.front() == "chart") {
+      const auto chart = talus::render::parse_chart(std::span(arguments).subspan(1));
+      talus::render::draw(chart);
+      announce(chart.out);
+      return 0;
+    }
+    talus::render::make_pictures(talus::render::parse(arguments), announce);
     return 0;
   } catch (const talus::EnvironmentError& error) {
     fmt::print(stderr, "{}\n", error.what());

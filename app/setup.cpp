@@ -15,11 +15,44 @@ Vec<D> vector_of(const std::vector<Real>& numbers)
   return numbers.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(Eigen::Map<const Vec<D>>(numbers.data()));
 }
 
+/// Which cells have material at the start.
+template <int D>
+class Filled {
+ public:
+  Filled(const Mesh<D>& mesh, const Particles<D>& particles) : mesh_(mesh), filled_(static_cast<std::size_t>(mesh.n_cells()), 0)
+  {
+    for (const Index c : particles.cell)
+      filled_[static_cast<std::size_t>(c)] = 1;
+  }
+  bool operator()(Index cell) const { return filled_[static_cast<std::size_t>(cell)] != 0; }
+  /// A facet inside the mesh belongs to the side that has material, if only one has.
+  Facet seen_from_material(Facet facet) const
+  {
+    const Index other = mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)];
+    if (other == none || (*this)(facet.cell) || !(*this)(other))
+      return facet;
+    const auto& back = mesh_.neighbours(other);
+    return {other, static_cast<Index>(std::find(back.begin(), back.end(), facet.cell) - back.begin())};
+  }
+  std::vector<Facet> seen_from_material(std::vector<Facet> facets) const
+  {
+    for (Facet& facet : facets)
+      facet = seen_from_material(facet);
+    return facets;
+  }
+
+ private:
+  const Mesh<D>& mesh_;
+  std::vector<std::uint8_t> filled_;
+};
+
 /// Boundaries -> walls, whose names are those of their groups, numbered where one group has several.
 template <int D>
 class WallBuilder {
  public:
-  WallBuilder(const Mesh<D>& mesh, Complaints& complaints, Walls<D>& walls) : mesh_(mesh), complaints_(complaints), walls_(walls) {}
+  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Complaints& complaints, Walls<D>& walls)
+      : mesh_(mesh), has_particles_(has_particles), complaints_(complaints), walls_(walls)
+  {}
 
   void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
   void operator()(const VelocitySpec& spec)
@@ -60,12 +93,13 @@ class WallBuilder {
   void on_facets(const Spec& spec, Wall<D> wall)
   {
     if (const auto facets = mesh_.facet_set(spec.on))
-      walls_.add(std::move(wall), mesh_, *facets);
+      walls_.add(std::move(wall), mesh_, has_particles_.seen_from_material(*facets));
     else
       complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
   }
 
   const Mesh<D>& mesh_;
+  const Filled<D>& has_particles_;
   Complaints& complaints_;
   Walls<D>& walls_;
   std::map<std::string, int> times_;
@@ -74,24 +108,21 @@ class WallBuilder {
 template <int D>
 class LoadBuilder {
  public:
-  LoadBuilder(const Mesh<D>& mesh, const Particles<D>& particles, Complaints& complaints, Setup<D>& setup)
-      : mesh_(mesh), particles_(particles), complaints_(complaints), setup_(setup), filled_(static_cast<std::size_t>(mesh.n_cells()), 0)
-  {
-    for (const Index c : particles.cell)
-      filled_[static_cast<std::size_t>(c)] = 1;
-  }
+  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Complaints& complaints, Setup<D>& setup)
+      : mesh_(mesh), has_particles_(has_particles), complaints_(complaints), setup_(setup)
+  {}
 
   void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
   void operator()(const TractionSpec& spec)
   {
-    auto facets = mesh_.facet_set(spec.on);
-    if (!facets)
+    const auto found = mesh_.facet_set(spec.on);
+    if (!found)
       return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+    const std::vector<Facet> facets = has_particles_.seen_from_material(*found);
     Real area = 0, loaded = 0;
-    for (Facet& facet : *facets) {
-      facet = seen_from_material(facet);
+    for (const Facet& facet : facets) {
       area += mesh_.area_vector(facet).norm();
-      loaded += has_particles(facet.cell) ? mesh_.area_vector(facet).norm() : 0;
+      loaded += has_particles_(facet.cell) ? mesh_.area_vector(facet).norm() : 0;
     }
     if (loaded == 0)
       return complaints_.add(spec.where, "on",
@@ -100,22 +131,12 @@ class LoadBuilder {
       setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
                                             to_string(spec.where), 100 * (1 - loaded / area), spec.on));
     if (spec.carried_by == Carrier::particles)
-      setup_.loads.on_particles.push_back(filled(carried_by_particles<D>(mesh_, *facets, particles_), spec));
+      setup_.loads.on_particles.push_back(filled(carried_by_particles<D>(mesh_, facets, setup_.particles), spec));
     else
-      setup_.loads.on_mesh.push_back(filled(carried_by_mesh<D>(mesh_, *facets), spec));
+      setup_.loads.on_mesh.push_back(filled(carried_by_mesh<D>(mesh_, facets), spec));
   }
 
  private:
-  bool has_particles(Index cell) const { return filled_[static_cast<std::size_t>(cell)] != 0; }
-  /// A facet inside the mesh belongs to the side that has material, if only one has.
-  Facet seen_from_material(Facet facet) const
-  {
-    const Index other = mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)];
-    if (other == none || has_particles(facet.cell) || !has_particles(other))
-      return facet;
-    const auto& back = mesh_.neighbours(other);
-    return {other, static_cast<Index>(std::find(back.begin(), back.end(), facet.cell) - back.begin())};
-  }
   template <class Load>
   static Load filled(Load load, const TractionSpec& spec)
   {
@@ -127,10 +148,9 @@ class LoadBuilder {
   }
 
   const Mesh<D>& mesh_;
-  const Particles<D>& particles_;
+  const Filled<D>& has_particles_;
   Complaints& complaints_;
   Setup<D>& setup_;
-  std::vector<std::uint8_t> filled_;
 };
 
 bool can_start_from_stress(const AnyBatch& material)
@@ -242,10 +262,11 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   setup.particles = std::move(seeds.particles);
   setup.bodies = std::move(seeds.bodies);
   setup.materials = std::move(seeds.materials);
-  WallBuilder<D> walls(mesh, complaints, setup.walls);
+  const Filled<D> has_particles(mesh, setup.particles);
+  WallBuilder<D> walls(mesh, has_particles, complaints, setup.walls);
   for (const BoundarySpec& boundary : scene.boundaries)
     std::visit(walls, boundary);
-  LoadBuilder<D> loads(mesh, setup.particles, complaints, setup);
+  LoadBuilder<D> loads(mesh, has_particles, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);

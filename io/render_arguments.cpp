@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "core/words.hpp"
 #include "io/render.hpp"
+#include "io/render_chart.hpp"
 
 namespace talus::render {
 
@@ -120,7 +121,8 @@ std::string usage()
 {
   return "usage: talus-render DIR [--field NAME[:component]] [--range LOW HIGH] [--frames first|last|all|N] [--size 1280x720]\n"
          "                    [--view X Y Z] [--up X Y Z] [--out FILE.png|DIR] [--title TEXT] [--radius R] [--no-mesh]\n"
-         "Draws the particles of DIR/particles.pvd.  Needs a display; `talus render` brings one.";
+         "       talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--title TEXT] --out FILE.png\n"
+         "Draws the particles of DIR/particles.pvd, or a curve of a table.  Needs a display; `talus render` brings one.";
 }
 
 Settings parse(std::span<const std::string> arguments)
@@ -138,6 +140,33 @@ Settings parse(std::span<const std::string> arguments)
   }
   check(settings);
   return settings;
+}
+
+Chart parse_chart(std::span<const std::string> arguments)
+{
+  Chart chart;
+  Words words(arguments);
+  while (!words.empty()) {
+    const std::string word = words.next("");
+    if (word == "--x")
+      chart.x = words.next(word);
+    else if (word == "--y")
+      chart.y = words.next(word);
+    else if (word == "--title")
+      chart.title = words.next(word);
+    else if (word == "--out")
+      chart.out = words.next(word);
+    else if (word == "--level") {
+      std::string name = words.next(word);
+      chart.levels.push_back({std::move(name), number<Real>(words.next(word), word)});
+    } else if (!word.starts_with("--") && chart.table.empty())
+      chart.table = word;
+    else
+      throw Error(fmt::format("unknown option {}\n{}", word, usage()));
+  }
+  if (chart.table.empty() || chart.x.empty() || chart.y.empty() || chart.out.empty())
+    throw Error("a chart needs a table, --x, --y and --out\n" + usage());
+  return chart;
 }
 
 }  // namespace talus::render

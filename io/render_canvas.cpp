@@ -1,4 +1,4 @@
-// Off-screen drawing with VTK: drawn at twice the size and averaged, which smooths particles, lines and letters alike.
+// Particles, outline, colour bar and words with VTK.
 #include "io/render_canvas.hpp"
 #include <Eigen/Geometry>
 
@@ -6,9 +6,7 @@
 #include <vtkActor.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
-#include <vtkImageShrink3D.h>
 #include <vtkNew.h>
-#include <vtkPNGWriter.h>
 #include <vtkPointData.h>
 #include <vtkPointGaussianMapper.h>
 #include <vtkPoints.h>
@@ -18,13 +16,13 @@
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkWindowToImageFilter.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "core/error.hpp"
+#include "io/render_png.hpp"
 #include "io/render_sheet.hpp"
 #include "io/render_words.hpp"
 
@@ -34,7 +32,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int oversampling = 2;
 constexpr Colour grey{178, 178, 178}, no_value{190, 190, 190};
 constexpr Real shadow = 0.45;        // brightness taken from a surface that turns its back on the light
 constexpr Real gloss = 0.14;         // white added to a surface that faces it: without it the dark end of the colours shows no shape
@@ -177,29 +174,6 @@ void add_axes(Sheet& sheet, const Picture& picture)
   }
 }
 
-void save(vtkRenderWindow* window, const fs::path& png)
-{
-  vtkNew<vtkWindowToImageFilter> shot;
-  shot->SetInput(window);
-  shot->ReadFrontBufferOff();
-  vtkNew<vtkImageShrink3D> averaged;
-  averaged->SetInputConnection(shot->GetOutputPort());
-  averaged->SetShrinkFactors(oversampling, oversampling, 1);
-  averaged->AveragingOn();
-  const fs::path temporary = png.string() + ".tmp";
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetFileName(temporary.c_str());
-  writer->SetInputConnection(averaged->GetOutputPort());
-  writer->Write();
-  std::error_code failed;
-  if (writer->GetErrorCode() == 0)
-    fs::rename(temporary, png, failed);
-  if (writer->GetErrorCode() != 0 || failed) {
-    fs::remove(temporary, failed);
-    throw EnvironmentError(fmt::format("cannot write {}", png.string()));
-  }
-}
-
 }  // namespace
 
 Colour colour_of(Real share)
@@ -217,13 +191,10 @@ Colour colour_of(Real share)
 
 void draw(const Picture& picture, const Cloud& cloud, const Outline& outline, const fs::path& png)
 {
-  const std::array<int, 2> pixels{oversampling * picture.size[0], oversampling * picture.size[1]};
-  const std::array<Real, 2> size{static_cast<Real>(pixels[0]), static_cast<Real>(pixels[1])};
+  const std::array<Real, 2> size{static_cast<Real>(oversampling * picture.size[0]), static_cast<Real>(oversampling * picture.size[1])};
   const Panel panel = panel_of(picture.size);
   vtkNew<vtkRenderWindow> window;
-  window->SetOffScreenRendering(1);
-  window->SetMultiSamples(0);
-  window->SetSize(pixels[0], pixels[1]);
+  prepare(window, picture.size);
   window->SetNumberOfLayers(2);
   vtkNew<vtkRenderer> scene, front;
   scene->SetBackground(1, 1, 1);
@@ -248,7 +219,6 @@ void draw(const Picture& picture, const Cloud& cloud, const Outline& outline, co
     add_scale(sheet, picture, size);
   else
     add_axes(sheet, picture);
-  window->Render();
   save(window, png);
 }
 

@@ -41,7 +41,7 @@ Moduli Elasticity::moduli() const noexcept
   if (lambda && G)
     return from_bulk_and_shear(*lambda + 2 * *G / 3, *G);
   if (E && K)
-    return from_bulk_and_shear(*K, 3 * *K * *E / (9 * *K - *E));
+    return from_youngs_and_poisson(*E, 0.5 - *E / (6 * *K));
   constexpr Real nothing = std::numeric_limits<Real>::quiet_NaN();
   return {nothing, nothing, nothing, nothing, nothing};
 }

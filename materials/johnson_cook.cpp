@@ -163,7 +163,7 @@ Mat3 JohnsonCookMetal::update(const Increment& in, const Memory& memory, const C
   if (!in.elastic && !failed_before) {
     const SlowStrength slow(*this, c, memory.plastic_strain, temperature);
     if (const Strength start = slow(memory.plastic_strain, temperature); mises > start.value)
-      flow = JohnsonCookReturn{*this, c, slow, start, J, J / trial.growth, mises, stiffness, memory.plastic_strain, temperature, relative}
+      flow = JohnsonCookReturn{*this, c, slow, start, J, J / growth_of(in), mises, stiffness, memory.plastic_strain, temperature, relative}
                  .flow(in.stress);
   }
   memory.plastic_strain += flow.strain;
@@ -174,8 +174,9 @@ Mat3 JohnsonCookMetal::update(const Increment& in, const Memory& memory, const C
   std::optional<EnergyStep> step;
   if (c.curve && memory.energy) {
     const Real compression = -std::expm1(trial.volume_strain);
-    step.emplace(in, (1 - compression) * (1 - 1 / trial.growth), *memory.energy, von_mises(in.stress) * J / trial.growth, J * flow.mises,
-                 flow.work, c.shear);
+    const Real growth = growth_of(in);
+    step.emplace(in, (1 - compression) * (1 - 1 / growth), *memory.energy, von_mises(in.stress) * J / growth, J * flow.mises, flow.work,
+                 c.shear);
     pressure = step->pressure(*c.curve, compression);
   }
 

@@ -15,10 +15,8 @@ struct ElasticTrial {
   Sym3 shear_strain;   ///< deviator of the elastic logarithmic strain
   Real volume_strain;  ///< logarithm of the elastic volume ratio
   Real shear;          ///< sqrt(2/3) |shear_strain|, the equivalent strain
-  Real growth;         ///< volume at the end of the step over that before
 
-  ElasticTrial(const Increment& in, const Sym3& elastic_left) noexcept
-      : left(push_forward(in.dt * in.L, elastic_left)), growth((Mat3::Identity() + in.dt * in.L).determinant())
+  ElasticTrial(const Increment& in, const Sym3& elastic_left) noexcept : left(push_forward(in.dt * in.L, elastic_left))
   {
     const Sym3 twice_strain = log1p(left);
     volume_strain = 0.5 * trace(twice_strain);
@@ -36,6 +34,9 @@ inline Sym3 elastic_left_of(const Mat3& s, Real shear_modulus, Real volume_strai
   return expm1(add_diagonal(pack(s / shear_modulus), 2 * volume_strain / 3));
 }
 
+/// Volume at the end of the step over that before.
+inline Real growth_of(const Increment& in) noexcept { return (Mat3::Identity() + in.dt * in.L).determinant(); }
+
 /// x^n, found fast where x is near a point at which it is known: hardening changes little within a step.
 class PowerNear {
  public:
@@ -45,6 +46,8 @@ class PowerNear {
   {
     // The first terms that the binomial series leave out are below 0.001^6 and 0.02^8 for exponents below 1.
     const Real r = (x - at_) * inverse_, size = std::abs(r) * std::max(exponent_, Real{1});
+    if (r == 0)
+      return value_;
     if (size <= 0.001)
       return value_ * series<5>(r);
     if (size <= 0.02)

@@ -104,7 +104,7 @@ Mat3 VonMises::update(const Increment& in, State& state, const Constants& c) con
   state.elastic_left = trial.left_with(end / mises);
   state.plastic_strain += x;
   // Trapezoidal in the Kirchhoff stress, exact for linear hardening: the strength before and after the step, at the rate of the step.
-  state.plastic_work += 0.5 * x * J * (map.rate_factor(x).value * start.value / trial.growth + end);
+  state.plastic_work += 0.5 * x * J * (map.rate_factor(x).value * start.value / growth_of(in) + end);
   return stress_with(trial, J, end / mises, c);
 }
 

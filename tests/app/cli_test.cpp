@@ -70,6 +70,41 @@ path:
   EXPECT_NEAR(last(table, "stress_xx"), 0.5e5 * (F * F - 1) / F, 1e-6 * 1e5);
 }
 
+TEST_F(CommandLine, DriveTestsAMaterialOfASceneBesideItsClosedForms)
+{
+  write("block.yaml", block_scene("time: {end: 0.1}\n"));
+  const std::string soil =
+      " --set 'materials[0]={name: sand, law: drucker_prager, density: 2000, youngs_modulus: 1.0e8, poisson_ratio: 0.3, "
+      "friction_angle: 30, cohesion: 0, match: outer}' --set bodies[0].material=sand";
+  const Outcome outcome = talus("drive block.yaml --test triaxial_compression --pressure 2e5 --steps 100 --plot sand.png" + soil);
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("triaxial_compression of \"sand\" (drucker_prager): pressure 200000 Pa, strain 0.2"));
+  EXPECT_THAT(outcome.out, testing::ContainsRegex("closed form: Mohr-Coulomb +400 "));  // 2 p sin / (1 - sin)
+  EXPECT_THAT(outcome.out,
+              testing::ContainsRegex("closed form: Drucker-Prager inner +240 "));  // 3 (2 p sin) / (3 + sin), by slope 6 sin / (3 + sin)
+  const HistoryTable table = read_history(folder_ / "sand.csv");
+  EXPECT_EQ(table.rows(), 101u);
+  EXPECT_NEAR(last(table, "stress_difference"), 4e5, 1e-3 * 4e5);
+  EXPECT_EQ(read("sand.png").substr(1, 3), "PNG");
+}
+
+TEST_F(CommandLine, DriveNamesTheTestsAndMaterialsThereAre)
+{
+  write("block.yaml", block_scene("time: {end: 0.1}\n"));
+  const Outcome test = talus("drive block.yaml --test oedometr");
+  EXPECT_EQ(test.code, 2);
+  EXPECT_THAT(test.err, HasSubstr("did you mean \"oedometer\"?"));
+  const Outcome material = talus("drive block.yaml --test oedometer --material ruber");
+  EXPECT_EQ(material.code, 2);
+  EXPECT_THAT(material.err, HasSubstr("did you mean \"rubber\"?"));
+  EXPECT_EQ(talus("drive block.yaml --strain 0.1").code, 2) << "--strain belongs to a test";
+  const Outcome many = talus(
+      "drive block.yaml --test oedometer --set 'materials=[{name: rubber, law: neo_hookean, density: 1000, "
+      "youngs_modulus: 1.0e5, poisson_ratio: 0.3}, {name: water, law: newtonian, density: 1000, bulk_modulus: 1.0e6, viscosity: 1}]'");
+  EXPECT_EQ(many.code, 2);
+  EXPECT_THAT(many.err, HasSubstr("--material is needed where there are several: rubber or water"));
+}
+
 TEST_F(CommandLine, RenderNeedsResults)
 {
   const Outcome outcome = talus("render nowhere");

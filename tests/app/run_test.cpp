@@ -192,6 +192,31 @@ TEST_F(Run, PressurePushesInwards)
               HasSubstr("warning: block.yaml:8:9: 50 % of the area of \"y_min\" has no particles behind it and carries no load"));
 }
 
+TEST_F(Run, WallsInsideTheMeshFaceTheMaterial)
+{
+  for (const char* shelf : {"void:boundary", "room:boundary"}) {
+    write("shelf.yaml", std::string(R"yaml(title: Block on a shelf inside the mesh
+dimension: 2
+mesh:
+  size: 0.25
+  regions:
+    - {name: void, shape: {type: box, low: [0, 0], high: [2, 1]}}
+    - {name: room, shape: {type: box, low: [0, 1], high: [2, 2]}}
+  groups: [{name: shelf, of: ")yaml") +
+                            shelf + R"yaml(", within: {low: [0.1, 0.9], high: [1.9, 1.1]}}]
+time: {end: 0.4}
+materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]
+bodies: [{name: block, material: rubber, shape: {type: box, low: [0.5, 1], high: [1.5, 1.5]}, particles_per_cell: 3}]
+boundaries: [{type: friction, on: shelf, coefficient: 0.5}]
+loads: [{type: gravity, acceleration: [0, -10]}]
+outputs: {history: {every: 0.1, points: [{name: tip, at: [1, 1.25]}]}}
+)yaml");
+    const Outcome outcome = talus("run shelf.yaml --quiet");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_GT(last(history("runs/shelf"), "tip_uy"), -0.1) << shelf << ": free fall is 0.8 m";
+  }
+}
+
 TEST_F(Run, QuickMakesAnySceneShort)
 {
   write("bar.yaml", bar_scene);

@@ -129,6 +129,26 @@ TEST(Render, ColoursFollowTheRangeAndTheFieldAskedFor)
   EXPECT_NE(once, draw("d.png", "velocity:y", "19"));
 }
 
+TEST(Render, ChartShowsACurveAndLevels)
+{
+  ASSERT_TRUE(fs::exists(program())) << "build the target talus-render";
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  const std::string table = (folder / "table.csv").string();
+  std::ofstream(table) << "strain [-],stress [Pa]\n0,0\n0.1,2000\n0.2,1500\n";
+  const auto chart = [&](const std::string& name, const std::string& y, const std::vector<std::string>& rest) {
+    std::vector<std::string> words{"chart", table, "--x", "strain [-]", "--y", y, "--out", (folder / name).string()};
+    words.insert(words.end(), rest.begin(), rest.end());
+    return words;
+  };
+  launch_render(program(), chart("bare.png", "stress [Pa]", {}));
+  launch_render(program(), chart("level.png", "stress [Pa]", {"--level", "formula", "1800"}));
+  EXPECT_THAT(png_size(read_whole(folder / "bare.png")), testing::ElementsAre(960u, 600u));
+  EXPECT_NE(read_whole(folder / "bare.png"), read_whole(folder / "level.png"));
+  EXPECT_THAT(message_of<Error>(program(), chart("none.png", "stres [Pa]", {})), HasSubstr("did you mean \"stress [Pa]\"?"));
+  EXPECT_FALSE(fs::exists(folder / "none.png"));
+}
+
 TEST(Render, UnknownFieldIsRefusedWithTheNearestName)
 {
   ASSERT_TRUE(fs::exists(program())) << "build the target talus-render";

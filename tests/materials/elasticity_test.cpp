@@ -100,6 +100,9 @@ TEST(ElasticityRules, UnstablePairsAreToldWithTheirPoissonRatio)
   squashy.youngs_modulus = 9.5e6, squashy.bulk_modulus = 1e6;
   EXPECT_THAT(problems(squashy),
               ElementsAre("youngs_modulus 9.5e+06 and bulk_modulus 1e+06 make Poisson's ratio -1.08333, which must lie in (-1, 0.5)"));
+  squashy.youngs_modulus = 9e6;  // the shear modulus grows beyond bounds
+  EXPECT_THAT(problems(squashy),
+              ElementsAre("youngs_modulus 9e+06 and bulk_modulus 1e+06 make Poisson's ratio -1, which must lie in (-1, 0.5)"));
   squashy.youngs_modulus = 8.5e6;
   EXPECT_THAT(problems(squashy), IsEmpty());
 }

@@ -1,0 +1,30 @@
+#pragma once
+// A chart: two columns of a table as a curve, and levels it is compared with.
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace talus::render {
+
+struct Chart {
+  std::filesystem::path table;  ///< .csv whose first row names the columns, "name [unit]"
+  std::string x, y;             ///< columns as they are named there
+  struct Level {
+    std::string name;
+    Real value;  ///< in the unit of y
+  };
+  std::vector<Level> levels;  ///< horizontal lines
+  std::string title;
+  std::filesystem::path out;  ///< .png
+};
+
+/// Words of the command line, after "chart".  Error, saying what is wrong.
+Chart parse_chart(std::span<const std::string> arguments);
+
+/// Draws and writes.  Needs a display.  Error if a column is not there; EnvironmentError if a file cannot be read or written.
+void draw(const Chart& chart);
+
+}  // namespace talus::render
