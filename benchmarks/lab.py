@@ -3,35 +3,64 @@
 A benchmark is a folder with scene.yaml, README.md, its reference values and case.py; `evaluate(lab)` in case.py returns results.
 Units are SI, as in the scenes.
 """
+import concurrent.futures
 import csv
 import dataclasses
+import functools
 import hashlib
 import json
+import os
 import pathlib
-import resource
+import shutil
 import subprocess
+import tempfile
+import threading
 
 import matplotlib
+import matplotlib.figure
 import matplotlib.ticker
 import numpy as np
 
 import vtp
 
 matplotlib.use("Agg")
-import matplotlib.pyplot as plt  # noqa: E402
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-plt.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True})
+matplotlib.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True})
+OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene
+# Started through a shell that forks: the peak memory that the program asks the system for counts the process it was started from.
+START = ["/bin/sh", "-c", '"$0" "$@"; exit $?']
 
 
-@dataclasses.dataclass
+class RunFailed(RuntimeError):
+    """A run that did not end well, with the program's own words."""
+
+
 class Run:
-    """A finished run: `history` maps a column (without its unit) to an array, `summary` is summary.json, `seconds` processor time."""
+    """A run, perhaps still under way: whoever asks it for something waits for its end, and gets RunFailed where it ended badly.
 
-    folder: pathlib.Path
-    history: dict
-    summary: dict
-    seconds: float
+    `history` maps a column (without its unit) to an array, `summary` is summary.json, `seconds` processor time, `memory` the largest resident set [B].
+    """
+
+    def __init__(self, case, label, folder, future):
+        self.case, self.label, self._folder, self._future = case, label, pathlib.Path(folder), future
+
+    @property
+    def seconds(self):
+        return self._future.result()
+
+    @property
+    def folder(self):
+        self._future.result()
+        return self._folder
+
+    @functools.cached_property
+    def history(self):
+        return read_history(self.folder / "history.csv")
+
+    @functools.cached_property
+    def summary(self):
+        return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
 
     @property
     def particles(self):
@@ -41,6 +70,10 @@ class Run:
     def cells(self):
         return self.summary["mesh"]["cells"]
 
+    @property
+    def memory(self):
+        return self.summary["cost"]["peak_memory [B]"]
+
     def frames(self):
         """Particle files in order of time."""
         return sorted(self.folder.glob("particles_*.vtp"))
@@ -48,6 +81,14 @@ class Run:
     def last_frame(self):
         """Arrays of the last particle file by name; 'Points' are the positions, shape (n, 3)."""
         return vtp.read(self.frames()[-1])
+
+    def failure(self):
+        """Waits; the words of a run that failed, or None."""
+        try:
+            self._future.result()
+        except RunFailed as failed:
+            return str(failed)
+        return None
 
 
 @dataclasses.dataclass
@@ -76,39 +117,78 @@ class Result:
         return bool(np.isfinite(self.value) and checks[self.criterion]())
 
     def record(self):
-        """What results.json holds of it."""
-        own = {key: getattr(self, key) for key in ("case", "metric", "unit", "value", "reference", "source", "criterion", "tolerance")}
-        return {**own, "pass": self.passed, "mesh": f"{self.run.cells} cells", "particles": self.run.particles,
-                "processor_seconds": self.run.seconds, "threads": self.run.summary["cost"]["threads"],
-                "commit": self.run.summary["program"]["commit"]}
+        """What verify.json holds of it; a value that is not finite is null there."""
+        own = {key: plain(getattr(self, key)) for key in ("case", "metric", "unit", "value", "reference", "source", "criterion", "tolerance")}
+        summary = self.run.summary
+        return {**own, "pass": self.passed, "mesh": f"{self.run.cells} cells", "particles": self.run.particles, "kernel": summary["kernel"],
+                "transfer": summary["transfer"], "processor_seconds": self.run.seconds, "peak_memory [B]": self.run.memory,
+                "threads": summary["cost"]["threads"], "commit": summary["program"]["commit"]}
+
+
+@dataclasses.dataclass
+class Tradeoff:
+    """What `talus tradeoff` sweeps: `axes` {name: {label: settings}}, the first label of each axis being the customary choice, the first axis that of
+    the cells; error(run) in `unit` ('-': of one, shown in per cent). `what` names the error."""
+
+    scene: str
+    axes: dict
+    error: object
+    what: str
+    settings: dict = dataclasses.field(default_factory=dict)
 
 
 class Lab:
-    """Runs scenes with one program and collects results; with `reuse`, a run with the same program and inputs is not repeated."""
+    """Runs scenes with one program and collects what cases find; with `reuse`, a run with the same program and inputs is not repeated.
 
-    def __init__(self, program, runs, images, level="quick", reuse=False, threads=1):
+    `jobs` runs go on at a time. `overrides` {key of the scene: word} apply to each run whose settings do not choose that key themselves.
+    """
+
+    def __init__(self, program, runs, images, level="quick", reuse=False, threads=1, jobs=1, overrides=None):
         self.program, self.runs, self.images = pathlib.Path(program), pathlib.Path(runs), pathlib.Path(images)
-        self.level, self.reuse, self.threads = level, reuse, threads
+        self.level, self.reuse, self.threads, self.overrides = level, reuse, threads, overrides or {}
         self._program_key = hashlib.sha256(self.program.read_bytes()).hexdigest()
-        self.figures = {}
+        self._pool = concurrent.futures.ThreadPoolExecutor(jobs)
+        self._lock, self._drawing = threading.Lock(), threading.Lock()
+        self._handles = {}  # (case, label) -> inputs, run
+        self.figures, self.orders = [], []
 
     def run(self, scene, label, settings):
-        """Runs `scene` (path below benchmarks/) into <runs>/<case>/<label> with settings {key: number, list or text}, as --set takes them.
+        """Starts `scene` (path below benchmarks/) into <runs>/<case>/<label> with settings {key: number, list or text}, as --set takes them.
 
-        Raises RuntimeError with the program's own words when it fails.
+        Returns at once; the run waits its turn and whoever asks it for something waits for it. So ask for all runs first, then measure.
         """
         path = ROOT / "benchmarks" / scene
-        out = self.runs / path.parent.name / label
-        words = [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in settings.items()]
-        inputs = json.dumps([self._program_key, path.read_text(encoding="utf-8"), words, self.threads])
+        case, out = path.parent.name, self.runs / path.parent.name / label
+        words = [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in overridden(settings, self.overrides).items()]
+        texts = [file.read_text(encoding="utf-8") for file in [path, *sorted(path.parent.glob("*.geo"))]]
+        inputs = json.dumps([self._program_key, texts, words, self.threads])
+        with self._lock:
+            known, handle = self._handles.get((case, label), (None, None))
+            if handle and known != inputs:
+                raise ValueError(f"two different runs are called {case}/{label}")
+            if not handle:
+                handle = Run(case, label, out, self._pool.submit(self._work, path, out, words, inputs))
+                self._handles[case, label] = inputs, handle
+        return handle
+
+    def runs_of(self, case):
+        """All runs that a case asked for, in their order."""
+        with self._lock:
+            return [run for (owner, _), (_, run) in self._handles.items() if owner == case]
+
+    def close(self):
+        """No more runs: those that have not begun never will."""
+        self._pool.shutdown(cancel_futures=True)
+
+    def _work(self, path, out, words, inputs):
+        """Runs, or finds the results of an earlier run of the same inputs; returns the processor time [s]."""
         stamp = out / "inputs.json"
         seconds = self._seconds_of(stamp, inputs)
         if seconds is None:
             seconds = self._start(path, out, words)
             stamp.write_text(json.dumps({"inputs": inputs, "seconds": seconds}), encoding="utf-8")
-        run = Run(out, read_history(out / "history.csv"), json.loads((out / "summary.json").read_text(encoding="utf-8")), seconds)
-        print(f"  {path.parent.name}/{label}: {run.cells} cells, {run.particles} particles, {run.seconds:.1f} s", flush=True)
-        return run
+        print(f"  {path.parent.name}/{out.name}: {seconds:.1f} s", flush=True)
+        return seconds
 
     def _seconds_of(self, stamp, inputs):
         """What the run of the same inputs took, or None where there is none to use again."""
@@ -119,27 +199,47 @@ class Lab:
 
     def _start(self, scene, out, words):
         """Runs the program; returns the processor time it took [s], which a busy machine changes less than that of the clock."""
-        out.mkdir(parents=True, exist_ok=True)
-        for old in [*out.glob("particles_*"), *out.glob("inputs.json")]:
-            old.unlink()
-        command = [self.program, "run", scene, "--out", out, "--threads", str(self.threads), "--quiet"]
+        shutil.rmtree(out, ignore_errors=True)
+        out.mkdir(parents=True)
+        command = [*START, self.program, "run", scene, "--out", out, "--threads", str(self.threads), "--quiet"]
         for word in words:
             command += ["--set", word]
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        if done.returncode != 0:
-            raise RuntimeError(f"{scene.parent.name}/{out.name} ended with {done.returncode}:\n{done.stderr or done.stdout}")
-        return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
+            child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+            output.seek(0)
+            said = output.read().strip()
+        if child.returncode != 0:
+            raise RunFailed(f"{scene.parent.name}/{out.name} ended with {child.returncode}: {said}")
+        return usage.ru_utime + usage.ru_stime
 
-    def figure(self, case, name, draw, size=(6.4, 3.6), caption=""):
-        """Saves what draw(figure) draws as <images>/<name>.png and notes it for the report."""
-        figure = plt.figure(figsize=size)
-        draw(figure)
-        self.images.mkdir(parents=True, exist_ok=True)
-        figure.savefig(self.images / f"{name}.png", dpi=110)
-        plt.close(figure)
-        self.figures.setdefault(case, []).append((f"{name}.png", caption))
+    def figure(self, case, name, draw, size=(6.4, 3.6), caption="", shown="everywhere"):
+        """Saves what draw(figure) draws as <images>/<name>.png and notes it for the reports; with shown='report', for the pages of the run alone."""
+        with self._drawing:
+            figure = matplotlib.figure.Figure(figsize=size)
+            draw(figure)
+            self.images.mkdir(parents=True, exist_ok=True)
+            figure.savefig(self.images / f"{name}.png", dpi=110)
+            self.figures.append({"case": case, "file": f"{name}.png", "caption": caption, "shown": shown})
+
+    def convergence(self, case, name, sizes, errors, expected=None):
+        """Notes errors over sizes of cells [m] for a table with the observed order between neighbours and over all."""
+        self.orders.append({"case": case, "name": name, "sizes": [plain(size) for size in sizes], "errors": [plain(error) for error in errors],
+                            "orders": [plain(order) for order in neighbours(sizes, errors)], "order": plain(observed_order(sizes, errors)),
+                            "expected": expected})
+
+
+def overridden(settings, overrides):
+    """`settings`, and of `overrides` those that they leave open: neither the key itself nor the block around it is set."""
+    return {**{key: word for key, word in overrides.items() if key not in settings and key.split(".")[0] not in settings}, **settings}
+
+
+def plain(value):
+    """A number of numpy as one of Python, one that is not finite as None: neither is JSON."""
+    if isinstance(value, (float, np.floating)):
+        return float(value) if np.isfinite(value) else None
+    return int(value) if isinstance(value, np.integer) else value
 
 
 def read_history(path):
@@ -169,6 +269,11 @@ def rms(values):
 def observed_order(sizes, errors):
     """Slope of log(error) over log(size) by least squares."""
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
+
+
+def neighbours(sizes, errors):
+    """Observed order between each size and the next."""
+    return [float(np.log(errors[i] / errors[i + 1]) / np.log(sizes[i] / sizes[i + 1])) for i in range(len(sizes) - 1)]
 
 
 def size_axis(axis, sizes):

@@ -1,10 +1,18 @@
-"""Writes the results of the benchmarks: results.json, docs/verification.md and the block in README.md between its markers."""
+#!/usr/bin/python3
+"""Writes benchmarks/results.json, docs/verification.md with its figures and the block in README.md from the verify.json of a run of the suite.
+
+Usage: benchmarks/report.py OUT/verify.json     cases that were not run stay as they are in benchmarks/results.json
+"""
 import json
+import pathlib
+import shutil
+import sys
 
 from lab import ROOT
 
 BEGIN, END = "<!-- verification:begin -->", "<!-- verification:end -->"
 VERDICTS = {True: "pass", False: "**FAIL**", None: "-"}
+RESULTS = ROOT / "benchmarks/results.json"
 
 
 def number(value):
@@ -12,81 +20,110 @@ def number(value):
     return "-" if value is None else f"{value:.4g}"
 
 
-def quantity(result):
+def quantity(record):
     """The value with its unit, if it has one."""
-    return number(result.value) + ("" if result.unit == "-" else f" {result.unit}")
+    return number(record["value"]) + ("" if record["unit"] == "-" else f" {record['unit']}")
 
 
-def criterion(result):
+def criterion(record):
     """What was asked, in words."""
-    if result.criterion == "reported":
-        return "reported only"
-    if result.criterion == "within":
-        return f"within {result.tolerance * 100:.3g} % of reference"
-    if result.criterion == "near":
-        return f"within {number(result.tolerance)} of reference"
-    return f"{result.criterion} {number(result.tolerance)}"
+    kind, tolerance = record["criterion"], record["tolerance"]
+    if kind == "within":
+        return f"within {tolerance * 100:.3g} % of reference"
+    if kind == "near":
+        return f"within {number(tolerance)} of reference"
+    return {"reported": "reported only", "runs": "runs to the end"}.get(kind) or f"{kind} {number(tolerance)}"
 
 
-def line(result):
+def line(record):
     """One result as a line for the terminal."""
-    verdict = VERDICTS[result.passed].strip("*")
-    return f"{verdict:5s} {result.metric}: {quantity(result)} (reference {number(result.reference)}; {criterion(result)})"
+    verdict = VERDICTS[record["pass"]].strip("*")
+    words = record.get("error") or f"{quantity(record)} (reference {number(record['reference'])}; {criterion(record)})"
+    note = f" [{record['changed']}]" if record.get("changed") else ""
+    return f"{verdict:5s} {record['metric']}: {words}{note}"
 
 
-def table(results):
+def table(records):
     """All numbers of some results as a Markdown table."""
     rows = ["| measured | value | unit | reference | asked | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
-    for r in results:
-        rows.append(f"| {r.metric} | {number(r.value)} | {r.unit} | {number(r.reference)} | {criterion(r)} | {VERDICTS[r.passed]} "
-                    f"| {r.run.cells} | {r.run.particles} | {number(r.run.seconds)} |")
+    for r in records:
+        rows.append(f"| {r['metric']} | {number(r['value'])} | {r['unit']} | {number(r['reference'])} | {criterion(r)} | {VERDICTS[r['pass']]} "
+                    f"| {(r['mesh'] or '-').split()[0]} | {r['particles'] or '-'} | {number(r['processor_seconds'])} |")
     return rows
 
 
-def by_case(results):
-    """Results grouped by case in their order."""
-    groups = {}
-    for result in results:
-        groups.setdefault(result.case, []).append(result)
-    return groups
+def orders(convergence):
+    """Errors over sizes of cells with the order between neighbours, as a Markdown table."""
+    steps = ["-"] + [f"{number(order)}" for order in convergence["orders"]]
+    wanted = "" if convergence["expected"] is None else f" (expected {convergence['expected']:g})"
+    return [f"{convergence['name'].capitalize()}: order {number(convergence['order'])} by least squares{wanted}.", "", "| cell size [m] | error | order |",
+            "|---|---|---|", *(f"| {size:g} | {number(error)} | {step} |" for size, error, step in zip(convergence["sizes"], convergence["errors"], steps))]
 
 
-def title(case):
-    """The first line of the case's README.md, without the marks."""
-    return (ROOT / "benchmarks" / case / "README.md").read_text(encoding="utf-8").splitlines()[0].lstrip("# ")
+def of(document, part, case):
+    """Those entries of a part of the document that belong to a case."""
+    return [entry for entry in document[part] if entry["case"] == case]
 
 
-def page(results, lab):
+def counts(records):
+    """How many results were judged and passed."""
+    return sum(r["pass"] is not None for r in records), sum(r["pass"] is True for r in records)
+
+
+def section(document, info):
+    """One case of docs/verification.md."""
+    case, records = info["case"], of(document, "results", info["case"])
+    lines = ["", f"## {info['title']}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../benchmarks/{case}/README.md). "
+             f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s in all.", "", *table(records), "",
+             f"References: {'; '.join(dict.fromkeys(r['source'] for r in records if r['source']))}."]
+    lines += [f"\n{r['metric']}: {r['error']}" for r in records if "error" in r]
+    for convergence in of(document, "convergence", case):
+        lines += ["", *orders(convergence)]
+    for figure in of(document, "figures", case):
+        if figure["shown"] == "everywhere":
+            lines += ["", f"![{figure['caption']}](images/{figure['file']})", "", figure["caption"]]
+    return lines + price(case)
+
+
+def price(case):
+    """What accuracy costs, where `talus tradeoff` was run for the documents."""
+    path = ROOT / "benchmarks" / case / "tradeoff.json"
+    if not path.exists():
+        return []
+    swept = json.loads(path.read_text(encoding="utf-8"))
+    return ["", f"![Error over processor time and memory](images/{swept['figure']})", "", f"What accuracy costs, {swept['what']}, commit {swept['commit']}:", "",
+            *(f"* {advice}" for advice in swept["advice"])]
+
+
+def page(document):
     """docs/verification.md as text."""
-    program = results[0].run.summary["program"]
-    failed = sum(r.passed is False for r in results)
+    records = document["results"]
+    programs = list(dict.fromkeys(f"{c['program']['version']} ({c['program']['compiler']})" for c in document["cases"]))
+    judged, passed = counts(records)
     lines = ["# Verification", "",
-             "Written by `make verify`; do not edit. Every number is measured by running the built program on the scene of the benchmark.", "",
-             f"Program {program['version']}, commit {program['commit']}, {program['compiler']}; level `{lab.level}`, {lab.threads} thread(s). "
-             f"{len(results)} numbers, {sum(r.passed is True for r in results)} passed, {failed} failed, the others are reported without a verdict.", "",
+             "Written by `tools/verify.sh --write-docs`; do not edit. Every number is measured by running the built program on the scene of the benchmark: "
+             "[how to run and add one](benchmarks.md).", "",
+             f"Program {', '.join(programs)}. {len(records)} numbers, {passed} passed, {judged - passed} failed, the others are reported without a verdict.", "",
              "Seconds are processor time of the run the number comes from, on whatever machine this was; cells and particles are those of that run."]
-    for case, own in by_case(results).items():
-        lines += ["", f"## {title(case)}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../benchmarks/{case}/README.md).", ""]
-        lines += [*table(own), "", f"References: {'; '.join(dict.fromkeys(r.source for r in own if r.source))}."]
-        for name, caption in lab.figures.get(case, []):
-            lines += ["", f"![{caption}](images/{name})", "", caption]
+    for info in document["cases"]:
+        lines += section(document, info)
     return "\n".join(lines) + "\n"
 
 
-def summary(results, case):
+def summary(records, info):
     """One row for README.md: the first number of a case that is judged, and how many of those passed."""
-    judged = [r for r in results if r.passed is not None]
-    example = judged[0]
-    return (f"| [{title(case)}](benchmarks/{case}/README.md) | {example.metric} | {quantity(example)} | "
-            f"{number(example.reference)} | {criterion(example)} | {sum(r.passed is True for r in judged)} of {len(judged)} |")
+    judged = [r for r in records if r["pass"] is not None] or records
+    example, (asked, passed) = judged[0], counts(records)
+    return (f"| [{info['title']}](benchmarks/{info['case']}/README.md) | {example['metric']} | {quantity(example)} | "
+            f"{number(example['reference'])} | {criterion(example)} | {passed} of {asked} |")
 
 
-def block(results):
+def block(document):
     """The table for README.md."""
     rows = ["| benchmark | for example | measured | reference | asked | passed |", "|---|---|---|---|---|---|"]
-    rows += [summary(own, case) for case, own in by_case(results).items()]
-    commit = results[0].run.summary["program"]["commit"]
-    return "\n".join([*rows, "", f"Measured at commit {commit}. All numbers, also those that are not good: [docs/verification.md](docs/verification.md)."])
+    rows += [summary(of(document, "results", info["case"]), info) for info in document["cases"]]
+    commits = ", ".join(dict.fromkeys(info["program"]["commit"] for info in document["cases"]))
+    return "\n".join([*rows, "", f"Measured at commit {commits}. All numbers, also those that are not good: [docs/verification.md](docs/verification.md)."])
 
 
 def replace_block(text, content):
@@ -96,13 +133,35 @@ def replace_block(text, content):
     return f"{text.split(BEGIN)[0]}{BEGIN}\n{content}\n{END}{text.split(END)[1]}"
 
 
-def write(results, lab):
-    """Writes all three."""
-    records = json.dumps([result.record() for result in results], indent=1)
-    (ROOT / "benchmarks/results.json").write_text(records + "\n", encoding="utf-8")
-    (ROOT / "docs/verification.md").write_text(page(results, lab), encoding="utf-8")
+def merge(old, new):
+    """The old document with the cases of the new one in their place, new cases at the end."""
+    fresh = {info["case"]: info for info in new["cases"]}
+    known = {info["case"] for info in old["cases"]}
+    cases = [fresh.get(info["case"], info) for info in old["cases"]] + [info for case, info in fresh.items() if case not in known]
+    parts = {part: [e for info in cases for e in of(new if info["case"] in fresh else old, part, info["case"])] for part in ("results", "convergence", "figures")}
+    return {"cases": cases, **parts}
+
+
+def write(new, images):
+    """Writes all three, and copies the figures; of a run with another kernel or transfer nothing is written."""
+    if any(info["overrides"] for info in new["cases"]):
+        raise ValueError("the documents are written from runs without --kernel and --transfer")
+    old = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"cases": []}
+    document = merge(old, new) if isinstance(old, dict) else new
+    RESULTS.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    for figure in new["figures"]:
+        if figure["shown"] == "everywhere":
+            shutil.copyfile(images / figure["file"], ROOT / "docs/images" / figure["file"])
+    (ROOT / "docs/verification.md").write_text(page(document), encoding="utf-8")
     readme = ROOT / "README.md"
-    if readme.exists():
-        text = replace_block(readme.read_text(encoding="utf-8"), block(results))
-        if text is not None:
-            readme.write_text(text, encoding="utf-8")
+    text = replace_block(readme.read_text(encoding="utf-8"), block(document))
+    if text is None:
+        raise ValueError(f"{readme}: the markers {BEGIN} and {END} are not there once and in order")
+    readme.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    source = pathlib.Path(sys.argv[1])
+    write(json.loads(source.read_text(encoding="utf-8")), source.parent / "report/images")

@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""Tests of the parts of the verification (benchmarks/*.py) that decide what is a pass and what is written where."""
+"""Tests of the parts of the verification (benchmarks/*.py) that decide what is a pass and what is written where; nothing is simulated."""
+import json
 import pathlib
 import struct
 import sys
@@ -12,8 +13,15 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import lab  # noqa: E402
 import lz4.block  # noqa: E402
 import numpy as np  # noqa: E402
+import pages  # noqa: E402
+import regression  # noqa: E402
 import report  # noqa: E402
+import tradeoff  # noqa: E402
+import verify  # noqa: E402
 import vtp  # noqa: E402
+
+SUMMARY = {"kernel": "umls", "transfer": "flip, musl", "mesh": {"cells": 4}, "bodies": [{"particles": 6}],
+           "cost": {"threads": 1, "peak_memory [B]": 1000}, "program": {"version": "1", "commit": "abc", "compiler": "gcc"}}
 
 
 def result(value, criterion, tolerance=None, reference=None):
@@ -35,7 +43,176 @@ class Verdicts(unittest.TestCase):
         self.assertIsNone(result(1, "reported").passed)
 
 
+def program(folder):
+    """A stand-in for talus: fails where a setting says `fail`, else leaves a summary and a history with its words."""
+    path = pathlib.Path(folder) / "program"
+    path.write_text(f"""#!/bin/sh
+case "$*" in *fail=1*) echo "error: points went out" >&2; exit 3;; esac
+mkdir -p "$4" && echo '{json.dumps(SUMMARY)}' > "$4/summary.json" && echo "$@" > "$4/words" && printf 'time [s],x\\n0,1\\n' > "$4/history.csv"
+""", encoding="utf-8")
+    path.chmod(0o755)
+    return path
+
+
+class Runs(unittest.TestCase):
+    SCENE = "sliding_block/scene.yaml"
+
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = pathlib.Path(holder.name)
+
+    def lab(self, **options):
+        made = lab.Lab(program(self.folder), self.folder / "runs", self.folder / "images", **options)
+        self.addCleanup(made.close)
+        return made
+
+    def test_runs_side_by_side_keep_their_results_apart(self):
+        own = self.lab(jobs=3)
+        runs = [own.run(self.SCENE, f"n{i}", {"a": i}) for i in range(6)]
+        for i, run in enumerate(runs):
+            self.assertIn(f"--set a={i}", (run.folder / "words").read_text(encoding="utf-8"))
+            self.assertEqual((run.particles, run.cells, run.memory), (6, 4, 1000))
+        self.assertEqual(own.runs_of("sliding_block"), runs)
+
+    def test_a_run_that_fails_says_so_when_it_is_asked_and_stops_no_other(self):
+        own = self.lab()
+        bad, good = own.run(self.SCENE, "bad", {"fail": 1}), own.run(self.SCENE, "good", {})
+        self.assertEqual(good.history["x"].tolist(), [1])
+        with self.assertRaisesRegex(lab.RunFailed, "sliding_block/bad ended with 3: error: points went out"):
+            bad.history
+        self.assertIn("points went out", bad.failure())
+        self.assertIsNone(good.failure())
+
+    def test_one_label_means_one_run(self):
+        own = self.lab()
+        self.assertIs(own.run(self.SCENE, "n", {"a": 1}), own.run(self.SCENE, "n", {"a": 1}))
+        with self.assertRaises(ValueError):
+            own.run(self.SCENE, "n", {"a": 2})
+
+    def test_a_known_run_is_used_again_only_for_the_same_inputs(self):
+        self.lab().run(self.SCENE, "n", {"a": 1}).folder.joinpath("words").write_text("old", encoding="utf-8")
+        self.assertEqual((self.lab(reuse=True).run(self.SCENE, "n", {"a": 1}).folder / "words").read_text(encoding="utf-8"), "old")
+        self.assertIn("a=2", (self.lab(reuse=True).run(self.SCENE, "n", {"a": 2}).folder / "words").read_text(encoding="utf-8"))
+
+    def test_overrides_reach_the_runs_that_leave_the_choice_open(self):
+        own = self.lab(overrides={"kernel": "linear", "transfer.scheme": "apic"})
+        words = (own.run(self.SCENE, "open", {}).folder / "words").read_text(encoding="utf-8")
+        self.assertIn("--set kernel=linear", words)
+        self.assertIn("--set transfer.scheme=apic", words)
+        words = (own.run(self.SCENE, "chosen", {"kernel": "umls", "transfer.scheme": "flip"}).folder / "words").read_text(encoding="utf-8")
+        self.assertNotIn("linear", words)
+        self.assertNotIn("apic", words)
+
+    def measured(self, evaluate):
+        """Records and account of a case whose evaluate() is given."""
+        known, verify.load = verify.load, lambda case: type("Case", (), {"evaluate": staticmethod(evaluate)})
+        try:
+            return verify.measure(self.lab(), "sliding_block", {})
+        finally:
+            verify.load = known
+
+    def test_a_case_with_a_run_that_fails_has_a_failed_result_with_the_words_of_the_program(self):
+        records, info = self.measured(lambda own: [own.run(self.SCENE, "bad", {"fail": 1}).history])
+        self.assertEqual([(r["metric"], r["pass"]) for r in records], [("run bad", False)])
+        self.assertIn("points went out", report.line(records[0]))
+        self.assertEqual(info["runs"], 1)
+        self.assertEqual(info["gone"], [])
+
+    def test_an_error_in_a_case_is_a_failed_result(self):
+        records, _ = self.measured(lambda own: [1 / 0])
+        self.assertIn("ZeroDivisionError", records[0]["error"])
+        self.assertIs(records[0]["pass"], False)
+
+    def test_two_results_of_one_name_are_an_error(self):
+        def evaluate(own):
+            run = own.run(self.SCENE, "n", {})
+            return [lab.Result("sliding_block", "twice", "m", float(value), "reported", None, None, "", run) for value in (1, 2)]
+        records, _ = self.measured(evaluate)
+        self.assertIn("two results are called twice", records[0]["error"])
+
+
+class Regression(unittest.TestCase):
+    def test_the_eighth_digit_counts_and_the_tenth_does_not(self):
+        self.assertFalse(regression.differs(1.2345678, 1.2345678 * (1 + 1e-10)))
+        self.assertTrue(regression.differs(1.2345680, 1.2345678))
+        self.assertTrue(regression.differs(-4.0, 4.0))
+        self.assertTrue(regression.differs(None, 4.0))
+
+    def test_rounding_of_ratios_is_no_change(self):
+        self.assertFalse(regression.differs(3e-14, 2e-15))
+        self.assertTrue(regression.differs(3e-9, 0.0))
+
+    def test_changes_are_named_and_what_is_new_or_gone_is_not_a_change(self):
+        records = [{"metric": "a", "value": 1.1}, {"metric": "b", "value": 1.0}, {"metric": "new", "value": 3.0}]
+        gone = regression.compare(records, {"a": 1.0, "b": 1.0, "old": 2.0})
+        self.assertEqual(gone, ["old"])
+        self.assertEqual([r["changed"] for r in records], ["changed by +10 %, was 1, is 1.1", None, None])
+
+
+class Tradeoff(unittest.TestCase):
+    AXES = {"mesh": {"coarse": {}, "fine": {}}, "kernel": {"umls": {}, "linear": {}}, "cfl": {"0.4": {}, "0.2": {}, "0.1": {}}}
+
+    def test_quick_changes_one_choice_at_a_time_on_every_mesh(self):
+        chosen = tradeoff.combinations(self.AXES, False)
+        self.assertEqual(len(chosen), 2 * (1 + 1 + 2))
+        self.assertNotIn({"mesh": "fine", "kernel": "linear", "cfl": "0.2"}, chosen)
+        self.assertEqual(len(tradeoff.combinations(self.AXES, True)), 12)
+
+    def test_the_front_holds_what_nothing_beats(self):
+        self.assertEqual(tradeoff.front([(3, 1), (1, 5), (2, 5), (2, 3), (4, 1), (5, 2), (1, 6)]), [1, 3, 0])
+
+    def test_advice_names_the_cheapest_and_where_it_ends(self):
+        points = [{"name": name, "error": error, "processor_seconds": seconds, "peak_memory [B]": 5e7}
+                  for name, error, seconds in (("a", 0.05, 1.0), ("b", 0.02, 9.0), ("c", 0.009, 4.0))]
+        words = tradeoff.advice(points)
+        self.assertEqual(len(words), 4)
+        self.assertIn("For 10 % error the cheapest is a: 1 s", words[0])
+        self.assertIn("For 3 % error the cheapest is c", words[1])
+        self.assertEqual(words[3], "0.3 % error is not reached; the least is 0.9 % with c: 4 s, 50 MB.")
+
+
+class Documents(unittest.TestCase):
+    def document(self, cases, value):
+        info = [{"case": case, "title": case, "level": "quick", "overrides": {}, "program": SUMMARY["program"], "runs": 1, "processor_seconds": 1.0, "gone": []}
+                for case in cases]
+        records = [{**verify.failed(case, "m", "words"), "value": value, "pass": value > 0, "criterion": "at least", "tolerance": 0, "changed": None,
+                    "release": None} for case in cases]
+        for record in records:
+            del record["error"]
+        orders = [{"case": case, "name": "error", "sizes": [1, 0.5, 0.25], "errors": [4, 2, 0.5], "orders": [1.0, 2.0], "order": 1.5, "expected": 2} for case in cases]
+        return {"cases": info, "results": records, "convergence": orders, "figures": []}
+
+    def test_merging_replaces_the_cases_that_were_run_in_their_place(self):
+        merged = report.merge(self.document(["a", "b"], 1), self.document(["b", "c"], 2))
+        self.assertEqual([(r["case"], r["value"]) for r in merged["results"]], [("a", 1), ("b", 2), ("c", 2)])
+        self.assertEqual([info["case"] for info in merged["cases"]], ["a", "b", "c"])
+
+    def test_pages_show_verdict_and_orders(self):
+        with tempfile.TemporaryDirectory() as folder:
+            pages.write(self.document(["a"], 1), pathlib.Path(folder))
+            page = (pathlib.Path(folder) / "a.html").read_text(encoding="utf-8")
+            index = (pathlib.Path(folder) / "index.html").read_text(encoding="utf-8")
+        self.assertIn('<span class="pass">pass</span>', page)
+        self.assertIn("<td>0.5</td>\n<td>2</td>\n<td>1</td>", page)
+        self.assertIn('<a href="a.html">a</a>', index)
+
+    def test_documents_are_not_written_from_runs_with_another_kernel(self):
+        document = self.document(["a"], 1)
+        document["cases"][0]["overrides"] = {"kernel": "linear"}
+        with self.assertRaises(ValueError):
+            report.write(document, pathlib.Path("images"))
+
+    def test_a_case_without_judged_numbers_still_has_a_row(self):
+        document = self.document(["a"], 1)
+        document["results"][0]["pass"] = None
+        self.assertIn("0 of 0", report.block(document))
+
+
 class Measures(unittest.TestCase):
+    def test_orders_between_neighbours(self):
+        np.testing.assert_allclose(lab.neighbours([1, 0.5, 0.25], [4, 2, 0.5]), [1, 2], rtol=1e-12)
+
     def test_the_order_of_a_parabola_is_two(self):
         self.assertAlmostEqual(lab.observed_order([1, 0.5, 0.25], [3, 0.75, 0.1875]), 2, places=12)
 

@@ -1,0 +1,59 @@
+"""Each benchmark stores, beside its reference, the values of the last release (quick level) in release.json; what differs is named.
+
+A change is no failure by itself: a better method changes numbers. It must be seen, and meant.
+"""
+import json
+import math
+
+from lab import ROOT
+
+DIGITS = 8
+NOTHING = 1e-12  # a ratio smaller than this is rounding: drifts of momentum, changes of mass
+
+
+def path(case):
+    """Where the values of a case are."""
+    return ROOT / "benchmarks" / case / "release.json"
+
+
+def stored(case):
+    """{metric: value} of the last release; empty where there was none."""
+    return json.loads(path(case).read_text(encoding="utf-8"))["values"] if path(case).exists() else {}
+
+
+def differs(value, old):
+    """Whether the eighth digit of the old value changed, by more than one unit. A run gives the same bits again on one machine with one compiler; another
+    processor or compiler rounds otherwise, which smooth problems show in the tenth digit or later, and failing soil, contact and shocks earlier."""
+    if value is None or old is None:
+        return value is not old
+    if max(abs(value), abs(old)) < NOTHING:
+        return False
+    unit = 10.0 ** (math.floor(math.log10(abs(old))) - DIGITS + 1) if old else NOTHING
+    return abs(value - old) > 1.001 * unit
+
+
+def change(value, old):
+    """A change in words."""
+    if value is None or old is None or not old:
+        return f"changed from {old} to {value}"
+    return f"changed by {(value - old) / abs(old) * 100:+.2g} %, was {old:.{DIGITS}g}, is {value:.{DIGITS}g}"
+
+
+def compare(records, values):
+    """Adds 'release' and 'changed' (words, or None) to the records of a case; returns the metrics that are measured no more."""
+    for record in records:
+        record["release"] = values.get(record["metric"])
+        known = record["metric"] in values
+        record["changed"] = change(record["value"], record["release"]) if known and differs(record["value"], record["release"]) else None
+    return sorted(values.keys() - {record["metric"] for record in records})
+
+
+def write(document):
+    """Stores the values of all cases that ran to their end."""
+    broken = {record["case"] for record in document["results"] if "error" in record}
+    for case in document["cases"]:
+        if case["case"] in broken:
+            continue
+        values = {r["metric"]: None if r["value"] is None else float(f"{r['value']:.{DIGITS + 4}g}") for r in document["results"] if r["case"] == case["case"]}
+        text = json.dumps({"program": case["program"]["version"], "commit": case["program"]["commit"], "level": case["level"], "values": values}, indent=1)
+        path(case["case"]).write_text(text + "\n", encoding="utf-8")

@@ -1,0 +1,158 @@
+#!/usr/bin/python3
+"""What accuracy costs: sweeps mesh, particles per cell, kernel, transfer and time step of a case, draws error over processor time and memory.
+
+Usage: talus tradeoff case [--level quick|full] [--out DIR]
+Level quick takes every mesh with one of the other choices changed at a time, level full all combinations.
+"""
+import itertools
+import json
+import shutil
+import sys
+
+import verify  # first: it says which modules of Python are missing
+
+import lab as tools
+import numpy as np
+
+TARGETS = [0.1, 0.03, 0.01, 0.003, 0.001]
+MOST_COLOURS = 10  # lines with a colour of their own; beyond, only those that touch the front have one
+
+
+def cases():
+    """Cases that can be swept."""
+    return [case for case in verify.CASES if (verify.SUITE / case / "case.py").exists() and "\ndef tradeoff(" in (verify.SUITE / case / "case.py").read_text(encoding="utf-8")]
+
+
+def arguments():
+    options = verify.parser(__doc__)
+    options.add_argument("case", help=", ".join(cases()))
+    given = options.parse_args()
+    if given.case not in cases():
+        options.error(f"no case {given.case} that can be swept; there are: {', '.join(cases())}")
+    return verify.settle(options, given, "tradeoff")
+
+
+def combinations(axes, everything):
+    """Choices {axis: label}, one dictionary per run: the first axis in full, of the others one at a time away from its first label, or all."""
+    product = [dict(zip(axes, labels)) for labels in itertools.product(*axes.values())]
+    usual = {name: next(iter(labels)) for name, labels in axes.items()}
+    others = list(axes)[1:]
+    return [choice for choice in product if everything or sum(choice[name] != usual[name] for name in others) <= 1]
+
+
+def front(points):
+    """Indices of the points (cost, error) that no other point beats or equals in one and beats in the other, by cost."""
+    best, found = np.inf, []
+    for i in sorted(range(len(points)), key=lambda i: points[i]):
+        if points[i][1] < best:
+            best = points[i][1]
+            found.append(i)
+    return found
+
+
+def percent(share):
+    return f"{share * 100:.3g} %"
+
+
+def advice(points):
+    """For each error of TARGETS the cheapest of the points, in words; after the first that is not reached, the best there is."""
+    lines = []
+    for target in TARGETS:
+        reached = [p for p in points if p["error"] <= target]
+        if not reached:
+            best = min(points, key=lambda p: p["error"])
+            return [*lines, f"{percent(target)} error is not reached; the least is {percent(best['error'])} with {best['name']}: {cost(best)}."]
+        cheapest = min(reached, key=lambda p: p["processor_seconds"])
+        lines.append(f"For {percent(target)} error the cheapest is {cheapest['name']}: {cost(cheapest)}, error {percent(cheapest['error'])}.")
+    return lines
+
+
+def cost(point):
+    return f"{point['processor_seconds']:.3g} s, {point['peak_memory [B]'] / 1e6:.0f} MB"
+
+
+def sweep(lab, case, description, everything):
+    """Runs all combinations; those that ended as points, those that did not as words."""
+    chosen = combinations(description.axes, everything)
+    asked = []
+    for choice in chosen:
+        settings = dict(description.settings)
+        for axis, label in choice.items():
+            settings.update(description.axes[axis][label])
+        name = ", ".join(choice.values())
+        asked.append((choice, name, lab.run(description.scene, "tradeoff_" + "".join(c if c.isalnum() or c in ".-" else "_" for c in name), settings)))
+    points, failures = [], []
+    for choice, name, run in asked:
+        words = run.failure()
+        error = None if words else tools.plain(description.error(run))
+        if error is None:
+            failures.append({"name": name, "error": words or "the error is not a finite number"})
+        else:
+            points.append({"name": name, "choice": choice, "error": error, "processor_seconds": run.seconds, "peak_memory [B]": run.memory,
+                           "cells": run.cells, "particles": run.particles, "commit": run.summary["program"]["commit"]})
+    return points, failures
+
+
+def series(points, axes):
+    """Points by what they share besides the first axis."""
+    lines = {}
+    for point in points:
+        lines.setdefault(", ".join(point["choice"][name] for name in list(axes)[1:]), []).append(point)
+    return lines
+
+
+def draw(figure, points, axes, what):
+    """Error over processor time on the left, over memory on the right; the front ringed and joined."""
+    rows = figure.add_gridspec(2, 2, height_ratios=[5, 1])
+    left = figure.add_subplot(rows[0, 0])
+    right = figure.add_subplot(rows[0, 1], sharey=left)
+    lines, first = series(points, axes), next(iter(axes))
+    for axis, price, scale, label in ((left, "processor_seconds", 1, "processor time [s]"), (right, "peak_memory [B]", 1e-6, "peak memory [MB]")):
+        best = front([(p[price], p["error"]) for p in points])
+        winners = {id(points[i]) for i in best}
+        for name, own in lines.items():
+            coloured = len(lines) <= MOST_COLOURS or any(id(p) in winners for p in own)
+            style = {"label": name, "linewidth": 0.8} if coloured else {"color": "0.8", "linewidth": 0.5, "zorder": 1}
+            axis.loglog([p[price] * scale for p in own], [p["error"] * 100 for p in own], "o-", markersize=3, **style)
+        axis.loglog([points[i][price] * scale for i in best], [points[i]["error"] * 100 for i in best], "ko--", markersize=8, fillstyle="none", linewidth=0.8,
+                    label="Pareto front")
+        for i in best:
+            axis.annotate(points[i]["choice"][first], (points[i][price] * scale, points[i]["error"] * 100), textcoords="offset points", xytext=(6, 5), fontsize=7)
+        axis.set_xlabel(label)
+    left.set_ylabel(f"{what} [%]")
+    handles, labels = left.get_legend_handles_labels()
+    key = figure.add_subplot(rows[1, :])
+    key.set_axis_off()
+    key.legend(handles, labels, loc="center", ncols=2, fontsize=7)
+
+
+def main():
+    given = arguments()
+    lab = tools.Lab(given.program, given.runs, given.out, given.level, given.reuse, given.threads, given.jobs)
+    try:
+        description = verify.load(given.case).tradeoff(lab)
+        points, failures = sweep(lab, given.case, description, given.level == "full")
+    finally:
+        lab.close()
+    for failure in failures:
+        print(f"failed: {failure['name']}: {failure['error']}")
+    if not points:
+        return 1
+    name = f"tradeoff_{given.case}"
+    lab.figure(given.case, name, lambda figure: draw(figure, points, description.axes, description.what), size=(8, 4.6))
+    words = advice(points)
+    document = {"case": given.case, "what": description.what, "level": given.level, "threads": given.threads, "commit": points[0]["commit"], "figure": f"{name}.png",
+                "advice": words, "front over processor time": [points[i]["name"] for i in front([(p["processor_seconds"], p["error"]) for p in points])],
+                "front over memory": [points[i]["name"] for i in front([(p["peak_memory [B]"], p["error"]) for p in points])],
+                "points": points, "failed": failures}
+    path = given.out / f"{name}.json"
+    path.write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
+    if given.write_docs:
+        shutil.copyfile(path, verify.SUITE / given.case / "tradeoff.json")
+        shutil.copyfile(given.out / f"{name}.png", tools.ROOT / "docs/images" / f"{name}.png")
+    print("\n".join([*words, str(path), str(given.out / f"{name}.png")]))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
