@@ -42,8 +42,8 @@ bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus
 	@build/release/talus_speed
 	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
 
-verify: build  ## run the benchmarks against their reference solutions (long)
-	@tools/verify.sh
+verify: build  ## run the benchmarks against their references, quick level (up to 8 minutes)
+	@tools/verify.sh --level quick --jobs 2
 
 docs: build  ## write docs/reference/scene.md out of the program
 	@mkdir -p docs/reference

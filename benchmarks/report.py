@@ -91,8 +91,16 @@ def price(case):
     if not path.exists():
         return []
     swept = json.loads(path.read_text(encoding="utf-8"))
-    return ["", f"![Error over processor time and memory](images/{swept['figure']})", "", f"What accuracy costs, {swept['what']}, commit {swept['commit']}:", "",
+    return ["", f"![Error over processor time and memory](images/{swept['figure']})", "", f"What accuracy costs: {swept['what']}, commit {swept['commit']}.", "",
             *(f"* {advice}" for advice in swept["advice"])]
+
+
+def first_price(cases):
+    """The figure of the first case that was swept, for README.md."""
+    for case in cases:
+        if lines := price(case):
+            return [lines[1].replace("](images/", "](docs/images/"), "", f"{lines[3]} Ringed: what nothing beats in both; `talus tradeoff {case}`.", *lines[4:]]
+    return []
 
 
 def page(document):
@@ -123,7 +131,8 @@ def block(document):
     rows = ["| benchmark | for example | measured | reference | asked | passed |", "|---|---|---|---|---|---|"]
     rows += [summary(of(document, "results", info["case"]), info) for info in document["cases"]]
     commits = ", ".join(dict.fromkeys(info["program"]["commit"] for info in document["cases"]))
-    return "\n".join([*rows, "", f"Measured at commit {commits}. All numbers, also those that are not good: [docs/verification.md](docs/verification.md)."])
+    told = f"Measured at commit {commits}. All numbers, also those that are not good: [docs/verification.md](docs/verification.md)."
+    return "\n".join([*rows, "", told, "", *first_price([info["case"] for info in document["cases"]])]).rstrip()
 
 
 def replace_block(text, content):
@@ -152,6 +161,11 @@ def write(new, images):
     for figure in new["figures"]:
         if figure["shown"] == "everywhere":
             shutil.copyfile(images / figure["file"], ROOT / "docs/images" / figure["file"])
+    write_documents(document)
+
+
+def write_documents(document):
+    """docs/verification.md and the block in README.md."""
     (ROOT / "docs/verification.md").write_text(page(document), encoding="utf-8")
     readme = ROOT / "README.md"
     text = replace_block(readme.read_text(encoding="utf-8"), block(document))

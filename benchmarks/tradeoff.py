@@ -13,6 +13,7 @@ import verify  # first: it says which modules of Python are missing
 
 import lab as tools
 import numpy as np
+import report
 
 TARGETS = [0.1, 0.03, 0.01, 0.003, 0.001]
 MOST_COLOURS = 10  # lines with a colour of their own; beyond, only those that touch the front have one
@@ -150,6 +151,7 @@ def main():
     if given.write_docs:
         shutil.copyfile(path, verify.SUITE / given.case / "tradeoff.json")
         shutil.copyfile(given.out / f"{name}.png", tools.ROOT / "docs/images" / f"{name}.png")
+        report.write_documents(json.loads(report.RESULTS.read_text(encoding="utf-8")))
     print("\n".join([*words, str(path), str(given.out / f"{name}.png")]))
     return 0
 

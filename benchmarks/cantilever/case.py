@@ -64,3 +64,17 @@ def evaluate(lab):
     runs = {size: lab.run(f"{CASE}/scene.yaml", f"dx{size}", {"mesh.size": size}) for size in SIZES[lab.level]}
     lab.figure(CASE, "verification_cantilever", lambda figure: draw(figure, runs, curve), caption="Tip of the cantilever over three periods.")
     return [result for size, run in runs.items() for result in judge(size, run, curve, data)]
+
+
+def tradeoff(lab):
+    """Error of the tip over its first minimum and three periods, that of evaluate()."""
+    data, curve = tools.reference(CASE), tools.reference(CASE, "fe_history.csv")
+    return tools.Tradeoff(
+        scene=f"{CASE}/scene.yaml",
+        axes={"mesh": {f"cells of {size} m": {"mesh.size": size} for size in (1, 0.5, 0.35, 0.25)},
+              "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (4, 3, 6)},
+              "kernel": {kernel: {"kernel": kernel} for kernel in ("umls", "linear")},
+              "transfer": {scheme: {"transfer.scheme": scheme} for scheme in ("flip", "tpic")},
+              "step": {f"CFL {share}": {"time.cfl": share} for share in (0.4, 0.8)}},
+        error=lambda run: history_error(run.history, curve, data),
+        what="rms error of the tip of the cantilever over 4 s")

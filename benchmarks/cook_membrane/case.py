@@ -34,17 +34,19 @@ def draw(figure, runs):
 
 
 def evaluate(lab):
-    """Four Poisson's ratios; the averaging off for the first two, finer cells for the second, the last two at full level: their steps are short."""
+    """Four Poisson's ratios, the averaging on and off; at full level finer cells and what is nearer to 0.5: their steps are many."""
     data, results, pictured = tools.reference(CASE), [], {}
     corner = np.array(data["corner"], dtype=float)
-    plan = [("0.3", 4, False), ("0.3", 2, True), ("0.499", 4, False), ("0.499", 4, True), ("0.499", 2, True)]
+    plan = [("0.3", 4, False), ("0.3", 2, True), ("0.499", 4, False), ("0.499", 4, True)]
     if lab.level == "full":
-        plan += [("0.499", 2, False), ("0.499", 1, True), ("0.4999", 4, True), ("0.49999", 4, True)]
+        plan += [("0.499", 2, True), ("0.499", 2, False), ("0.499", 1, True), ("0.4999", 4, True), ("0.49999", 4, True)]
     asked = {("0.499", 2, True): 0.02, ("0.499", 1, True): 0.02, ("0.49999", 4, True): 0.05}
+    runs = []
     for nu, size, averaged in plan:
         name = f"nu {nu}, cells of {size} m, {'averaged' if averaged else 'plain'}"
-        run = lab.run(f"{CASE}/scene.yaml", name.replace(" ", "_").replace(",", ""),
-                      {"materials[0].poisson_ratio": float(nu), "mesh.size": size, "bodies[0].f_bar": averaged})
+        runs.append((name, lab.run(f"{CASE}/scene.yaml", name.replace(" ", "_").replace(",", ""),
+                                   {"materials[0].poisson_ratio": float(nu), "mesh.size": size, "bodies[0].f_bar": averaged})))
+    for (nu, size, averaged), (name, run) in zip(plan, runs):
         tolerance = asked.get((nu, size, averaged))
         results.append(tools.Result(CASE, f"lift of the corner, {name}", "m", lift(run, corner), "within" if tolerance else "reported", tolerance,
                                     data["lift [m]"][nu], data["source"], run))

@@ -5,7 +5,7 @@ import bar_mode
 import lab as tools
 
 CASE = "vibrating_bar"
-SIZES = [1, 0.5, 0.25, 0.125]  # m
+SIZES = {"quick": [1, 0.5, 0.25], "full": [1, 0.5, 0.25, 0.125]}  # m
 SCHEMES = ["flip", "tpic"]
 PERIOD = 10  # s
 
@@ -16,12 +16,10 @@ def settings(size, scheme, speed):
             "transfer.scheme": scheme, "bodies[0].velocity": [f"{speed} * sin(pi * x / 50)", "0"]}
 
 
-def sweep(lab, data, scheme, speed, kernel="umls"):
-    """Runs and errors over all sizes."""
-    sizes = SIZES if kernel == "umls" else SIZES[:3]
-    runs = [lab.run(f"{CASE}/scene.yaml", f"{kernel}_{scheme}_v{speed}_dx{size}", {**settings(size, scheme, speed), "kernel": kernel})
-            for size in sizes]
-    return sizes, runs, [bar_mode.displacement_error(run.history, data, speed) for run in runs]
+def sweep(lab, scheme, speed):
+    """Starts the runs of all sizes."""
+    sizes = SIZES[lab.level]
+    return sizes, [lab.run(f"{CASE}/scene.yaml", f"umls_{scheme}_v{speed}_dx{size}", {**settings(size, scheme, speed), "kernel": "umls"}) for size in sizes]
 
 
 def energy_change(run):
@@ -37,21 +35,9 @@ def draw_orders(figure, curves):
         axis.loglog(sizes, np.array(errors) * 100, "o-" if speed == 0.1 else "s--", label=f"{scheme}, v0 = {speed} m/s")
     axis.loglog([1, 0.25], [0.5, 0.5 / 16], "k:", label="order 2")
     axis.loglog([0.5], [0.554], "kx", label="bound of Cao et al.")
-    tools.size_axis(axis, SIZES)
+    tools.size_axis(axis, SIZES["full"])
     axis.set_ylabel("error in displacement [% of amplitude]")
     axis.legend(fontsize=8)
-
-
-def draw_prices(figure, curves):
-    """Error over processor time, one line per kernel and transfer, marks by size of cell."""
-    axis = figure.subplots()
-    for name, (sizes, runs, errors) in curves.items():
-        seconds = [run.seconds for run in runs]
-        axis.loglog(seconds, np.array(errors) * 100, "o-", label=name)
-        for size, x, y in zip(sizes, seconds, errors):
-            axis.annotate(f"{size:g} m", (x, y * 100), textcoords="offset points", xytext=(5, 4), fontsize=7)
-    axis.set(xlabel="processor time [s]", ylabel="error in displacement [% of amplitude]")
-    axis.legend()
 
 
 def judge_errors(scheme, sizes, runs, errors, data):
@@ -71,7 +57,9 @@ def judge_errors(scheme, sizes, runs, errors, data):
 def evaluate(lab):
     """Results for both transfers at v0 = 0.1 m/s (particles cross cells) and 0.001 m/s (they do not: the mesh alone)."""
     data = tools.reference(CASE)
-    curves = {(scheme, speed): sweep(lab, data, scheme, speed) for speed in (0.1, 0.001) for scheme in SCHEMES}
+    started = {(scheme, speed): sweep(lab, scheme, speed) for speed in (0.1, 0.001) for scheme in SCHEMES}
+    curves = {(scheme, speed): (sizes, runs, [bar_mode.displacement_error(run.history, data, speed) for run in runs])
+              for (scheme, speed), (sizes, runs) in started.items()}
     results = []
     for (scheme, speed), (sizes, runs, errors) in curves.items():
         if speed == 0.1:
@@ -79,8 +67,21 @@ def evaluate(lab):
         judged = speed == 0.001
         results.append(tools.Result(CASE, f"order of convergence, {scheme}, v0 = {speed} m/s", "-", tools.observed_order(sizes, errors),
                                     "at least" if judged else "reported", 1.8 if judged else None, 2.0, data["source"], runs[-1]))
-    prices = {f"umls, {scheme}": curves[scheme, 0.1] for scheme in SCHEMES}
-    prices["linear, flip"] = sweep(lab, data, "flip", 0.1, "linear")
-    lab.figure(CASE, "speed_accuracy", lambda figure: draw_prices(figure, prices), caption="What accuracy costs: error over processor time, by size of cell.")
+        lab.convergence(CASE, f"displacement error, {scheme}, v0 = {speed} m/s", sizes, errors, expected=2)
     lab.figure(CASE, "verification_bar", lambda figure: draw_orders(figure, curves), caption="Error of the displacement of the bar over 40 s.")
     return results
+
+
+def tradeoff(lab):
+    """Amplitude 0.159 m: particles cross cells; the error is that of evaluate()."""
+    data = tools.reference(CASE)
+    return tools.Tradeoff(
+        scene=f"{CASE}/scene.yaml",
+        axes={"mesh": {f"cells of {size} m": {key: value for key, value in settings(size, "tpic", 0.1).items() if key != "transfer.scheme"}
+                       for size in SIZES["full"]},
+              "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (6, 3, 12)},
+              "kernel": {kernel: {"kernel": kernel} for kernel in ("umls", "linear")},
+              "transfer": {scheme: {"transfer.scheme": scheme} for scheme in ("tpic", "flip", "apic")},
+              "step": {f"CFL {share}": {"time.cfl": share} for share in (0.4, 0.8, 0.2)}},
+        error=lambda run: bar_mode.displacement_error(run.history, data, 0.1),
+        what="error in displacement of the vibrating bar over four periods")
