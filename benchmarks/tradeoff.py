@@ -7,7 +7,6 @@ Level quick takes every mesh with one of the other choices changed at a time, le
 import itertools
 import json
 import shutil
-import sys
 
 import verify  # first: it says which modules of Python are missing
 
@@ -157,4 +156,4 @@ def main():
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    verify.end(main)

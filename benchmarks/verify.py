@@ -186,5 +186,16 @@ def conclude(document, given, seconds):
     return 1 if passed < judged or (given.regression and changed) else 0
 
 
+def end(main):
+    """Ends the process with the status of main(); 3 where a file cannot be written or read, 130 at Ctrl-C."""
+    try:
+        sys.exit(main())
+    except OSError as error:
+        print(f"error: {error}", file=sys.stderr)
+        sys.exit(3)
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    end(main)

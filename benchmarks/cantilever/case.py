@@ -5,6 +5,7 @@ import lab as tools
 
 CASE = "cantilever"
 SIZES = {"quick": [0.5, 0.25], "full": [0.5, 0.25, 0.125]}
+SWEPT = {"quick": [1, 0.7, 0.5, 0.35], "full": [1, 0.7, 0.5, 0.35, 0.25]}  # for tradeoff()
 
 
 def first_minimum(history, before=1.0):
@@ -71,7 +72,7 @@ def tradeoff(lab):
     data, curve = tools.reference(CASE), tools.reference(CASE, "fe_history.csv")
     return tools.Tradeoff(
         scene=f"{CASE}/scene.yaml",
-        axes={"mesh": {f"cells of {size} m": {"mesh.size": size} for size in (1, 0.5, 0.35, 0.25)},
+        axes={"mesh": {f"cells of {size} m": {"mesh.size": size} for size in SWEPT[lab.level]},
               "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (4, 3, 6)},
               "kernel": {kernel: {"kernel": kernel} for kernel in ("umls", "linear")},
               "transfer": {scheme: {"transfer.scheme": scheme} for scheme in ("flip", "tpic")},
