@@ -37,6 +37,8 @@ CASES = [
     "cook_membrane",
     "infinite_slope",
     "strip_footing",
+    "column_collapse",
+    "cohesive_collapse",
 ]
 SUITE = pathlib.Path(__file__).resolve().parent
 
