@@ -29,6 +29,8 @@ class CommandLine {
     add_mesh();
     add_drive();
     add_render();
+    add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
+    add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
     CLI::App* manual = app_.add_subcommand("manual", "every key of a scene, as Markdown");
     manual->add_flag("--schema", schema_, "as JSON Schema, for editors");
     manual->callback([this] { print_manual(schema_); });
@@ -108,6 +110,27 @@ class CommandLine {
     render->callback([this] { render_results(render_); });
   }
 
+  void add_suite(const std::string& name, const std::string& help, SuiteOptions& options)
+  {
+    const bool verify = name == "verify";
+    options.suite = name;
+    CLI::App* suite = app_.add_subcommand(name, help);
+    CLI::Option* cases = suite->add_option("case", options.cases, verify ? "benchmarks; default all" : "benchmark");
+    if (!verify)
+      cases->required()->expected(1);
+    suite->add_option("--level", options.level, "quick or full; default quick")->check(CLI::IsMember({"quick", "full"}));
+    suite->add_option("--out", options.out, "folder for runs and report; default runs/" + name);
+    suite->add_option("--jobs", options.jobs, "runs at a time; default one a core")->check(CLI::Range(1, 1024));
+    suite->add_option("--threads", options.threads, "threads of each run; default 1")->check(CLI::Range(1, 1024));
+    suite->add_flag("--reuse", options.reuse, "do not repeat runs whose program and inputs are unchanged");
+    if (verify) {
+      suite->add_option("--kernel", options.kernel, "kernel of every run that does not choose one itself");
+      suite->add_option("--transfer", options.transfer, "transfer scheme of every run that does not choose one itself");
+      suite->add_flag("--regression", options.regression, "what differs from the values of the last release is a failure");
+    }
+    suite->callback([&options] { run_suite(options); });
+  }
+
   CLI::App app_;
   RunOptions run_;
   std::filesystem::path check_scene_;
@@ -115,6 +138,7 @@ class CommandLine {
   DriveOptions drive_;
   MeshOptions mesh_;
   RenderOptions render_;
+  SuiteOptions verify_, tradeoff_;
   bool schema_ = false;
 };
 

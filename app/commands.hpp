@@ -54,6 +54,17 @@ struct RenderOptions {
 /// Draws the results in a folder; what is not asked for is as the scene says.
 void render_results(const RenderOptions& options);
 
+struct SuiteOptions {
+  std::string suite;  ///< verify or tradeoff
+  std::vector<std::string> cases;
+  std::optional<std::string> level, kernel, transfer;
+  std::optional<std::filesystem::path> out;
+  std::optional<int> jobs, threads;
+  bool reuse = false, regression = false;
+};
+/// Replaces this process by the suite of benchmarks/, which runs this program.  EnvironmentError.
+[[noreturn]] void run_suite(const SuiteOptions& options);
+
 /// Every key of a scene: Markdown, or JSON Schema.
 void print_manual(bool schema);
 void print_info();
