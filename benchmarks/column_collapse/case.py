@@ -174,3 +174,23 @@ def evaluate(lab):
                caption="Granular columns in a channel: deposits, and run-outs beside the laws of two experiments.")
     results = [result for name, run in runs.items() for result in judge(name, run, data, name in JUDGED)]
     return results + [result for ratio, run in columns.items() for result in judge_channel(ratio, run, data)]
+
+
+def tradeoff(lab):
+    """Error of the final surface of the bars against the experiment, which its digitising limits to some per cent."""
+    points = tools.reference(CASE, "surface.csv")
+    inside = points["x"] <= SCORED
+
+    def error(run):
+        x, y = surface(run.last_frame())
+        return tools.rms(np.interp(points["x"][inside], x, y) - points["y"][inside]) / 0.1  # of the height before
+
+    return tools.Tradeoff(
+        scene=f"{CASE}/scene.yaml",
+        axes={"mesh": {f"{count} cells over the height": {"mesh.size": round(0.1 / count, 5)} for count in ([6, 8, 12] if lab.level == "quick" else [6, 8, 12, 16, 25])},
+              "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (4, 3, 6)},
+              "kernel": {kernel: {"kernel": kernel} for kernel in ("umls", "linear")},
+              "transfer": {scheme: {"transfer.scheme": scheme} for scheme in ("tpic", "flip", "apic")},
+              "step": {f"CFL {share}": {"time.cfl": share} for share in (0.5, 0.25)}},
+        error=error,
+        what="rms error of the final surface of a column of bars over its height")
