@@ -9,26 +9,42 @@
 
 namespace talus {
 
+struct Formula::Machine {
+  mu::Parser parser;
+  Vec3 place = Vec3::Zero();
+  Real time = 0;
+};
+
+Formula::Formula(const std::string& text) : machine_(std::make_shared<Machine>())
+{
+  mu::Parser& parser = machine_->parser;
+  try {
+    parser.DefineConst("pi", std::numbers::pi);
+    parser.DefineVar("x", &machine_->place[0]);
+    parser.DefineVar("y", &machine_->place[1]);
+    parser.DefineVar("z", &machine_->place[2]);
+    parser.DefineVar("t", &machine_->time);
+    parser.SetExpr(text);
+    parser.Eval();  // what is wrong with the text shows now
+  } catch (const mu::ParserError& e) {
+    throw std::invalid_argument(fmt::format("\"{}\" is no formula of x, y, z and t: {}", text, e.GetMsg()));
+  }
+}
+
+Real Formula::operator()(const Vec3& place, Real time) const
+{
+  machine_->place = place;
+  machine_->time = time;
+  return machine_->parser.Eval();
+}
+
 std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> places)
 {
+  const Formula value(formula);
   std::vector<Real> values;
   values.reserve(places.size());
-  Vec3 at = Vec3::Zero();
-  try {
-    mu::Parser parser;
-    parser.DefineConst("pi", std::numbers::pi);
-    parser.DefineVar("x", &at[0]);
-    parser.DefineVar("y", &at[1]);
-    parser.DefineVar("z", &at[2]);
-    parser.SetExpr(formula);
-    parser.Eval();  // what is wrong with the text shows without any place, too
-    for (const Vec3& place : places) {
-      at = place;
-      values.push_back(parser.Eval());
-    }
-  } catch (const mu::ParserError& e) {
-    throw std::invalid_argument(fmt::format("\"{}\" is no formula of x, y and z: {}", formula, e.GetMsg()));
-  }
+  for (const Vec3& place : places)
+    values.push_back(value(place, 0));
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
       throw std::invalid_argument(

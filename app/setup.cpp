@@ -1,7 +1,9 @@
 #include "app/setup.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
+#include "app/expression.hpp"
 #include "app/seed.hpp"
 #include "io/scene_rules.hpp"
 
@@ -113,6 +115,27 @@ class LoadBuilder {
   {}
 
   void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
+  void operator()(const BodyForceSpec& spec)
+  {
+    std::vector<Formula> formulas;
+    for (std::size_t d = 0; d < spec.acceleration.size(); ++d)
+      try {
+        formulas.emplace_back(spec.acceleration[d]);
+      } catch (const std::invalid_argument& e) {
+        complaints_.add(spec.where, fmt::format("acceleration[{}]", d), e.what());
+      }
+    if (formulas.size() < D)
+      return;
+    setup_.loads.of_place.push_back({[formulas](const Vec<D>& place, Real time) {
+                                       Vec3 at = Vec3::Zero();
+                                       at.template head<D>() = place;
+                                       Vec<D> acceleration;
+                                       for (int d = 0; d < D; ++d)
+                                         acceleration[d] = formulas[static_cast<std::size_t>(d)](at, time);
+                                       return acceleration;
+                                     },
+                                     spec.place == PlaceOf::start});
+  }
   void operator()(const TractionSpec& spec)
   {
     const auto found = mesh_.facet_set(spec.on);
@@ -278,7 +301,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   setup.limits.cfl = scene.time.cfl;
   setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
   setup.limits.shortest = scene.time.min_step;
-  if (wants_displacement(scene.outputs))
+  const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
+  if (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start))
     setup.particles.x0 = setup.particles.x;
   return setup;
 }

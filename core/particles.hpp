@@ -31,7 +31,7 @@ struct Particles {
 
   std::vector<Mat<D>> C;           ///< affine field of APIC [1/s]
   std::vector<Vec<D>> x0;          ///< where displacement counts from [m]
-  std::vector<Vec<D>> applied;     ///< force of tractions [N]
+  std::vector<Vec<D>> applied;     ///< force of loads other than gravity [N]
   std::vector<Real> applied_at;    ///< applied . x before the move [J]
   std::vector<Real> volume_ratio;  ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
   std::vector<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]

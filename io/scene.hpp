@@ -192,6 +192,25 @@ struct GravitySpec {
   }
 };
 
+enum class PlaceOf : std::uint8_t { now, start };
+constexpr std::array<std::string_view, 2> words(PlaceOf) { return {"now", "start"}; }
+
+/// Force per mass by formulas of place and time.
+struct BodyForceSpec {
+  static constexpr std::string_view name = "body_force";
+  std::vector<std::string> acceleration;
+  PlaceOf place = PlaceOf::now;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("acceleration", &BodyForceSpec::acceleration, any, "m/s^2",
+                 "force per mass: one number or formula of x, y, z and the time t per dimension, such as \"3 * sin(pi * x) * cos(8 * t)\""),
+        optional_choice("place", &BodyForceSpec::place,
+                        "x, y, z of a particle are where it is now or where it was at the start (for manufactured solutions)")};
+  }
+};
+
 enum class Carrier : std::uint8_t { particles, mesh };
 constexpr std::array<std::string_view, 2> words(Carrier) { return {"particles", "mesh"}; }
 
@@ -218,7 +237,7 @@ struct TractionSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-using LoadSpec = std::variant<GravitySpec, TractionSpec>;
+using LoadSpec = std::variant<GravitySpec, BodyForceSpec, TractionSpec>;
 
 struct FixedSpec {
   static constexpr std::string_view name = "fixed";

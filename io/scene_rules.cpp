@@ -147,6 +147,8 @@ class Rules {
           add(path, fmt::format("gravity is given by loads[{}] already", *gravity));
         gravity = gravity ? gravity : i;
       }
+      if (const auto* load = std::get_if<BodyForceSpec>(&scene_.loads[i]))
+        fits(path + ".acceleration", load->acceleration);
       if (const auto* load = std::get_if<TractionSpec>(&scene_.loads[i]))
         fits(path + ".traction", load->traction);
     }

@@ -69,6 +69,11 @@ Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
       particles.applied[p] += factor * (load.area[k].norm() * load.traction - load.pressure * area);
     }
   }
+  for (const auto& load : loads.of_place) {
+    const std::vector<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
+    for (std::size_t p = 0; p < particles.applied.size(); ++p)
+      particles.applied[p] += ramp * particles.mass[p] * load.acceleration(place[p], time);
+  }
   for (std::size_t p = 0; p < particles.applied.size(); ++p)
     particles.applied_at[p] = particles.applied[p].dot(particles.x[p]), size += particles.applied[p].norm();
   return size;

@@ -1,5 +1,6 @@
 #pragma once
-// Loads: gravity at the nodes, tractions carried by particles or by facets of the mesh.
+// Loads: gravity at the nodes, forces of place and time, tractions carried by particles or by facets of the mesh.
+#include <functional>
 #include <vector>
 
 #include "core/error.hpp"
@@ -17,6 +18,13 @@ struct Gravity {
   Vec<D> acceleration = Vec<D>::Zero();  ///< [m/s^2]
   Table table;
   Vec<D> operator()(Real time, Real ramp) const noexcept { return ramp * table(time) * acceleration; }
+};
+
+/// Force per mass [m/s^2] as a function of place and time, such as that of a manufactured solution.
+template <int D>
+struct BodyForce {
+  std::function<Vec<D>(const Vec<D>& place, Real time)> acceleration;
+  bool at_start = false;  ///< the place is that at the start (particles.x0, which must be kept), not that of now
 };
 
 /// Force per area that the first layer of particles behind a facet group takes along.  Each facet's area is shared among the
@@ -46,8 +54,10 @@ struct MeshTraction {
 template <int D>
 struct Loads {
   Gravity<D> gravity;
+  std::vector<BodyForce<D>> of_place;
   std::vector<ParticleTraction<D>> on_particles;
   std::vector<MeshTraction<D>> on_mesh;
+  bool any_on_particles() const noexcept { return !of_place.empty() || !on_particles.empty(); }
 };
 
 /// Shares the facets' area among the particles of the cells behind them.
@@ -58,7 +68,7 @@ ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Fa
 template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
 
-/// Writes particles.applied [N] anew; does nothing for a scene without particle tractions.  `row_of_id` finds a particle, or
+/// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `row_of_id` finds a particle, or
 /// `none` for one that was deleted.  Returns the sum of the sizes of the forces [N].
 template <int D>
 Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
@@ -71,7 +81,7 @@ Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& 
 template <int D>
 Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept;
 
-/// Work [J] of particle tractions since apply(): force times displacement.
+/// Work [J] of the forces on particles since apply(): force times displacement.
 template <int D>
 Real work(const Particles<D>& particles)
 {

@@ -98,7 +98,7 @@ void make_ready(Model<D, K>& m, bool by_id)
   m.particles.volume = m.particles.volume0;
   if (m.transfer.scheme == Scheme::apic)
     m.particles.C.assign(n, Mat<D>::Zero());
-  if (!m.loads.on_particles.empty())
+  if (m.loads.any_on_particles())
     m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
   const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) { return std::any_of(m.materials.begin(), m.materials.end(), has); };
   if (any_material(conducts_heat))

@@ -53,6 +53,7 @@ boundaries:
   - {type: roller, on: all}
 loads:
   - {type: traction, on: y_max, pressure: 1}
+  - {type: body_force, acceleration: ["sin(pi * x) * t", "2 * w"]}
 )yaml");
   const Outcome outcome = talus("check wrong.yaml");
   EXPECT_EQ(outcome.code, 2);
@@ -61,11 +62,12 @@ loads:
         "wrong.yaml:8:5: error: bodies[1] \"two\": the body has no particles: its shape contains no particle centre of the mesh",
         "wrong.yaml:9:5: error: bodies[2] \"three\".particles_per_cell: there is no symmetric set of 5 points in a triangle; there is 1, "
         "3, 4",
-        "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[0]: \"sin(q)\" is no formula of x, y and z: ",
+        "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[0]: \"sin(q)\" is no formula of x, y, z and t: ",
         "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[1]: \"1 / (x - x)\" is inf at (",
         "wrong.yaml:12:5: error: boundaries[0].on: the mesh has no facet group \"all\"",
         "wrong.yaml:14:5: error: loads[0].on: there are no particles behind the facets of \"y_max\" to carry the load",
-        "7 errors, nothing was run."})
+        "wrong.yaml:15:5: error: loads[1].acceleration[1]: \"2 * w\" is no formula of x, y, z and t: ",
+        "8 errors, nothing was run."})
     EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 

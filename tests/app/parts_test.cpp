@@ -22,6 +22,14 @@ TEST(Expression, KnowsPlaceAndPi)
   EXPECT_EQ(evaluate("y > 1 ? 7 : -7", places), (std::vector<Real>{7, -7}));
 }
 
+TEST(Expression, FormulaFollowsPlaceAndTime)
+{
+  const Formula formula("x * t + y");
+  EXPECT_EQ(formula({2, 1, 0}, 3), 7);
+  EXPECT_EQ(formula({2, 5, 0}, 0), 5);
+  EXPECT_THROW(Formula("x * velocity"), std::invalid_argument);
+}
+
 TEST(Expression, RefusesWhatIsNoFormula)
 {
   const std::vector<Vec3> places{{0, 0, 0}};

@@ -217,6 +217,29 @@ outputs: {history: {every: 0.1, points: [{name: tip, at: [1, 1.25]}]}}
   }
 }
 
+TEST_F(Run, BodyForceFollowsItsFormula)
+{
+  // Half a unit of time of the acceleration t along x; the particles start at different y, and their place of the start is what counts.
+  const auto scene = [](const std::string& place) {
+    return block_scene("time: {end: 0.5}\nloads: [{type: body_force, acceleration: [t, \"x > 1 ? 0.5 : 0\"], place: " + place +
+                           "}]\noutputs: {history: {every: 0.1}}\n",
+                       ", velocity: [1, 0]");
+  };
+  write("start.yaml", scene("start"));
+  write("now.yaml", scene("now"));
+  for (const char* name : {"start", "now"}) {
+    const Outcome outcome = talus(std::string("run --quiet ") + name + ".yaml");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  }
+  const HistoryTable start = history("runs/start"), now = history("runs/now");
+  const Real mass = last(start, "mass");
+  EXPECT_NEAR(last(start, "momentum_x"), mass * (1 + 0.5 * 0.5 * 0.5), 0.005 * mass);  // a step is 2 % of the time
+  EXPECT_NEAR(last(start, "momentum_y"), 0.5 * mass * 0.5 * 0.5, 0.005 * mass) << "half of the mass starts beyond x = 1";
+  EXPECT_GT(last(now, "momentum_y"), 1.5 * last(start, "momentum_y")) << "more and more of it passes x = 1";
+  EXPECT_NEAR(last(start, "load_work"), last(start, "kinetic") + last(start, "strain") - first(start, "kinetic"),
+              0.02 * last(start, "load_work"));
+}
+
 TEST_F(Run, QuickMakesAnySceneShort)
 {
   write("bar.yaml", bar_scene);
