@@ -126,7 +126,7 @@ class CommandLine {
     if (verify) {
       suite->add_option("--kernel", options.kernel, "kernel of every run that does not choose one itself");
       suite->add_option("--transfer", options.transfer, "transfer scheme of every run that does not choose one itself");
-      suite->add_flag("--regression", options.regression, "what differs from the values of the last release is a failure");
+      suite->add_flag("--regression", options.regression, "status 1 only where something is worse than in the last release");
     }
     suite->callback([&options] { run_suite(options); });
   }

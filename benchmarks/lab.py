@@ -212,6 +212,8 @@ class Lab:
             said = output.read().strip()
         if child.returncode != 0:
             raise RunFailed(f"{scene.parent.name}/{out.name} ended with {child.returncode}: {said}")
+        if not (out / "summary.json").exists():
+            raise RunFailed(f"{scene.parent.name}/{out.name} ended with 0 and left no summary.json in {out}: {said}")
         return usage.ru_utime + usage.ru_stime
 
     def figure(self, case, name, draw, size=(6.4, 3.6), caption="", shown="everywhere"):

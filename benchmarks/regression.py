@@ -1,6 +1,6 @@
 """Each benchmark stores, beside its reference, the values of the last release (quick level) in release.json; what differs is named.
 
-A change is no failure by itself: a better method changes numbers. It must be seen, and meant.
+A change is no failure by itself: a better method changes numbers. It must be seen, and meant. What failed in the release is a known shortfall.
 """
 import json
 import math
@@ -17,8 +17,9 @@ def path(case):
 
 
 def stored(case):
-    """{metric: value} of the last release; empty where there was none."""
-    return json.loads(path(case).read_text(encoding="utf-8"))["values"] if path(case).exists() else {}
+    """{metric: value} of the last release, and the metrics that failed in it; empty where there was none."""
+    known = json.loads(path(case).read_text(encoding="utf-8")) if path(case).exists() else {"values": {}, "failed": []}
+    return known["values"], known["failed"]
 
 
 def differs(value, old):
@@ -39,9 +40,11 @@ def change(value, old):
     return f"changed by {(value - old) / abs(old) * 100:+.2g} %, was {old:.{DIGITS}g}, is {value:.{DIGITS}g}"
 
 
-def compare(records, values):
-    """Adds 'release' and 'changed' (words, or None) to the records of a case; returns the metrics that are measured no more."""
+def compare(records, values, failed):
+    """Adds 'release', 'changed' (words, or None) and 'known' (it failed in the release) to the records of a case; returns the metrics that are
+    measured no more."""
     for record in records:
+        record["known"] = record["metric"] in failed
         record["release"] = values.get(record["metric"])
         known = record["metric"] in values
         record["changed"] = change(record["value"], record["release"]) if known and differs(record["value"], record["release"]) else None
@@ -55,5 +58,6 @@ def write(document):
         if case["case"] in broken:
             continue
         values = {r["metric"]: None if r["value"] is None else float(f"{r['value']:.{DIGITS + 4}g}") for r in document["results"] if r["case"] == case["case"]}
-        text = json.dumps({"program": case["program"]["version"], "commit": case["program"]["commit"], "level": case["level"], "values": values}, indent=1)
+        text = json.dumps({"program": case["program"]["version"], "commit": case["program"]["commit"], "level": case["level"],
+                           "values": values, "failed": [r["metric"] for r in document["results"] if r["case"] == case["case"] and r["pass"] is False]}, indent=1)
         path(case["case"]).write_text(text + "\n", encoding="utf-8")

@@ -39,7 +39,7 @@ def line(record):
     """One result as a line for the terminal."""
     verdict = VERDICTS[record["pass"]].strip("*")
     words = record.get("error") or f"{quantity(record)} (reference {number(record['reference'])}; {criterion(record)})"
-    note = f" [{record['changed']}]" if record.get("changed") else ""
+    note = "".join(f" [{words}]" for words in ("known shortfall" if record.get("known") and record["pass"] is False else "", record.get("changed")) if words)
     return f"{verdict:5s} {record['metric']}: {words}{note}"
 
 

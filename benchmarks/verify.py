@@ -83,7 +83,7 @@ def arguments():
     options.add_argument("--kernel", help="kernel of every run that does not choose one itself")
     options.add_argument("--transfer", help="transfer scheme of every run that does not choose one itself")
     options.add_argument("--release", action="store_true", help="for developers: store the values as those of the release (release.json of each case)")
-    options.add_argument("--regression", action="store_true", help="a value that differs from that of the last release is a failure")
+    options.add_argument("--regression", action="store_true", help="status 1 only where something is worse than in the last release: a run failed, or a number that passed then or is new")
     given = options.parse_args()
     if unknown := [case for case in given.cases if case not in CASES]:
         options.error(f"no case {', '.join(unknown)}; there are: {', '.join(CASES)}")
@@ -118,7 +118,7 @@ def measure(lab, case, overrides):
     records += broken
     program = ended[0].summary["program"] if ended else dict.fromkeys(["version", "commit", "compiler"], "unknown")
     compared = lab.level == "quick" and not overrides
-    gone = regression.compare(records, regression.stored(case) if compared else {})
+    gone = regression.compare(records, *(regression.stored(case) if compared else ({}, [])))
     return records, {"case": case, "title": title(case), "level": lab.level, "overrides": overrides, "program": program, "runs": len(runs),
                      "processor_seconds": sum(run.seconds for run in ended), "gone": gone if compared and not any("error" in r for r in records) else []}
 
@@ -185,7 +185,10 @@ def conclude(document, given, seconds):
         print(f"changed since the release: {record['case']}, {record['metric']}: {record['changed']}")
     print(f"{len(records)} results, {passed} passed, {judged - passed} failed, {len(changed)} changed since the release; {seconds:.0f} s, "
           f"{sum(info['processor_seconds'] for info in document['cases']):.0f} s of processor time\n{given.out}/verify.json\n{given.out}/report/index.html")
-    return 1 if passed < judged or (given.regression and changed) else 0
+    worse = [record for record in records if record["pass"] is False and not (given.regression and record["known"])]
+    for record in worse if given.regression else []:
+        print(f"worse than the release: {record['case']}, {record['metric']}")
+    return 1 if worse else 0
 
 
 def end(main):

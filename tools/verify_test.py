@@ -1,5 +1,8 @@
 #!/usr/bin/python3
 """Tests of the parts of the verification (benchmarks/*.py) that decide what is a pass and what is written where; nothing is simulated."""
+import argparse
+import contextlib
+import io
 import json
 import pathlib
 import struct
@@ -145,9 +148,31 @@ class Regression(unittest.TestCase):
 
     def test_changes_are_named_and_what_is_new_or_gone_is_not_a_change(self):
         records = [{"metric": "a", "value": 1.1}, {"metric": "b", "value": 1.0}, {"metric": "new", "value": 3.0}]
-        gone = regression.compare(records, {"a": 1.0, "b": 1.0, "old": 2.0})
+        gone = regression.compare(records, {"a": 1.0, "b": 1.0, "old": 2.0}, ["b"])
         self.assertEqual(gone, ["old"])
         self.assertEqual([r["changed"] for r in records], ["changed by +10 %, was 1, is 1.1", None, None])
+        self.assertEqual([r["known"] for r in records], [False, True, False])
+
+    def test_known_shortfalls_end_with_zero_only_where_the_release_is_the_measure(self):
+        info = {"processor_seconds": 1.0}
+        for known, asked, status in ((True, True, 0), (False, True, 1), (True, False, 1)):
+            record = {"case": "c", "metric": "m", "pass": False, "changed": None, "known": known}
+            with contextlib.redirect_stdout(io.StringIO()):
+                self.assertEqual(verify.conclude({"results": [record], "cases": [info]}, argparse.Namespace(regression=asked, out="out"), 1.0), status)
+
+    def test_what_is_stored_is_compared_and_failures_are_known(self):
+        with tempfile.TemporaryDirectory() as folder:
+            known, regression.ROOT = regression.ROOT, pathlib.Path(folder)
+            try:
+                (pathlib.Path(folder) / "benchmarks/c").mkdir(parents=True)
+                self.assertEqual(regression.stored("c"), ({}, []))
+                regression.write({"cases": [{"case": "c", "level": "quick", "program": {"version": "1", "commit": "abc"}}],
+                                  "results": [{"case": "c", "metric": "m", "value": 1 / 3, "pass": False}]})
+                values, failed = regression.stored("c")
+            finally:
+                regression.ROOT = known
+        self.assertFalse(regression.differs(1 / 3, values["m"]))
+        self.assertEqual(failed, ["m"])
 
 
 class Tradeoff(unittest.TestCase):
