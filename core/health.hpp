@@ -1,5 +1,6 @@
 #pragma once
-// What went wrong in a loop over particles: the lowest particle id wins, so the message is the same for any number of threads.
+// What went wrong in a loop over particles: the worst kind of trouble, of it the lowest particle id, so the message is the same for any
+// number of threads.
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -7,11 +8,12 @@
 
 namespace talus {
 
+/// Causes before what may follow from them in the same step: the average of volumes carries one inverted particle to its neighbours.
 enum class Trouble : std::uint8_t {
   lost,        ///< outside the mesh
   inverted,    ///< det F <= 0
+  not_finite,  ///< position, velocity or deformation is NaN or infinite
   no_answer,   ///< the law returned no finite stress
-  not_finite,  ///< position or velocity is NaN or infinite
 };
 
 class Health {
@@ -32,7 +34,7 @@ class Health {
   /// Called from any thread; only ever on the way to the end of a run, so its cost does not matter.
   void report(std::int64_t id, Trouble trouble) noexcept
   {
-    const std::int64_t word = id * kinds + static_cast<std::int64_t>(trouble);
+    const std::int64_t word = static_cast<std::int64_t>(trouble) * ids + id;
     std::int64_t seen = worst_.load();
     while (word < seen && !worst_.compare_exchange_weak(seen, word)) {
     }
@@ -42,12 +44,12 @@ class Health {
     const std::int64_t word = worst_.load();
     if (word == fine)
       return std::nullopt;
-    return Finding{word / kinds, static_cast<Trouble>(word % kinds)};
+    return Finding{word % ids, static_cast<Trouble>(word / ids)};
   }
   void clear() noexcept { worst_ = fine; }
 
  private:
-  static constexpr std::int64_t kinds = 4;
+  static constexpr std::int64_t ids = std::int64_t{1} << 60;
   static constexpr std::int64_t fine = std::numeric_limits<std::int64_t>::max();
   std::atomic<std::int64_t> worst_{fine};
 };
