@@ -55,16 +55,25 @@ def percent(share):
 
 
 def advice(points):
-    """For each error of TARGETS the cheapest of the points, in words; after the first that is not reached, the best there is."""
-    lines = []
+    """For each error of TARGETS the cheapest of the points, in words, errors with the same answer together; last, the best where one is not reached."""
+    answers = []
     for target in TARGETS:
         reached = [p for p in points if p["error"] <= target]
-        if not reached:
-            best = min(points, key=lambda p: p["error"])
-            return [*lines, f"{percent(target)} error is not reached; the least is {percent(best['error'])} with {best['name']}: {cost(best)}."]
-        cheapest = min(reached, key=lambda p: p["processor_seconds"])
-        lines.append(f"For {percent(target)} error the cheapest is {cheapest['name']}: {cost(cheapest)}, error {percent(cheapest['error'])}.")
-    return lines
+        cheapest = min(reached, key=lambda p: p["processor_seconds"], default=None)
+        if answers and answers[-1][1] is cheapest:
+            answers[-1][0].append(target)
+        else:
+            answers.append(([target], cheapest))
+    return [sentence(targets, point, points) for targets, point in answers]
+
+
+def sentence(targets, point, points):
+    """One line of advice."""
+    shares = f"{', '.join(f'{target * 100:g}' for target in targets)} % error"
+    if point is None:
+        best = min(points, key=lambda p: p["error"])
+        return f"{shares} is not reached; the least is {percent(best['error'])} with {best['name']}: {cost(best)}."
+    return f"For {shares} the cheapest is {point['name']}: {cost(point)}, error {percent(point['error'])}."
 
 
 def cost(point):
@@ -113,13 +122,14 @@ def draw(figure, points, axes, what):
         for name, own in lines.items():
             coloured = len(lines) <= MOST_COLOURS or any(id(p) in winners for p in own)
             style = {"label": name, "linewidth": 0.8} if coloured else {"color": "0.8", "linewidth": 0.5, "zorder": 1}
-            axis.loglog([p[price] * scale for p in own], [p["error"] * 100 for p in own], "o-", markersize=3, **style)
-        axis.loglog([points[i][price] * scale for i in best], [points[i]["error"] * 100 for i in best], "ko--", markersize=8, fillstyle="none", linewidth=0.8,
-                    label="Pareto front")
-        for i in best:
-            axis.annotate(points[i]["choice"][first], (points[i][price] * scale, points[i]["error"] * 100), textcoords="offset points", xytext=(6, 5), fontsize=7)
-        axis.set_xlabel(label)
-    left.set_ylabel(f"{what} [%]")
+            axis.plot([p[price] * scale for p in own], [p["error"] * 100 for p in own], "o-", markersize=3, **style)
+        axis.plot([points[i][price] * scale for i in best], [points[i]["error"] * 100 for i in best], "ko--", markersize=8, fillstyle="none", linewidth=0.8,
+                  label="Pareto front")
+        axis.set(xlabel=label, yscale="log")
+    left.set(xscale="log", ylabel="error [%]")  # memory is mostly that of the program itself: less than a decade
+    for i in front([(p["processor_seconds"], p["error"]) for p in points]):
+        left.annotate(points[i]["choice"][first], (points[i]["processor_seconds"], points[i]["error"] * 100), textcoords="offset points", xytext=(7, 4), fontsize=7)
+    figure.suptitle(what[0].upper() + what[1:], fontsize=10)
     handles, labels = left.get_legend_handles_labels()
     key = figure.add_subplot(rows[1, :])
     key.set_axis_off()
