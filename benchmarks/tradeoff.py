@@ -127,6 +127,9 @@ def draw(figure, points, axes, what):
                   label="Pareto front")
         axis.set(xlabel=label, yscale="log")
     left.set(xscale="log", ylabel="error [%]")  # memory is mostly that of the program itself: less than a decade
+    for axis in (left.xaxis, left.yaxis, right.yaxis):
+        axis.set_major_formatter(lambda value, _: f"{value:g}")
+        axis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else "")
     for i in front([(p["processor_seconds"], p["error"]) for p in points]):
         left.annotate(points[i]["choice"][first], (points[i]["processor_seconds"], points[i]["error"] * 100), textcoords="offset points", xytext=(7, 4), fontsize=7)
     figure.suptitle(what[0].upper() + what[1:], fontsize=10)
