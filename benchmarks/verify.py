@@ -37,6 +37,7 @@ CASES = [
     "cook_membrane",
     "infinite_slope",
     "strip_footing",
+    "factor_of_safety",
     "column_collapse",
     "cohesive_collapse",
 ]
