@@ -82,6 +82,12 @@ class Run:
         """Arrays of the last particle file by name; 'Points' are the positions, shape (n, 3)."""
         return vtp.read(self.frames()[-1])
 
+    @property
+    def ending(self):
+        """Exit status and words of the program: (0, "") but where the run may fail and did."""
+        path = self.folder / "ending.json"
+        return tuple(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else (0, "")
+
     def failure(self):
         """Waits; the words of a run that failed, or None."""
         try:
@@ -152,10 +158,11 @@ class Lab:
         self._handles = {}  # (case, label) -> inputs, run
         self.figures, self.orders = [], []
 
-    def run(self, scene, label, settings):
+    def run(self, scene, label, settings, may_fail=False):
         """Starts `scene` (path below benchmarks/) into <runs>/<case>/<label> with settings {key: number, list or text}, as --set takes them.
 
         Returns at once; the run waits its turn and whoever asks it for something waits for it. So ask for all runs first, then measure.
+        Where it `may_fail`, an exit status that the program promises (1 to 3) is an `ending` like any other; what it wrote until then is there.
         """
         path = ROOT / "benchmarks" / scene
         case, out = path.parent.name, self.runs / path.parent.name / label
@@ -167,7 +174,7 @@ class Lab:
             if handle and known != inputs:
                 raise ValueError(f"two different runs are called {case}/{label}")
             if not handle:
-                handle = Run(case, label, out, self._pool.submit(self._work, path, out, words, inputs))
+                handle = Run(case, label, out, self._pool.submit(self._work, path, out, words, inputs, may_fail))
                 self._handles[case, label] = inputs, handle
         return handle
 
@@ -180,12 +187,12 @@ class Lab:
         """No more runs: those that have not begun never will."""
         self._pool.shutdown(cancel_futures=True)
 
-    def _work(self, path, out, words, inputs):
+    def _work(self, path, out, words, inputs, may_fail):
         """Runs, or finds the results of an earlier run of the same inputs; returns the processor time [s]."""
         stamp = out / "inputs.json"
         seconds = self._seconds_of(stamp, inputs)
         if seconds is None:
-            seconds = self._start(path, out, words)
+            seconds = self._start(path, out, words, may_fail)
             stamp.write_text(json.dumps({"inputs": inputs, "seconds": seconds}), encoding="utf-8")
         print(f"  {path.parent.name}/{out.name}: {seconds:.1f} s", flush=True)
         return seconds
@@ -197,7 +204,7 @@ class Lab:
         known = json.loads(stamp.read_text(encoding="utf-8"))
         return known["seconds"] if known["inputs"] == inputs else None
 
-    def _start(self, scene, out, words):
+    def _start(self, scene, out, words, may_fail):
         """Runs the program; returns the processor time it took [s], which a busy machine changes less than that of the clock."""
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
@@ -210,6 +217,9 @@ class Lab:
             child.returncode = os.waitstatus_to_exitcode(status)
             output.seek(0)
             said = output.read().strip()
+        if may_fail and child.returncode in (1, 2, 3):
+            (out / "ending.json").write_text(json.dumps([child.returncode, said]), encoding="utf-8")
+            return usage.ru_utime + usage.ru_stime
         if child.returncode != 0:
             raise RunFailed(f"{scene.parent.name}/{out.name} ended with {child.returncode}: {said}")
         if not (out / "summary.json").exists():

@@ -87,6 +87,13 @@ class Runs(unittest.TestCase):
         self.assertIn("points went out", bad.failure())
         self.assertIsNone(good.failure())
 
+    def test_a_run_that_may_fail_has_an_ending_like_any_other(self):
+        own = self.lab()
+        bad, good = own.run(self.SCENE, "bad", {"fail": 1}, may_fail=True), own.run(self.SCENE, "good", {}, may_fail=True)
+        self.assertEqual(bad.ending, (3, "error: points went out"))
+        self.assertIsNone(bad.failure())
+        self.assertEqual(good.ending, (0, ""))
+
     def test_one_label_means_one_run(self):
         own = self.lab()
         self.assertIs(own.run(self.SCENE, "n", {"a": 1}), own.run(self.SCENE, "n", {"a": 1}))
