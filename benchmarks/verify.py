@@ -40,6 +40,7 @@ CASES = [
     "factor_of_safety",
     "column_collapse",
     "cohesive_collapse",
+    "extremes",
 ]
 SUITE = pathlib.Path(__file__).resolve().parent
 
