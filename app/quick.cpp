@@ -2,21 +2,16 @@
 
 #include <algorithm>
 
+#include "io/accuracy.hpp"
+
 namespace talus {
 
 void coarsen(Scene& scene)
 {
-  MeshSpec& mesh = scene.mesh;
-  if (mesh.size)
-    *mesh.size *= 2;
-  for (RefineSpec& refine : mesh.refine)
-    refine.size *= 2;
-  if (mesh.grid)
-    for (Index& count : mesh.grid->cells)
-      count = std::max<Index>(1, count / 2);
+  scale_cells(scene.mesh, 2);
   const Index fewest = scene.dimension == 2 ? 3 : 4;
   for (BodySpec& body : scene.bodies)
-    body.particles_per_cell = std::min(body.particles_per_cell, fewest);
+    body.particles_per_cell = std::min(body.particles_per_cell.value_or(fewest), fewest);
 }
 
 void shorten(Real dt, std::vector<Stage>& stages, OutputSpec& outputs)

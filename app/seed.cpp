@@ -17,7 +17,7 @@ class Seeder {
 
   void add(const BodySpec& spec)
   {
-    const auto points = seeding_points<D>(spec.particles_per_cell);
+    const auto points = seeding_points<D>(spec.particles_per_cell.value());
     if (!points)
       complain_of_count(spec);
     const auto cells = cells_of(spec);
@@ -62,7 +62,7 @@ class Seeder {
     for (const int n : seeding_counts<D>())
       known.push_back(std::to_string(n));
     complaints_.add(spec.where, "particles_per_cell",
-                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell,
+                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell.value(),
                                 D == 2 ? "triangle" : "tetrahedron", or_list(known)));
   }
 

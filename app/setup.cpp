@@ -298,7 +298,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
 
   setup.transfer = transfer_of(scene.transfer);
   setup.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
-  setup.limits.cfl = scene.time.cfl;
+  setup.limits.cfl = scene.time.cfl.value();
   setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
   setup.limits.shortest = scene.time.min_step;
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };

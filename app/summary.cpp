@@ -1,8 +1,7 @@
 #include "app/summary.hpp"
 
-#include <sys/resource.h>
-
 #include <array>
+#include <fstream>
 
 #include "core/parallel.hpp"
 #include "core/version.hpp"
@@ -48,11 +47,18 @@ std::array<std::pair<std::string_view, Real>, 11> terms_of(const EnergyNow& e)
 
 Real share(Real part, Real whole) { return whole > 0 ? std::abs(part) / whole : 0; }
 
+/// Most memory the program has held [B], 0 where the system does not tell.  Not getrusage: that begins with the size of the process that
+/// started this one.
 std::int64_t peak_memory()
 {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss * std::int64_t{1024};
+  std::ifstream status("/proc/self/status");
+  for (std::string word; status >> word;)
+    if (word == "VmHWM:") {
+      std::int64_t kilobytes = 0;
+      status >> kilobytes;
+      return kilobytes * 1024;
+    }
+  return 0;
 }
 
 template <int D>

@@ -11,6 +11,7 @@
 #include <sstream>
 #include <unordered_map>
 
+#include "io/accuracy.hpp"
 #include "io/document.hpp"
 #include "io/field_reader.hpp"
 #include "io/scene_rules.hpp"
@@ -272,6 +273,7 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
   FieldReader(document.problems).read(document.root, "", {}, scene);
   add_findings(document, broken_rules(scene));
   document.problems.throw_if_any();
+  settle_accuracy(scene);
   scene.file = file.string();
   scene.text = std::move(document.sources.front().text);
   return scene;

@@ -102,7 +102,7 @@ struct MeshSpec {
 
 struct TimeSpec {
   Real end = 0;
-  Real cfl = 0.4;
+  std::optional<Real> cfl;  ///< has a value in every scene that was read
   std::optional<Real> max_step;
   Real min_step = 1e-12;
   Where where;
@@ -110,7 +110,8 @@ struct TimeSpec {
   {
     return std::tuple{
         optional("end", &TimeSpec::end, positive, "s", "end of the run; needed unless there are stages"),
-        optional("cfl", &TimeSpec::cfl, within(1e-4, 2), "-", "time step as a share of smallest altitude / (wave speed + particle speed)"),
+        optional("cfl", &TimeSpec::cfl, within(1e-4, 2), "-",
+                 "time step as a share of smallest altitude / (wave speed + particle speed); default by accuracy: 0.8, 0.4, 0.4"),
         optional("max_step", &TimeSpec::max_step, positive, "s", "no step longer than this"),
         optional("min_step", &TimeSpec::min_step, positive, "s",
                  "the run stops, naming the particle, when a shorter step would be needed")};
@@ -158,7 +159,7 @@ struct BodySpec {
   std::string name, material;
   std::string region;
   std::optional<Shape> shape;
-  Index particles_per_cell = 4;
+  std::optional<Index> particles_per_cell;  ///< has a value in every scene that was read
   std::optional<bool> f_bar;
   std::vector<std::string> velocity;
   Where where;
@@ -170,7 +171,8 @@ struct BodySpec {
         optional("region", &BodySpec::region, any, "-", "the body fills this cell group of the mesh"),
         optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
         optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
-                 "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, ..."),
+                 "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, 10, 14, ...; default by accuracy: 3, 4, 12 "
+                 "in 2-D and 4, 4, 14 in 3-D"),
         optional("f_bar", &BodySpec::f_bar, any, "-",
                  "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
                  "johnson_cook, whose flow keeps the volume, false otherwise"),
@@ -436,11 +438,15 @@ struct OutputSpec {
 enum class OnExit : std::uint8_t { stop, remove };
 constexpr std::array<std::string_view, 2> words(OnExit) { return {"stop", "delete"}; }
 
+enum class Accuracy : std::uint8_t { draft, standard, fine };
+constexpr std::array<std::string_view, 3> words(Accuracy) { return {"draft", "standard", "fine"}; }
+
 struct Scene {
   std::string file;  ///< path as given, for messages; directory of relative paths
   std::string text;  ///< the file, for the echo in the summary
   std::string title;
   Index dimension{};
+  Accuracy accuracy = Accuracy::standard;
   MeshSpec mesh;
   std::string kernel = "umls";
   TimeSpec time;
@@ -459,6 +465,10 @@ struct Scene {
     return std::tuple{
         required("title", &Scene::title, any, "-", "one line"),
         required("dimension", &Scene::dimension, within(2, 3), "-", "2 (plane strain, unit thickness) or 3"),
+        optional_choice(
+            "accuracy", &Scene::accuracy,
+            "draft: cells twice as large as the mesh block says, few particles, long steps; fine: half as large, many particles; "
+            "particles_per_cell and cfl are kept where they are given, and so are meshes from files"),
         group("mesh", &Scene::mesh, "the background mesh"),
         optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
         optional("time", &Scene::time, any, "-", "end and step"),

@@ -116,7 +116,7 @@ TEST(Scene, ReadsBodies)
   EXPECT_EQ(solid.bodies.at(1).f_bar, false);
   EXPECT_FALSE(plane.bodies.at(1).f_bar.has_value());
   EXPECT_EQ(std::get<Sphere>(plane.bodies.at(1).shape.value()).radius, 0.4);
-  EXPECT_EQ(plane.bodies.at(1).particles_per_cell, BodySpec{}.particles_per_cell);
+  EXPECT_EQ(plane.bodies.at(1).particles_per_cell, 4);
   EXPECT_THAT(std::get<Cylinder>(solid.bodies.at(0).shape.value()).from, ElementsAre(1, 1, -0.5));
   EXPECT_THAT(std::get<Polygon>(solid.bodies.at(1).shape.value()).extrude, ElementsAre(-0.5, 0.5));
 }
@@ -176,11 +176,31 @@ TEST(Scene, ReadsOutputs)
   EXPECT_FALSE(out.picture.mesh);
 }
 
+TEST(Scene, AccuracyScalesTheCellsAndSetsWhatIsLeftOpen)
+{
+  const auto with = [](const std::string& name, const std::string& accuracy) {
+    return read_scene(folder / name, std::vector<std::string>{"accuracy=" + accuracy});
+  };
+  const Scene draft = with("plane.yaml", "draft"), fine = with("plane.yaml", "fine");
+  EXPECT_EQ(draft.mesh.size, 1.0);
+  EXPECT_EQ(draft.mesh.refine.at(0).size, 0.2);
+  EXPECT_EQ(draft.time.cfl, 0.3) << "given";
+  EXPECT_EQ(draft.bodies.at(0).particles_per_cell, 6) << "given";
+  EXPECT_EQ(draft.bodies.at(1).particles_per_cell, 3);
+  EXPECT_EQ(fine.mesh.size, 0.25);
+  EXPECT_EQ(fine.bodies.at(1).particles_per_cell, 12);
+  EXPECT_EQ(with("smallest.yaml", "draft").time.cfl, 0.8);
+  EXPECT_THAT(with("solid.yaml", "fine").mesh.grid.value().cells, ElementsAre(16, 16, 8));
+  EXPECT_EQ(with("solid.yaml", "fine").bodies.at(0).particles_per_cell, 14);
+  EXPECT_EQ(with("smallest.yaml", "standard").time.cfl, scene("smallest.yaml").time.cfl);
+}
+
 TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
 {
   const Scene s = scene("smallest.yaml"), untouched;
   EXPECT_EQ(s.kernel, untouched.kernel);
-  EXPECT_EQ(s.time.cfl, untouched.time.cfl);
+  EXPECT_EQ(s.time.cfl, 0.4);
+  EXPECT_EQ(s.bodies.at(0).particles_per_cell, 4);
   EXPECT_EQ(s.transfer.scheme, untouched.transfer.scheme);
   EXPECT_EQ(s.on_exit, untouched.on_exit);
   EXPECT_TRUE(s.loads.empty() && s.boundaries.empty() && s.stages.empty());
@@ -190,10 +210,10 @@ TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
 TEST(Scene, KnowsWhereEverythingWasAskedFor)
 {
   const Scene s = scene("plane.yaml");
-  EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":25:5");
+  EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":26:5");
   EXPECT_EQ(s.materials.at(1).where.path, "materials[1] \"rock\"");
   EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.path, "boundaries[3]");
-  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 38);
+  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 39);
   EXPECT_EQ(s.outputs.history.value().points.at(0).where.path, "outputs.history.points[0] \"top\"");
 }
 
