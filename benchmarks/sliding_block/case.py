@@ -1,4 +1,4 @@
-"""A block on an inclined face of the mesh: distance slid with Coulomb friction, and rest where friction holds it."""
+"""A block on an inclined face of the mesh: distance slid with Coulomb friction, the plane inclined or gravity, and rest where friction holds it."""
 import numpy as np
 
 import lab as tools
@@ -18,6 +18,12 @@ def closed_form(time, data, friction):
     """Distance slid by a rigid block."""
     angle = np.radians(data["angle [deg]"])
     return data["gravity [m/s^2]"] * (np.sin(angle) - friction * np.cos(angle)) * time**2 / 2
+
+
+def apart(run, turned, angle):
+    """Largest difference of the distances slid down the inclined plane and along the horizontal one under inclined gravity, over the distance at the end."""
+    inclined, flat = slid(run.history, angle), slid(turned.history, 0)
+    return float(np.max(np.abs(np.interp(run.history["time"], turned.history["time"], flat) - inclined)) / inclined[-1])
 
 
 def creep(run):
@@ -41,16 +47,29 @@ def draw(figure, runs, data):
     axis.legend()
 
 
+def judge_turned(friction, run, turned, data):
+    """Results of a block under inclined gravity beside the one on the inclined plane."""
+    angle = np.radians(data["angle [deg]"])
+    return [
+        tools.Result(CASE, f"distance slid, friction {friction}, flip, gravity inclined", "m", float(slid(turned.history, 0)[-1]), "within", data["slack"],
+                     float(closed_form(turned.history["time"][-1], data, friction)), data["source"], turned),
+        tools.Result(CASE, f"inclined plane and inclined gravity apart, friction {friction}", "-", apart(run, turned, angle), "at most", data["slack"], 0.0,
+                     data["turned source"], turned)]
+
+
 def evaluate(lab):
-    """Results for three coefficients with two transfers, and the creep of a block that must not move."""
-    data, angle, results, runs = tools.reference(CASE), np.radians(tools.reference(CASE)["angle [deg]"]), [], {}
-    for scheme in SCHEMES:
-        for friction in COEFFICIENTS:
-            run = lab.run(f"{CASE}/scene.yaml", f"{scheme}_{friction}", {"boundaries[0].coefficient": friction, "transfer.scheme": scheme})
-            runs[scheme, friction] = run
-            results.append(tools.Result(CASE, f"distance slid, friction {friction}, {scheme}", "m", float(slid(run.history, angle)[-1]), "within", 0.01,
-                                        float(closed_form(run.history["time"][-1], data, friction)), data["source"], run))
+    """Results for three coefficients with two transfers, the same with gravity turned, and the creep of a block that must not move."""
+    data, angle, results = tools.reference(CASE), np.radians(tools.reference(CASE)["angle [deg]"]), []
+    plan = [(scheme, friction) for scheme in SCHEMES for friction in COEFFICIENTS]
+    runs = {(scheme, friction): lab.run(f"{CASE}/scene.yaml", f"{scheme}_{friction}", {"boundaries[0].coefficient": friction, "transfer.scheme": scheme})
+            for scheme, friction in plan}
+    turned = {friction: lab.run(f"{CASE}/scene_turned.yaml", f"turned_{friction}", {"boundaries[0].coefficient": friction}) for friction in COEFFICIENTS}
     rest = lab.run(f"{CASE}/scene_rest.yaml", "rest", {})
+    for (scheme, friction), run in runs.items():
+        results.append(tools.Result(CASE, f"distance slid, friction {friction}, {scheme}", "m", float(slid(run.history, angle)[-1]), "within", data["slack"],
+                                    float(closed_form(run.history["time"][-1], data, friction)), data["source"], run))
+    for friction in COEFFICIENTS:
+        results += judge_turned(friction, runs["flip", friction], turned[friction], data)
     results.append(tools.Result(CASE, "creep in 1 s at 25 degrees, friction 0.5", "m", creep(rest), "at most", data["rest"]["largest creep [m]"],
                                 0.0, data["rest"]["source"], rest))
     lab.figure(CASE, "verification_block", lambda figure: draw(figure, runs, data), caption="Distance slid down a face inclined by 45 degrees.")
