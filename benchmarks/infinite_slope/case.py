@@ -86,7 +86,7 @@ def draw(figure, runs, data):
 
 
 def evaluate(lab):
-    """Every soil on a slope steeper by the same angle than what it holds; at full level also other transfers, steps, slopes and cells for one of them."""
+    """Every soil on a slope steeper by the same angle than what it holds; at full level variants of one of them."""
     data, results = tools.reference(CASE), []
     phi, excess = np.radians(data["constants"]["friction_angle"]), data["excess [deg]"]
     plan = {soil["name"]: (soil, excess, True, {}) for soil in data["soils"]}
@@ -96,8 +96,10 @@ def evaluate(lab):
                  "plane_strain, flip": (soil, excess, False, {"transfer.scheme": "flip"}),
                  "plane_strain, steeper by 1.5 degrees": (soil, 1.5, False, {}),
                  "plane_strain, cells of 0.0625 m": (soil, excess, False, {"mesh.size": 0.0625})}
-    runs = {name: lab.run(f"{CASE}/scene.yaml", name.replace(" ", "_").replace(",", ""), {**settings(soil, closed_form(soil, phi) + steeper, data), **extra})
-            for name, (soil, steeper, _, extra) in plan.items()}
+    runs = {}
+    for name, (soil, steeper, _, extra) in plan.items():
+        label = name.replace(" ", "_").replace(",", "")
+        runs[name] = lab.run(f"{CASE}/scene.yaml", label, {**settings(soil, closed_form(soil, phi) + steeper, data), **extra})
     for name, (soil, _, judged, _) in plan.items():
         run, expected = runs[name], closed_form(soil, phi)
         asked = ("near", data["tolerance [deg]"]) if judged else ("reported", None)

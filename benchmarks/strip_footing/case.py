@@ -79,5 +79,5 @@ def evaluate(lab):
             tools.Result(CASE, f"slope over the last quarter over the first slope, {name}", "-", slope, *flat, 0.0, source, run),
             tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", checkerboard(run), "reported", None, None, "", run)]
     lab.figure(CASE, "verification_footing", lambda figure: draw(figure, runs, data), size=(9.0, 3.4),
-               caption="Load on a strip footing over its settlement (grey: 5 % about Prandtl's), and the plastic strain at the end with averaging of volumes.")
+               caption="Load on a strip footing over settlement (grey: 5 % about Prandtl's), and plastic strain at the end, volumes averaged.")
     return results
