@@ -35,6 +35,7 @@ CASES = [
     "shock",
     "taylor_bar",
     "cook_membrane",
+    "plate_with_hole",
     "infinite_slope",
     "strip_footing",
     "factor_of_safety",
