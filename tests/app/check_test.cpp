@@ -66,8 +66,7 @@ loads:
         "wrong.yaml:10:5: error: bodies[3] \"four\".velocity[1]: \"1 / (x - x)\" is inf at (",
         "wrong.yaml:12:5: error: boundaries[0].on: the mesh has no facet group \"all\"",
         "wrong.yaml:14:5: error: loads[0].on: there are no particles behind the facets of \"y_max\" to carry the load",
-        "wrong.yaml:15:5: error: loads[1].acceleration[1]: \"2 * w\" is no formula of x, y, z and t: ",
-        "8 errors, nothing was run."})
+        "wrong.yaml:15:5: error: loads[1].acceleration[1]: \"2 * w\" is no formula of x, y, z and t: ", "8 errors, nothing was run."})
     EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 
