@@ -16,16 +16,16 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 6> pairs{"xx", "yy", "zz", "xy", "yz", "xz"};
 
-struct Column {
+struct MeasuredColumn {
   std::string_view name;
   const std::vector<Real>& values;
 };
 
 /// The table, and columns of one number per row behind the time.
-std::string csv_of(const PointTable& table, const std::vector<Column>& columns = {})
+std::string csv_of(const PointTable& table, const std::vector<MeasuredColumn>& columns = {})
 {
   std::string text = "time [s]";
-  for (const Column& column : columns)
+  for (const MeasuredColumn& column : columns)
     text += fmt::format(",{}", column.name);
   for (const char i : {'x', 'y', 'z'})
     for (const char j : {'x', 'y', 'z'})
@@ -39,7 +39,7 @@ std::string csv_of(const PointTable& table, const std::vector<Column>& columns =
   for (std::size_t n = 0; n < table.rows.size(); ++n) {
     const PointRow& row = table.rows[n];
     text += fmt::format("{}", row.time);
-    for (const Column& column : columns)
+    for (const MeasuredColumn& column : columns)
       text += fmt::format(",{}", column.values[n]);
     for (Index i = 0; i < 9; ++i)
       text += fmt::format(",{}", row.F(i / 3, i % 3));
