@@ -28,6 +28,7 @@ CASES = [
     "vibrating_bar",
     "irregular_bar",
     "self_weight_column",
+    "manufactured_solution",
     "sliding_block",
     "colliding_disks",
     "cantilever",

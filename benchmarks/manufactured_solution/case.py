@@ -1,0 +1,116 @@
+"""Manufactured solution: displacement along the axes in a bar, a square and a cube, driven by a body force given by formulas."""
+import re
+
+import numpy as np
+
+import lab as tools
+import vtp
+
+CASE = "manufactured_solution"
+SIGNS = [1, -1, -1]  # phases 0, pi, pi: nothing is displaced at the start
+# name: scene, Poisson's ratio, axes that move, amplitudes [m]
+PROBLEMS = {"bar": ("scene_bar.yaml", 0, 1, [0.05, 0.0001]), "square": ("scene.yaml", 0.3, 2, [0.1, 0.0001]), "cube": ("scene_cube.yaml", 0.3, 3, [0.1])}
+KERNELS = {"umls": "tpic", "linear": "flip"}
+JUDGED = {"bar": 0.05, "square": 0.1, "cube": 0.1}  # amplitude at which the order of umls is asked
+
+
+def counts(problem, kernel, amplitude, level):
+    """Cells along an edge of 1 m."""
+    if level == "quick":
+        fine = kernel == "umls" and amplitude == 0.1
+        return {"bar": [8, 16, 32], "square": [8, 16, 32] if fine else [8, 16], "cube": [3, 6]}[problem]
+    return {"bar": [8, 16, 32, 64], "square": [8, 16, 32, 64] if kernel == "umls" else [8, 16, 32], "cube": [3, 6, 12]}[problem]
+
+
+def formulas(problem, amplitude, data):
+    """Initial velocity [m/s] and force per mass [m/s^2] as formulas of a scene: k^2 u {mu/rho - c^2 - [lambda (ln J - 1) - mu] / (rho F^2)}."""
+    _, nu, axes, _ = PROBLEMS[problem]
+    speed = np.sqrt(data["modulus [Pa]"] / data["density [kg/m^3]"])
+    square_p = data["modulus [Pa]"] * nu / ((1 + nu) * (1 - 2 * nu)) / data["density [kg/m^3]"]  # lambda / rho
+    square_s = data["modulus [Pa]"] / (2 * (1 + nu)) / data["density [kg/m^3]"]  # mu / rho
+    sine = f"sin({speed:.17g} * pi * t)"
+    heights = [sign * amplitude for sign in SIGNS[:axes]]
+    stretches = [f"(1 + {height:.17g} * pi * cos(pi * {axis}) * {sine})" for axis, height in zip("xyz", heights)]
+    volume = f"ln({' * '.join(stretches)})"
+    idle = ["0"] * (max(axes, 2) - axes)
+    velocity = [f"{height * speed:.17g} * pi * sin(pi * {axis})" for axis, height in zip("xyz", heights)]
+    force = [f"pi^2 * {height:.17g} * sin(pi * {axis}) * {sine} * "
+             f"({square_s - speed**2:.17g} - ({square_p:.17g} * ({volume} - 1) - {square_s:.17g}) / {stretch}^2)"
+             for axis, height, stretch in zip("xyz", heights, stretches)]
+    return velocity + idle, force + idle
+
+
+def start(lab, problem, kernel, amplitude, count, data):
+    """Starts one run."""
+    velocity, force = formulas(problem, amplitude, data)
+    mesh = {"mesh.grid.cells": [count, 2], "mesh.grid.high": [1, 2 / count], "bodies[0].shape.high": [1, 2 / count]} if problem == "bar" else {
+        "mesh.size": 1 / count}
+    return lab.run(f"{CASE}/{PROBLEMS[problem][0]}", f"{problem}_{kernel}_G{amplitude:g}_{count}", {
+        **mesh, "kernel": kernel, "transfer.scheme": KERNELS[kernel], "bodies[0].velocity": velocity, "loads[0].acceleration": force})
+
+
+def times(run):
+    """Times of the particle files [s], as the list of the series has them."""
+    return [float(time) for time in re.findall(r'timestep="([^"]+)"', (run.folder / "particles.pvd").read_text(encoding="utf-8"))]
+
+
+def error(run, problem, amplitude, data):
+    """Largest over the times: root of the mean over the mass of the square of the error in displacement, relative to the amplitude."""
+    axes, omega = PROBLEMS[problem][2], np.pi * np.sqrt(data["modulus [Pa]"] / data["density [kg/m^3]"])
+    largest = 0.0
+    for path, time in zip(run.frames(), times(run)):
+        frame = vtp.read(path)
+        moved = frame["displacement"].astype(float)
+        exact = np.zeros_like(moved)
+        exact[:, :axes] = amplitude * np.sin(omega * time) * np.array(SIGNS[:axes]) * np.sin(np.pi * (frame["Points"] - moved)[:, :axes])
+        largest = max(largest, np.sqrt(np.average(np.sum((moved - exact)**2, axis=1), weights=frame["mass"])) / amplitude)
+    return float(largest)
+
+
+def judge(lab, key, runs, data):
+    """Results of one sweep of sizes; `key` is problem, kernel, amplitude."""
+    problem, kernel, amplitude = key
+    sizes, errors = [1 / count for count in runs], [error(run, problem, amplitude, data) for run in runs.values()]
+    name = f"{problem}, {kernel}, G = {amplitude:g} m"
+    published = {label: dict(map(tuple, rows)) for label, rows in data["published"].get(problem, {}).get(f"{amplitude:g}", {}).items()}
+    judged = kernel == "umls" and JUDGED[problem] == amplitude
+    results = []
+    for (count, run), value in zip(runs.items(), errors):
+        asked = judged and problem == "square" and count == 32
+        closest = published.get("iMPM" if kernel == "umls" else "MPM, linear", {}).get(count)
+        source = data["largest error at 1/32"]["source"] if asked else data["source"]
+        results.append(tools.Result(CASE, f"displacement error over G, {name}, 1/h = {count}", "-", value, "at most" if asked else "reported",
+                                    data["largest error at 1/32"]["value"] if asked else None, closest / amplitude if closest else 0.0, source, run))
+    results.append(tools.Result(CASE, f"order of convergence, {name}", "-", tools.observed_order(sizes, errors), "at least" if judged else "reported",
+                                data["order"]["asked"] if judged else None, data["order"]["value"], data["order"]["source"], runs[max(runs)]))
+    lab.convergence(CASE, f"displacement error, {name}", sizes, errors, expected=2)
+    return results, (sizes, errors)
+
+
+def draw(figure, curves, data):
+    """Error over size: bar, square and cube at the large amplitude, beside what was published."""
+    panels = [("bar", 0.05), ("square", 0.1), ("square", 0.0001), ("cube", 0.1)]
+    for axis, (problem, amplitude) in zip(figure.subplots(1, len(panels), sharey=True), panels):
+        for label, rows in data["published"].get(problem, {}).get(f"{amplitude:g}", {}).items():
+            count, value = np.array(rows).T
+            axis.loglog(1 / count, value / amplitude * 100, ":", color="0.5" if "linear" in label else "0.2" if label == "iMPM" else "0.7", label=label)
+        for kernel, mark in (("umls", "o-"), ("linear", "s--")):
+            if (problem, kernel, amplitude) in curves:
+                sizes, errors = curves[problem, kernel, amplitude]
+                axis.loglog(sizes, np.array(errors) * 100, mark, label=f"talus, {kernel}")
+        axis.set(title=f"{problem}, G = {amplitude:g} m", xlabel="cell size [m]")
+        axis.legend(fontsize=6)
+    figure.axes[0].set_ylabel("error in displacement [% of G]")
+
+
+def evaluate(lab):
+    """Results of all problems, kernels and amplitudes; judged are the order of umls at the large amplitude and its error in the square at 1/h = 32."""
+    data, results, curves = tools.reference(CASE), [], {}
+    plan = {(problem, kernel, amplitude): {count: start(lab, problem, kernel, amplitude, count, data) for count in counts(problem, kernel, amplitude, lab.level)}
+            for problem, (_, _, _, amplitudes) in PROBLEMS.items() for amplitude in amplitudes for kernel in KERNELS}
+    for key, runs in plan.items():
+        found, curves[key] = judge(lab, key, runs, data)
+        results += found
+    lab.figure(CASE, "verification_manufactured", lambda figure: draw(figure, curves, data), size=(9.6, 3.2),
+               caption="Error of manufactured solutions beside published ones: MPM with hats, with moving least squares (iMPM), finite elements.")
+    return results
