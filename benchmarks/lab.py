@@ -8,6 +8,7 @@ import csv
 import dataclasses
 import functools
 import hashlib
+import importlib.util
 import json
 import os
 import pathlib
@@ -269,6 +270,14 @@ def reference(case, name="reference.json"):
     rows = [line for line in text.splitlines() if line and not line.startswith("#")]
     values = np.array([[float(cell) for cell in row] for row in csv.reader(rows[1:])])
     return {name: values[:, i] for i, name in enumerate(rows[0].split(","))}
+
+
+def module(case):
+    """The module case.py of a benchmark."""
+    spec = importlib.util.spec_from_file_location(f"case_{case}", ROOT / "benchmarks" / case / "case.py")
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
 
 
 def rms(values):

@@ -143,7 +143,7 @@ def main():
     given = arguments()
     lab = tools.Lab(given.program, given.runs, given.out, given.level, given.reuse, given.threads, given.jobs)
     try:
-        description = verify.load(given.case).tradeoff(lab)
+        description = tools.module(given.case).tradeoff(lab)
         points, failures = sweep(lab, given.case, description, given.level == "full")
     finally:
         lab.close()
