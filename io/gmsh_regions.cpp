@@ -120,11 +120,15 @@ class ShapeMaker {
       const Vec<2> a = corners[(i + 1) % n] - corners[i], b = corners[p] - corners[i];
       return a[0] * b[1] - a[1] * b[0];
     };
+    const auto apart = [&](std::size_t i, std::size_t j) {  // sides in one line have no sides to tell
+      const Vec<2>&a = corners[i], &b = corners[(i + 1) % n], &p = corners[j], &q = corners[(j + 1) % n];
+      return (a.cwiseMax(b).array() < p.cwiseMin(q).array()).any() || (p.cwiseMax(q).array() < a.cwiseMin(b).array()).any();
+    };
     for (std::size_t i = 0; i < n; ++i) {
       if (corners[i] == corners[(i + 1) % n])
         refuse(fmt::format("the point ({}, {}) stands twice in a row", corners[i][0], corners[i][1]));
       for (std::size_t j = i + 2; j < n; ++j)
-        if ((j + 1) % n != i && side(i, j) * side(i, (j + 1) % n) <= 0 && side(j, i) * side(j, (i + 1) % n) <= 0)
+        if ((j + 1) % n != i && !apart(i, j) && side(i, j) * side(i, (j + 1) % n) <= 0 && side(j, i) * side(j, (i + 1) % n) <= 0)
           refuse(fmt::format("the polygon crosses itself: its sides {} and {} meet", i + 1, j + 1));
     }
     return corners;

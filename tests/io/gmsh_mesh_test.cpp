@@ -296,6 +296,14 @@ TEST(GmshMesh, WrongRegionsAreRefusedAtTheirPlace)
   EXPECT_THAT(complaint<2>(no_size), HasSubstr("scene.yaml:3:7: error: mesh: the mesh needs a size"));
 }
 
+TEST(GmshMesh, SidesOfAPolygonMayLieInOneLine)
+{
+  const Polygon notched{{{0, 0}, {1, 0}, {1.5, 1}, {2, 0}, {3, 0}, {3, 2}, {0, 2}}, {}};
+  EXPECT_NEAR(volume(load_mesh<2>(regions(0.5, {region("r", notched)}), "."), "r"), 3 * 2 - 0.5, round_off);
+  const Polygon folded{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}, {0.5, 0}, {0.5, 1}}, {}};
+  EXPECT_THAT(complaint<2>(regions(0.5, {region("r", folded)})), HasSubstr("crosses itself"));
+}
+
 class GmshGeometry : public ::testing::Test {
  protected:
   MeshSpec geo(const std::string& text) const
