@@ -102,10 +102,10 @@ def evaluate(lab):
     sizes = [2, 1.5, 1] if full else [2]
     plan = [(f"{soil['law']}, cells of {size} m", soil, {"mesh.size": size}) for size in sizes for soil in data["soils"]]
     if full:
-        plan += [(f"mohr_coulomb, cells of 1.5 m, {name}", data["soils"][0], {"mesh.size": 1.5, **settings}) for name, settings in (
+        plan += [(f"mohr_coulomb, cells of 2 m, {name}", data["soils"][0], {"mesh.size": 2, **settings}) for name, settings in (
             ("no damping", {"stages[1].damping": 0}), ("twice the time", {"stages[1].duration": 8}),
             ("volumes not averaged", {"bodies[0].f_bar": False}), ("linear", {"kernel": "linear"}), ("flip", {"transfer.scheme": "flip"}))]
-        plan += [("drucker_prager outer, cells of 1.5 m", {"law": "drucker_prager", "match": "outer"}, {"mesh.size": 1.5})]
+        plan += [("drucker_prager outer, cells of 2 m", {"law": "drucker_prager", "match": "outer"}, {"mesh.size": 2})]
     results = []
     searches = searched(lab, data, plan, 0.025 if full else 0.05)
     for number, search in enumerate(searches):
