@@ -1,10 +1,15 @@
-"""Cantilever in large deflection on unstructured triangles: the tip against a finite-element history."""
+"""Cantilevers in large deflection: a slender one and the same turned with its mesh, a thick one in two and three dimensions; tips against finite elements."""
 import numpy as np
 
 import lab as tools
+import vtp
 
 CASE = "cantilever"
 SIZES = {"quick": [0.5, 0.25], "full": [0.5, 0.25, 0.125]}
+SHORT = {"quick": [0.25, 0.125], "full": [0.25, 0.125, 0.0625]}  # of the thick beam
+SOLID = {"quick": [0.35], "full": [0.35, 0.25]}  # of the thick beam in three dimensions
+ANGLES = {"quick": [0, 30, 75], "full": [0, 15, 30, 45, 60, 75, 90]}  # degrees
+FRAMES = 0.025  # s, between the frames of the thick beams
 SWEPT = {"quick": [1, 0.7, 0.5, 0.35], "full": [1, 0.7, 0.5, 0.35, 0.25]}  # for tradeoff()
 
 
@@ -59,12 +64,108 @@ def judge(size, run, curve, data):
         tools.Result(CASE, f"defect in the program's energy ledger, cells of {size} m", "-", ledger_defect(run), "reported", None, 0.0, "energy balance", run)]
 
 
+def corner(run, at):
+    """Times [s] and downward displacement [m] of a corner of the thick beam: no particle sits there, so a linear field is fitted to those nearest to it."""
+    frames = [vtp.read(path) for path in run.frames()]
+    at = np.array(at, dtype=float)
+    start = frames[0]["Points"][:, :len(at)]
+    nearest = np.argsort(np.linalg.norm(start - at, axis=1))[:12 if len(at) == 2 else 24]
+    field = np.c_[np.ones(len(nearest)), start[nearest] - at]
+    down = np.array([-np.linalg.lstsq(field, frame["displacement"][nearest, len(at) - 1], rcond=None)[0][0] for frame in frames])
+    return np.minimum(np.arange(len(frames)) * FRAMES, run.history["time"][-1]), down
+
+
+def peak(times, down, before=1.2):
+    """Time [s] and size [m] of the first largest deflection, by a parabola through three frames."""
+    top = min(int(np.argmax(np.where(times <= before, down, -np.inf))), len(times) - 2)
+    parabola = np.polyfit(times[top - 1:top + 2] - times[top], down[top - 1:top + 2], 2)
+    shift = -parabola[1] / (2 * parabola[0])
+    return float(times[top] + shift), float(np.polyval(parabola, shift))
+
+
+def turned(lab, angle):
+    """The run of the slender beam, its mesh and gravity turned by `angle` [deg] about the clamp."""
+    cos, sin = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+
+    def turn(points):
+        return [[round(float(cos * x - sin * y), 12), round(float(sin * x + cos * y), 12)] for x, y in points]
+
+    edge = np.array(turn([[0, -6], [0, 2]]))  # clamped side of the room
+    return lab.run(f"{CASE}/scene_turned.yaml", f"turned_{angle}", {
+        "mesh.regions[0].shape.points": turn([[0, -1], [10, -1], [10, 1], [0, 1]]), "mesh.regions[1].shape.points": turn([[0, -6], [11, -6], [11, 2], [0, 2]]),
+        "mesh.groups[0].within.low": [float(x) for x in edge.min(axis=0) - 1e-3], "mesh.groups[0].within.high": [float(x) for x in edge.max(axis=0) + 1e-3],
+        "loads[0].acceleration": turn([[0, -9.81]])[0], "outputs.history.points[0].at": turn([[10, 0]])[0]})
+
+
+def lowest(run, angle):
+    """First largest displacement of the tip of a turned beam along gravity [m], and when [s]."""
+    along = run.history["tip_ux"] * np.sin(np.radians(angle)) - run.history["tip_uy"] * np.cos(np.radians(angle))
+    at = int(np.argmax(along))
+    return float(along[at]), float(run.history["time"][at])
+
+
+def judge_turned(runs, data):
+    """Results of the turned beams: each against finite elements, and how far they are apart."""
+    own, reference = data["turned"], -data["first minimum [m]"]
+    found = {angle: lowest(run, angle)[0] for angle, run in runs.items()}
+    results = [tools.Result(CASE, f"turned by {angle} degrees: first largest deflection, cells of 0.5 m", "m", found[angle], "within", own["largest error"],
+                            reference, own["source"], run) for angle, run in runs.items()]
+    spread = (max(found.values()) - min(found.values())) / reference
+    return results + [tools.Result(CASE, "spread of the deflection over all angles, cells of 0.5 m", "-", spread, "reported", None, 0.0,
+                                   "indifference to the frame", list(runs.values())[-1])]
+
+
+def judge_short(size, run, data, published):
+    """Results of the thick beam; beside the published material points, whose scatter the difference to the published curve shows."""
+    own, (times, down) = data["short"], corner(run, [4, 0])
+    time, largest = peak(times, down)
+    name, judged = f"thick beam, cells of {size} m", ("within", own["slack"])
+    apart = np.interp(published["time"], times, down) - published["cpdi_nh"]
+    early = published["time"] <= 1.6
+    return [
+        tools.Result(CASE, f"first largest deflection, {name}", "m", largest, *judged, own["largest deflection [m]"], own["source"], run),
+        tools.Result(CASE, f"time of the first largest deflection, {name}", "s", time, *judged, own["time [s]"], own["source"], run),
+        tools.Result(CASE, f"rms from published material points of the same law up to 1.6 s, {name}", "m", tools.rms(apart[early]), "reported", None, 0.0,
+                     "short_history.csv, cpdi_nh", run),
+        tools.Result(CASE, f"rms from published material points of the same law up to 2.8 s, {name}", "m", tools.rms(apart), "reported", None, 0.0,
+                     "short_history.csv, cpdi_nh", run)]
+
+
+def judge_solid(size, run, data):
+    """Results of the thick beam in three dimensions."""
+    own, (time, largest) = data["solid"], peak(*corner(run, [4, 0, 0]))
+    name = f"thick beam in three dimensions, cells of {size} m"
+    return [tools.Result(CASE, f"first largest deflection, {name}", "m", largest, "reported", None, own["largest deflection [m]"], own["source"], run),
+            tools.Result(CASE, f"time of the first largest deflection, {name}", "s", time, "reported", None, own["time [s]"], own["source"], run)]
+
+
+def draw_short(figure, runs, solids, published):
+    """The thick beam in two and three dimensions over the published histories."""
+    axis = figure.subplots()
+    for size, run in runs.items():
+        axis.plot(*corner(run, [4, 0]), label=f"talus, cells of {size} m")
+    for size, run in solids.items():
+        axis.plot(*corner(run, [4, 0, 0]), ":", label=f"talus in 3-D, cells of {size} m")
+    for name, mark, words in (("fem", "ko", "finite elements of the paper"), ("cpdi", "k^", "CPDI of the paper"), ("cpdi_nh", "k+", "CPDI, neo-Hookean")):
+        axis.plot(published["time"], published[name], mark, markersize=4, fillstyle="none", label=words)
+    axis.set(xlabel="time [s]", ylabel="deflection of the lower corner [m]")
+    axis.legend(fontsize=7)
+
+
 def evaluate(lab):
-    """Results for the sizes of the level."""
-    data, curve = tools.reference(CASE), tools.reference(CASE, "fe_history.csv")
+    """Results for the sizes of the level: the slender beam, the same turned, the thick beam in two and three dimensions."""
+    data, curve, published = tools.reference(CASE), tools.reference(CASE, "fe_history.csv"), tools.reference(CASE, "short_history.csv")
     runs = {size: lab.run(f"{CASE}/scene.yaml", f"dx{size}", {"mesh.size": size}) for size in SIZES[lab.level]}
+    short = {size: lab.run(f"{CASE}/scene_short.yaml", f"short_{size}", {"mesh.size": size}) for size in SHORT[lab.level]}
+    solid = {size: lab.run(f"{CASE}/scene_short_3d.yaml", f"solid_{size}", {"mesh.size": size}) for size in SOLID[lab.level]}
+    around = {angle: turned(lab, angle) for angle in ANGLES[lab.level]}
     lab.figure(CASE, "verification_cantilever", lambda figure: draw(figure, runs, curve), caption="Tip of the cantilever over three periods.")
-    return [result for size, run in runs.items() for result in judge(size, run, curve, data)]
+    lab.figure(CASE, "verification_cantilever_thick", lambda figure: draw_short(figure, short, solid, published),
+               caption="Lower corner of the thick cantilever over published histories.")
+    results = [result for size, run in runs.items() for result in judge(size, run, curve, data)]
+    results += [result for size, run in short.items() for result in judge_short(size, run, data, published)]
+    results += [result for size, run in solid.items() for result in judge_solid(size, run, data)]
+    return results + judge_turned(around, data)
 
 
 def tradeoff(lab):
