@@ -98,7 +98,8 @@ def draw(figure, curves, data):
             if (problem, kernel, amplitude) in curves:
                 sizes, errors = curves[problem, kernel, amplitude]
                 axis.loglog(sizes, np.array(errors) * 100, mark, label=f"talus, {kernel}")
-        axis.set(title=f"{problem}, G = {amplitude:g} m", xlabel="cell size [m]")
+        tools.size_axis(axis, [0.125, 0.0625, 0.03125] if problem != "cube" else [0.333, 0.167])
+        axis.set(title=f"{problem}, G = {amplitude:g} m")
         axis.legend(fontsize=6)
     figure.axes[0].set_ylabel("error in displacement [% of G]")
 

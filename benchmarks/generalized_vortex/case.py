@@ -1,0 +1,100 @@
+"""Generalized vortex: rings of an annulus turn against each other and back, driven by a body force given by formulas."""
+import re
+
+import numpy as np
+
+import lab as tools
+import vtp
+
+CASE = "generalized_vortex"
+SIZES = {"quick": [0.14, 0.1, 0.07], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # m
+KERNELS = {"umls": "tpic", "linear": "flip"}
+TURNS = [1, 0.1]  # rad, largest rotation: that of the literature, and one in which hardly any particle leaves its cell
+
+
+def formulas(turn, data):
+    """Initial velocity [m/s] and force per mass [m/s^2], as formulas of the place at the start and the time.
+
+    The force has the components A_r and A_t in the frame that turns with the ring, R the radius, g(t) h(R) the rotation:
+    A_r = mu/rho R (g h')^2 - R (g. h)^2,  A_t = R g.. h - mu/rho (3 g h' + R g h'').
+    """
+    modulus, nu, density = data["modulus [Pa]"], data["Poisson's ratio"], data["density [kg/m^3]"]
+    speed, square = np.sqrt(modulus / density), modulus / (2 * (1 + nu)) / density  # c, mu / rho
+    radius, angle = "sqrt(x^2 + y^2)", f"{speed:.17g} * pi * t"
+    off = f"({radius} - 1)"
+    h, h1, h2 = f"(1 - 32 * {off}^2 + 256 * {off}^4)", f"(-64 * {off} + 1024 * {off}^3)", f"(-64 + 3072 * {off}^2)"
+    g, g1 = f"({turn} * sin({angle}))", f"({turn * speed:.17g} * pi * cos({angle}))"
+    a_r = f"({square:.17g} * {radius} * ({g} * {h1})^2 - {radius} * ({g1} * {h})^2)"
+    a_t = f"(-{radius} * ({speed:.17g} * pi)^2 * {g} * {h} - {square:.17g} * (3 * {g} * {h1} + {radius} * {g} * {h2}))"
+    along, across = f"(x * {a_r} - y * {a_t})", f"(y * {a_r} + x * {a_t})"
+    force = [f"(cos({g} * {h}) * {along} - sin({g} * {h}) * {across}) / {radius}", f"(sin({g} * {h}) * {along} + cos({g} * {h}) * {across}) / {radius}"]
+    return [f"-{turn * speed:.17g} * pi * {h} * y", f"{turn * speed:.17g} * pi * {h} * x"], force
+
+
+def exact(place, time, turn, data):
+    """Displacement [m] of what was at `place`, shape (n, 2)."""
+    off = np.hypot(*place.T) - 1
+    angle = turn * np.sin(np.pi * np.sqrt(data["modulus [Pa]"] / data["density [kg/m^3]"]) * time) * (1 - 32 * off**2 + 256 * off**4)
+    x, y = place.T
+    return np.c_[np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y] - place
+
+
+def errors_over_time(run, turn, data):
+    """Times [s] and errors: root of the mean over the mass of the square of the error in displacement, over the same of the largest displacement."""
+    times = [float(time) for time in re.findall(r'timestep="([^"]+)"', (run.folder / "particles.pvd").read_text(encoding="utf-8"))]
+    found = []
+    for path, time in zip(run.frames(), times):
+        frame = vtp.read(path)
+        moved = frame["displacement"][:, :2].astype(float)
+        place = frame["Points"][:, :2] - moved
+        size = np.average(np.sum(exact(place, 0.5, turn, data)**2, axis=1), weights=frame["mass"])
+        found.append(np.sqrt(np.average(np.sum((moved - exact(place, time, turn, data))**2, axis=1), weights=frame["mass"]) / size))
+    return times, found
+
+
+def start(lab, kernel, turn, size, data):
+    """Starts one run."""
+    velocity, force = formulas(turn, data)
+    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}", {"mesh.size": size, "kernel": kernel, "transfer.scheme": KERNELS[kernel],
+                                                                        "bodies[0].velocity": velocity, "loads[0].acceleration": force})
+
+
+def draw(figure, curves, plan, data):
+    """Left error over size, right particles of the finest run of umls at half time, coloured by the radius at the start."""
+    left, right = figure.subplots(1, 2, width_ratios=[1.2, 1])
+    for (kernel, turn), (sizes, errors) in curves.items():
+        left.loglog(sizes, np.array(errors) * 100, "o-" if kernel == "umls" else "s--", label=f"{kernel}, {turn} rad")
+    left.loglog([0.14, 0.07], [20, 5], "k:", label="order 2")
+    tools.size_axis(left, SIZES["quick"])
+    left.set_ylabel("error in displacement [%]")
+    left.legend(fontsize=8)
+    run = list(plan["umls", 1].values())[-1]
+    frame = vtp.read(run.frames()[len(run.frames()) // 2])
+    place = frame["Points"] - frame["displacement"]
+    sector = np.abs(np.arctan2(place[:, 1], place[:, 0])) < 0.1
+    right.plot(*frame["Points"][:, :2].T, ".", color="0.85", markersize=1)
+    right.plot(*frame["Points"][sector, :2].T, "k.", markersize=2, label="talus")
+    radius = np.linspace(0.75, 1.25, 200)
+    line = np.c_[radius, 0 * radius]
+    right.plot(*(line + exact(line, 0.5, 1, data)).T, "C1-", label="exact")
+    right.set(aspect="equal", xlim=(0, 1.4), ylim=(-0.3, 1.2), xlabel="x [m]", title="a sector that was straight, at 0.5 s")
+    right.legend()
+
+
+def evaluate(lab):
+    """Results for two kernels and two rotations; judged is the order of umls at the rotation of the literature."""
+    data, results, curves = tools.reference(CASE), [], {}
+    plan = {(kernel, turn): {size: start(lab, kernel, turn, size, data) for size in SIZES[lab.level][:None if (kernel, turn) == ("umls", 1) or lab.level == "full" else 2]}
+            for turn in TURNS for kernel in KERNELS}
+    for (kernel, turn), runs in plan.items():
+        errors = [max(errors_over_time(run, turn, data)[1]) for run in runs.values()]
+        curves[kernel, turn] = list(runs), errors
+        name, judged = f"{kernel}, {turn} rad", kernel == "umls" and turn == 1
+        results += [tools.Result(CASE, f"displacement error, {name}, cells of {size} m", "-", value, "reported", None, 0.0, data["source"], run)
+                    for (size, run), value in zip(runs.items(), errors)]
+        results.append(tools.Result(CASE, f"order of convergence, {name}", "-", tools.observed_order(list(runs), errors), "at least" if judged else "reported",
+                                    data["order asked"] if judged else None, 2.0, data["source"], list(runs.values())[-1]))
+        lab.convergence(CASE, f"displacement error, {name}", list(runs), errors, expected=2)
+    lab.figure(CASE, "verification_vortex", lambda figure: draw(figure, curves, plan, data), size=(7.4, 3.2),
+               caption="Generalized vortex: error of the displacement, and a sector of the ring at the largest rotation.")
+    return results
