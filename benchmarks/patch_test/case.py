@@ -1,0 +1,70 @@
+"""Patch tests: scatter of a uniform stress at rest, and of a uniform velocity gradient, on irregular meshes."""
+import re
+
+import numpy as np
+
+import lab as tools
+import vtp
+
+CASE = "patch_test"
+KERNELS = ["linear", "umls"]
+GRID = "{grid: {low: [0, 0], high: [1, 1], cells: [10, 10], jitter: %g}}"
+MESHES = {  # name: mesh, None for that of the scene; the body fills all of it
+    "regular": GRID % 0, "jittered 20 %": GRID % 0.2, "gmsh": None}
+BODY = "{name: square, material: rubber, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: %d}"
+START = np.array([[1, 0.5], [0.25, -1]])  # 1/s, gradient of scene_stretch.yaml
+
+
+def patch(lab, mesh, kernel, count):
+    """Starts a static patch test with `count` particles per cell."""
+    settings = {"bodies[0].particles_per_cell": count} if mesh == "gmsh" else {"mesh": MESHES[mesh], "bodies[0]": BODY % count}
+    return lab.run(f"{CASE}/scene.yaml", f"{mesh.replace(' ', '_').replace('%', 'percent')}_{kernel}_{count}", {**settings, "kernel": kernel})
+
+
+def stress_error(run, data):
+    """Root of the mean over the mass of the square of the error in the stress (xx, yy, xy) over the pressure, and the largest error."""
+    frame, pressure, nu = run.last_frame(), data["pressure [Pa]"], data["Poisson's ratio"]
+    wrong = frame["stress"][:, [0, 1, 3]] - np.array([-pressure, -pressure * nu / (1 - nu), 0])
+    size = np.linalg.norm(wrong, axis=1) / pressure
+    return float(np.sqrt(np.average(size**2, weights=frame["mass"]))), float(size.max())
+
+
+def gradient_error(run, index):
+    """Root mean square, over particles that start 0.15 m and more inside, of the error in the velocity gradient over its exact value, in one file."""
+    time = float(re.findall(r'timestep="([^"]+)"', (run.folder / "particles.pvd").read_text(encoding="utf-8"))[index])
+    frame = vtp.read(run.frames()[index])
+    place = frame["Points"] - frame["displacement"]
+    inside = np.all(np.abs(place[:, :2] - 0.5) < 0.15, axis=1)
+    exact = START @ np.linalg.inv(np.eye(2) + time * START)
+    wrong = frame["velocity_gradient"].reshape(-1, 3, 3)[inside, :2, :2] - exact
+    return float(np.sqrt(np.mean(np.sum(wrong**2, axis=(1, 2)))) / np.linalg.norm(exact))
+
+
+def draw(figure, runs, data):
+    """Stress xx over the pressure of two runs."""
+    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
+        frame = run.last_frame()
+        dots = axis.scatter(frame["Points"][:, 0], frame["Points"][:, 1], c=-frame["stress"][:, 0] / data["pressure [Pa]"], s=4, vmin=0.8, vmax=1.2, cmap="coolwarm")
+        axis.set(title=name, aspect="equal", xlabel="x [m]")
+    figure.colorbar(dots, label="pressing stress over the exact one")
+
+
+def evaluate(lab):
+    """Static patch tests on three meshes with two kernels; uniform stretching with two kernels."""
+    data, results = tools.reference(CASE), []
+    counts = [6] if lab.level == "quick" else [3, 6, 12]
+    runs = {(mesh, kernel, count): patch(lab, mesh, kernel, count) for mesh in MESHES for kernel in KERNELS for count in counts}
+    stretched = {kernel: lab.run(f"{CASE}/scene_stretch.yaml", f"stretch_{kernel}", {"kernel": kernel}) for kernel in KERNELS}
+    for (mesh, kernel, count), run in runs.items():
+        mean, largest = stress_error(run, data)
+        name, judged = f"{mesh}, {kernel}, {count} particles per cell", kernel == "linear"
+        results.append(tools.Result(CASE, f"stress error over the pressure, rms, {name}", "-", mean, "at most" if judged else "reported",
+                                    data["largest error of linear"] if judged else None, 0.0, data["source"], run))
+        results.append(tools.Result(CASE, f"the largest, {name}", "-", largest, "reported", None, 0.0, data["source"], run))
+    for kernel, run in stretched.items():
+        for when, index in (("after 0.01 s", 1), ("after 0.1 s", -1)):
+            results.append(tools.Result(CASE, f"error of a uniform velocity gradient {when}, {kernel}, tpic", "-", gradient_error(run, index), "reported", None,
+                                        0.0, data["stretch source"], run))
+    lab.figure(CASE, "verification_patch", lambda figure: draw(figure, {kernel: runs["jittered 20 %", kernel, 6] for kernel in reversed(KERNELS)}, data),
+               size=(7.4, 3.2), caption="Static patch test on a jittered mesh: stress of the particles over the uniform exact one.")
+    return results
