@@ -1,0 +1,65 @@
+"""Rigid motion: a free block flies through a hundred cells without stress; how much angular momentum and energy a spinning disk loses."""
+import numpy as np
+
+import lab as tools
+
+CASE = "rigid_motion"
+KERNELS = ["umls", "linear"]
+SCHEMES = ["flip", "apic", "tpic"]
+TURNS = {"quick": 20, "full": 1000}
+
+
+def flight(lab, kernel, scheme):
+    """Starts a flight."""
+    return lab.run(f"{CASE}/scene.yaml", f"flight_{kernel}_{scheme}", {"kernel": kernel, "transfer.scheme": scheme})
+
+
+def spin(lab, scheme):
+    """Starts a spin of some turns; rows at twenty places of a turn."""
+    turns = TURNS[lab.level]
+    return lab.run(f"{CASE}/scene_spin.yaml", f"spin_{scheme}_{turns}", {"kernel": "umls", "transfer.scheme": scheme, "time.end": turns})
+
+
+def judge_flight(kernel, scheme, run, data):
+    """Largest stress at the end over the modulus, largest change of momentum over its start."""
+    asked, history = data["flight"], run.history
+    stress = float(np.abs(run.last_frame()["stress"]).max()) / 10
+    drift = np.hypot(history["momentum_x"] - history["momentum_x"][0], history["momentum_y"]) / history["momentum_x"][0]
+    name = f"flight, {kernel}, {scheme}"
+    return [tools.Result(CASE, f"largest stress over the modulus, {name}", "-", stress, "at most", asked["largest stress over modulus"], 0.0, asked["source"], run),
+            tools.Result(CASE, f"drift of momentum, {name}", "-", float(drift.max()), "at most", asked["largest drift of momentum"], 0.0, asked["source"], run)]
+
+
+def angular(history):
+    """Angular momentum over its start: the column about z."""
+    column = history["angular_momentum_z" if "angular_momentum_z" in history else "angular_momentum"]
+    return column / column[0]
+
+
+def report_spin(scheme, turns, run, data):
+    """Loss of angular momentum and of energy by the end."""
+    history = run.history
+    energy = history["kinetic"] + history["strain"]
+    name = f"spin of {turns} turns, {scheme}"
+    return [tools.Result(CASE, f"angular momentum over its start, {name}", "-", float(angular(history)[-1]), "reported", None, 1.0, data["spin source"], run),
+            tools.Result(CASE, f"energy over its start, {name}", "-", float(energy[-1] / energy[0]), "reported", None, 1.0, data["spin source"], run)]
+
+
+def draw(figure, spins):
+    """Angular momentum over turns."""
+    axis = figure.subplots()
+    for scheme, run in spins.items():
+        axis.plot(run.history["time"], angular(run.history), label=scheme)
+    axis.set(xlabel="turns", ylabel="angular momentum over its start")
+    axis.legend()
+
+
+def evaluate(lab):
+    """Flights with two kernels and three transfers; spins with three transfers."""
+    data = tools.reference(CASE)
+    flights = {(kernel, scheme): flight(lab, kernel, scheme) for kernel in KERNELS for scheme in SCHEMES}
+    spins = {scheme: spin(lab, scheme) for scheme in SCHEMES}
+    results = [result for (kernel, scheme), run in flights.items() for result in judge_flight(kernel, scheme, run, data)]
+    results += [result for scheme, run in spins.items() for result in report_spin(scheme, TURNS[lab.level], run, data)]
+    lab.figure(CASE, "verification_spin", lambda figure: draw(figure, spins), caption="Angular momentum of a free spinning disk, three transfers, kernel umls.")
+    return results
