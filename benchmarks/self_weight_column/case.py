@@ -4,7 +4,7 @@ import numpy as np
 import lab as tools
 
 CASE = "self_weight_column"
-LAWS = ["linear_elastic", "neo_hookean"]
+LAWS = ["linear_elastic", "neo_hookean", "hencky", "linear_first_piola"]
 INTERVALS = {"quick": [10, 20, 40], "full": [10, 20, 40, 80]}  # cells over the height of 50 m
 
 
@@ -19,8 +19,15 @@ def stretch(law, pressure, modulus):
     """Stretch F at a Cauchy pressure in uniaxial strain without lateral contraction (nu = 0: lambda = 0, 2 mu = M)."""
     if law == "linear_elastic":
         return np.exp(-pressure / modulus)
-    # neo-Hookean: M/2 (F^2 - 1) / F = -pressure
     ratio = pressure / modulus
+    if law == "linear_first_piola":
+        return 1 - ratio
+    if law == "hencky":  # M ln F / F = -pressure: F = exp(-W(ratio)) with Lambert's W, by iteration
+        logarithm = np.zeros_like(ratio)
+        for _ in range(50):
+            logarithm = -ratio * np.exp(logarithm)
+        return np.exp(logarithm)
+    # neo-Hookean: M/2 (F^2 - 1) / F = -pressure
     return -ratio + np.sqrt(ratio**2 + 1)
 
 
@@ -51,7 +58,7 @@ def draw(figure, sizes, errors, run, data):
     """Left the error over the size of cells, right the stress of the finest run over the height."""
     left, right = figure.subplots(1, 2)
     for law, values in errors.items():
-        left.loglog(sizes, np.array(values) * 100, "o-" if law == LAWS[0] else "x--", label=law.replace("_", " "))
+        left.loglog(sizes, np.array(values) * 100, dict(zip(LAWS, ["o-", "x--", "s:", "+-."]))[law], label=law.replace("_", " "))
     left.loglog(sizes, 0.5 * np.array(sizes) / sizes[0], "k:", label="order 1")
     tools.size_axis(left, sizes)
     left.set(ylabel="error in stress [%]")
@@ -65,7 +72,7 @@ def draw(figure, sizes, errors, run, data):
 
 
 def evaluate(lab):
-    """Results for two laws."""
+    """Results for four laws."""
     data, results, errors = tools.reference(CASE), [], {}
     intervals = INTERVALS[lab.level]
     sizes = [data["height [m]"] / n for n in intervals]
