@@ -41,6 +41,7 @@ CASES = [
     "taylor_bar",
     "cook_membrane",
     "plate_with_hole",
+    "elastica",
     "hertz_contact",
     "sphere_container",
     "infinite_slope",
