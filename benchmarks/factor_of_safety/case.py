@@ -104,8 +104,7 @@ def evaluate(lab):
     if full:
         plan += [(f"mohr_coulomb, cells of 2 m, {name}", data["soils"][0], {"mesh.size": 2, **settings}) for name, settings in (
             ("no damping", {"stages[1].damping": 0}), ("twice the time", {"stages[1].duration": 8}),
-            ("volumes not averaged", {"bodies[0].f_bar": False}), ("linear", {"kernel": "linear"}), ("flip", {"transfer.scheme": "flip"}))]
-        plan += [("drucker_prager outer, cells of 2 m", {"law": "drucker_prager", "match": "outer"}, {"mesh.size": 2})]
+            ("volumes not averaged", {"bodies[0].f_bar": False}), ("flip", {"transfer.scheme": "flip"}))]
     results = []
     searches = searched(lab, data, plan, 0.025 if full else 0.05)
     for number, search in enumerate(searches):
