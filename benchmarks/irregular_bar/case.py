@@ -5,6 +5,7 @@ import lab as tools
 CASE = "irregular_bar"
 SIZES = {"quick": [1, 0.5, 0.25], "full": [1, 0.5, 0.25, 0.125]}
 KERNELS = ["umls", "linear"]
+RATIOS = {"quick": [1.2, 2], "full": [1.2, 1.5, 2, 4, 10]}  # size of the cells outside over that inside a strip in the middle of the bar
 MESHES = {"jittered": "scene.yaml", "gmsh": "scene_gmsh.yaml"}
 
 
@@ -12,6 +13,12 @@ def settings(mesh, kernel, size):
     """Changes to the scene for cells of `size` [m]."""
     cells = {"mesh.grid.cells": [round(30 / size), round(2 / size)]} if mesh == "jittered" else {"mesh.size": size}
     return {**cells, "kernel": kernel, "transfer.scheme": "tpic" if kernel == "umls" else "flip"}
+
+
+def graded(lab, kernel, ratio):
+    """Starts the bar on cells of 0.5 m that are smaller in a strip from 12 to 14 m."""
+    refine = f"[{{within: {{low: [12, 0], high: [14, 2]}}, size: {0.5 / ratio:.4g}}}]"
+    return lab.run(f"{CASE}/scene_gmsh.yaml", f"graded_{kernel}_{ratio}", {**settings("gmsh", kernel, 0.5), "mesh.refine": refine})
 
 
 def error(run, data):
@@ -31,7 +38,7 @@ def draw(figure, curves, data):
 
 
 def evaluate(lab):
-    """Results on two irregular meshes with two kernels; only the error of umls at 0.5 m is judged."""
+    """Results on two irregular meshes and on graded ones with two kernels; only the error of umls at 0.5 m is judged."""
     data, curves, results = tools.reference(CASE), {}, []
     sizes = SIZES[lab.level]
     for mesh, scene in MESHES.items():
@@ -43,6 +50,9 @@ def evaluate(lab):
                 results.append(tools.Result(CASE, f"displacement error, cells of {size} m, {mesh}, {kernel}", "-", error(run, data),
                                             "at most" if judged else "reported", data["largest error at 0.5 m"] if judged else None, 0.0,
                                             data["source"], run))
+    strips = {(kernel, ratio): graded(lab, kernel, ratio) for ratio in RATIOS[lab.level] for kernel in KERNELS}
+    results += [tools.Result(CASE, f"displacement error, cells of 0.5 m, {ratio} times smaller in a strip, {kernel}", "-", error(run, data), "reported", None, 0.0,
+                             data["source"], run) for (kernel, ratio), run in strips.items()]
     lab.figure(CASE, "verification_irregular", lambda figure: draw(figure, curves, data),
                caption="Error of the bar on irregular meshes over one period: it stops to fall, see the page of the kernels.")
     return results
