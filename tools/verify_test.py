@@ -50,7 +50,7 @@ def program(folder):
     """A stand-in for talus: fails where a setting says `fail`, else leaves a summary and a history with its words."""
     path = pathlib.Path(folder) / "program"
     path.write_text(f"""#!/bin/sh
-case "$*" in *fail=1*) echo "error: points went out" >&2; exit 3;; esac
+case "$*" in *fail=1*) echo "error: $2: points went out" >&2; exit 3;; esac
 mkdir -p "$4" && echo '{json.dumps(SUMMARY)}' > "$4/summary.json" && echo "$@" > "$4/words" && printf 'time [s],x\\n0,1\\n' > "$4/history.csv"
 """, encoding="utf-8")
     path.chmod(0o755)
@@ -82,15 +82,15 @@ class Runs(unittest.TestCase):
         own = self.lab()
         bad, good = own.run(self.SCENE, "bad", {"fail": 1}), own.run(self.SCENE, "good", {})
         self.assertEqual(good.history["x"].tolist(), [1])
-        with self.assertRaisesRegex(lab.RunFailed, "sliding_block/bad ended with 3: error: points went out"):
+        with self.assertRaisesRegex(lab.RunFailed, "sliding_block/bad ended with 3: error: benchmarks/sliding_block/scene.yaml: points went out"):
             bad.history
         self.assertIn("points went out", bad.failure())
         self.assertIsNone(good.failure())
 
-    def test_a_run_that_may_fail_has_an_ending_like_any_other(self):
+    def test_a_run_that_may_fail_has_an_ending_like_any_other_and_names_no_folder_of_a_machine(self):
         own = self.lab()
         bad, good = own.run(self.SCENE, "bad", {"fail": 1}, may_fail=True), own.run(self.SCENE, "good", {}, may_fail=True)
-        self.assertEqual(bad.ending, (3, "error: points went out"))
+        self.assertEqual(bad.ending, (3, "error: benchmarks/sliding_block/scene.yaml: points went out"))
         self.assertIsNone(bad.failure())
         self.assertEqual(good.ending, (0, ""))
 
@@ -116,11 +116,11 @@ class Runs(unittest.TestCase):
 
     def measured(self, evaluate):
         """Records and account of a case whose evaluate() is given."""
-        known, verify.load = verify.load, lambda case: type("Case", (), {"evaluate": staticmethod(evaluate)})
+        known, lab.module = lab.module, lambda case: type("Case", (), {"evaluate": staticmethod(evaluate)})
         try:
             return verify.measure(self.lab(), "sliding_block", {})
         finally:
-            verify.load = known
+            lab.module = known
 
     def test_a_case_with_a_run_that_fails_has_a_failed_result_with_the_words_of_the_program(self):
         records, info = self.measured(lambda own: [own.run(self.SCENE, "bad", {"fail": 1}).history])
