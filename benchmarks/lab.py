@@ -12,6 +12,7 @@ import importlib.util
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
@@ -76,6 +77,10 @@ class Run:
     def frames(self):
         """Particle files in order of time."""
         return sorted(self.folder.glob("particles_*.vtp"))
+
+    def times(self):
+        """Times of the particle files [s], as the list of the series has them."""
+        return [float(time) for time in re.findall(r'timestep="([^"]+)"', (self.folder / "particles.pvd").read_text(encoding="utf-8"))]
 
     def last_frame(self):
         """Arrays of the last particle file by name; 'Points' are the positions, shape (n, 3)."""
@@ -274,12 +279,17 @@ def reference(case, name="reference.json"):
     return {name: values[:, i] for i, name in enumerate(rows[0].split(","))}
 
 
-def module(case):
-    """The module case.py of a benchmark."""
-    spec = importlib.util.spec_from_file_location(f"case_{case}", ROOT / "benchmarks" / case / "case.py")
+def module(case, name="case"):
+    """The module case.py of a benchmark, or another of its files of Python."""
+    spec = importlib.util.spec_from_file_location(f"{name}_{case}", ROOT / "benchmarks" / case / f"{name}.py")
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)
     return loaded
+
+
+def label(name):
+    """A name of a result as one of a folder."""
+    return re.sub(r"[^\w.-]+", "_", name)
 
 
 def rms(values):

@@ -89,7 +89,7 @@ def sweep(lab, case, description, everything):
         for axis, label in choice.items():
             settings.update(description.axes[axis][label])
         name = ", ".join(choice.values())
-        asked.append((choice, name, lab.run(description.scene, "tradeoff_" + "".join(c if c.isalnum() or c in ".-" else "_" for c in name), settings)))
+        asked.append((choice, name, lab.run(description.scene, tools.label(f"tradeoff_{name}"), settings)))
     points, failures = [], []
     for choice, name, run in asked:
         words = run.failure()

@@ -1,6 +1,7 @@
 """Cantilevers in large deflection: a slender one and the same turned with its mesh, a thick one in two and three dimensions; tips against finite elements."""
 import numpy as np
 
+import fields
 import lab as tools
 import vtp
 
@@ -69,9 +70,7 @@ def corner(run, at):
     frames = [vtp.read(path) for path in run.frames()]
     at = np.array(at, dtype=float)
     start = frames[0]["Points"][:, :len(at)]
-    nearest = np.argsort(np.linalg.norm(start - at, axis=1))[:12 if len(at) == 2 else 24]
-    field = np.c_[np.ones(len(nearest)), start[nearest] - at]
-    down = np.array([-np.linalg.lstsq(field, frame["displacement"][nearest, len(at) - 1], rcond=None)[0][0] for frame in frames])
+    down = -np.array([fields.extended(start, frame["displacement"][:, len(at) - 1], at, 12 if len(at) == 2 else 24) for frame in frames])
     return np.minimum(np.arange(len(frames)) * FRAMES, run.history["time"][-1]), down
 
 

@@ -77,7 +77,7 @@ def evaluate(lab):
     data, runs, judged = tools.reference(CASE), {}, set()
     for kind, size, averaged, changes in QUICK + (FULL if lab.level == "full" else []):
         name = f"{kind}, cells of {size} m, {'averaged' if averaged else 'plain'}"
-        label = name.replace(" ", "_").replace(",", "")
+        label = tools.label(name)
         runs[name] = lab.run(f"{CASE}/scene.yaml", label, {"mesh.size": size, "bodies[0].f_bar": averaged, **changes})
         if kind == "umls" and averaged and size <= 0.5:
             judged.add(name)

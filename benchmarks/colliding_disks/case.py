@@ -102,7 +102,7 @@ def evaluate(lab):
     """Results with both kernels, two transfers and two or three sizes of cells: increments (flip) keep the energy, the affine one (tpic) spends some in
     the collision. Then a collision off the diagonal, which has an angular momentum to keep."""
     data, curves = tools.reference(CASE), tools.reference(CASE, "fe_curves.csv")
-    runs = {name: lab.run(f"{CASE}/scene.yaml", name.replace(", ", "_").replace(" ", "_"),
+    runs = {name: lab.run(f"{CASE}/scene.yaml", tools.label(name),
                           {"kernel": kernel, "transfer.scheme": transfer, "mesh.size": size})
             for name, (kernel, transfer, size, level) in RUNS.items() if level in ("quick", lab.level)}
     oblique = {f"{kernel}, {transfer}": lab.run(f"{CASE}/scene.yaml", f"oblique_{kernel}_{transfer}", {"kernel": kernel, "transfer.scheme": transfer, **OBLIQUE})

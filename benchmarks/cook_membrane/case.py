@@ -1,6 +1,7 @@
 """Cook's membrane: lift of the corner towards incompressibility, with and without averaging of volumes over the stars of nodes."""
 import numpy as np
 
+import fields
 import lab as tools
 
 CASE = "cook_membrane"
@@ -10,18 +11,7 @@ def lift(run, corner):
     """Upward displacement of a corner of the body [m]: no particle sits there, so a plane through the twelve nearest ones is extended."""
     frame = run.last_frame()
     start = frame["Points"][:, :2] - frame["displacement"][:, :2]
-    nearest = np.argsort(np.hypot(*(start - corner).T))[:12]
-    plane = np.c_[np.ones(12), start[nearest] - corner]
-    return float(np.linalg.lstsq(plane, frame["displacement"][nearest, 1], rcond=None)[0][0])
-
-
-def checkerboard(run):
-    """Scatter of pressure within cells over the scatter of their means: 0 for a smooth pressure, large for a checkerboard."""
-    frame = run.last_frame()
-    cell, pressure = frame["cell"].astype(int), frame["pressure"]
-    count = np.bincount(cell)
-    mean = np.bincount(cell, pressure) / np.maximum(count, 1)
-    return float(np.std(pressure - mean[cell]) / np.std(mean[count > 0]))
+    return float(fields.extended(start, frame["displacement"][:, 1], corner))
 
 
 def draw(figure, runs):
@@ -44,13 +34,13 @@ def evaluate(lab):
     runs = []
     for nu, size, averaged in plan:
         name = f"nu {nu}, cells of {size} m, {'averaged' if averaged else 'plain'}"
-        runs.append((name, lab.run(f"{CASE}/scene.yaml", name.replace(" ", "_").replace(",", ""),
+        runs.append((name, lab.run(f"{CASE}/scene.yaml", tools.label(name),
                                    {"materials[0].poisson_ratio": float(nu), "mesh.size": size, "bodies[0].f_bar": averaged})))
     for (nu, size, averaged), (name, run) in zip(plan, runs):
         tolerance = asked.get((nu, size, averaged))
         results.append(tools.Result(CASE, f"lift of the corner, {name}", "m", lift(run, corner), "within" if tolerance else "reported", tolerance,
                                     data["lift [m]"][nu], data["source"], run))
-        results.append(tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", checkerboard(run), "reported", None, None, "", run))
+        results.append(tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", fields.checkerboard(run.last_frame()), "reported", None, None, "", run))
         if (nu, size) == ("0.499", 4):
             pictured["averaged" if averaged else "plain"] = run
     lab.figure(CASE, "verification_cook", lambda figure: draw(figure, pictured), size=(7.4, 3.4),

@@ -1,6 +1,7 @@
 """Elastica: a slender clamped beam under a dead load at its tip, at rest, against the beam theory of large rotations."""
 import numpy as np
 
+import fields
 import lab as tools
 
 CASE = "elastica"
@@ -61,8 +62,7 @@ def tip(run, data):
     """Drop and shortening of the middle of the free end over the length: a linear field fitted to the particles nearest to it."""
     frame, at = run.last_frame(), np.array([data["length [m]"], data["height [m]"] / 2])
     start = frame["Points"][:, :2] - frame["displacement"][:, :2]
-    nearest = np.argsort(np.hypot(*(start - at).T))[:12]
-    moved = np.linalg.lstsq(np.c_[np.ones(12), start[nearest] - at], frame["displacement"][nearest, :2], rcond=None)[0][0]
+    moved = fields.extended(start, frame["displacement"][:, :2], at)
     return float(-moved[1] / data["length [m]"]), float(-moved[0] / data["length [m]"])
 
 

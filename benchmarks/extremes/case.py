@@ -1,8 +1,5 @@
 """Extremes: what is expected of each is stated before it is run: bounded, or refused with words that name the reason; never NaN, never silent."""
 import hashlib
-import importlib.util
-import json
-import pathlib
 
 import numpy as np
 
@@ -13,15 +10,7 @@ FLAT, SOLID, HEAP, LAYERS, PAIR = (f"{CASE}/{name}.yaml" for name in ("scene", "
 RUBBER = {"name": "rubber", "law": "neo_hookean", "density": 1000, "youngs_modulus": 1.0e5, "poisson_ratio": 0.3}
 
 
-def module(name):
-    """A file of Python beside this one."""
-    spec = importlib.util.spec_from_file_location(f"{CASE}_{name}", pathlib.Path(__file__).with_name(f"{name}.py"))
-    made = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(made)
-    return made
-
-
-meshes = module("meshes")
+meshes = tools.module(CASE, "meshes")
 
 
 # Measures: histories of bodies that nothing touches.
@@ -267,11 +256,6 @@ def others(full):
 # Results.
 
 
-def label(name):
-    """A folder for a run."""
-    return "".join(letter if letter.isalnum() or letter in ".-" else "_" for letter in name)
-
-
 def ended(run, measure):
     """What is measured of a run that ended well; not a number where it did not."""
     return measure(run) if run.ending[0] == 0 else float("nan")
@@ -314,7 +298,7 @@ def evaluate(lab):
     full = lab.level == "full"
 
     def start(name, scene, settings):
-        return lab.run(scene, label(name), settings, may_fail=True)
+        return lab.run(scene, tools.label(name), settings, may_fail=True)
 
     free = [(name, start(name, scene, settings)) for name, scene, settings in free_flights(lab, full)]
     uniform = [(name, start(name, scene, settings)) for name, scene, settings in uniform_flights()]

@@ -45,7 +45,7 @@ class Search:
     def next(self):
         """Starts the runs that are to be judged next."""
         for factor in self.pending:
-            label = f"{self.name}_{factor:g}".replace(" ", "_").replace(",", "")
+            label = tools.label(f"{self.name}_{factor:g}")
             self.runs[factor] = self.lab.run(f"{CASE}/scene.yaml", label, {"materials[0]": reduced(self.data, self.soil, factor), **self.settings})
 
     def step(self, width):

@@ -1,6 +1,4 @@
 """Generalized vortex: rings of an annulus turn against each other and back, driven by a body force given by formulas."""
-import re
-
 import numpy as np
 
 import lab as tools
@@ -41,7 +39,7 @@ def exact(place, time, turn, data):
 
 def errors_over_time(run, turn, data):
     """Times [s] and errors: root of the mean over the mass of the square of the error in displacement, over the same of the largest displacement."""
-    times = [float(time) for time in re.findall(r'timestep="([^"]+)"', (run.folder / "particles.pvd").read_text(encoding="utf-8"))]
+    times = run.times()
     found = []
     for path, time in zip(run.frames(), times):
         frame = vtp.read(path)

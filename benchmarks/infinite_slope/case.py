@@ -98,7 +98,7 @@ def evaluate(lab):
                  "plane_strain, cells of 0.0625 m": (soil, excess, False, {"mesh.size": 0.0625})}
     runs = {}
     for name, (soil, steeper, _, extra) in plan.items():
-        label = name.replace(" ", "_").replace(",", "")
+        label = tools.label(name)
         runs[name] = lab.run(f"{CASE}/scene.yaml", label, {**settings(soil, closed_form(soil, phi) + steeper, data), **extra})
     for name, (soil, _, judged, _) in plan.items():
         run, expected = runs[name], closed_form(soil, phi)

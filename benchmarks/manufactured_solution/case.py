@@ -1,6 +1,4 @@
 """Manufactured solution: displacement along the axes in a bar, a square and a cube, driven by a body force given by formulas."""
-import re
-
 import numpy as np
 
 import lab as tools
@@ -49,16 +47,11 @@ def start(lab, problem, kernel, amplitude, count, data):
         **mesh, "kernel": kernel, "transfer.scheme": KERNELS[kernel], "bodies[0].velocity": velocity, "loads[0].acceleration": force})
 
 
-def times(run):
-    """Times of the particle files [s], as the list of the series has them."""
-    return [float(time) for time in re.findall(r'timestep="([^"]+)"', (run.folder / "particles.pvd").read_text(encoding="utf-8"))]
-
-
 def error(run, problem, amplitude, data):
     """Largest over the times: root of the mean over the mass of the square of the error in displacement, relative to the amplitude."""
     axes, omega = PROBLEMS[problem][2], np.pi * np.sqrt(data["modulus [Pa]"] / data["density [kg/m^3]"])
     largest = 0.0
-    for path, time in zip(run.frames(), times(run)):
+    for path, time in zip(run.frames(), run.times()):
         frame = vtp.read(path)
         moved = frame["displacement"].astype(float)
         exact = np.zeros_like(moved)
@@ -115,3 +108,20 @@ def evaluate(lab):
     lab.figure(CASE, "verification_manufactured", lambda figure: draw(figure, curves, data), size=(9.6, 3.2),
                caption="Error of manufactured solutions beside published ones: MPM with hats, with moving least squares (iMPM), finite elements.")
     return results
+
+
+def tradeoff(lab):
+    """The square at the large amplitude, strain up to 31 %: particles cross cells; the error is that of evaluate()."""
+    data = tools.reference(CASE)
+    velocity, force = formulas("square", 0.1, data)
+    swept = [8, 16, 32] if lab.level == "quick" else [8, 16, 32, 64]
+    return tools.Tradeoff(
+        scene=f"{CASE}/scene.yaml",
+        axes={"mesh": {f"1/h = {count}": {"mesh.size": 1 / count} for count in swept},
+              "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (6, 3, 12)},
+              "method": {f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
+                         for kernel, scheme in (("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"), ("linear", "tpic"))},
+              "step": {f"CFL {share}": {"time.cfl": share} for share in (0.4, 0.8, 0.2)}},
+        error=lambda run: error(run, "square", 0.1, data),
+        what="error in displacement of the manufactured solution in a square",
+        settings={"bodies[0].velocity": velocity, "loads[0].acceleration": force})

@@ -2,6 +2,7 @@
 import matplotlib.tri
 import numpy as np
 
+import fields
 import lab as tools
 
 CASE = "strip_footing"
@@ -25,15 +26,6 @@ def plateau(run):
     rising = (load > 0.1 * last) & (load < last / 3) & (settlement < end / 2)
     late = settlement > 0.75 * end
     return float(last), float(np.polyfit(settlement[late], load[late], 1)[0] / np.polyfit(settlement[rising], load[rising], 1)[0])
-
-
-def checkerboard(run):
-    """Scatter of pressure within cells over the scatter of their means: 0 for a smooth pressure, large for a checkerboard."""
-    frame = run.last_frame()
-    cell, pressure = frame["cell"].astype(int), frame["pressure"]
-    count = np.bincount(cell)
-    mean = np.bincount(cell, pressure) / np.maximum(count, 1)
-    return float(np.std(pressure - mean[cell]) / np.std(mean[count > 0]))
 
 
 def draw(figure, runs, data):
@@ -65,7 +57,7 @@ def evaluate(lab):
         plan |= {"averaged, half speed": (slow, 0.5, True), "averaged, linear": ({"kernel": "linear"}, 0.5, False),
                  "averaged, cells of 0.25 m": ({"mesh.size": 0.25}, 0.25, True),
                  "plain, cells of 0.25 m": ({"mesh.size": 0.25, "bodies[0].f_bar": False}, 0.25, False)}
-    labels = {name: name.replace(" ", "_").replace(",", "") for name in plan}
+    labels = {name: tools.label(name) for name in plan}
     runs = {name: lab.run(f"{CASE}/scene.yaml", labels[name], settings) for name, (settings, _, _) in plan.items()}
     for name, (_, size, judged) in plan.items():
         run = runs[name]
@@ -77,7 +69,7 @@ def evaluate(lab):
             tools.Result(CASE, f"load over a c, {name}", "-", last / (half * strength), *asked, capacity, source, run),
             tools.Result(CASE, f"load over (a + half a cell) c, {name}", "-", wider, "reported", None, capacity, source, run),
             tools.Result(CASE, f"slope over the last quarter over the first slope, {name}", "-", slope, *flat, 0.0, source, run),
-            tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", checkerboard(run), "reported", None, None, "", run)]
+            tools.Result(CASE, f"scatter of pressure within cells over that of cells, {name}", "-", fields.checkerboard(run.last_frame()), "reported", None, None, "", run)]
     lab.figure(CASE, "verification_footing", lambda figure: draw(figure, runs, data), size=(9.0, 3.4),
                caption="Load on a strip footing over settlement (grey: 5 % about Prandtl's), and plastic strain at the end, volumes averaged.")
     return results
