@@ -165,8 +165,7 @@ def evaluate(lab):
     runs = {}
     for name, changes in VARIANTS.items():
         if lab.level == "full" or name not in FULL_ONLY:
-            label = f"{name.replace(', ', '_').replace(' ', '_')}_{lab.level}"
-            runs[name] = lab.run(f"{CASE}/scene.yaml", label, {"mesh.size": SIZE[lab.level], **changes})
+            runs[name] = lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{lab.level}"), {"mesh.size": SIZE[lab.level], **changes})
     columns = {ratio: channel(lab, ratio) for ratio, (_, _, level) in COLUMNS.items() if level in ("quick", lab.level)}
     lab.figure(CASE, "verification_bars", lambda figure: draw(figure, runs, data), size=(7.6, 3),
                caption="Column of aluminium bars: final surface and line of failure over the experiment of Bui et al. 2008.")
@@ -189,8 +188,7 @@ def tradeoff(lab):
         scene=f"{CASE}/scene.yaml",
         axes={"mesh": {f"{count} cells over the height": {"mesh.size": round(0.1 / count, 5)} for count in ([6, 8, 12] if lab.level == "quick" else [6, 8, 12, 16, 25])},
               "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (4, 3, 6)},
-              "method": {f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
-                         for kernel, scheme in (("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))},  # linear with tpic turns points inside out
+              "method": tools.METHODS,
               "step": {f"CFL {share}": {"time.cfl": share} for share in (0.5, 0.25)}},
         error=error,
         what="rms error of the final surface of a column of bars over its height")

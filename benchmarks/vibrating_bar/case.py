@@ -109,8 +109,7 @@ def tradeoff(lab):
         axes={"mesh": {f"cells of {size} m": {key: value for key, value in settings(size, "tpic", 0.1).items() if key != "transfer.scheme"}
                        for size in SIZES["full"]},
               "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (6, 3, 12)},
-              "method": {f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
-                         for kernel, scheme in (("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))},  # linear with tpic turns points inside out
+              "method": tools.METHODS,
               "step": {f"CFL {share}": {"time.cfl": share} for share in (0.4, 0.8, 0.2)}},
         error=lambda run: bar_mode.displacement_error(run.history, data, 0.1),
         what="error in displacement of the vibrating bar over four periods")
