@@ -130,8 +130,11 @@ def draw(figure, points, axes, what):
     for axis in (left.xaxis, left.yaxis, right.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:g}")
         axis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else "")
+    told = None
     for i in front([(p["processor_seconds"], p["error"]) for p in points]):
-        left.annotate(points[i]["choice"][first], (points[i]["processor_seconds"], points[i]["error"] * 100), textcoords="offset points", xytext=(7, 4), fontsize=7)
+        if points[i]["choice"][first] != told:  # once for neighbours that share it
+            told = points[i]["choice"][first]
+            left.annotate(told, (points[i]["processor_seconds"], points[i]["error"] * 100), textcoords="offset points", xytext=(7, 4), fontsize=7)
     figure.suptitle(what[0].upper() + what[1:], fontsize=10)
     handles, labels = left.get_legend_handles_labels()
     key = figure.add_subplot(rows[1, :])
