@@ -37,6 +37,7 @@ CASES = [
     "colliding_disks",
     "cantilever",
     "slope_failure_2d",
+    "slope_failure_3d",
     "shock",
     "taylor_bar",
     "cook_membrane",
