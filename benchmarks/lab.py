@@ -264,10 +264,10 @@ def plain(value):
 
 
 def read_history(path):
-    """Columns of a history.csv by name without unit; a last row cut short is left out."""
+    """Columns of a history.csv by name without unit, nan where an entry is empty; a last row cut short is left out."""
     text = path.read_text(encoding="utf-8")
     rows = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))
-    values = np.array([[float(cell) for cell in row] for row in rows[1:]])
+    values = np.array([[float(cell or "nan") for cell in row] for row in rows[1:]])
     return {name.split(" [")[0]: values[:, i] for i, name in enumerate(rows[0])}
 
 

@@ -255,7 +255,7 @@ void gather_and_return_momentum(const K& kernel, const Mesh<D>& mesh, Index n_bo
           deposit<affine, false, false>(particles, bunch, transfer.scheme, cell, weights, sums);
         },
         [&](const auto& cell) {
-          sums.add_to(rows, blocks.slots(cell.cell));
+          sums.add_to(rows, blocks.slots(cell.cell), NodeSum<D>::unseen);
           first = true;
         });
   });

@@ -30,6 +30,17 @@ void Slaves<D>::for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Inde
     second_ring(give);
 }
 
+/// Cells whose weights have different signs may leave a node next to nothing of what they bring; velocity and acceleration are then
+/// quotients of two small differences.  Measured on grids that become 4 and 10 times finer from one cell to the next: 0.1 lets
+/// particles turn inside out, 0.3 and 0.5 do not; where all weights are positive it never matters.
+constexpr Real least_share_of_gross = 0.3;
+
+template <int D>
+bool takes_part(const NodeSum<D>& sum, Real least_share) noexcept
+{
+  return sum.is_seen() && sum.mass > least_share * sum.lightest && sum.mass > least_share_of_gross * sum.gross;
+}
+
 template <int D>
 void Slaves<D>::lump(const Mesh<D>& mesh, Nodes<D>& nodes)
 {
@@ -37,9 +48,9 @@ void Slaves<D>::lump(const Mesh<D>& mesh, Nodes<D>& nodes)
   slaves_.clear();
   mass_.resize(nodes.sum.size());
   for (std::size_t n = 0; n < nodes.sum.size(); ++n) {
-    const Real mass = mass_[n] = nodes.sum[n].mass;
-    nodes.active[n] = mass > nodes.mass_cut ? 1 : 0;
-    if (!nodes.active[n] && (mass != 0 || !nodes.sum[n].force.isZero(0)))
+    mass_[n] = nodes.sum[n].mass;
+    nodes.active[n] = takes_part(nodes.sum[n], nodes.least_share) ? 1 : 0;
+    if (!nodes.active[n] && (nodes.sum[n].is_seen() || !nodes.sum[n].force.isZero(0)))
       slaves_.push_back(static_cast<Index>(n));
   }
   for (const Index slave : slaves_) {

@@ -73,10 +73,10 @@ struct Model {
   Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
 };
 
-/// A node with less than this share of the mean particle mass is a slave of its neighbours.  Where weights may be negative, sums
+/// A node with less than this share of the lightest particle around is a slave of its neighbours.  Where weights may be negative, sums
 /// cancel and a small mass says nothing about the momentum beside it: there the cut lies above the negative share that moving
 /// least squares reach beside a boundary (0.012 of a particle).
-inline constexpr Real mass_cut_share = 1e-8, mass_cut_share_of_signed_weights = 2e-2;
+inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
 
 /// Where each id stands now, if anybody asks.
 template <int D, Kernel<D> K>
@@ -121,10 +121,8 @@ void make_ready(Model<D, K>& m, bool by_id)
   m.exits.closed.assign(static_cast<std::size_t>(m.mesh.n_cells()), 0);
   for (const Facet facet : m.walls.closed_facets(m.mesh))
     m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
-  const Totals<D> now = totals(m.particles);
-  m.mass.start = now.mass;
-  m.nodes.mass_cut = (m.kernel.claims().non_negative ? mass_cut_share : mass_cut_share_of_signed_weights) * now.mass /
-                     static_cast<Real>(std::max<std::size_t>(n, 1));
+  m.mass.start = totals(m.particles).mass;
+  m.nodes.least_share = m.kernel.claims().non_negative ? least_share : least_share_of_signed_weights;
   index_rows(m);
 }
 

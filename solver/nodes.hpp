@@ -1,20 +1,28 @@
 #pragma once
 // Nodal rows: what particles deposit, and what they read back.
+#include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "core/types.hpp"
 
 namespace talus {
 
-/// What the particles around a node add up to.  One cache line.
+/// What the particles around a node add up to.  One cache line; `lightest` and `gross` are for comparisons only.
 template <int D>
 struct alignas(64) NodeSum {
   Real mass{};                       ///< [kg]
+  float lightest = unseen;           ///< mass of the lightest particle whose stencil holds the node [kg]
+  float gross{};                     ///< sum over cells of |mass from the cell| [kg]: how much the sum `mass` cancels
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
+  static constexpr float unseen = std::numeric_limits<float>::infinity();
+  bool is_seen() const noexcept { return lightest < unseen; }
   NodeSum& operator+=(const NodeSum& other) noexcept
   {
     mass += other.mass;
+    lightest = std::min(lightest, other.lightest);
+    gross += other.gross;
     momentum += other.momentum;
     force += other.force;
     return *this;
@@ -34,7 +42,7 @@ struct Nodes {
   std::vector<NodeMotion<D>> motion;
   std::vector<std::uint8_t> active;  ///< takes part with a mass of its own
   std::vector<std::uint8_t> bound;   ///< under a wall condition: no local damping, its net force is known only after the wall's
-  Real mass_cut{};                   ///< nodes with less do not take part by themselves [kg]
+  Real least_share{};                ///< of the lightest particle around: nodes with less do not take part by themselves
 };
 
 }  // namespace talus

@@ -22,11 +22,14 @@ struct CellSums {
       std::fill_n(force[i], n, 0.0);
     }
   }
-  void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots) const noexcept
+  /// `lightest` [kg] of the particles summed.
+  void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
     for (std::size_t a = 0; a < slots.size(); ++a) {
       NodeSum<D>& row = rows[slots[a]];
       row.mass += mass[a];
+      row.lightest = std::min(row.lightest, lightest);
+      row.gross += static_cast<float>(std::abs(mass[a]));
       for (int i = 0; i < D; ++i) {
         row.momentum[i] += momentum[i][a];
         row.force[i] += force[i][a];
@@ -193,7 +196,10 @@ void scatter(const K& kernel, const Mesh<D>& mesh, const Particles<D>& particles
           kernel.evaluate(cell, x, bunch.count, weights);
           deposit<affine, loaded, forces>(particles, bunch, scheme, cell, weights, sums);
         });
-        sums.add_to(rows, blocks.slots(c));
+        float lightest = NodeSum<D>::unseen;
+        for (const Index p : run)
+          lightest = std::min(lightest, static_cast<float>(particles.mass[static_cast<std::size_t>(p)]));
+        sums.add_to(rows, blocks.slots(c), lightest);
       });
     blocks.occupied[static_cast<std::size_t>(b)] = occupied ? 1 : 0;
   });

@@ -14,10 +14,11 @@ TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
   nodes.sum.resize(n);
   nodes.motion.resize(n);
   nodes.active.resize(n);
-  nodes.mass_cut = 1e-8;
+  nodes.least_share = 1e-8;
   NodeSum<2> before;
   for (std::size_t i = 0; i < n; ++i) {
     nodes.sum[i].mass = i % 4 == 0 ? (i % 8 == 0 ? 1e-9 : -1e-3) : 1;  // tiny and negative ones among the others
+    nodes.sum[i].lightest = 1;
     nodes.sum[i].momentum = nodes.sum[i].mass * Vec<2>(3, -2);
     nodes.sum[i].force = Vec<2>(1, static_cast<Real>(i));
     before += nodes.sum[i];
@@ -69,6 +70,81 @@ TEST(Slaves, LeaveALoneParticleItsVelocityAcrossAVertex)
   drag_across_a_vertex<Umls<2>>(Scheme::flip);
   drag_across_a_vertex<Linear<2>>(Scheme::tpic);
   drag_across_a_vertex<Umls<2>>(Scheme::tpic);
+}
+
+/// Particles exactly on a face of a tetrahedron give the vertex opposite neither mass nor force, yet their gradient reads it.
+TEST(Slaves, AreNodesWhoseCellsCancel)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
+  Nodes<2> nodes;
+  nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+  nodes.motion.resize(nodes.sum.size());
+  nodes.active.resize(nodes.sum.size());
+  nodes.least_share = 1e-8;
+  NodeSum<2> gets, loses;
+  gets.mass = gets.gross = 1;
+  loses.mass = -0.9;
+  loses.gross = 0.9F;
+  gets.lightest = loses.lightest = 1;
+  for (auto& sum : nodes.sum)
+    sum = gets;
+  nodes.sum[5] += loses;
+  Slaves<2> slaves;
+  slaves.lump(mesh, nodes);
+  EXPECT_EQ(slaves.size(), 1);
+  EXPECT_FALSE(nodes.active[5]);
+}
+
+TEST(Slaves, LendANodeWithoutMassTheMotionAroundIt)
+{
+  Model<3, Linear<3>> m(unit_box<3>(2, 0));
+  m.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}};
+  add_body<3>(
+      m, "dust", rubber(1000, 0.3, 1000), 1, [](const Vec<3>&) { return true; }, [](const Vec<3>&) { return Vec<3>(1, 0.4, 0.2); });
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    const auto& vertices = m.mesh.cell(m.particles.cell[p]);
+    m.particles.x[p] = (m.mesh.node(vertices[0]) + m.mesh.node(vertices[1]) + m.mesh.node(vertices[2])) / 3;
+  }
+  make_ready(m, false);
+  advance(m, 1e-4);
+  for (const auto& L : m.particles.L)
+    EXPECT_LT(L.norm(), 1e-11) << "all move alike, and nothing is strained";
+}
+
+/// How far the bounces of a light block have strained it, alone or beside one a thousand times as dense that it never meets.
+template <class K>
+std::vector<Mat3> strained(bool beside_a_heavy_one)
+{
+  Model<2, K> m(unit_box<2>(12, 0.1));
+  add_body<2>(
+      m, "light", rubber(100, 0.3, 1), 3, [](const Vec<2>& x) { return x[0] < 0.4; },
+      [](const Vec<2>& x) { return Vec<2>(0.5 * x[0], -0.3 * x[1]); });
+  if (beside_a_heavy_one)
+    add_body<2>(m, "heavy", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.8; });
+  make_ready(m, true);
+  for (int step = 0; step < 50; ++step)
+    advance(m, 1e-3);
+  std::vector<Mat3> F(static_cast<std::size_t>(m.bodies[0].size()));
+  for (Index id = 0; id < m.bodies[0].size(); ++id)
+    F[static_cast<std::size_t>(id)] = m.particles.F[static_cast<std::size_t>(m.row_of_id[static_cast<std::size_t>(id)])];
+  return F;
+}
+template <class K>
+void strain_apart()
+{
+  const auto alone = strained<K>(false), beside = strained<K>(true);
+  Real most = 0;
+  for (std::size_t p = 0; p < alone.size(); ++p) {
+    EXPECT_EQ(alone[p], beside[p]);
+    most = std::max(most, (alone[p] - Mat3::Identity()).norm());
+  }
+  EXPECT_GT(most, 1e-2);
+}
+
+TEST(Slaves, AreFoundByTheParticlesAroundAndNotByThoseOfAHeavyBodyElsewhere)
+{
+  strain_apart<Linear<2>>();
+  strain_apart<Umls<2>>();
 }
 
 TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
