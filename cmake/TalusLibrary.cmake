@@ -1,8 +1,9 @@
-# talus_library(name [FOLDER folder] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
+# talus_library(name [APART] [FOLDER folder] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
 # makes the static library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
-# render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library.
+# render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library. APART:
+# never some sources at a time (TALUS_UNITY), where there is little to gain.
 function(talus_library name)
-  cmake_parse_arguments(arg "" "FOLDER" "EXCLUDE;ONLY;LINKS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "APART" "FOLDER" "EXCLUDE;ONLY;LINKS;PRIVATE" ${ARGN})
   if(NOT arg_FOLDER)
     set(arg_FOLDER ${name})
   endif()
@@ -18,6 +19,11 @@ function(talus_library name)
     add_library(talus_${name} STATIC ${sources})
     target_link_libraries(talus_${name} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
     talus_use_pch(talus_${name} talus_pch)
+    if(TALUS_UNITY AND NOT arg_APART)   # batches small enough to keep two cores busy to the end
+      set_target_properties(talus_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
+      # A source that is included looks like a header to gcc, where anonymous namespaces would be wrong.
+      target_compile_options(talus_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    endif()
   else()
     add_library(talus_${name} INTERFACE)
     target_link_libraries(talus_${name} INTERFACE ${arg_LINKS})

@@ -167,6 +167,18 @@ class Regression(unittest.TestCase):
             with contextlib.redirect_stdout(io.StringIO()):
                 self.assertEqual(verify.conclude({"results": [record], "cases": [info]}, argparse.Namespace(regression=asked, out="out"), 1.0), status)
 
+    def test_what_got_worse_and_what_changed_is_named(self):
+        records = [{"case": "c", "metric": "new shortfall", "pass": False, "changed": None, "known": False},
+                   {"case": "c", "metric": "old shortfall", "pass": False, "changed": None, "known": True},
+                   {"case": "c", "metric": "moved", "pass": True, "changed": "changed by +10 %, was 1, is 1.1", "known": False}]
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            status = verify.conclude({"results": records, "cases": []}, argparse.Namespace(regression=True, out="out"), 1.0)
+        self.assertEqual(status, 1)
+        self.assertIn("worse than the release: c, new shortfall\n", said.getvalue())
+        self.assertIn("changed since the release: c, moved: changed by +10 %, was 1, is 1.1\n", said.getvalue())
+        self.assertNotIn("old shortfall", said.getvalue())
+
     def test_what_is_stored_is_compared_and_failures_are_known(self):
         with tempfile.TemporaryDirectory() as folder:
             known, regression.ROOT = regression.ROOT, pathlib.Path(folder)
