@@ -109,7 +109,7 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   put<D>(sums.momentum, row);
   for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
     row.push_back(sums.angular[d]);
-  put<D>(sums.centre / sums.mass, row);
+  put<D>(frame.particles.size() > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(not_there)), row);
   const EnergyNow e = accounts.energy(frame);
   row.insert(row.end(),
              {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer, e.defect, frame.residual});

@@ -16,7 +16,8 @@ Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particl
 
 /// Columns: time, step, dt, stage; mass, momentum, angular momentum, centre of mass; the terms of EnergyNow; the residual; for each
 /// wall `reaction_<wall>_x` ..., its mean force on the bodies since the row before; for each point its position, displacement (u),
-/// velocity (v) and stress (s); each front.
+/// velocity (v) and stress (s); each front.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
+/// deleted, the front of an empty body, the centre of mass of nothing.
 template <int D>
 class HistoryWriter {
  public:

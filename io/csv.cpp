@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <stdexcept>
 
 #include "core/error.hpp"
@@ -42,8 +44,11 @@ std::string header(std::span<const CsvColumn> columns)
 std::string row(std::span<const Real> values)
 {
   std::string line;
-  for (const Real value : values)
-    fmt::format_to(std::back_inserter(line), "{}{}", line.empty() ? "" : ",", value);  // {}: the shortest text with the same bits
+  for (std::size_t c = 0; c < values.size(); ++c) {
+    line += c == 0 ? "" : ",";
+    if (!std::isnan(values[c]))
+      fmt::format_to(std::back_inserter(line), "{}", values[c]);  // {}: the shortest text with the same bits
+  }
   return line + '\n';
 }
 
@@ -74,6 +79,8 @@ CsvColumn column_of(const std::string& cell)
 
 Real number(const std::string& cell, const fs::path& file, std::size_t line)
 {
+  if (cell.empty())
+    return std::numeric_limits<Real>::quiet_NaN();
   Real value{};
   const auto [end, code] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   if (code != std::errc{} || end != cell.data() + cell.size())

@@ -20,7 +20,8 @@ struct CsvColumn {
 };
 
 /// A history while it is being written.  The first column is the time [s], and times increase.
-/// Every row reaches the file before append() returns; numbers read back as the same bits.  Disk errors are EnvironmentError.
+/// Every row reaches the file before append() returns; numbers read back as the same bits.  NaN is an empty entry, which spreadsheets and
+/// readers of tables know as "no value".  Disk errors are EnvironmentError.
 class HistoryFile {
  public:
   /// Starts a new file, replacing an old one.
@@ -56,8 +57,8 @@ struct HistoryTable {
   std::size_t rows() const noexcept { return values.empty() ? 0 : values.front().size(); }
 };
 
-/// Reads what HistoryFile writes.  A last line without its line end (a run was killed) is left out; anything else that is no row
-/// of numbers is an EnvironmentError with file and line.
+/// Reads what HistoryFile writes; an empty entry is NaN.  A last line without its line end (a run was killed) is left out; anything else
+/// that is no row of numbers is an EnvironmentError with file and line.
 HistoryTable read_history(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -45,6 +45,19 @@ TEST(Csv, NumbersReadBackAsTheSameBits)
     EXPECT_EQ(std::bit_cast<std::uint64_t>(read[i]), std::bit_cast<std::uint64_t>(values[i])) << values[i];
 }
 
+TEST(Csv, WhatHasNoValueIsAnEmptyEntry)
+{
+  const ScratchFolder folder;
+  constexpr Real nothing = std::numeric_limits<Real>::quiet_NaN();
+  HistoryFile file(folder / "history.csv", columns);
+  file.append(std::array{0.5, nothing, nothing});
+  file.append(std::array{nothing, 2.0, nothing});
+  EXPECT_EQ(read_whole(folder / "history.csv"), "time [s],kinetic_energy [J],residual\n0.5,,\n,2,\n");
+  const HistoryTable read = read_history(folder / "history.csv");
+  EXPECT_THAT(read["time"].value(), ElementsAre(0.5, testing::IsNan()));
+  EXPECT_THAT(read["kinetic_energy"].value(), ElementsAre(testing::IsNan(), 2.0));
+}
+
 TEST(Csv, EveryRowIsInTheFileBeforeAppendReturns)
 {
   const ScratchFolder folder;

@@ -15,7 +15,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 
 
 def read(path):
-    """Names, units and values (by column) of a history; a last row cut short by a kill is left out."""
+    """Names, units and values (by column) of a history; an empty entry is nan, a last row cut short by a kill is left out."""
     text = path.read_text(encoding="utf-8")
     rows = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))
     names, units = [], []
@@ -23,7 +23,7 @@ def read(path):
         name, _, unit = cell.rpartition(" [") if cell.endswith("]") else (cell, "", "")
         names.append(name or cell)
         units.append(unit.removesuffix("]") or "-")
-    return names, units, [[float(row[i]) for row in rows[1:]] for i in range(len(names))]
+    return names, units, [[float(row[i] or "nan") for row in rows[1:]] for i in range(len(names))]
 
 
 def plot(names, units, values, wanted, out):
