@@ -8,6 +8,7 @@ function(talus_tests folder)
   set(target talus_${folder}_tests)
   add_executable(${target} ${sources})
   target_link_libraries(${target} PRIVATE talus_${folder} GTest::gtest GTest::gmock GTest::gtest_main)
+  target_compile_options(${target} PRIVATE ${TALUS_TEST_OPTIONS})
   target_compile_definitions(${target} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # A test may see the third-party headers that the folder under test sees, as tools/check_layers.py allows.
   set(seen $<TARGET_PROPERTY:talus_${folder},INCLUDE_DIRECTORIES>)

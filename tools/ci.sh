@@ -45,7 +45,7 @@ stage_tidy() {
 }
 
 stage_dev() {
-  cmake --preset dev -Wno-dev >/dev/null
+  cmake --preset dev -D TALUS_UNITY=ON -Wno-dev >/dev/null
   cmake --build build/dev -j "$jobs"
 }
 
