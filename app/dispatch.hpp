@@ -29,6 +29,8 @@ try {
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
   make_ready(m, scene.outputs.history && !scene.outputs.history->points.empty());
+  if (m.transfer.scheme == Scheme::apic)
+    m.particles.C = m.particles.L;  // the affine part of a linear field is its gradient
   return m;
 } catch (const std::invalid_argument& e) {
   throw SceneErrors(scene.mesh.where, fmt::format("kernel \"{}\": {}", scene.kernel, e.what()));

@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 #include <muParser.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -36,6 +39,40 @@ Real Formula::operator()(const Vec3& place, Real time) const
   machine_->place = place;
   machine_->time = time;
   return machine_->parser.Eval();
+}
+
+namespace {
+
+/// Slope in the middle of three values.
+Real slope(Real left, Real middle, Real right, Real width_left, Real width_right)
+{
+  const Real backward = (middle - left) / width_left, forward = (right - middle) / width_right;
+  if (!std::isfinite(backward) || !std::isfinite(forward))
+    return std::isfinite(forward) ? forward : std::isfinite(backward) ? backward : 0;
+  constexpr Real steep = 10;  // times the other side: not a kink any more, a jump
+  const Real flatter = std::abs(backward) < std::abs(forward) ? backward : forward;
+  if (std::max(std::abs(backward), std::abs(forward)) > steep * std::abs(flatter))
+    return flatter;
+  return (right - left) / (width_left + width_right);
+}
+
+}  // namespace
+
+std::vector<Vec3> gradients(const std::string& formula, std::span<const Vec3> places, std::span<const Real> sizes)
+{
+  const Formula value(formula);
+  const Real share = std::cbrt(std::numeric_limits<Real>::epsilon());  // truncation and round-off are alike there
+  std::vector<Vec3> found(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Real middle = value(places[i], 0);
+    for (int d = 0; d < 3; ++d) {
+      Vec3 left = places[i], right = places[i];
+      left[d] -= share * sizes[i];
+      right[d] += share * sizes[i];
+      found[i][d] = slope(value(left, 0), middle, value(right, 0), places[i][d] - left[d], right[d] - places[i][d]);
+    }
+  }
+  return found;
 }
 
 std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> places)

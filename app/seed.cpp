@@ -49,7 +49,6 @@ class Seeder {
   Seeds<D> take()
   {
     Particles<D>& p = seeds_.particles;
-    p.L.assign(p.id.size(), Mat<D>::Zero());
     p.F.assign(p.id.size(), Mat3::Identity());
     p.stress.assign(p.id.size(), Sym3::Zero());
     return std::move(seeds_);
@@ -102,23 +101,34 @@ class Seeder {
       p.cell.push_back(cell);
       p.x.push_back(x);
       p.v.push_back(Vec<D>::Zero());
+      p.L.push_back(Mat<D>::Zero());
       p.volume0.push_back(volume);
       p.mass.push_back(density * volume);
     }
   }
 
+  /// Velocity and its gradient: without the latter, affine schemes would begin with particles that do not turn.
   void set_velocity(const BodySpec& spec, Index begin, Index end)
   {
     if (spec.velocity.empty())
       return;
-    std::vector<Vec3> places(static_cast<std::size_t>(end - begin), Vec3::Zero());
-    for (Index p = begin; p < end; ++p)
-      places[static_cast<std::size_t>(p - begin)].template head<D>() = seeds_.particles.x[static_cast<std::size_t>(p)];
+    Particles<D>& particles = seeds_.particles;
+    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+    std::vector<Vec3> places(count, Vec3::Zero());
+    std::vector<Real> sizes(count);  // of cells [m]
+    for (std::size_t p = 0; p < count; ++p) {
+      places[p].template head<D>() = particles.x[first + p];
+      sizes[p] = std::pow(mesh_.volume(particles.cell[first + p]), Real{1} / D);
+    }
     for (int d = 0; d < D; ++d)
       try {
-        const auto values = evaluate(spec.velocity[static_cast<std::size_t>(d)], places);
-        for (Index p = begin; p < end; ++p)
-          seeds_.particles.v[static_cast<std::size_t>(p)][d] = values[static_cast<std::size_t>(p - begin)];
+        const std::string& formula = spec.velocity[static_cast<std::size_t>(d)];
+        const auto values = evaluate(formula, places);
+        const auto slopes = gradients(formula, places, sizes);
+        for (std::size_t p = 0; p < count; ++p) {
+          particles.v[first + p][d] = values[p];
+          particles.L[first + p].row(d) = slopes[p].template head<D>();
+        }
       } catch (const std::invalid_argument& e) {
         complaints_.add(spec.where, fmt::format("velocity[{}]", d), e.what());
       }

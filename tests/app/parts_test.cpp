@@ -38,6 +38,47 @@ TEST(Expression, RefusesWhatIsNoFormula)
   EXPECT_THROW(evaluate("2 +", {}), std::invalid_argument) << "even where there is nothing to evaluate";
 }
 
+TEST(Expression, GradientOfALinearFieldIsExactToRoundOff)
+{
+  const std::vector<Vec3> places{{1, 2, 3}, {-40, 0.1, 0}};
+  const std::vector<Real> sizes{0.1, 5};
+  const auto found = gradients("7 + 2 * x - 3 * y + 0.5 * z", places, sizes);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Real value = 7 + 2 * std::abs(places[i][0]) + 3 * places[i][1] + 0.5 * places[i][2];  // of the largest sum on the way
+    EXPECT_LE((found[i] - Vec3(2, -3, 0.5)).norm(), 10 * std::pow(std::numeric_limits<Real>::epsilon(), 2.0 / 3) * value / sizes[i]);
+  }
+}
+
+TEST(Expression, GradientFollowsACurveToTheSquareOfItsStep)
+{
+  const std::vector<Vec3> places{{0.3, 0, 0}};
+  // Truncation and round-off are eps^(2/3) = 4e-11 each, times derivatives and a value below 100.
+  EXPECT_NEAR(gradients("exp(4 * x)", places, std::vector<Real>{1})[0][0], 4 * std::exp(1.2), 1e-8);
+}
+
+TEST(Expression, GradientIsZeroToTheBitWhereNothingChanges)
+{
+  const std::vector<Vec3> places{{0.3, 1e3, -7}};
+  const std::vector<Real> sizes{0.1};
+  EXPECT_EQ(gradients("0.1 + 0.2 * pi", places, sizes)[0], Vec3::Zero());
+  const Vec3 along_x = gradients("sin(x)", places, sizes)[0];
+  EXPECT_EQ(along_x[1], 0);
+  EXPECT_EQ(along_x[2], 0);
+}
+
+TEST(Expression, JumpsAndKinksHaveNoGradientOfTheirOwn)
+{
+  const std::vector<Real> sizes{0.1};
+  const auto at = [&](const char* formula, Real x) { return gradients(formula, std::vector<Vec3>{{x, 0, 0}}, sizes)[0][0]; };
+  constexpr Real round_off = 1e-8;  // eps^(2/3) of values of 3 over cells of 0.1
+  EXPECT_EQ(at("x >= 1 ? 3 : -3", 1), 0);
+  EXPECT_NEAR(at("x >= 1 ? 2 * x : -3", 1), 2, round_off);
+  EXPECT_NEAR(at("x > 1 ? -3 : 2 * x", 1), 2, round_off);
+  EXPECT_NEAR(at("abs(x - 1)", 1), 0, round_off) << "the mean of both sides";
+  EXPECT_TRUE(std::isfinite(at("sqrt(x)", 0))) << "not finite to the left";
+  EXPECT_NEAR(at("sqrt(x - 1) * 0 + 2 * x", 1), 2, round_off) << "finite to the right only";
+}
+
 Particles<2> row_of_four()
 {
   Particles<2> particles;
