@@ -5,6 +5,8 @@
 
 #include "app/commands.hpp"
 #include "core/version.hpp"
+#include "core/words.hpp"
+#include "materials/laboratory.hpp"
 
 namespace talus {
 
@@ -12,8 +14,6 @@ namespace {
 
 constexpr int usage_error = 2;
 constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
-
-constexpr auto test_help = "triaxial_compression, triaxial_extension, simple_shear, oedometer or uniaxial_strain_rate";
 constexpr int most_steps = 10'000'000;
 
 /// Commands and the options they fill; lives as long as the parse.
@@ -85,7 +85,8 @@ class CommandLine {
     drive->add_option("file", drive_.file, "material and paths (.yaml); with --test a scene")->required();
     drive->add_option("--out", drive_.out, "write the table to this .csv; default the screen, and with --test nowhere");
     drive->add_option("--set", drive_.set, set_help);
-    CLI::Option* test = drive->add_option("--test", drive_.test, test_help);
+    constexpr auto tests = words(Laboratory{});
+    CLI::Option* test = drive->add_option("--test", drive_.test, or_list(std::vector<std::string>(tests.begin(), tests.end())));
     const auto of_test = [&](const char* name, auto& value, const char* help) { return drive->add_option(name, value, help)->needs(test); };
     of_test("--material", drive_.material, "material of the scene; may be left out where there is one");
     of_test("--pressure", drive_.pressure, "stress at the start, equal in all directions [Pa]; default 1e5, for the last two tests 0")

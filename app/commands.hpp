@@ -42,7 +42,8 @@ struct DriveOptions {
   std::optional<Index> steps;
 };
 /// Drives the law of a file along its paths; CSV to `out`, or to standard output.
-/// With a test: runs it on a material of a scene, prints strengths beside closed forms; CSV to `out` if asked to.
+/// With a test: runs it on a material of a scene, prints strengths beside closed forms; CSV to `out` and a picture to `plot` if asked to
+/// (a picture leaves the CSV it was drawn from beside it).
 void drive_law(const DriveOptions& options);
 
 struct RenderOptions {

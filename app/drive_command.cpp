@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "core/units.hpp"
 #include "core/words.hpp"
 #include "io/launch_render.hpp"
 #include "io/reader.hpp"
@@ -114,32 +115,21 @@ std::array<std::string_view, 2> columns_of(Laboratory test)
   }
 }
 
-struct Unit {
-  Real size;  ///< Pa
-  std::string_view name;
-};
-Unit unit_for(Real stress)
-{
-  if (stress >= 1e7)
-    return {1e6, "MPa"};
-  return stress >= 1e3 ? Unit{1e3, "kPa"} : Unit{1, "Pa"};
-}
-
 void print_result(const TestPlan& plan, const TestResult& result, const std::vector<ClosedForm>& forms)
 {
   const bool oedometer = plan.test == Laboratory::oedometer;
   const Real peak = result.stress[result.peak], end = result.stress.back();
-  const Unit unit = unit_for(peak);
+  const ScaledUnit unit = scaled_unit("Pa", peak);
   std::string_view what = columns_of(plan.test)[1];
   what.remove_suffix(std::string_view(" [Pa]").size());
   fmt::print("  {:<40} {:>24}\n", "", fmt::format("{} [{}]", what, unit.name));
-  fmt::print("  {:<40} {:>24.6g}\n", fmt::format("driven: largest, at strain {:.4g}", result.strain[result.peak]), peak / unit.size);
-  fmt::print("  {:<40} {:>24.6g}\n", fmt::format("driven: at the end, strain {:.4g}", result.strain.back()), end / unit.size);
+  fmt::print("  {:<40} {:>24.6g}\n", fmt::format("driven: largest, at strain {:.4g}", result.strain[result.peak]), peak * unit.factor);
+  fmt::print("  {:<40} {:>24.6g}\n", fmt::format("driven: at the end, strain {:.4g}", result.strain.back()), end * unit.factor);
   if (oedometer)
     fmt::print("  {:<40} {:>24}\n  {:<40} {:>24.6g}\n", "", "s_xx / s_zz", "driven: at the end", result.lateral_over_vertical);
   const Real driven = oedometer ? result.lateral_over_vertical : peak;
   for (const ClosedForm& form : forms) {
-    fmt::print("  {:<40} {:>24.6g}", "closed form: " + form.name, form.value / (oedometer ? 1 : unit.size));
+    fmt::print("  {:<40} {:>24.6g}", "closed form: " + form.name, form.value * (oedometer ? 1 : unit.factor));
     if (form.value > 0)
       fmt::print("   driven {:+.2f} %", 100 * (driven / form.value - 1));
     fmt::print("\n");

@@ -22,6 +22,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "core/units.hpp"
 #include "io/render_png.hpp"
 #include "io/render_sheet.hpp"
 #include "io/render_words.hpp"

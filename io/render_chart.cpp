@@ -21,6 +21,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "core/units.hpp"
 #include "core/words.hpp"
 #include "io/render_png.hpp"
 #include "io/render_sheet.hpp"

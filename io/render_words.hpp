@@ -1,5 +1,5 @@
 #pragma once
-// Numbers for people: round ticks, scale lengths, units with prefixes.
+// Numbers for people: round ticks, scale lengths.
 #include <string>
 #include <vector>
 
@@ -16,12 +16,5 @@ struct Tick {
 };
 /// Multiples of a round step in [low, high], about five of them, all with the same number of decimals.
 std::vector<Tick> ticks(Real low, Real high);
-
-struct ScaledUnit {
-  Real factor;  ///< shown value over SI value
-  std::string name;
-};
-/// kPa, MPa, GPa for large pressures, mm for small lengths; other units stay.
-ScaledUnit scaled_unit(const std::string& unit, Real largest);
 
 }  // namespace talus::render

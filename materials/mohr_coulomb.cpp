@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "materials/radial_return.hpp"
+#include "materials/soil_rules.hpp"
 
 namespace talus {
 
@@ -296,19 +297,7 @@ Real MohrCoulomb::wave_speed(const Mat3& F, const Constants& c) const noexcept
 void MohrCoulomb::check(std::vector<std::string>& problems) const
 {
   Elasticity::check(problems);
-  const Real residual_friction = residual_friction_angle.value_or(friction_angle);
-  if (dilation_angle > friction_angle)
-    problems.push_back(fmt::format("dilation_angle {} is above friction_angle {}", dilation_angle, friction_angle));
-  else if (dilation_angle > residual_friction)
-    problems.push_back(fmt::format("dilation_angle {} is above residual_friction_angle {}", dilation_angle, residual_friction));
-  if (residual_friction > friction_angle)
-    problems.push_back(fmt::format("residual_friction_angle {} is above friction_angle {}", residual_friction, friction_angle));
-  if (residual_cohesion.value_or(cohesion) > cohesion)
-    problems.push_back(fmt::format("residual_cohesion {} is above cohesion {}", *residual_cohesion, cohesion));
-  if ((residual_friction_angle || residual_cohesion) && !softening_strain)
-    problems.emplace_back("residual_friction_angle and residual_cohesion need softening_strain");
-  if (softening_strain && !residual_friction_angle && !residual_cohesion)
-    problems.emplace_back("softening_strain needs residual_friction_angle or residual_cohesion");
+  check_softening(*this, problems);
   if (const Real tip = apex(strength_of(friction_angle, cohesion)); tension_cutoff && *tension_cutoff > tip)
     problems.push_back(fmt::format("tension_cutoff {} is above the apex, {:.6g} Pa", *tension_cutoff, tip));
 }

@@ -137,22 +137,7 @@ TEST(DruckerPrager, IsotropicExtensionEndsAtTheTipOfTheCone)
 
 TEST(DruckerPrager, SeparatedCohesionlessSoilStaysFreeOfStressUntilItCloses)
 {
-  Point<DruckerPrager> point{.law = soil(ConeMatch::inner, 30, 0, 10)};
-  const auto by = [&](Real log_volume) { point.step(std::exp(log_volume / 3) * Mat3::Identity()); };
-  for (int n = 0; n < 10; ++n) {
-    by(0.02);
-    EXPECT_EQ(point.stress.norm(), 0);
-  }
-  EXPECT_NEAR(point.state.opened_volume, 0.2, 1e-14);
-  for (int n = 0; n < 9; ++n) {
-    by(-0.02);
-    EXPECT_EQ(point.stress.norm(), 0);
-  }
-  by(-0.02 - 1e-13);
-  by(-1e-12);
-  EXPECT_EQ(point.state.opened_volume, 0);
-  EXPECT_NEAR(point.stress(0, 0), -1.1e-12 * point.law.constants().bulk, 2e-14 * point.law.constants().bulk);
-  EXPECT_EQ(point.state.plastic_work, 0);
+  testing::expect_no_stress_until_closed(Point<DruckerPrager>{.law = soil(ConeMatch::inner, 30, 0, 10)});
 }
 
 TEST(DruckerPrager, CohesiveCrackClosesWithoutTensionAndWithoutGivingWorkBack)
@@ -308,14 +293,8 @@ TEST(DruckerPrager, ElasticSimpleShearToTenDoesNotOscillate)
 
 TEST(DruckerPragerRules, ContradictionsAreToldInWords)
 {
-  const auto problems = [](auto change) {
-    DruckerPrager law = soil(ConeMatch::outer, 30, 5e3, 10);
-    change(law);
-    std::vector<std::string> found;
-    law.check(found);
-    return found;
-  };
-  using Problems = std::vector<std::string>;
+  const auto problems = [](auto change) { return testing::problems_of(soil(ConeMatch::outer, 30, 5e3, 10), change); };
+  using testing::Problems;
   EXPECT_EQ(problems([](auto&) {}), Problems{});
   EXPECT_EQ(problems([](auto& law) { law.dilation_angle = 31; }), Problems{"dilation_angle 31 is above friction_angle 30"});
   EXPECT_EQ(problems([](auto& law) { law.tension_cutoff = 9e3; }),

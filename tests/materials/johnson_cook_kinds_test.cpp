@@ -90,14 +90,8 @@ TEST(JohnsonCookKinds, AnswerWithTheSameBitsWhereTheGroupsAreOff)
 
 TEST(JohnsonCookRules, ContradictionsAreToldInWords)
 {
-  const auto problems = [](auto change) {
-    JohnsonCook law = copper();
-    change(law);
-    std::vector<std::string> found;
-    law.check(found);
-    return found;
-  };
-  using Problems = std::vector<std::string>;
+  const auto problems = [](auto change) { return testing::problems_of(copper(), change); };
+  using testing::Problems;
   EXPECT_EQ(problems([](auto&) {}), Problems{});
   EXPECT_EQ(problems([](auto& law) { law.melting_temperature = 294; }),
             Problems{"melting_temperature 294 is not above room_temperature 294"});

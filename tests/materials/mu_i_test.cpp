@@ -182,14 +182,8 @@ TEST(MuI, PlasticWorkIsShearStressTimesPlasticShear)
 
 TEST(MuIRules, ContradictionsAreToldInWords)
 {
-  const auto problems = [](auto change) {
-    MuI law = beads();
-    change(law);
-    std::vector<std::string> found;
-    law.check(found);
-    return found;
-  };
-  using Problems = std::vector<std::string>;
+  const auto problems = [](auto change) { return testing::problems_of(beads(), change); };
+  using testing::Problems;
   EXPECT_EQ(problems([](auto&) {}), Problems{});
   EXPECT_EQ(problems([](auto& law) { law.static_friction = 0.5, law.limiting_friction = 0.4; }),
             Problems{"limiting_friction 0.4 is below static_friction 0.5"});

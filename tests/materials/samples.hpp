@@ -7,6 +7,18 @@
 
 namespace talus::testing {
 
+using Problems = std::vector<std::string>;
+
+/// What the rules between the parameters of `law` say after `change(law)`.
+template <class L, class F>
+Problems problems_of(L law, F&& change)
+{
+  change(law);
+  Problems found;
+  law.check(found);
+  return found;
+}
+
 /// Young's modulus of every sample, or the stiffness that stands for it [Pa].
 inline constexpr Real sample_stiffness = 1e7;
 
