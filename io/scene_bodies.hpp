@@ -1,0 +1,61 @@
+#pragma once
+// The blocks `materials` and `bodies` of a scene.
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+#include "core/type_list.hpp"
+#include "io/shape.hpp"
+#include "materials/laws.hpp"
+
+namespace talus {
+
+/// A value of any law: std::variant<LinearElastic, ...>.
+using AnyLaw = variant_of<Laws, std::type_identity_t>;
+
+struct MaterialSpec {
+  std::string name;
+  std::optional<BulkViscosity> bulk_viscosity;
+  AnyLaw law;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
+                      group("bulk_viscosity", &MaterialSpec::bulk_viscosity,
+                            "artificial viscous pressure where the volume shrinks, against ringing behind shocks; default none"),
+                      alternative("law", &MaterialSpec::law, "constitutive law; its parameters are keys of the same mapping")};
+  }
+};
+
+/// A body fills either a cell group or a shape.
+struct BodySpec {
+  std::string name, material;
+  std::string region;
+  std::optional<Shape> shape;
+  std::optional<Index> particles_per_cell;  ///< has a value in every scene that was read
+  std::optional<bool> f_bar;
+  std::vector<std::string> velocity;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("name", &BodySpec::name, any, "-", "name in messages and output"),
+        required("material", &BodySpec::material, any, "-", "name of a material"),
+        optional("region", &BodySpec::region, any, "-", "the body fills this cell group of the mesh"),
+        optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
+        optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
+                 "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, 10, 14, ...; default by accuracy: 3, 4, 12 "
+                 "in 2-D and 4, 4, 14 in 3-D"),
+        optional("f_bar", &BodySpec::f_bar, any, "-",
+                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
+                 "johnson_cook, whose flow keeps the volume, false otherwise"),
+        optional("velocity", &BodySpec::velocity, any, "m/s",
+                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+}  // namespace talus

@@ -1,0 +1,118 @@
+#pragma once
+// The block `outputs` of a scene.
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+
+namespace talus {
+
+struct ParticleOutputSpec {
+  Real every{};
+  std::vector<std::string> fields_wanted{"velocity", "displacement", "stress"};
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
+        optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
+                 "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, and any "
+                 "history variable of a law")};
+  }
+};
+
+struct MeshOutputSpec {
+  Real every{};
+  std::vector<std::string> fields_wanted{"mass", "velocity"};
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("every", &MeshOutputSpec::every, positive, "s", "time between files"),
+                      optional("fields", &MeshOutputSpec::fields_wanted, any, "-", "nodal mass, velocity, force, reaction")};
+  }
+};
+
+/// Follows the particle that is nearest to a place at the start.
+struct PointSpec {
+  std::string name;
+  std::vector<Real> at;
+  std::string body;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &PointSpec::name, any, "-", "prefix of its columns"),
+                      required("at", &PointSpec::at, any, "m", "place at the start; the nearest particle is followed"),
+                      optional("body", &PointSpec::body, any, "-", "only particles of this body; default any")};
+  }
+};
+
+enum class Direction : std::uint8_t { x_plus, x_minus, y_plus, y_minus, z_plus, z_minus };
+constexpr std::array<std::string_view, 6> words(Direction) { return {"+x", "-x", "+y", "-y", "+z", "-z"}; }
+
+/// How far the mass reaches: run-out, crest height.
+struct FrontSpec {
+  std::string name;
+  Direction direction{};
+  Real mass_share = 0.99;
+  std::string body;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &FrontSpec::name, any, "-", "name of the column"),
+                      required_choice("direction", &FrontSpec::direction, "along which the mass is measured"),
+                      optional("mass_share", &FrontSpec::mass_share, within(0, 1), "-",
+                               "coordinate below which this share of the mass lies; 1 is the outermost particle"),
+                      optional("body", &FrontSpec::body, any, "-", "only this body; default all")};
+  }
+};
+
+struct HistoryOutputSpec {
+  Real every{};
+  std::vector<PointSpec> points;
+  std::vector<FrontSpec> fronts;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("every", &HistoryOutputSpec::every, positive, "s",
+                               "time between rows; energies, momenta, mass, residual and reactions are always there"),
+                      optional_list("points", &HistoryOutputSpec::points,
+                                    "material points whose position, displacement, velocity and stress are written"),
+                      optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass")};
+  }
+};
+
+/// What `talus render` draws unless told otherwise.
+struct PictureSpec {
+  std::string field = "displacement";
+  std::vector<Real> range, view{0.4, -1, 0.5}, up;
+  bool mesh = true;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional("field", &PictureSpec::field, any, "-", "particle field that colours the particles; vectors by their length"),
+        optional("range", &PictureSpec::range, any, "-", "[low, high] of the colour map; default the range of the last frame"),
+        optional("view", &PictureSpec::view, any, "-", "3-D: direction from the scene to the camera"),
+        optional("up", &PictureSpec::up, any, "-", "3-D: direction that points up in the picture; default against gravity"),
+        optional("mesh", &PictureSpec::mesh, any, "-", "draw the outline of the mesh")};
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+struct OutputSpec {
+  std::optional<ParticleOutputSpec> particles;
+  std::optional<MeshOutputSpec> mesh;
+  std::optional<HistoryOutputSpec> history;
+  PictureSpec picture;
+  static constexpr auto fields()
+  {
+    return std::tuple{group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"),
+                      group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"),
+                      group("history", &OutputSpec::history, "history.csv"),
+                      optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};
+  }
+};
+
+}  // namespace talus
