@@ -1,0 +1,18 @@
+#pragma once
+// Files as they are, byte by byte.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+namespace talus {
+
+inline std::string bytes_of(const std::filesystem::path& file)
+{
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+inline void write(const std::filesystem::path& file, const std::string& bytes) { std::ofstream(file, std::ios::binary) << bytes; }
+
+}  // namespace talus
