@@ -127,9 +127,13 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
                     "asked {:.3g}; give it more duration or damping",
                     m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "",
                     stage.duration, m.residual, *stage.residual));
-  if (stage.residual)
+  if (stage.residual) {
     for (auto& v : m.particles.v)
       v.setZero();
+    for (auto* affine : {&m.particles.L, &m.particles.C})
+      for (auto& A : *affine)
+        A.setZero();
+  }
   if (stage.reset_displacement && !m.particles.x0.empty())
     m.particles.x0 = m.particles.x;
   watch(m, Moment::stage_done);

@@ -214,6 +214,8 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
   }
   EXPECT_NEAR(inside, outside, 0.01 * 100);
   EXPECT_LT(outside, -80);
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
+    EXPECT_EQ(m.particles.v[p].norm() + m.particles.L[p].norm(), 0) << "the next stage starts from rest, in its affine part too";
 }
 
 }  // namespace
