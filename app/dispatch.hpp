@@ -17,10 +17,15 @@ void with_kernel(std::string_view name, F&& f)
   });
 }
 
+inline void options_of(const Scene&, NoOptions&) {}
+inline void options_of(const Scene& scene, ProjectedOptions& options) { options = scene.projected.value_or(options); }
+
 template <int D, Kernel<D> K>
 Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
 try {
-  Model<D, K> m(std::move(mesh));
+  Options<K> options;
+  options_of(scene, options);
+  Model<D, K> m(std::move(mesh), options);
   m.particles = std::move(setup.particles);
   m.bodies = std::move(setup.bodies);
   m.materials = std::move(setup.materials);
@@ -29,8 +34,6 @@ try {
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
   make_ready(m, scene.outputs.history && !scene.outputs.history->points.empty());
-  if (m.transfer.scheme == Scheme::apic)
-    m.particles.C = m.particles.L;  // the affine part of a linear field is its gradient
   return m;
 } catch (const std::invalid_argument& e) {
   throw SceneErrors(scene.mesh.where, fmt::format("kernel \"{}\": {}", scene.kernel, e.what()));

@@ -211,9 +211,13 @@ Stage stage_of(const GeostaticSpec& spec)
 Transfer transfer_of(const TransferSpec& spec)
 {
   Transfer transfer;
-  transfer.scheme = spec.scheme == TransferScheme::flip ? Scheme::flip : spec.scheme == TransferScheme::apic ? Scheme::apic : Scheme::tpic;
-  transfer.musl = spec.musl.value_or(transfer.scheme == Scheme::flip);
+  constexpr Scheme schemes[] = {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip};  // in the order of TransferScheme
+  transfer.scheme = schemes[static_cast<std::size_t>(spec.scheme)];
+  transfer.musl = spec.musl.value_or(transfer.increments());
   transfer.pic_damping_time = spec.pic_damping_time;
+  transfer.pic_damping_crossings = spec.pic_damping_crossings;
+  if (transfer.scheme == Scheme::aflip && !spec.pic_damping_time && !spec.pic_damping_crossings)
+    transfer.pic_damping_crossings = 25;  // measured: docs/kernels.md
   return transfer;
 }
 

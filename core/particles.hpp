@@ -23,13 +23,13 @@ struct Particles {
   std::vector<std::int64_t> id;     ///< survives sorting and deletion
   std::vector<Index> cell;          ///< the cell that holds x
   std::vector<Vec<D>> x, v;         ///< position [m], velocity [m/s]
-  std::vector<Mat<D>> L;            ///< velocity gradient [1/s]; also the affine field of TPIC
+  std::vector<Mat<D>> L;            ///< velocity gradient [1/s]
   std::vector<Mat3> F;              ///< deformation gradient, plane strain in 2-D
   std::vector<Sym3> stress;         ///< Cauchy stress [Pa], tension positive
   std::vector<Real> mass, volume0;  ///< mass [kg], volume at the start [m^D, unit thickness in 2-D]
   std::vector<Real> volume;         ///< det F times volume0
 
-  std::vector<Mat<D>> C;           ///< affine field of APIC [1/s]
+  std::vector<Mat<D>> C;           ///< affine field, where it is not L [1/s]
   std::vector<Vec<D>> x0;          ///< where displacement counts from [m]
   std::vector<Vec<D>> applied;     ///< force of loads other than gravity [N]
   std::vector<Real> applied_at;    ///< applied . x before the move [J]
@@ -37,6 +37,7 @@ struct Particles {
   std::vector<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
+  const std::vector<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
 
   /// f(name, unit, column) for every column, empty ones too: resizing, sorting, bytes per particle.
   template <class F_>

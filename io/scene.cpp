@@ -47,8 +47,11 @@ void TimeSpec::check(std::vector<std::string>& problems) const
 
 void TransferSpec::check(std::vector<std::string>& problems) const
 {
-  if (pic_damping_time && scheme != TransferScheme::flip)
-    problems.push_back("pic_damping_time is for scheme flip only");
+  const bool increments = scheme == TransferScheme::flip || scheme == TransferScheme::aflip;
+  if ((pic_damping_time || pic_damping_crossings) && !increments)
+    problems.push_back("pic_damping_time and pic_damping_crossings are for schemes flip and aflip only");
+  if (pic_damping_time && pic_damping_crossings)
+    problems.push_back("give pic_damping_time or pic_damping_crossings, not both");
 }
 
 void BodySpec::check(std::vector<std::string>& problems) const

@@ -16,6 +16,7 @@
 #include "io/scene_mesh.hpp"
 #include "io/scene_output.hpp"
 #include "io/scene_stages.hpp"
+#include "kernels/projected_options.hpp"
 
 namespace talus {
 
@@ -38,23 +39,25 @@ struct TimeSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-enum class TransferScheme : std::uint8_t { flip, apic, tpic };
-constexpr std::array<std::string_view, 3> words(TransferScheme) { return {"flip", "apic", "tpic"}; }
+enum class TransferScheme : std::uint8_t { flip, apic, tpic, aflip };
+constexpr std::array<std::string_view, 4> words(TransferScheme) { return {"flip", "apic", "tpic", "aflip"}; }
 
 struct TransferSpec {
   TransferScheme scheme = TransferScheme::flip;
   std::optional<bool> musl;
-  std::optional<Real> pic_damping_time;
+  std::optional<Real> pic_damping_time, pic_damping_crossings;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{
         optional_choice("scheme", &TransferSpec::scheme,
-                        "flip (increments), apic (affine, own matrix) or tpic (affine, velocity gradient)"),
+                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient) or aflip (increments, affine)"),
         optional("musl", &TransferSpec::musl, any, "-",
-                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip, false otherwise"),
+                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip and aflip, false otherwise"),
         optional("pic_damping_time", &TransferSpec::pic_damping_time, positive, "s",
-                 "flip only: share dt/time of plain PIC in each step; default none")};
+                 "flip and aflip: share dt/time of the nodes' velocity in each step; default none"),
+        optional("pic_damping_crossings", &TransferSpec::pic_damping_crossings, positive, "-",
+                 "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip")};
   }
   void check(std::vector<std::string>& problems) const;
 };
@@ -73,6 +76,7 @@ struct Scene {
   Accuracy accuracy = Accuracy::standard;
   MeshSpec mesh;
   std::string kernel = "umls";
+  std::optional<ProjectedOptions> projected;
   TimeSpec time;
   TransferSpec transfer;
   std::vector<MaterialSpec> materials;
@@ -95,6 +99,7 @@ struct Scene {
             "particles_per_cell and cfl are kept where they are given, and so are meshes from files"),
         group("mesh", &Scene::mesh, "the background mesh"),
         optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
+        group("projected", &Scene::projected, "choices of the kernel projected"),
         optional("time", &Scene::time, any, "-", "end and step"),
         optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
         required_list("materials", &Scene::materials, "constitutive laws with their constants"),

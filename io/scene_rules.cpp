@@ -17,7 +17,7 @@ class Rules {
 
   std::vector<Finding> broken()
   {
-    known_word("kernel", "kernel", scene_.kernel, kernel_names());
+    kernel();
     mesh();
     time();
     materials_and_bodies();
@@ -27,6 +27,16 @@ class Rules {
   }
 
  private:
+  void kernel()
+  {
+    const bool projected = scene_.kernel == "projected";
+    known_word("kernel", "kernel", scene_.kernel, kernel_names());
+    if (scene_.projected && !projected)
+      add("projected", fmt::format("these are choices of the kernel projected; the scene's is {}", scene_.kernel));
+    if (projected && scene_.transfer.scheme == TransferScheme::apic)
+      add("transfer.scheme", "apic takes its matrix from the weights of particles, which projected does not make; take tpic or aflip");
+  }
+
   void add(std::string path, std::string message) { findings_.push_back({std::move(path), std::move(message)}); }
 
   void known_word(std::string path, std::string_view what, const std::string& word, const std::vector<std::string>& known)

@@ -99,6 +99,28 @@ concept Kernel = requires(const K k, const Mesh<D>& mesh, Index c, const Pack (&
   requires K::max_nodes % pack_size == 0;
 };
 
+/// What a scene may choose of a kernel: K::Options, if there is anything.
+struct NoOptions {};
+template <class K>
+struct OptionsOf {
+  using type = NoOptions;
+};
+template <class K>
+requires requires { typename K::Options; }
+struct OptionsOf<K> {
+  using type = typename K::Options;
+};
+template <class K>
+using Options = typename OptionsOf<K>::type;
+template <class K, int D>
+K make_kernel(const Mesh<D>& mesh, [[maybe_unused]] const Options<K>& options)
+{
+  if constexpr (std::same_as<Options<K>, NoOptions>)
+    return K(mesh);
+  else
+    return K(mesh, options);
+}
+
 template <int D>
 class NodeOperators;
 

@@ -2,13 +2,15 @@
 // The list of kernels: what a scene can name.  Folds over it turn a name into a type (core/type_list.hpp).
 #include "core/type_list.hpp"
 #include "kernels/linear.hpp"
+#include "kernels/projected.hpp"
 #include "kernels/umls.hpp"
 
 namespace talus {
 
 /// Kernels on meshes of dimension D, one line each.
 template <int D>
-using Kernels = TypeList<Linear<D>,  // hats
-                         Umls<D>>;   // moving least squares
+using Kernels = TypeList<Linear<D>,      // hats
+                         Umls<D>,        // moving least squares
+                         Projected<D>>;  // hats with operators at the nodes
 
 }  // namespace talus

@@ -1,13 +1,11 @@
-// Sparse operators over the one-ring: transposition, and the lumped L2 projection.
+// Sparse operators over the one-ring: transposition, and the averaged gradient.
 #include "kernels/node_operators.hpp"
 
 #include <algorithm>
 #include <cassert>
 
 namespace talus {
-namespace {
 
-/// Entry of node v in the ring of n.  The ring is ascending and holds v.
 std::size_t entry_of(const Csr& ring, Index n, Index v)
 {
   const auto nodes = ring[n];
@@ -15,6 +13,8 @@ std::size_t entry_of(const Csr& ring, Index n, Index v)
   assert(found != nodes.end() && *found == v);
   return static_cast<std::size_t>(ring.begin[static_cast<std::size_t>(n)]) + static_cast<std::size_t>(found - nodes.begin());
 }
+
+namespace {
 
 template <class Entry>
 std::vector<Entry> transposed(const Csr& ring, const std::vector<Entry>& rows)
@@ -37,6 +37,8 @@ NodeOperators<D>::NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::v
   assert(S_row_.size() == ring_.item.size() && D_row_.size() == ring_.item.size());
   S_column_ = transposed(ring_, S_row_);
   D_column_ = transposed(ring_, D_row_);
+  centre_.resize(static_cast<std::size_t>(mesh.n_nodes()));
+  for_each_node(std::span<Vec<D>>(centre_), [&](Index n) { return values(n, mesh.nodes()); });
 }
 
 template <int D>
@@ -53,33 +55,21 @@ std::vector<Real> hat_volumes(const Mesh<D>& mesh)
 }
 
 template <int D>
-NodeOperators<D> lumped_l2(const Mesh<D>& mesh)
+std::vector<Vec<D>> averaged_gradients(const Mesh<D>& mesh)
 {
-  const Csr& ring = mesh.ring_of_node();
   const auto volumes = hat_volumes(mesh);
-  std::vector<Real> S(ring.item.size(), 0.0);
-  std::vector<Vec<D>> gradients(ring.item.size(), Vec<D>::Zero());
-  parallel_for(mesh.n_nodes(), [&](Index n) {
-    const Real hat = volumes[static_cast<std::size_t>(n)];
-    for (const Index c : mesh.cells_of_node()[n]) {
-      const auto slopes = mesh.gradients(c);
-      const Real share = mesh.volume(c) / ((D + 1) * hat);  // int over c of N_n, of V_n
-      for (std::size_t a = 0; a <= D; ++a) {
-        const Index v = mesh.cell(c)[a];
-        const std::size_t entry = entry_of(ring, n, v);
-        S[entry] += share * (v == n ? 2.0 : 1.0) / (D + 2);  // int N_n N_v = |c| (1 + [n = v]) / ((D+1)(D+2))
-        gradients[entry] += share * slopes[a];
-      }
-    }
+  std::vector<Vec<D>> gradients(mesh.ring_of_node().item.size(), Vec<D>::Zero());
+  for_each_cell_of_ring(mesh, [&](Index n, Index c, std::size_t a, std::size_t entry) {
+    gradients[entry] += mesh.volume(c) / ((D + 1) * volumes[static_cast<std::size_t>(n)]) * mesh.gradients(c)[a];
   });
-  return NodeOperators<D>(mesh, std::move(S), std::move(gradients));
+  return gradients;
 }
 
 template class NodeOperators<2>;
 template class NodeOperators<3>;
 template std::vector<Real> hat_volumes(const Mesh<2>&);
 template std::vector<Real> hat_volumes(const Mesh<3>&);
-template NodeOperators<2> lumped_l2(const Mesh<2>&);
-template NodeOperators<3> lumped_l2(const Mesh<3>&);
+template std::vector<Vec<2>> averaged_gradients(const Mesh<2>&);
+template std::vector<Vec<3>> averaged_gradients(const Mesh<3>&);
 
 }  // namespace talus

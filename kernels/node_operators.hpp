@@ -19,6 +19,9 @@ class NodeOperators {
   /// Rows of S and of D on the entries of mesh.ring_of_node().
   NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::vector<Vec<D>> gradients);
 
+  /// sum_v S_nv x_v [m]: where the weights of hat n see their mass; x_n itself where S is exact for linear fields.
+  const Vec<D>& centre(Index n) const noexcept { return centre_[static_cast<std::size_t>(n)]; }
+
   Index n_nodes() const noexcept { return ring_.size(); }
   std::span<const Index> ring(Index n) const noexcept { return ring_[n]; }  ///< ascending, n itself included
   std::span<const Real> S_row(Index n) const noexcept { return part(S_row_, n); }
@@ -70,17 +73,33 @@ class NodeOperators {
 
   Csr ring_;
   std::vector<Real> S_row_, S_column_;
-  std::vector<Vec<D>> D_row_, D_column_;
+  std::vector<Vec<D>> D_row_, D_column_, centre_;
 };
 
-/// The lumped L2 projection on the hats N, with V_n = int N_n dx:
+/// The volume-averaged gradient of the hats N at nodes, with V_n = int N_n dx:
 ///
-///     S_nv = int N_n N_v dx / V_n                 D_nv = int N_n grad N_v dx / V_n
+///     D_nv = int N_n grad N_v dx / V_n [1/m]
 ///
-/// Rows of S sum to one and are not negative, rows of D sum to zero and give the slope of linear fields exactly, and
-/// sum_n V_n D_nv = int grad N_v dx, which is zero for interior v: a uniform stress pulls at no interior node, on any mesh.
+/// Rows sum to zero and give the slope of linear fields exactly, and sum_n V_n D_nv = int grad N_v dx, which is zero for interior v: a
+/// uniform stress pulls at no interior node, on any mesh.
 template <int D>
-NodeOperators<D> lumped_l2(const Mesh<D>& mesh);
+std::vector<Vec<D>> averaged_gradients(const Mesh<D>& mesh);
+
+/// Entry of node v in the row of n.  Rings are ascending and hold v.
+std::size_t entry_of(const Csr& ring, Index n, Index v);
+
+/// f(n, c, a, entry) for every node n, every cell c around it and every vertex a of c: `entry` is that of cell(c)[a] in the row of n.
+/// Rows in parallel.
+template <int D, class F>
+void for_each_cell_of_ring(const Mesh<D>& mesh, F&& f)
+{
+  const Csr& ring = mesh.ring_of_node();
+  parallel_for(mesh.n_nodes(), [&](Index n) {
+    for (const Index c : mesh.cells_of_node()[n])
+      for (std::size_t a = 0; a <= D; ++a)
+        f(n, c, a, entry_of(ring, n, mesh.cell(c)[a]));
+  });
+}
 
 /// V_n = int N_n dx [m^D]
 template <int D>

@@ -25,6 +25,10 @@ class StopWatch {
 };
 
 template <int D, Kernel<D> K>
+void sum_on_nodes(Model<D, K>& m);
+template <int D, Kernel<D> K>
+void show_to_particles(Model<D, K>& m, Real dt);
+template <int D, Kernel<D> K>
 void remap(Model<D, K>& m, Real dt);
 
 /// One step of length dt [s].  Afterwards `m.health` tells whether the state is sound.
@@ -42,10 +46,10 @@ void advance(Model<D, K>& m, Real dt)
   const Real on_particles = apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
   watch.lap(m.timings.locate);
 
-  scatter(m.kernel, m.mesh, m.particles, m.n_bodies(), m.order, m.transfer, m.blocks);  //  3
+  scatter(m);  //  3
   watch.lap(m.timings.scatter);
 
-  assemble(m.blocks, m.nodes.sum);  //  4
+  sum_on_nodes(m);  //  4
   const Real on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
   m.slaves.lump(m.mesh, m.nodes);                                        //  5
   integrate(gravity, m.stage.damping, dt, m.nodes);                      //  6
@@ -55,11 +59,12 @@ void advance(Model<D, K>& m, Real dt)
   m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
   watch.lap(m.timings.nodes);
 
+  show_to_particles(m, dt);  //  9
   if (m.transfer.musl) {
-    gather_and_return_momentum(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles, m.blocks);  //  9
-    remap(m, dt);                                                                                                                // 10
+    gather_and_return_momentum(m, dt);  // 10
+    remap(m, dt);                       // 11
   } else {
-    gather(m.kernel, m.mesh, m.n_bodies(), m.order, m.nodes.motion, m.transfer, dt, m.particles);  //  9
+    gather(m, dt);  // 10
   }
   m.energy.loads += work(m.particles);
   watch.lap(m.timings.gather);
@@ -69,7 +74,7 @@ void advance(Model<D, K>& m, Real dt)
     AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
     if (averages_volume(material))
       average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
-    const StressSums sums = update_stress(m.mesh, material, dt, m.stage.elastic, m.averaged, m.particles, m.health);  // 11
+    const StressSums sums = update_stress(m.mesh, material, dt, m.stage.elastic, m.averaged, m.particles, m.health);  // 12
     if (m.heat)
       conduct_heat(m.mesh, material, m.order, body, dt, m.particles, *m.heat);
     m.energy.internal += sums.work;
@@ -81,12 +86,39 @@ void advance(Model<D, K>& m, Real dt)
   m.timings.particle_steps += static_cast<Real>(m.particles.size());
 }
 
+/// Rows of blocks -> nodes; with a node part, hats stand between.
+template <int D, Kernel<D> K>
+void sum_on_nodes(Model<D, K>& m)
+{
+  if constexpr (HasNodePart<K, D>) {
+    assemble(m.blocks, m.hats.sum);
+    collect(m.kernel.node_part(), m.mesh, m.hats.sum, m.nodes.sum);
+  } else {
+    assemble(m.blocks, m.nodes.sum);
+  }
+}
+
+/// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more.
+template <int D, Kernel<D> K>
+void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt)
+{
+  if constexpr (HasNodePart<K, D>) {
+    spread(m.kernel.node_part(), m.nodes.motion, m.hats);
+    m.walls.hold(m.clock.time, dt, m.hats.motion);
+  }
+}
+
 /// MUSL: momentum of the new particle velocities on the nodes, held by the walls; then L_p from these velocities, while the
 /// particles move with those of the step itself.
 template <int D, Kernel<D> K>
 void remap(Model<D, K>& m, Real dt)
 {
-  assemble_momentum(m.blocks, m.nodes.sum);
+  if constexpr (HasNodePart<K, D>) {
+    assemble_momentum(m.blocks, m.hats.sum);
+    collect_momentum(m.kernel.node_part(), m.mesh, m.hats.sum, m.nodes.sum);
+  } else {
+    assemble_momentum(m.blocks, m.nodes.sum);
+  }
   m.slaves.lump_momentum(m.mesh, m.nodes);
   parallel_for(static_cast<Index>(m.remapped.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
@@ -95,7 +127,12 @@ void remap(Model<D, K>& m, Real dt)
   });
   m.walls.hold(m.clock.time + dt, m.remapped);
   m.slaves.follow_velocity(m.mesh, m.nodes, m.walls, m.clock.time + dt, m.remapped);
-  gather_gradient(m.kernel, m.mesh, m.n_bodies(), m.order, m.remapped, dt, m.particles);
+  if constexpr (HasNodePart<K, D>) {
+    spread_gradient(m.kernel.node_part(), m.remapped, m.hats);
+    gather_gradient(m, m.hats.motion, dt);
+  } else {
+    gather_gradient(m, m.remapped, dt);
+  }
 }
 
 /// Work terms and residual of the step, for the audit.

@@ -9,7 +9,7 @@ namespace talus {
 
 /// Static tables and the rows themselves.  A node reached from several blocks has a row in each; `assemble` adds them up in
 /// ascending order, so no two threads ever write the same row and sums do not depend on the number of threads.
-template <int D>
+template <int D, class Sum = NodeSum<D>>
 struct BlockRows {
   std::vector<Index> begin;         ///< block -> its first row; one more at the end
   std::vector<std::uint16_t> slot;  ///< for every stencil entry of every cell: row within the block
@@ -17,10 +17,10 @@ struct BlockRows {
   Csr rows_of_node;                 ///< node -> its rows, ascending
   std::vector<Index> block_of_row;
   std::vector<std::uint8_t> occupied;  ///< block holds particles in this step
-  std::vector<NodeSum<D>> row;
+  std::vector<Sum> row;
 
   Index size() const noexcept { return static_cast<Index>(occupied.size()); }
-  std::span<NodeSum<D>> rows(Index b) noexcept
+  std::span<Sum> rows(Index b) noexcept
   {
     const auto first = static_cast<std::size_t>(begin[static_cast<std::size_t>(b)]),
                last = static_cast<std::size_t>(begin[static_cast<std::size_t>(b) + 1]);
@@ -35,11 +35,11 @@ struct BlockRows {
 };
 
 /// Tables for a kernel on a mesh.
-template <int D, Kernel<D> K>
-BlockRows<D> make_block_rows(const K& kernel, const Mesh<D>& mesh)
+template <int D, class Sum, Kernel<D> K>
+BlockRows<D, Sum> make_block_rows(const K& kernel, const Mesh<D>& mesh)
 {
   const auto z = [](Index i) { return static_cast<std::size_t>(i); };
-  BlockRows<D> blocks;
+  BlockRows<D, Sum> blocks;
   const Index n_blocks = (mesh.n_cells() + block_cells - 1) / block_cells;
   blocks.occupied.assign(z(n_blocks), 0);
   blocks.begin.assign(z(n_blocks) + 1, 0);
@@ -81,11 +81,11 @@ BlockRows<D> make_block_rows(const K& kernel, const Mesh<D>& mesh)
 }
 
 /// Adds the rows of all occupied blocks to the nodes.
-template <int D>
-void assemble(const BlockRows<D>& blocks, std::vector<NodeSum<D>>& sum)
+template <int D, class Sum>
+void assemble(const BlockRows<D, Sum>& blocks, std::vector<Sum>& sum)
 {
   parallel_for(static_cast<Index>(sum.size()), [&](Index n) {
-    NodeSum<D> total;
+    Sum total;
     for (const Index r : blocks.rows_of_node[n])
       if (blocks.occupied[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])])
         total += blocks.row[static_cast<std::size_t>(r)];
@@ -94,15 +94,15 @@ void assemble(const BlockRows<D>& blocks, std::vector<NodeSum<D>>& sum)
 }
 
 /// The same for momentum alone.
-template <int D>
-void assemble_momentum(const BlockRows<D>& blocks, std::vector<NodeSum<D>>& sum)
+template <int D, class Sum>
+void assemble_momentum(const BlockRows<D, Sum>& blocks, std::vector<Sum>& sum)
 {
   parallel_for(static_cast<Index>(sum.size()), [&](Index n) {
-    Vec<D> momentum = Vec<D>::Zero();
+    Sum& total = sum[static_cast<std::size_t>(n)];
+    total.clear_momentum();
     for (const Index r : blocks.rows_of_node[n])
       if (blocks.occupied[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])])
-        momentum += blocks.row[static_cast<std::size_t>(r)].momentum;
-    sum[static_cast<std::size_t>(n)].momentum = momentum;
+        total.add_momentum(blocks.row[static_cast<std::size_t>(r)]);
   });
 }
 

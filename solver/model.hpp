@@ -1,11 +1,12 @@
 #pragma once
 // Everything a run is made of, by value.
-#include "solver/blocks.hpp"
 #include "solver/conduct_heat.hpp"
 #include "solver/integrate.hpp"
 #include "solver/ledger.hpp"
 #include "solver/loads.hpp"
 #include "solver/relocate.hpp"
+#include "solver/through_hats.hpp"
+#include "solver/through_weights.hpp"
 #include "solver/transfer.hpp"
 #include "solver/walls.hpp"
 
@@ -31,12 +32,16 @@ struct Timings {
   Real particle_steps{};
 };
 
+/// The way of a kernel's particles to the nodes and back.
+template <int D, Kernel<D> K>
+using Through = std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>;
+
 template <int D, Kernel<D> K>
 struct Model {
   Mesh<D> mesh;
   Locator<D> locator;
   K kernel;
-  BlockRows<D> blocks;
+  BlockRows<D, SumRow<K, D>> blocks;
 
   Particles<D> particles;
   std::vector<Body> bodies;
@@ -45,6 +50,7 @@ struct Model {
   std::vector<Index> row_of_id;  ///< kept only if somebody follows single particles; `none` when deleted
 
   Nodes<D> nodes;
+  Hats<D> hats;                         ///< if the kernel has a node part
   std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, the step's own in `change`
   Slaves<D> slaves;
   std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
@@ -64,13 +70,26 @@ struct Model {
   Health health;
   Timings timings;
 
-  explicit Model(Mesh<D> m) : mesh(std::move(m)), locator(mesh), kernel(mesh), blocks(make_block_rows<D>(kernel, mesh))
+  explicit Model(Mesh<D> m, const Options<K>& options = {})
+      : mesh(std::move(m)), locator(mesh), kernel(make_kernel<K>(mesh, options)), blocks(make_block_rows<D, SumRow<K, D>>(kernel, mesh))
   {
     nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
     nodes.motion.resize(nodes.sum.size());
     nodes.active.resize(nodes.sum.size());
+    if constexpr (HasNodePart<K, D>) {
+      hats.sum.resize(nodes.sum.size());
+      hats.motion.resize(nodes.sum.size());
+    }
   }
   Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
+  /// What particles read.
+  const std::vector<MotionRow<K, D>>& motion() const noexcept
+  {
+    if constexpr (HasNodePart<K, D>)
+      return hats.motion;
+    else
+      return nodes.motion;
+  }
 };
 
 /// A node with less than this share of the lightest particle around is a slave of its neighbours.  Where weights may be negative, sums
@@ -96,8 +115,8 @@ void make_ready(Model<D, K>& m, bool by_id)
 {
   const auto n = m.particles.id.size();
   m.particles.volume = m.particles.volume0;
-  if (m.transfer.scheme == Scheme::apic)
-    m.particles.C.assign(n, Mat<D>::Zero());
+  if (m.transfer.own_affine_field())
+    m.particles.C = m.particles.L;
   if (m.loads.any_on_particles())
     m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
   const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) { return std::any_of(m.materials.begin(), m.materials.end(), has); };

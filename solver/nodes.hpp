@@ -16,6 +16,8 @@ struct alignas(64) NodeSum {
   float gross{};                     ///< sum over cells of |mass from the cell| [kg]: how much the sum `mass` cancels
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
+  void clear_momentum() noexcept { momentum.setZero(); }
+  void add_momentum(const NodeSum& other) noexcept { momentum += other.momentum; }
   static constexpr float unseen = std::numeric_limits<float>::infinity();
   bool is_seen() const noexcept { return lightest < unseen; }
   NodeSum& operator+=(const NodeSum& other) noexcept
@@ -34,6 +36,14 @@ template <int D>
 struct alignas(64) NodeMotion {
   Vec<D> v = Vec<D>::Zero();       ///< velocity at the end of the step [m/s]
   Vec<D> change = Vec<D>::Zero();  ///< v minus the velocity at its beginning [m/s]
+};
+
+/// What particles read on the hat of a node, where the kernel has a node part.
+template <int D>
+struct alignas(64) HatMotion {
+  Vec<D> v = Vec<D>::Zero();       ///< [m/s]
+  Vec<D> change = Vec<D>::Zero();  ///< [m/s]
+  Mat<D> L = Mat<D>::Zero();       ///< velocity gradient [1/s]
 };
 
 template <int D>

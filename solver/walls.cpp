@@ -161,6 +161,28 @@ void Walls<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
 }
 
 template <int D>
+void Walls<D>::hold(Real time, Real dt, std::span<HatMotion<D>> hats) const
+{
+  for (const NodeRule& rule : rules_) {
+    HatMotion<D>& row = hats[static_cast<std::size_t>(rule.node)];
+    if (rule.whole != none) {
+      row.v = constrained(rule, time + dt, row.v);
+      row.change = row.v - constrained(rule, time, row.v);
+      continue;
+    }
+    const auto hold_back = [&](const Vec<D>& normal) {
+      row.v -= row.v.dot(normal) * normal;
+      row.change -= row.change.dot(normal) * normal;
+    };
+    for (const Plane& plane : rule.frictions)
+      if (rule.rubs)
+        hold_back(plane.normal);
+    for (const Plane& plane : rule.rollers)
+      hold_back(plane.normal);
+  }
+}
+
+template <int D>
 Vec<D> Walls<D>::held(Index node, Real time, const Vec<D>& v) const
 {
   return binds(node) ? constrained(rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])], time, v) : v;

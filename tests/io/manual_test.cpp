@@ -63,7 +63,7 @@ TEST(Manual, TellsRequiredFromOptionalKeys)
 
 TEST(Manual, ListsTheWordsOfEnums)
 {
-  EXPECT_EQ(row("transfer", "scheme").at("range"), "`flip`, `apic` or `tpic`");
+  EXPECT_EQ(row("transfer", "scheme").at("range"), "`flip`, `apic`, `tpic` or `aflip`");
   EXPECT_THAT(row("materials", "law").at("range"), HasSubstr("`drucker_prager`"));
 }
 
@@ -121,7 +121,7 @@ TEST(Schema, KnowsKeysTypesRangesAndWords)
   EXPECT_EQ(keys.at("dimension").at("minimum"), 2);
   EXPECT_EQ(keys.at("dimension").at("maximum"), 3);
   EXPECT_EQ(keys.at("time").at("properties").at("end").at("exclusiveMinimum"), 0);
-  EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic"}));
+  EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic", "aflip"}));
   EXPECT_EQ(keys.at("materials").at("items").at("oneOf").size(), Laws::size);
   EXPECT_EQ(keys.at("loads").at("items").at("oneOf").at(0).at("properties").at("type").at("const"), "gravity");
   EXPECT_THAT(schema.at("required").get<std::vector<std::string>>(),

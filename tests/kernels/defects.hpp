@@ -27,7 +27,8 @@ Real negativity(const K& kernel, const Mesh<D>& mesh)
 {
   Real worst = 0;
   for_each_trial(kernel, mesh, [&](const auto& probe, Index, const Vec<D>&) {
-    worst = std::max(worst, -*std::min_element(probe.weights.w, probe.weights.w + probe.cell.size));
+    for (int i = 0; i < probe.size(); ++i)
+      worst = std::max(worst, -probe.value(i));
   });
   return worst;
 }
@@ -39,8 +40,8 @@ Real linear_value_defect(const K& kernel, const Mesh<D>& mesh)
   Real worst = 0;
   for_each_trial(kernel, mesh, [&](const auto& probe, Index c, const Vec<D>& x) {
     Vec<D> off = Vec<D>::Zero();
-    for (int i = 0; i < probe.cell.size; ++i)
-      off += probe.weights.w[i] * (probe.node(i) - x);
+    for (int i = 0; i < probe.size(); ++i)
+      off += probe.value(i) * (probe.node(i) - x);
     worst = std::max(worst, off.norm() / mesh.altitude(c));
   });
   return worst;
@@ -54,7 +55,7 @@ Real linear_gradient_defect(const K& kernel, const Mesh<D>& mesh)
   for_each_trial(kernel, mesh, [&](const auto& probe, Index, const Vec<D>& x) {
     Mat<D> off = -Mat<D>::Identity();
     Real size = 1;
-    for (int i = 0; i < probe.cell.size; ++i) {
+    for (int i = 0; i < probe.size(); ++i) {
       const Vec<D> r = probe.node(i) - x, g = probe.gradient(i);
       off += r * g.transpose();
       size += r.norm() * g.norm();
@@ -124,9 +125,9 @@ Real slope_defect(const K& kernel, const Mesh<D>& mesh)
     for (int d = 0; d < D; ++d) {
       before.evaluate(x - step * Vec<D>::Unit(d));
       after.evaluate(x + step * Vec<D>::Unit(d));
-      for (int i = 0; i < probe.cell.size; ++i) {
-        const Real slope = (after.weights.w[i] - before.weights.w[i]) / (2 * step);
-        worst = std::max(worst, h * std::abs(slope - probe.weights.dw[d][i]));
+      for (int i = 0; i < probe.size(); ++i) {
+        const Real slope = (after.value(i) - before.value(i)) / (2 * step);
+        worst = std::max(worst, h * std::abs(slope - probe.gradient(i)[d]));
       }
     }
   }
@@ -150,9 +151,9 @@ PatchDefect patch_defect(const K& kernel, const Mesh<D>& mesh, Real margin)
     const Real volume = mesh.volume(c) / static_cast<Real>(points.size());
     for (const auto& b : points) {
       probe.evaluate(place(mesh, c, b));
-      for (int i = 0; i < probe.cell.size; ++i) {
+      for (int i = 0; i < probe.size(); ++i) {
         force[static_cast<std::size_t>(probe.number(i))] += volume * probe.gradient(i);
-        share[static_cast<std::size_t>(probe.number(i))] += volume * probe.weights.w[i];
+        share[static_cast<std::size_t>(probe.number(i))] += volume * probe.value(i);
       }
     }
   }
@@ -185,9 +186,9 @@ Real wall_leak(const K& kernel, const Mesh<D>& mesh)
     for (const Index v : own)
       x += mesh.node(v) / D;
     probe.evaluate(x);
-    for (int i = 0; i < probe.cell.size; ++i)
+    for (int i = 0; i < probe.size(); ++i)
       if (std::find(own.begin(), own.end(), probe.number(i)) == own.end())
-        worst = std::max(worst, std::abs(probe.weights.w[i]));
+        worst = std::max(worst, std::abs(probe.value(i)));
   }
   return worst;
 }

@@ -1,26 +1,19 @@
-// Node operators, and a small kernel with a node part: the seam between cell part and node part holds what it promises.
+// Node operators, and the value stencils of the projected kernel.
 #include <gtest/gtest.h>
 
-#include "kernels/node_operators.hpp"
+#include <numeric>
+
+#include "kernels/projected.hpp"
 #include "tests/kernels/defects.hpp"
 
 namespace talus::test {
 namespace {
 
-/// Hats at the particle, the lumped L2 pair at the nodes: the smallest kernel with a node part.
 template <int D>
-class TestProjected : public Linear<D> {
- public:
-  static constexpr std::string_view name = "test_projected";
-  explicit TestProjected(const Mesh<D>& mesh) : Linear<D>(mesh), node_part_(lumped_l2(mesh)) {}
-  const NodeOperators<D>& node_part() const noexcept { return node_part_; }
-
- private:
-  NodeOperators<D> node_part_;
-};
-static_assert(Kernel<TestProjected<2>, 2> && Kernel<TestProjected<3>, 3>);
-static_assert(HasNodePart<TestProjected<2>, 2> && HasNodePart<TestProjected<3>, 3>);
-static_assert(!HasNodePart<TestProjected<2>, 3> && !HasNodePart<Linear<2>, 2> && !HasNodePart<Umls<3>, 3>);
+NodeOperators<D> operators_of(const Mesh<D>& mesh)
+{
+  return NodeOperators<D>(mesh, l2_values(mesh), averaged_gradients(mesh));
+}
 
 template <class T>
 class NodeOperatorsIn : public ::testing::Test {};
@@ -38,7 +31,7 @@ TYPED_TEST(NodeOperatorsIn, RowsOfValuesSumToOneAndAreNotNegative)
 {
   constexpr int D = TypeParam::D;
   for (const auto& [name, mesh] : meshes<D>()) {
-    const auto operators = lumped_l2(mesh);
+    const auto operators = operators_of(mesh);
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       Real sum = 0;
       for (const Real s : operators.S_row(n)) {
@@ -54,7 +47,7 @@ TYPED_TEST(NodeOperatorsIn, RowsOfGradientsSumToZeroAndAreExactForLinearFields)
 {
   constexpr int D = TypeParam::D;
   for (const auto& [name, mesh] : meshes<D>()) {
-    const auto operators = lumped_l2(mesh);
+    const auto operators = operators_of(mesh);
     const Mat<D> slope = Mat<D>::Random();
     std::vector<Vec<D>> field;
     for (const Vec<D>& x : mesh.nodes())
@@ -76,7 +69,7 @@ TYPED_TEST(NodeOperatorsIn, ColumnsAreTheRowsTransposedToTheBit)
 {
   constexpr int D = TypeParam::D;
   const Mesh<D>& mesh = jittered_mesh<D>();
-  const auto operators = lumped_l2(mesh);
+  const auto operators = operators_of(mesh);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (std::size_t i = 0; i < operators.ring(n).size(); ++i) {
       const Index v = operators.ring(n)[i];
@@ -91,7 +84,7 @@ TYPED_TEST(NodeOperatorsIn, ScatterIsTheTransposeOfGather)
 {
   constexpr int D = TypeParam::D;
   const Mesh<D>& mesh = jittered_mesh<D>();
-  const auto operators = lumped_l2(mesh);
+  const auto operators = operators_of(mesh);
   const auto size = static_cast<std::size_t>(mesh.n_nodes());
   std::vector<Real> a(size), b(size);
   std::vector<Vec<D>> velocity(size);
@@ -119,7 +112,7 @@ TYPED_TEST(NodeOperatorsIn, UniformStressPullsAtNoInteriorNode)
 {
   constexpr int D = TypeParam::D;
   for (const auto& [name, mesh] : meshes<D>()) {
-    const auto operators = lumped_l2(mesh);
+    const auto operators = operators_of(mesh);
     const auto volumes = hat_volumes(mesh);
     Real pull_at_walls = 0;
     for (Index v = 0; v < mesh.n_nodes(); ++v) {
@@ -140,27 +133,55 @@ TYPED_TEST(NodeOperatorsIn, UniformStressPullsAtNoInteriorNode)
   }
 }
 
-TYPED_TEST(NodeOperatorsIn, ProjectedWeightsHaveTheGradientsOfLinearFieldsAndOneForOne)
+/// sum_v S_nv (x_v - x_n) / h_n
+template <int D>
+Vec<D> first_moment(const Mesh<D>& mesh, const std::vector<Real>& S, Index n)
+{
+  Vec<D> moment = Vec<D>::Zero();
+  const auto ring = mesh.ring_of_node()[n];
+  for (std::size_t k = 0; k < ring.size(); ++k)
+    moment += S[static_cast<std::size_t>(mesh.ring_of_node().begin[static_cast<std::size_t>(n)]) + k] * (mesh.node(ring[k]) - mesh.node(n));
+  return moment / mesh.node_size(n);
+}
+
+TYPED_TEST(NodeOperatorsIn, MaxentIsPositiveSumsToOneAndIsExactForLinearFieldsInsideAndAlongWalls)
+{
+  constexpr int D = TypeParam::D;
+  for (const auto& [name, mesh] : meshes<D>()) {
+    const auto S = maxent_values(mesh, 0.5, 0.25);
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      const auto begin = S.begin() + mesh.ring_of_node().begin[static_cast<std::size_t>(n)];
+      const auto end = begin + static_cast<std::ptrdiff_t>(mesh.ring_of_node()[n].size());
+      ASSERT_GT(*std::min_element(begin, end), 0) << name << ", node " << n;
+      ASSERT_NEAR(std::accumulate(begin, end, 0.0), 1, round_off) << name << ", node " << n;
+      Vec<D> moment = first_moment(mesh, S, n);
+      for (int d = 0; d < D; ++d)  // the box: its walls are normal to the axes
+        if (mesh.node(n)[d] < 1e-9 || mesh.node(n)[d] > 1 - 1e-9)
+          moment[d] = 0;
+      ASSERT_LE(moment.norm(), round_off) << name << ", node " << n;
+    }
+  }
+}
+
+TYPED_TEST(NodeOperatorsIn, MovingLeastSquaresAreExactForLinearFieldsAtEveryNode)
+{
+  constexpr int D = TypeParam::D;
+  for (const auto& [name, mesh] : meshes<D>()) {
+    const auto S = mls_values(mesh, 0.25);
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      ASSERT_LE(first_moment(mesh, S, n).norm(), 1e-10) << name << ", node " << n;  // of an inverse of second moments of flat rings
+  }
+}
+
+TYPED_TEST(NodeOperatorsIn, SmallerWeightsOfNeighboursDrawTheMassToTheNode)
 {
   constexpr int D = TypeParam::D;
   const Mesh<D>& mesh = jittered_mesh<D>();
-  const TestProjected<D> kernel(mesh);
-  const auto& operators = kernel.node_part();
-  for_each_trial(kernel, mesh, [&](const auto& probe, Index, const Vec<D>& x) {
-    Real sum = 0, size = 0;
-    Mat<D> slope = Mat<D>::Zero();
-    for (int a = 0; a <= D; ++a) {
-      const Index n = probe.number(a);
-      for (std::size_t i = 0; i < operators.ring(n).size(); ++i) {
-        sum += probe.weights.w[a] * operators.S_row(n)[i];
-        const Vec<D> r = mesh.node(operators.ring(n)[i]) - x;
-        slope += probe.weights.w[a] * r * operators.D_row(n)[i].transpose();
-        size += r.norm() * operators.D_row(n)[i].norm();
-      }
-    }
-    ASSERT_NEAR(sum, 1, round_off);
-    ASSERT_LE((slope - Mat<D>::Identity()).norm(), round_off * size);
-  });
+  const auto narrow = maxent_values(mesh, 0.1, 0.25), wide = maxent_values(mesh, 1, 0.25);
+  for (Index n = 0; n < mesh.n_nodes(); ++n) {
+    const std::size_t own = entry_of(mesh.ring_of_node(), n, n);
+    ASSERT_GT(narrow[own], 1.5 * wide[own]) << "node " << n;
+  }
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 // Meshes to try kernels on, points to try them at, and the weights of one point by node number.
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <random>
@@ -89,12 +90,23 @@ std::vector<std::array<Real, D + 1>> trial_points(std::uint32_t seed)
   return points;
 }
 
-/// The weights of one point; what a stencil does not hold is zero.
+/// The weights of one point over the nodes that matter to it.  With a node part these are the rings of the cell's vertices, and the
+/// weights are those of the hats carried on by the operators.
 template <class K, int D>
 class Probe {
  public:
   Probe(const K& kernel, const Mesh<D>& mesh) : kernel_(kernel), mesh_(mesh) {}
-  void enter(Index c) { kernel_.open(mesh_, c, cell); }
+  void enter(Index c)
+  {
+    kernel_.open(mesh_, c, cell);
+    nodes_.assign(cell.nodes.begin(), cell.nodes.end());
+    if constexpr (HasNodePart<K, D>) {
+      for (const Index n : cell.nodes)
+        nodes_.insert(nodes_.end(), mesh_.ring_of_node()[n].begin(), mesh_.ring_of_node()[n].end());
+      std::sort(nodes_.begin(), nodes_.end());
+      nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
+    }
+  }
   void evaluate(const Vec<D>& x)
   {
     Pack at[D];
@@ -102,28 +114,43 @@ class Probe {
       at[d] = broadcast(x[d]);
     kernel_.evaluate(cell, at, 1, factors_);
     factors_.spell_out(0, weights);
+    values_.assign(nodes_.size(), 0);
+    gradients_.assign(nodes_.size(), Vec<D>::Zero());
+    for (int a = 0; a < cell.size; ++a)
+      add(a);
   }
-  Vec<D> gradient(int i) const
-  {
-    Vec<D> g;
-    for (int d = 0; d < D; ++d)
-      g[d] = weights.dw[d][i];
-    return g;
-  }
-  Vec<D> node(int i) const
-  {
-    Vec<D> x;
-    for (int d = 0; d < D; ++d)
-      x[d] = cell.origin[d] + cell.x[d][i];
-    return x;
-  }
-  Index number(int i) const { return cell.nodes[static_cast<std::size_t>(i)]; }
+  int size() const { return static_cast<int>(nodes_.size()); }
+  Real value(int i) const { return values_[static_cast<std::size_t>(i)]; }
+  Vec<D> gradient(int i) const { return gradients_[static_cast<std::size_t>(i)]; }
+  Vec<D> node(int i) const { return mesh_.node(number(i)); }
+  Index number(int i) const { return nodes_[static_cast<std::size_t>(i)]; }
 
   typename K::Cell cell;
-  NodeWeights<D, K::max_nodes> weights;
+  NodeWeights<D, K::max_nodes> weights;  ///< what the kernel itself answers, over the stencil of the cell
 
  private:
+  void add(int a)
+  {
+    const auto i = static_cast<std::size_t>(a);
+    if constexpr (HasNodePart<K, D>) {
+      const Index n = cell.nodes[i];
+      const auto& operators = kernel_.node_part();
+      for (std::size_t k = 0; k < operators.ring(n).size(); ++k) {
+        const auto at = static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), operators.ring(n)[k]) - nodes_.begin());
+        values_[at] += weights.w[a] * operators.S_row(n)[k];
+        gradients_[at] += weights.w[a] * operators.D_row(n)[k];
+      }
+    } else {
+      values_[i] = weights.w[a];
+      for (int d = 0; d < D; ++d)
+        gradients_[i][d] = weights.dw[d][a];
+    }
+  }
+
   Weights<D, K::max_nodes> factors_;
+  std::vector<Index> nodes_;
+  std::vector<Real> values_;
+  std::vector<Vec<D>> gradients_;
   const K& kernel_;
   const Mesh<D>& mesh_;
 };
@@ -137,8 +164,8 @@ template <class K, int D>
 ByNode<D> by_node(const Probe<K, D>& probe)
 {
   ByNode<D> all;
-  for (int i = 0; i < probe.cell.size; ++i) {
-    all.value[probe.number(i)] = probe.weights.w[i];
+  for (int i = 0; i < probe.size(); ++i) {
+    all.value[probe.number(i)] = probe.value(i);
     all.gradient[probe.number(i)] = probe.gradient(i);
   }
   return all;

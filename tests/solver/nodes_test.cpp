@@ -46,7 +46,7 @@ template <class K>
 void drag_across_a_vertex(Scheme scheme)
 {
   Model<2, K> m(unit_box<2>(4, 0.2));
-  m.transfer = {.scheme = scheme, .musl = false, .pic_damping_time = {}};
+  m.transfer = {.scheme = scheme, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   const auto one_cell = [&, done = false](const Vec<2>& x) mutable { return !done && x[0] > 0.3 && x[1] > 0.3 ? (done = true) : false; };
   add_body<2>(m, "grain", rubber(1000, 0.3, 1000), 1, one_cell);
   ASSERT_EQ(m.particles.size(), 1);
@@ -98,7 +98,7 @@ TEST(Slaves, AreNodesWhoseCellsCancel)
 TEST(Slaves, LendANodeWithoutMassTheMotionAroundIt)
 {
   Model<3, Linear<3>> m(unit_box<3>(2, 0));
-  m.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}};
+  m.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   add_body<3>(
       m, "dust", rubber(1000, 0.3, 1000), 1, [](const Vec<3>&) { return true; }, [](const Vec<3>&) { return Vec<3>(1, 0.4, 0.2); });
   for (std::size_t p = 0; p < m.particles.id.size(); ++p) {

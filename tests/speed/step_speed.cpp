@@ -45,9 +45,11 @@ void steps(benchmark::State& state, const Transfer& transfer, int n_threads)
 template <class K>
 void add()
 {
-  const std::pair<const char*, Transfer> transfers[] = {{"tpic", {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}}},
-                                                        {"flip", {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}}},
-                                                        {"flip_musl", {.scheme = Scheme::flip, .musl = true, .pic_damping_time = {}}}};
+  const std::pair<const char*, Transfer> transfers[] = {
+      {"tpic", {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}}},
+      {"flip", {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}}},
+      {"aflip_musl", {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25}},
+      {"flip_musl", {.scheme = Scheme::flip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = {}}}};
   for (const auto& [name, transfer] : transfers)
     for (const int n_threads : {1, 2})
       benchmark::RegisterBenchmark(fmt::format("step/{}/{}/threads:{}", K::name, name, n_threads).c_str(), steps<K>, transfer, n_threads)

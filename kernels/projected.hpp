@@ -1,0 +1,49 @@
+#pragma once
+// Hats at the particles, sparse operators at the nodes: a continuous gradient with the integration constraint, at the cost of hats.
+#include "kernels/linear.hpp"
+#include "kernels/node_operators.hpp"
+#include "kernels/projected_options.hpp"
+#include "kernels/value_stencils.hpp"
+
+namespace talus {
+
+/// With the hats N_n of the cell's vertices, S the value stencil and D the averaged gradient (kernels/node_operators.hpp):
+///
+///     w_v(x) = sum_n N_n(x) S_nv          G_v(x) = sum_n N_n(x) D_nv
+///
+/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles see hats
+/// only: a scatter goes to the vertices of the cell, the transposed operators carry it on to the unknowns, and back.
+/// Relatives: dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys. 230].
+template <int D>
+class Projected : public Linear<D> {
+ public:
+  static constexpr std::string_view name = "projected";
+  static constexpr std::string_view summary = "hats with averaged nodal gradient and values; continuous gradient, exact for uniform stress";
+  using Options = ProjectedOptions;
+
+  /// Throws std::invalid_argument where a node has no positive weights (maxent).
+  explicit Projected(const Mesh<D>& mesh, const Options& options = {});
+
+  Claims claims() const noexcept
+  {
+    return {.non_negative = values_ != ValueStencil::mls,
+            .linear_values = false,  // not at the boundary of the mesh
+            .linear_gradients = true,
+            .continuous_values = true,
+            .continuous_gradient = true,
+            .gradient_of_values = false,
+            .patch_test = true,
+            .closed_walls = false};
+  }
+  const NodeOperators<D>& node_part() const noexcept { return node_part_; }
+
+ private:
+  ValueStencil values_;
+  NodeOperators<D> node_part_;
+};
+
+extern template class Projected<2>;
+extern template class Projected<3>;
+static_assert(Kernel<Projected<2>, 2> && Kernel<Projected<3>, 3> && HasNodePart<Projected<2>, 2> && HasNodePart<Projected<3>, 3>);
+
+}  // namespace talus

@@ -1,0 +1,167 @@
+// Value stencils of a node part: lumped L2, moving least squares, largest entropy.
+#include "kernels/value_stencils.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <stdexcept>
+#include <string>
+
+#include "kernels/node_operators.hpp"
+
+namespace talus {
+namespace {
+
+/// Places of the ring about node n in units of the node's size, and where its row begins.
+template <int D>
+struct RingOf {
+  RingOf(const Mesh<D>& mesh, Index n)
+      : nodes(mesh.ring_of_node()[n]), first(static_cast<std::size_t>(mesh.ring_of_node().begin[static_cast<std::size_t>(n)]))
+  {
+    for (const Index v : nodes)
+      r.push_back((mesh.node(v) - mesh.node(n)) / mesh.node_size(n));
+  }
+  std::span<const Index> nodes;
+  std::size_t first;
+  std::vector<Vec<D>> r;
+};
+
+/// Directions along which the neighbours of a node surround it: all of them inside the mesh, none in a corner.  Normals of the boundary
+/// facets at the node count as one where they differ by less than 30 degrees, as for walls.
+template <int D>
+Eigen::Matrix<Real, D, Eigen::Dynamic> free_directions(const Mesh<D>& mesh, Index n, const std::vector<std::vector<Facet>>& facets)
+{
+  const auto& here = facets[static_cast<std::size_t>(n)];
+  if (here.empty())
+    return Mat<D>::Identity();
+  Mat<D> spread = Mat<D>::Zero();
+  for (const Facet facet : here) {
+    const Vec<D> normal = mesh.area_vector(facet);
+    spread += normal * normal.transpose() / normal.norm();
+  }
+  const Real one_normal = 0.067;  // (1 - cos 30 degrees) / 2: second share of two equal facets at 30 degrees
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, D, D>> axes(spread / spread.trace());  // shares ascend
+  Index count = 0;
+  while (count < D && axes.eigenvalues()[count] <= one_normal)
+    ++count;
+  return axes.eigenvectors().leftCols(count);
+}
+
+/// Weights a_v exp(lambda . y_v) / Z with sum of weights times y zero; empty where Newton's method does not find them.
+template <class Places>
+std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Places& y)
+{
+  using Vector = Eigen::VectorXd;
+  const auto d = y.rows();
+  Vector lambda = Vector::Zero(d);
+  std::vector<Real> weights(prior.size());
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    Real total = 0;
+    Vector mean = Vector::Zero(d);
+    Eigen::MatrixXd second = Eigen::MatrixXd::Zero(d, d);
+    for (std::size_t i = 0; i < prior.size(); ++i) {
+      const Vector at = y.col(static_cast<Index>(i));
+      const Real w = weights[i] = prior[i] * std::exp(lambda.dot(at));
+      total += w;
+      mean += w * at;
+      second += w * at * at.transpose();
+    }
+    mean /= total;
+    for (Real& w : weights)
+      w /= total;
+    if (mean.norm() < 1e-15)  // places are of the size of one
+      return weights;
+    Vector step = (second / total - mean * mean.transpose()).ldlt().solve(-mean);
+    if (!step.allFinite())
+      return {};
+    const Real longest = 1.5;  // the objective is convex, but far from a parabola where a node is not well surrounded
+    if (step.norm() > longest)
+      step *= longest / step.norm();
+    else if (mean.norm() < 1e-13 && step.norm() < 1e-13)
+      return weights;  // round-off of the sums
+    lambda += step;
+  }
+  return {};
+}
+
+}  // namespace
+
+template <int D>
+std::vector<Real> l2_values(const Mesh<D>& mesh)
+{
+  const Csr& ring = mesh.ring_of_node();
+  const auto volumes = hat_volumes(mesh);
+  std::vector<Real> S(ring.item.size(), 0.0);
+  for_each_cell_of_ring(mesh, [&](Index n, Index c, std::size_t a, std::size_t entry) {
+    const bool own = mesh.cell(c)[a] == n;
+    S[entry] += (own ? 2.0 : 1.0) * mesh.volume(c) / ((D + 1) * (D + 2) * volumes[static_cast<std::size_t>(n)]);
+  });
+  return S;
+}
+
+template <int D>
+std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha)
+{
+  std::vector<Real> S(mesh.ring_of_node().item.size());
+  parallel_for(mesh.n_nodes(), [&](Index n) {
+    const RingOf<D> ring(mesh, n);
+    Real sum = 0;
+    Vec<D> centre = Vec<D>::Zero();
+    Mat<D> spread = Mat<D>::Zero();
+    const auto sample = [&](std::size_t i) { return ring.nodes[i] == n ? Real{1} : alpha; };
+    for (std::size_t i = 0; i < ring.r.size(); ++i)
+      sum += sample(i), centre += sample(i) * ring.r[i];
+    centre /= sum;
+    for (std::size_t i = 0; i < ring.r.size(); ++i)
+      spread += sample(i) * (ring.r[i] - centre) * (ring.r[i] - centre).transpose();
+    const Vec<D> k = spread.inverse() * centre;
+    for (std::size_t i = 0; i < ring.r.size(); ++i)
+      S[ring.first + i] = sample(i) * (1 / sum - k.dot(ring.r[i] - centre));
+  });
+  return S;
+}
+
+template <int D>
+std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha, Real wall_share)
+{
+  std::vector<std::vector<Facet>> facets(static_cast<std::size_t>(mesh.n_nodes()));
+  for (const Facet facet : mesh.boundary_facets())
+    for (const Index v : mesh.nodes_of(facet))
+      facets[static_cast<std::size_t>(v)].push_back(facet);
+
+  std::vector<Real> S(mesh.ring_of_node().item.size());
+  std::vector<std::uint8_t> failed(static_cast<std::size_t>(mesh.n_nodes()), 0);
+  parallel_for(mesh.n_nodes(), [&](Index n) {
+    const RingOf<D> ring(mesh, n);
+    const auto along = free_directions(mesh, n, facets);
+    const bool on_wall = !facets[static_cast<std::size_t>(n)].empty();
+    Eigen::MatrixXd y(along.cols(), static_cast<Index>(ring.r.size()));
+    std::vector<Real> prior(ring.r.size());
+    for (std::size_t i = 0; i < ring.r.size(); ++i) {
+      const Index v = ring.nodes[i];
+      y.col(static_cast<Index>(i)) = along.transpose() * ring.r[i];
+      prior[i] = v == n ? 1 : on_wall && facets[static_cast<std::size_t>(v)].empty() ? wall_share * alpha : alpha;
+    }
+    const auto weights = of_largest_entropy(prior, y);
+    failed[static_cast<std::size_t>(n)] = weights.empty() ? 1 : 0;
+    std::copy(weights.begin(), weights.end(), S.begin() + static_cast<std::ptrdiff_t>(ring.first));
+  });
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if (failed[static_cast<std::size_t>(n)]) {
+      std::string place;
+      for (int d = 0; d < D; ++d)
+        place += fmt::format("{}{:.6g}", d ? ", " : "", mesh.node(n)[d]);
+      throw std::invalid_argument(
+          fmt::format("node {} at ({}) is so badly surrounded that it has no positive weights; values: l2 needs none", n, place));
+    }
+  return S;
+}
+
+template std::vector<Real> l2_values<2>(const Mesh<2>&);
+template std::vector<Real> l2_values<3>(const Mesh<3>&);
+template std::vector<Real> mls_values<2>(const Mesh<2>&, Real);
+template std::vector<Real> mls_values<3>(const Mesh<3>&, Real);
+template std::vector<Real> maxent_values<2>(const Mesh<2>&, Real, Real);
+template std::vector<Real> maxent_values<3>(const Mesh<3>&, Real, Real);
+
+}  // namespace talus
