@@ -19,7 +19,7 @@ std::vector<Real> value_rows(const Mesh<D>& mesh, const ProjectedOptions& option
 
 template <int D>
 Projected<D>::Projected(const Mesh<D>& mesh, const Options& options)
-    : Linear<D>(mesh), values_(options.values), node_part_(mesh, value_rows(mesh, options), averaged_gradients(mesh))
+    : hats_(mesh), values_(options.values), node_part_(mesh, value_rows(mesh, options), averaged_gradients(mesh))
 {}
 
 template class Projected<2>;

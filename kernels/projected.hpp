@@ -15,10 +15,12 @@ namespace talus {
 /// only: a scatter goes to the vertices of the cell, the transposed operators carry it on to the unknowns, and back.
 /// Relatives: dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys. 230].
 template <int D>
-class Projected : public Linear<D> {
+class Projected {
  public:
   static constexpr std::string_view name = "projected";
   static constexpr std::string_view summary = "hats with averaged nodal gradient and values; continuous gradient, exact for uniform stress";
+  static constexpr int max_nodes = Linear<D>::max_nodes;
+  using Cell = typename Linear<D>::Cell;
   using Options = ProjectedOptions;
 
   /// Throws std::invalid_argument where a node has no positive weights (maxent).
@@ -35,9 +37,17 @@ class Projected : public Linear<D> {
             .patch_test = true,
             .closed_walls = false};
   }
+  /// The cell part: hats.
+  std::span<const Index> stencil(const Mesh<D>& mesh, Index c) const noexcept { return hats_.stencil(mesh, c); }
+  void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept { hats_.open(mesh, c, cell); }
+  void evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept
+  {
+    hats_.evaluate(cell, x, count, out);
+  }
   const NodeOperators<D>& node_part() const noexcept { return node_part_; }
 
  private:
+  Linear<D> hats_;
   ValueStencil values_;
   NodeOperators<D> node_part_;
 };
