@@ -31,8 +31,9 @@ void Slaves<D>::for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Inde
 }
 
 /// Cells whose weights have different signs may leave a node next to nothing of what they bring; velocity and acceleration are then
-/// quotients of two small differences.  Measured on grids that become 4 and 10 times finer from one cell to the next: 0.1 lets
-/// particles turn inside out, 0.3 and 0.5 do not; where all weights are positive it never matters.
+/// quotients of two small differences.  Measured on two grids that become 4 and two that become 10 times finer from one cell to the
+/// next: with 0.1 particles turn inside out on one, with 0.5 one gains 35 times its energy, with 0.3 none breaks.  Where all weights
+/// are positive it never matters.
 constexpr Real least_share_of_gross = 0.3;
 
 template <int D>

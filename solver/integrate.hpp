@@ -18,8 +18,8 @@ struct NodeWork {
 
 /// Nodes that particles see with next to no mass, or none, become slaves: their mass, momentum and force go to the active nodes of
 /// their ring, in proportion to the masters' masses, and they move with the mean of these.  The map back is the transpose of the map
-/// there, so momentum is neither made nor lost, and a uniform motion stays one.  Nodes with negative mass (weights of moving least squares turn
-/// negative at the boundary of a mesh) are treated alike.
+/// there, so momentum is neither made nor lost, and a uniform motion stays one.  Nodes with negative mass (weights of moving least
+/// squares turn negative at the boundary of a mesh) are treated alike.
 template <int D>
 class Slaves {
  public:

@@ -13,7 +13,7 @@ template <int D>
 struct alignas(64) NodeSum {
   Real mass{};                       ///< [kg]
   float lightest = unseen;           ///< mass of the lightest particle whose stencil holds the node [kg]
-  float gross{};                     ///< sum over cells of |mass from the cell| [kg]: how much the sum `mass` cancels
+  float gross{};                     ///< sum over parts (cells, hats) of |mass from the part| [kg]: how much the sum `mass` cancels
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   void clear_momentum() noexcept { momentum.setZero(); }

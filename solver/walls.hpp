@@ -53,11 +53,11 @@ class Walls {
   /// The kinematic part alone, on remapped velocities (rows: remapped one in `v`, the step's own in `change`).  A node that rubs
   /// keeps the step's own: friction acted on that one, and a strain taken from any other would make energy.
   void hold(Real time, std::span<NodeMotion<D>> remapped) const;
+  /// The same for a node without momentum of its own.
+  Vec<D> held(Index node, Real time, const Vec<D>& v) const;
   /// Takes the part into the wall from what particles read, where it is not that of the node alone: the weights of a hat on the wall
   /// reach nodes off it.
   void hold(Real time, Real dt, std::span<HatMotion<D>> hats) const;
-  /// The same for a node without momentum of its own.
-  Vec<D> held(Index node, Real time, const Vec<D>& v) const;
 
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
