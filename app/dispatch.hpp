@@ -75,7 +75,10 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     cost.mesh_bytes = static_cast<std::int64_t>(m.mesh.nodes().size_bytes() + m.mesh.cells().size_bytes()) +
                       m.mesh.n_cells() * static_cast<std::int64_t>(2 * sizeof(Real)) + bytes(m.mesh.cells_of_node().item) +
                       bytes(m.mesh.ring_of_node().item);
-    cost.node_bytes = bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
+    cost.node_bytes =
+        bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.hats.sum) + bytes(m.hats.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
+    if constexpr (HasNodePart<K, D>)
+      cost.node_bytes += static_cast<std::int64_t>(m.kernel.node_part().size_bytes());
   });
   return cost;
 }

@@ -38,7 +38,11 @@ NodeOperators<D>::NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::v
   S_column_ = transposed(ring_, S_row_);
   D_column_ = transposed(ring_, D_row_);
   centre_.resize(static_cast<std::size_t>(mesh.n_nodes()));
-  for_each_node(std::span<Vec<D>>(centre_), [&](Index n) { return values(n, mesh.nodes()); });
+  for_each_node(std::span<Vec<D>>(centre_), [&](Index n) {
+    Vec<D> centre = Vec<D>::Zero();
+    for_each_in_row(n, [&](Index v, Real S_nv, const Vec<D>&) { centre += S_nv * mesh.node(v); });
+    return centre;
+  });
 }
 
 template <int D>

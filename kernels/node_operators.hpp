@@ -8,11 +8,6 @@ namespace talus {
 /// Node-to-node operators on the pattern of the one-ring: S_nv for values, D_nv [1/m] for gradients, n the node of a hat (what
 /// particles see), v the node of the unknowns (where mass and momentum live).  Rows serve the gather, columns the scatter; both are
 /// stored, from the same numbers, so that one is the transpose of the other to the bit.  Sums run over the ring in ascending order.
-///
-/// For T = Real or a fixed-size Eigen type, with arrays of one T per node:
-///
-///     values(n, a)     = sum_v S_nv a_v            value_sums(v, b)    = sum_n S_nv b_n          (the transpose)
-///     gradient(n, a)   = sum_v a_v (x) D_nv        gradient_sums(v, T) = sum_n T_n D_nv          (the transpose)
 template <int D>
 class NodeOperators {
  public:
@@ -23,52 +18,33 @@ class NodeOperators {
   const Vec<D>& centre(Index n) const noexcept { return centre_[static_cast<std::size_t>(n)]; }
 
   Index n_nodes() const noexcept { return ring_.size(); }
-  std::span<const Index> ring(Index n) const noexcept { return ring_[n]; }  ///< ascending, n itself included
-  std::span<const Real> S_row(Index n) const noexcept { return part(S_row_, n); }
-  std::span<const Vec<D>> D_row(Index n) const noexcept { return part(D_row_, n); }
-  std::span<const Real> S_column(Index v) const noexcept { return part(S_column_, v); }  ///< over the ring of v: S_nv for its n
-  std::span<const Vec<D>> D_column(Index v) const noexcept { return part(D_column_, v); }
+  std::size_t size_bytes() const noexcept
+  {
+    return ring_.item.size() * (sizeof(Index) + 2 * sizeof(Real) + 2 * sizeof(Vec<D>)) + centre_.size() * (sizeof(Index) + sizeof(Vec<D>));
+  }
 
-  template <class T>
-  T values(Index n, std::span<const T> a) const noexcept
+  /// f(v, S_nv, D_nv) over the row of n
+  template <class F>
+  void for_each_in_row(Index n, F&& f) const noexcept
   {
-    return combine<T>(n, S_row(n), [&](Real s, Index v) -> T { return s * at(a, v); });
+    visit(n, S_row_, D_row_, f);
   }
-  template <class T>
-  T value_sums(Index v, std::span<const T> b) const noexcept
+  /// f(n, S_nv, D_nv) over the column of v
+  template <class F>
+  void for_each_in_column(Index v, F&& f) const noexcept
   {
-    return combine<T>(v, S_column(v), [&](Real s, Index n) -> T { return s * at(b, n); });
-  }
-  /// (i, j) = d a_i / d x_j [unit of a / m]
-  Mat<D> gradient(Index n, std::span<const Vec<D>> a) const noexcept
-  {
-    return combine<Mat<D>>(n, D_row(n), [&](const Vec<D>& d, Index v) -> Mat<D> { return at(a, v) * d.transpose(); });
-  }
-  Vec<D> gradient_sums(Index v, std::span<const Mat<D>> T) const noexcept
-  {
-    return combine<Vec<D>>(v, D_column(v), [&](const Vec<D>& d, Index n) -> Vec<D> { return at(T, n) * d; });
+    visit(v, S_column_, D_column_, f);
   }
 
  private:
-  template <class Entry>
-  std::span<const Entry> part(const std::vector<Entry>& entries, Index row) const noexcept
+  template <class F>
+  void visit(Index row, const std::vector<Real>& S, const std::vector<Vec<D>>& gradients, F& f) const noexcept
   {
-    const auto first = static_cast<std::size_t>(ring_.begin[static_cast<std::size_t>(row)]);
-    return {entries.data() + first, ring_[row].size()};
-  }
-  template <class T>
-  static const T& at(std::span<const T> a, Index i) noexcept
-  {
-    return a[static_cast<std::size_t>(i)];
-  }
-  template <class T, class Entry, class Term>
-  T combine(Index row, std::span<const Entry> entries, Term&& term) const noexcept
-  {
-    const auto nodes = ring_[row];
-    T total = term(entries[0], nodes[0]);
-    for (std::size_t i = 1; i < nodes.size(); ++i)
-      total += term(entries[i], nodes[i]);
-    return total;
+    auto entry = static_cast<std::size_t>(ring_.begin[static_cast<std::size_t>(row)]);
+    for (const Index i : ring_[row]) {
+      f(i, S[entry], gradients[entry]);
+      ++entry;
+    }
   }
 
   Csr ring_;

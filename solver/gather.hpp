@@ -39,15 +39,15 @@ void move(const Bunch& bunch, const Pack (&v)[D], Real dt, Particles<D>& particl
       particles.x[bunch.p[lane]][i] += dt * v[i][lane];
 }
 
-/// f(c, run, through) for the runs of a block, the cell entered and its motion read.
+/// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read.
 template <int D, Kernel<D> K, class F>
-void for_each_reading_run(const Model<D, K>& m, Index b, F&& f)
+void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typename Through<D, K>::Motion>& motion, F&& f)
 {
   Through<D, K> through(m.kernel);
   for (Index body = 0; body < m.n_bodies(); ++body)
     for_each_run(m.order.rows(body, b), m.particles.cell, [&](Index c, std::span<const Index> run) {
       through.enter(m.mesh, c);
-      through.read(m.motion());
+      through.read(motion);
       f(c, run, through);
     });
 }
@@ -57,7 +57,7 @@ void gather(Model<D, K>& m, Real dt)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
   parallel_for_uneven(m.order.blocks, [&](Index b) {
-    for_each_reading_run(m, b, [&](Index, std::span<const Index> run, auto& through) {
+    for_each_reading_run(m, b, m.motion(), [&](Index, std::span<const Index> run, auto& through) {
       for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
         through.place(bunch, x);
         const Seen<D> seen = take_velocity<increments, true>(through, m.transfer.scheme, pic, bunch, m.particles);
@@ -76,7 +76,7 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
       return;
     const auto rows = m.blocks.rows(b);
     std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
-    for_each_reading_run(m, b, [&](Index c, std::span<const Index> run, auto& through) {
+    for_each_reading_run(m, b, m.motion(), [&](Index c, std::span<const Index> run, auto& through) {
       through.clear();
       for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
         through.place(bunch, x);
@@ -111,22 +111,18 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
 /// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
 /// What they read holds the remapped velocity, or its gradient, and the step's own velocity in `change`.
 template <int D, Kernel<D> K>
-void gather_gradient(Model<D, K>& m, const std::vector<MotionRow<K, D>>& remapped, Real dt)
+void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Real dt)
 {
   parallel_for_uneven(m.order.blocks, [&](Index b) {
-    Through<D, K> through(m.kernel);
-    for (Index body = 0; body < m.n_bodies(); ++body)
-      for_each_run(m.order.rows(body, b), m.particles.cell, [&](Index c, std::span<const Index> run) {
-        through.enter(m.mesh, c);
-        through.read(remapped);
-        for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
-          through.place(bunch, x);
-          const Seen<D> seen = through.template see<true, true>(bunch);
-          for (int lane = 0; lane < bunch.count; ++lane)
-            m.particles.L[bunch.p[lane]] = lane_of<D>(seen.L, lane);
-          detail::move(bunch, seen.change, dt, m.particles);
-        });
+    detail::for_each_reading_run(m, b, remapped, [&](Index, std::span<const Index> run, auto& through) {
+      for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+        through.place(bunch, x);
+        const Seen<D> seen = through.template see<true, true>(bunch);
+        for (int lane = 0; lane < bunch.count; ++lane)
+          m.particles.L[bunch.p[lane]] = lane_of<D>(seen.L, lane);
+        detail::move(bunch, seen.change, dt, m.particles);
       });
+    });
   });
 }
 

@@ -15,6 +15,7 @@ struct alignas(64) HatSum {
   Mat<D> affine = Mat<D>::Zero();       ///< sum B m A [kg/s]
   Mat<D> tension = Mat<D>::Zero();      ///< sum B V sigma [N m]
   bool is_seen() const noexcept { return lightest < NodeSum<D>::unseen; }
+  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return momentum + affine * arm; }
   void clear_momentum() noexcept
   {
     momentum.setZero();
@@ -43,12 +44,6 @@ struct Hats {
   std::vector<HatMotion<D>> motion;
 };
 
-/// What the particles of a kernel deposit, and what they read.
-template <class K, int D>
-using SumRow = std::conditional_t<HasNodePart<K, D>, HatSum<D>, NodeSum<D>>;
-template <class K, int D>
-using MotionRow = std::conditional_t<HasNodePart<K, D>, HatMotion<D>, NodeMotion<D>>;
-
 /// Hats -> unknowns, the transpose of the way back:
 ///
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
@@ -59,20 +54,17 @@ void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::
 {
   for_each_node(std::span(sum), [&](Index v) {
     NodeSum<D> total;
-    const auto ring = operators.ring(v);
-    const auto S = operators.S_column(v);
-    const auto gradients = operators.D_column(v);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const HatSum<D>& hat = hats[static_cast<std::size_t>(ring[k])];
+    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
+      const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
       if (!hat.is_seen())
-        continue;
-      const Real mass = S[k] * hat.mass;
+        return;
+      const Real mass = S * hat.mass;
       total.mass += mass;
       total.gross += static_cast<float>(std::abs(mass));
       total.lightest = std::min(total.lightest, hat.lightest);
-      total.momentum += S[k] * (hat.momentum + hat.affine * (mesh.node(v) - operators.centre(ring[k])));
-      total.force += S[k] * hat.force - hat.tension * gradients[k];
-    }
+      total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
+      total.force += S * hat.force - hat.tension * gradient;
+    });
     return total;
   });
 }
@@ -82,16 +74,24 @@ template <int D>
 void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::vector<HatSum<D>>& hats,
                       std::vector<NodeSum<D>>& sum)
 {
-  parallel_for(static_cast<Index>(sum.size()), [&](Index v) {
+  parallel_for(operators.n_nodes(), [&](Index v) {
     Vec<D> momentum = Vec<D>::Zero();
-    const auto ring = operators.ring(v);
-    const auto S = operators.S_column(v);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const HatSum<D>& hat = hats[static_cast<std::size_t>(ring[k])];
+    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
+      const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
       if (hat.is_seen())
-        momentum += S[k] * (hat.momentum + hat.affine * (mesh.node(v) - operators.centre(ring[k])));
-    }
+        momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
+    });
     sum[static_cast<std::size_t>(v)].momentum = momentum;
+  });
+}
+
+/// f(n, hat) for the hats that particles see, in parallel; what f leaves in `hat` is read.
+template <int D, class F>
+void for_each_seen_hat(Hats<D>& hats, F&& f)
+{
+  parallel_for(static_cast<Index>(hats.sum.size()), [&](Index n) {
+    if (hats.sum[static_cast<std::size_t>(n)].is_seen())
+      f(n, hats.motion[static_cast<std::size_t>(n)]);
   });
 }
 
@@ -99,20 +99,15 @@ void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
 template <int D>
 void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Hats<D>& hats)
 {
-  parallel_for(operators.n_nodes(), [&](Index n) {
-    if (!hats.sum[static_cast<std::size_t>(n)].is_seen())
-      return;
+  for_each_seen_hat(hats, [&](Index n, HatMotion<D>& row) {
     HatMotion<D> hat;
-    const auto ring = operators.ring(n);
-    const auto S = operators.S_row(n);
-    const auto gradients = operators.D_row(n);
-    for (std::size_t k = 0; k < ring.size(); ++k) {
-      const NodeMotion<D>& node = nodes[static_cast<std::size_t>(ring[k])];
-      hat.v += S[k] * node.v;
-      hat.change += S[k] * node.change;
-      hat.L += node.v * gradients[k].transpose();
-    }
-    hats.motion[static_cast<std::size_t>(n)] = hat;
+    operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
+      const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
+      hat.v += S * node.v;
+      hat.change += S * node.change;
+      hat.L += node.v * gradient.transpose();
+    });
+    row = hat;
   });
 }
 
@@ -120,15 +115,10 @@ void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>&
 template <int D>
 void spread_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Hats<D>& hats)
 {
-  parallel_for(operators.n_nodes(), [&](Index n) {
-    if (!hats.sum[static_cast<std::size_t>(n)].is_seen())
-      return;
+  for_each_seen_hat(hats, [&](Index n, HatMotion<D>& hat) {
     Mat<D> L = Mat<D>::Zero();
-    const auto ring = operators.ring(n);
-    const auto gradients = operators.D_row(n);
-    for (std::size_t k = 0; k < ring.size(); ++k)
-      L += remapped[static_cast<std::size_t>(ring[k])].v * gradients[k].transpose();
-    HatMotion<D>& hat = hats.motion[static_cast<std::size_t>(n)];
+    operators.for_each_in_row(
+        n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });
     hat.change = hat.v;
     hat.L = L;
   });

@@ -32,7 +32,7 @@ struct Timings {
   Real particle_steps{};
 };
 
-/// The way of a kernel's particles to the nodes and back.
+/// The way of a kernel's particles to the nodes and back; what they deposit is its `Sum`, what they read its `Motion`.
 template <int D, Kernel<D> K>
 using Through = std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>;
 
@@ -41,7 +41,7 @@ struct Model {
   Mesh<D> mesh;
   Locator<D> locator;
   K kernel;
-  BlockRows<D, SumRow<K, D>> blocks;
+  BlockRows<D, typename Through<D, K>::Sum> blocks;
 
   Particles<D> particles;
   std::vector<Body> bodies;
@@ -71,7 +71,10 @@ struct Model {
   Timings timings;
 
   explicit Model(Mesh<D> m, const Options<K>& options = {})
-      : mesh(std::move(m)), locator(mesh), kernel(make_kernel<K>(mesh, options)), blocks(make_block_rows<D, SumRow<K, D>>(kernel, mesh))
+      : mesh(std::move(m)),
+        locator(mesh),
+        kernel(make_kernel<K>(mesh, options)),
+        blocks(make_block_rows<D, typename Through<D, K>::Sum>(kernel, mesh))
   {
     nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
     nodes.motion.resize(nodes.sum.size());
@@ -83,7 +86,7 @@ struct Model {
   }
   Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
   /// What particles read.
-  const std::vector<MotionRow<K, D>>& motion() const noexcept
+  const std::vector<typename Through<D, K>::Motion>& motion() const noexcept
   {
     if constexpr (HasNodePart<K, D>)
       return hats.motion;

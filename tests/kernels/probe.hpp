@@ -133,13 +133,11 @@ class Probe {
   {
     const auto i = static_cast<std::size_t>(a);
     if constexpr (HasNodePart<K, D>) {
-      const Index n = cell.nodes[i];
-      const auto& operators = kernel_.node_part();
-      for (std::size_t k = 0; k < operators.ring(n).size(); ++k) {
-        const auto at = static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), operators.ring(n)[k]) - nodes_.begin());
-        values_[at] += weights.w[a] * operators.S_row(n)[k];
-        gradients_[at] += weights.w[a] * operators.D_row(n)[k];
-      }
+      kernel_.node_part().for_each_in_row(cell.nodes[i], [&](Index v, Real S, const Vec<D>& gradient) {
+        const auto at = static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin());
+        values_[at] += weights.w[a] * S;
+        gradients_[at] += weights.w[a] * gradient;
+      });
     } else {
       values_[i] = weights.w[a];
       for (int d = 0; d < D; ++d)
