@@ -12,7 +12,7 @@ std::vector<Real> value_rows(const Mesh<D>& mesh, const ProjectedOptions& option
     case ValueStencil::mls: return mls_values(mesh, options.alpha);
     case ValueStencil::maxent: break;
   }
-  return maxent_values(mesh, options.alpha, options.wall_share);
+  return maxent_values(mesh, options.alpha);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class Projected {
   Claims claims() const noexcept
   {
     return {.non_negative = values_ != ValueStencil::mls,
-            .linear_values = false,  // not at the boundary of the mesh
+            .linear_values = values_ != ValueStencil::l2,  // maxent: up to walls that are flat
             .linear_gradients = true,
             .continuous_values = true,
             .continuous_gradient = true,

@@ -11,16 +11,13 @@ constexpr std::array<std::string_view, 3> words(ValueStencil) { return {"maxent"
 /// What a scene may choose of the kernel `projected`.
 struct ProjectedOptions {
   ValueStencil values = ValueStencil::maxent;
-  Real alpha = 0.5;        ///< weight of neighbours beside that of the node itself, of maxent and mls [-]
-  Real wall_share = 0.25;  ///< of alpha, of neighbours inside beside a node on the boundary, of maxent [-]
+  Real alpha = 0.5;  ///< weight of neighbours beside that of the node itself, of maxent and mls [-]
   static constexpr auto fields()
   {
     return std::tuple{
         optional_choice("values", &ProjectedOptions::values,
                         "maxent (positive, exact for linear fields), l2 (positive, lumped projection) or mls (exact, not positive)"),
-        optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own, of maxent and mls"),
-        optional("wall_share", &ProjectedOptions::wall_share, positive, "-",
-                 "of alpha: weight of neighbours inside the mesh, for nodes on its boundary, of maxent")};
+        optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own, of maxent and mls")};
   }
 };
 

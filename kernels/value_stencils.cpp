@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
@@ -26,16 +27,15 @@ struct RingOf {
   std::vector<Vec<D>> r;
 };
 
-/// Directions along which the neighbours of a node surround it: all of them inside the mesh, none in a corner.  Normals of the boundary
-/// facets at the node count as one where they differ by less than 30 degrees, as for walls.
+/// Directions along boundary facets: all if there are none, one along an edge, none in a corner.  Normals count as one where they differ
+/// by less than 30 degrees, as for walls.
 template <int D>
-Eigen::Matrix<Real, D, Eigen::Dynamic> free_directions(const Mesh<D>& mesh, Index n, const std::vector<std::vector<Facet>>& facets)
+Eigen::Matrix<Real, D, Eigen::Dynamic> directions_along(const Mesh<D>& mesh, const std::vector<Facet>& facets)
 {
-  const auto& here = facets[static_cast<std::size_t>(n)];
-  if (here.empty())
+  if (facets.empty())
     return Mat<D>::Identity();
   Mat<D> spread = Mat<D>::Zero();
-  for (const Facet facet : here) {
+  for (const Facet facet : facets) {
     const Vec<D> normal = mesh.area_vector(facet);
     spread += normal * normal.transpose() / normal.norm();
   }
@@ -45,6 +45,19 @@ Eigen::Matrix<Real, D, Eigen::Dynamic> free_directions(const Mesh<D>& mesh, Inde
   while (count < D && axes.eigenvalues()[count] <= one_normal)
     ++count;
   return axes.eigenvectors().leftCols(count);
+}
+
+/// Whether the row of n may reach v: any neighbour if n lies inside, else those that lie on all walls of n, seen by the facets they share.
+template <int D>
+bool reaches(const Mesh<D>& mesh, const std::vector<Facet>& of_n, const std::vector<Facet>& of_v, Eigen::Index free)
+{
+  if (of_n.empty())
+    return true;
+  std::vector<Facet> shared;
+  for (const Facet facet : of_n)
+    if (std::any_of(of_v.begin(), of_v.end(), [&](const Facet& other) { return other.cell == facet.cell && other.local == facet.local; }))
+      shared.push_back(facet);
+  return !shared.empty() && directions_along(mesh, shared).cols() == free;
 }
 
 /// Weights a_v exp(lambda . y_v) / Z with sum of weights times y zero; empty where Newton's method does not find them.
@@ -122,7 +135,7 @@ std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha)
 }
 
 template <int D>
-std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha, Real wall_share)
+std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha)
 {
   std::vector<std::vector<Facet>> facets(static_cast<std::size_t>(mesh.n_nodes()));
   for (const Facet facet : mesh.boundary_facets())
@@ -133,14 +146,14 @@ std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha, Real wall_share
   std::vector<std::uint8_t> failed(static_cast<std::size_t>(mesh.n_nodes()), 0);
   parallel_for(mesh.n_nodes(), [&](Index n) {
     const RingOf<D> ring(mesh, n);
-    const auto along = free_directions(mesh, n, facets);
-    const bool on_wall = !facets[static_cast<std::size_t>(n)].empty();
+    const auto& here = facets[static_cast<std::size_t>(n)];
+    const auto along = directions_along(mesh, here);
     Eigen::MatrixXd y(along.cols(), static_cast<Index>(ring.r.size()));
     std::vector<Real> prior(ring.r.size());
     for (std::size_t i = 0; i < ring.r.size(); ++i) {
       const Index v = ring.nodes[i];
       y.col(static_cast<Index>(i)) = along.transpose() * ring.r[i];
-      prior[i] = v == n ? 1 : on_wall && facets[static_cast<std::size_t>(v)].empty() ? wall_share * alpha : alpha;
+      prior[i] = v == n ? 1 : reaches(mesh, here, facets[static_cast<std::size_t>(v)], along.cols()) ? alpha : 0;
     }
     const auto weights = of_largest_entropy(prior, y);
     failed[static_cast<std::size_t>(n)] = weights.empty() ? 1 : 0;
@@ -161,7 +174,7 @@ template std::vector<Real> l2_values<2>(const Mesh<2>&);
 template std::vector<Real> l2_values<3>(const Mesh<3>&);
 template std::vector<Real> mls_values<2>(const Mesh<2>&, Real);
 template std::vector<Real> mls_values<3>(const Mesh<3>&, Real);
-template std::vector<Real> maxent_values<2>(const Mesh<2>&, Real, Real);
-template std::vector<Real> maxent_values<3>(const Mesh<3>&, Real, Real);
+template std::vector<Real> maxent_values<2>(const Mesh<2>&, Real);
+template std::vector<Real> maxent_values<3>(const Mesh<3>&, Real);
 
 }  // namespace talus

@@ -27,6 +27,8 @@ class StopWatch {
 template <int D, Kernel<D> K>
 void sum_on_nodes(Model<D, K>& m);
 template <int D, Kernel<D> K>
+void settle(Model<D, K>& m, Real dt);
+template <int D, Kernel<D> K>
 void show_to_particles(Model<D, K>& m, Real dt);
 template <int D, Kernel<D> K>
 void remap(Model<D, K>& m, Real dt);
@@ -51,9 +53,11 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   const Real on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
-  m.slaves.lump(m.mesh, m.nodes);                                        //  5
-  integrate(gravity, m.stage.damping, dt, m.nodes);                      //  6
-  const WallWork wall_work = m.walls.apply(time, dt, m.nodes);           //  7
+  m.slaves.lump(m.mesh, m.nodes);                               //  5
+  integrate(gravity, dt, m.nodes);                              //  6
+  const WallWork wall_work = m.walls.apply(time, dt, m.nodes);  //  7
+  if (m.stage.seeks_rest)
+    settle(m, dt);
   m.slaves.follow(m.mesh, m.nodes, m.walls, time + dt, m.nodes.motion);  //  8
   record(m, gravity, on_particles + on_mesh, wall_work, dt);
   m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
@@ -96,6 +100,17 @@ void sum_on_nodes(Model<D, K>& m)
   } else {
     assemble(m.blocks, m.nodes.sum);
   }
+}
+
+/// Local damping, by what particles feel of the net acceleration.
+template <int D, Kernel<D> K>
+void settle(Model<D, K>& m, Real dt)
+{
+  find_net_acceleration(dt, m.nodes);
+  if constexpr (HasNodePart<K, D>)
+    feel(m.kernel.node_part(), m.hats, m.nodes.felt);
+  if (m.stage.damping > 0)
+    damp(m.stage.damping, dt, m.nodes);
 }
 
 /// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more.
@@ -145,7 +160,7 @@ void record(Model<D, K>& m, const Vec<D>& gravity, Real tractions, const WallWor
   m.energy.walls += wall_work.other;
   m.energy.friction += wall_work.friction;
   m.energy.nodes += work.kinetic_after - work.kinetic_before;
-  m.residual = unbalanced(gravity, dt, m.nodes, tractions);
+  m.residual = unbalanced(gravity, m.stage.seeks_rest, dt, m.nodes, tractions);
 }
 
 }  // namespace talus

@@ -10,7 +10,7 @@ template <int D>
 struct alignas(64) HatSum {
   Real mass{};                          ///< sum B m [kg]
   float lightest = NodeSum<D>::unseen;  ///< as in NodeSum
-  Vec<D> momentum = Vec<D>::Zero();     ///< sum B m (v + A (x_n - x_p)) [kg m/s]
+  Vec<D> momentum = Vec<D>::Zero();     ///< sum B m (v + A (c_n - c_p)) [kg m/s], c_p = sum_n B_n c_n
   Vec<D> force = Vec<D>::Zero();        ///< sum B f of loads on particles [N]
   Mat<D> affine = Mat<D>::Zero();       ///< sum B m A [kg/s]
   Mat<D> tension = Mat<D>::Zero();      ///< sum B V sigma [N m]
@@ -48,23 +48,28 @@ struct Hats {
 ///
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
-/// with K the affine moment and Z the tension; c_n = sum_v S_nv x_v keeps the momentum whatever S is.
+/// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
+/// linear fields are handed on as they were read, whatever S is.
 template <int D>
 void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::vector<HatSum<D>>& hats, std::vector<NodeSum<D>>& sum)
 {
   for_each_node(std::span(sum), [&](Index v) {
     NodeSum<D> total;
+    Real around = 0;
+    int ring = 0;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
       const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
+      ++ring;
+      around += hat.mass;
       if (!hat.is_seen())
         return;
       const Real mass = S * hat.mass;
       total.mass += mass;
-      total.gross += static_cast<float>(std::abs(mass));
       total.lightest = std::min(total.lightest, hat.lightest);
       total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
       total.force += S * hat.force - hat.tension * gradient;
     });
+    total.gross = static_cast<float>(around / ring);
     return total;
   });
 }
@@ -92,6 +97,27 @@ void for_each_seen_hat(Hats<D>& hats, F&& f)
   parallel_for(static_cast<Index>(hats.sum.size()), [&](Index n) {
     if (hats.sum[static_cast<std::size_t>(n)].is_seen())
       f(n, hats.motion[static_cast<std::size_t>(n)]);
+  });
+}
+
+/// The part of accelerations of the unknowns that particles feel, handed back to the unknowns: M^-1 S^T m S a.  S hardly sees
+/// checkerboards of the unknowns: what is left of them moves no particle, and must not count where a body is to come to rest.
+template <int D>
+void feel(const NodeOperators<D>& operators, Hats<D>& hats, std::vector<Vec<D>>& a)
+{
+  for_each_seen_hat(hats, [&](Index n, HatMotion<D>& hat) {
+    hat.change.setZero();
+    operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { hat.change += S * a[static_cast<std::size_t>(v)]; });
+  });
+  for_each_node(std::span(a), [&](Index v) {
+    Real mass = 0;
+    Vec<D> sum = Vec<D>::Zero();
+    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
+      const Real share = S * hats.sum[static_cast<std::size_t>(n)].mass;
+      mass += share;
+      sum += share * hats.motion[static_cast<std::size_t>(n)].change;
+    });
+    return mass > 0 ? Vec<D>(sum / mass) : Vec<D>(Vec<D>::Zero());
   });
 }
 

@@ -30,16 +30,10 @@ void Slaves<D>::for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Inde
     second_ring(give);
 }
 
-/// Cells whose weights have different signs may leave a node next to nothing of what they bring; velocity and acceleration are then
-/// quotients of two small differences.  Measured on two grids that become 4 and two that become 10 times finer from one cell to the
-/// next: with 0.1 particles turn inside out on one, with 0.5 one gains 35 times its energy, with 0.3 none breaks.  Where all weights
-/// are positive it never matters.
-constexpr Real least_share_of_gross = 0.3;
-
 template <int D>
-bool takes_part(const NodeSum<D>& sum, Real least_share) noexcept
+bool takes_part(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 {
-  return sum.is_seen() && sum.mass > least_share * sum.lightest && sum.mass > least_share_of_gross * sum.gross;
+  return sum.is_seen() && sum.mass > nodes.least_share * sum.lightest && sum.mass > nodes.least_share_of_gross * sum.gross;
 }
 
 template <int D>
@@ -50,7 +44,7 @@ void Slaves<D>::lump(const Mesh<D>& mesh, Nodes<D>& nodes)
   mass_.resize(nodes.sum.size());
   for (std::size_t n = 0; n < nodes.sum.size(); ++n) {
     mass_[n] = nodes.sum[n].mass;
-    nodes.active[n] = takes_part(nodes.sum[n], nodes.least_share) ? 1 : 0;
+    nodes.active[n] = takes_part(nodes.sum[n], nodes) ? 1 : 0;
     if (!nodes.active[n] && (nodes.sum[n].is_seen() || !nodes.sum[n].force.isZero(0)))
       slaves_.push_back(static_cast<Index>(n));
   }

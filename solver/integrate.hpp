@@ -52,9 +52,9 @@ Vec<D> damping_of(const Vec<D>& net, const Vec<D>& v_old, Real damping) noexcept
   return -damping * net.cwiseAbs().cwiseProduct(v_old.cwiseSign());
 }
 
-/// v <- v + dt (f/m + g), with damping.
+/// v <- v + dt (f/m + g)
 template <int D>
-void integrate(const Vec<D>& gravity, Real damping, Real dt, Nodes<D>& nodes)
+void integrate(const Vec<D>& gravity, Real dt, Nodes<D>& nodes)
 {
   parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
@@ -65,11 +65,31 @@ void integrate(const Vec<D>& gravity, Real damping, Real dt, Nodes<D>& nodes)
     }
     const NodeSum<D>& sum = nodes.sum[i];
     const Vec<D> v_old = sum.momentum / sum.mass;
-    Vec<D> a = sum.force / sum.mass + gravity;
-    if (damping > 0 && !nodes.bound[i])
-      a += damping_of<D>(a, v_old, damping);
-    motion.change = dt * a;
+    motion.change = dt * (sum.force / sum.mass + gravity);
     motion.v = v_old + motion.change;
+  });
+}
+
+/// Net accelerations of the nodes, walls included: those of slaves count as none.
+template <int D>
+void find_net_acceleration(Real dt, Nodes<D>& nodes)
+{
+  nodes.felt.resize(nodes.sum.size());
+  for (std::size_t i = 0; i < nodes.felt.size(); ++i)
+    nodes.felt[i] = nodes.motion[i].change / dt;
+}
+
+/// Damps nodes that no wall holds by what is felt of their net acceleration.
+template <int D>
+void damp(Real damping, Real dt, Nodes<D>& nodes)
+{
+  parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (!nodes.active[i] || nodes.bound[i])
+      return;
+    const Vec<D> change = dt * damping_of<D>(nodes.felt[i], nodes.sum[i].momentum / nodes.sum[i].mass, damping);
+    nodes.motion[i].change += change;
+    nodes.motion[i].v += change;
   });
 }
 
@@ -88,15 +108,16 @@ NodeWork node_work(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>&
     work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
     work.gravity = dt * sum.mass * gravity.dot(v_mid);
     if (damping > 0 && !nodes.bound[i])
-      work.damping = dt * damping_of<D>(sum.force + sum.mass * gravity, v_old, damping).dot(v_mid);
+      work.damping = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping).dot(v_mid);
     return work;
   });
 }
 
 /// Sum over active nodes of |net force with wall reactions, without damping| over that of |gravity and loads|, or of |reactions| where
-/// walls alone load the bodies: zero at rest in equilibrium.  `other_loads` [N] are those of tractions.
+/// walls alone load the bodies: zero at rest in equilibrium.  The net force is the one that is felt in stages that seek rest.
+/// `other_loads` [N] are those of tractions.
 template <int D>
-Real unbalanced(const Vec<D>& gravity, Real dt, const Nodes<D>& nodes, Real other_loads)
+Real unbalanced(const Vec<D>& gravity, bool felt, Real dt, const Nodes<D>& nodes, Real other_loads)
 {
   struct Sums {
     Real net{}, load{}, reaction{};
@@ -111,9 +132,9 @@ Real unbalanced(const Vec<D>& gravity, Real dt, const Nodes<D>& nodes, Real othe
     if (!nodes.active[i])
       return Sums{};
     const NodeSum<D>& sum = nodes.sum[i];
-    const Vec<D> force = sum.force + sum.mass * gravity;
-    const Vec<D> net = nodes.bound[i] ? Vec<D>(sum.mass / dt * nodes.motion[i].change) : force;
-    return Sums{net.norm(), sum.mass * gravity.norm(), (net - force).norm()};
+    const Vec<D> change = nodes.motion[i].change / dt;
+    const Real reaction = nodes.bound[i] ? (sum.mass * (change - gravity) - sum.force).norm() : 0;
+    return Sums{sum.mass * (felt ? nodes.felt[i] : change).norm(), sum.mass * gravity.norm(), reaction};
   });
   const Real load = sums.load + other_loads;
   const Real scale = load > 0 ? load : sums.reaction;

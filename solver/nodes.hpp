@@ -11,9 +11,9 @@ namespace talus {
 /// What the particles around a node add up to.  One cache line; `lightest` and `gross` are for comparisons only.
 template <int D>
 struct alignas(64) NodeSum {
-  Real mass{};                       ///< [kg]
-  float lightest = unseen;           ///< mass of the lightest particle whose stencil holds the node [kg]
-  float gross{};                     ///< sum over parts (cells, hats) of |mass from the part| [kg]: how much the sum `mass` cancels
+  Real mass{};              ///< [kg]
+  float lightest = unseen;  ///< mass of the lightest particle whose stencil holds the node [kg]
+  float gross{};  ///< what `mass` is measured by [kg]: sum over cells of |mass from the cell|, or the mean mass of the hats around
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   void clear_momentum() noexcept { momentum.setZero(); }
@@ -52,7 +52,9 @@ struct Nodes {
   std::vector<NodeMotion<D>> motion;
   std::vector<std::uint8_t> active;  ///< takes part with a mass of its own
   std::vector<std::uint8_t> bound;   ///< under a wall condition: no local damping, its net force is known only after the wall's
+  std::vector<Vec<D>> felt;          ///< net acceleration as particles feel it [m/s^2], in stages that seek rest
   Real least_share{};                ///< of the lightest particle around: nodes with less do not take part by themselves
+  Real least_share_of_gross{};       ///< the same of `gross`
 };
 
 }  // namespace talus

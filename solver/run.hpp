@@ -93,7 +93,11 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
 {
   constexpr int steps_in_balance = 20;  // an oscillation passes through balance; this many steps in a row do not
   const Real begin = m.clock.time, end = begin + stage.duration;
-  m.stage = {.damping = stage.damping, .ramp_start = begin, .ramp_time = stage.ramp, .elastic = stage.elastic};
+  m.stage = {.damping = stage.damping,
+             .ramp_start = begin,
+             .ramp_time = stage.ramp,
+             .elastic = stage.elastic,
+             .seeks_rest = stage.residual || stage.damping > 0};
   if (stage.k0)
     set_k0_stress(m.mesh, m.loads.gravity(begin, 1), *stage.k0, m.bodies, m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m)};

@@ -32,16 +32,14 @@ template <int D>
 struct HatSums {
   Pack mass[D + 1]{}, momentum[D + 1][D]{}, force[D + 1][D]{}, affine[D + 1][D][D]{}, tension[D + 1][Symmetric<D>::size]{};
 
+  /// `arms`: centres of the hats about the origin of the cell [m].
   template <bool affinely, bool loaded, bool forces>
-  void add_to(const typename Linear<D>::Cell& cell, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
+  void add_to(const std::array<Vec<D>, D + 1>& arms, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
               float lightest) const noexcept
   {
     for (int a = 0; a <= D; ++a) {
       HatSum<D>& row = rows[slots[static_cast<std::size_t>(a)]];
       row.lightest = std::min(row.lightest, lightest);
-      Vec<D> arm;
-      for (int d = 0; d < D; ++d)
-        arm[d] = cell.x[d][a];
       if constexpr (forces)
         row.mass += sum(mass[a]);
       Mat<D> K = Mat<D>::Zero();
@@ -58,17 +56,16 @@ struct HatSums {
       }
       if constexpr (affinely) {
         row.affine += K;
-        row.momentum += K * arm;
+        row.momentum += K * arms[static_cast<std::size_t>(a)];
       }
     }
   }
 };
 
-/// Adds a bunch, momentum about the origin of the cell: m (v - A (x - origin)).
+/// Adds a bunch, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
 template <bool affinely, bool loaded, bool forces, int D>
 [[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vector<Mat<D>>& fields,
-                                           const typename Linear<D>::Cell& cell, const Pack (&x)[D], const Shares<D>& shares,
-                                           HatSums<D>& sums) noexcept
+                                           const Pack (&x)[D], const Shares<D>& shares, HatSums<D>& sums) noexcept
 {
   const Pack m = bunch.lanes([&](std::size_t p) { return particles.mass[p]; });
   Pack momentum[D], A[D][D];
@@ -77,7 +74,7 @@ template <bool affinely, bool loaded, bool forces, int D>
     if constexpr (affinely)
       for (int j = 0; j < D; ++j) {
         A[i][j] = bunch.lanes([&](std::size_t p) { return fields[p](i, j); });
-        momentum[i] -= A[i][j] * (x[j] - cell.origin[j]);
+        momentum[i] -= A[i][j] * x[j];
         A[i][j] *= m;
       }
     momentum[i] *= m;
@@ -141,19 +138,28 @@ class ThroughHats {
   static constexpr bool has_apic = false;
 
   explicit ThroughHats(const K& kernel) : kernel_(kernel) {}
-  void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
+  void enter(const Mesh<D>& mesh, Index c) noexcept
+  {
+    kernel_.open(mesh, c, cell_);
+    for (std::size_t a = 0; a <= D; ++a)
+      arms_[a] = kernel_.node_part().centre(cell_.nodes[a]) - cell_.origin;
+  }
   void place(const Bunch& bunch, const Pack (&x)[D]) noexcept { shares_ = shares_of<D>(cell_, x, bunch.count); }
 
   void clear() noexcept { sums_ = {}; }
   template <bool affine, bool loaded, bool forces>
-  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&x)[D], const std::vector<Mat<D>>& fields) noexcept
+  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
   {
-    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, x, shares_, sums_);
+    Pack x[D]{};  // sum B c: the place where values are read is the one about which they are handed on
+    for (int a = 0; a <= D; ++a)
+      for (int d = 0; d < D; ++d)
+        x[d] += shares_.of[a] * arms_[static_cast<std::size_t>(a)][d];
+    talus::deposit<affine, loaded, forces>(particles, bunch, fields, x, shares_, sums_);
   }
   template <bool affine, bool loaded, bool forces>
   void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
-    sums_.template add_to<affine, loaded, forces>(cell_, rows, slots, lightest);
+    sums_.template add_to<affine, loaded, forces>(arms_, rows, slots, lightest);
   }
 
   void read(const std::vector<HatMotion<D>>& hats) noexcept
@@ -170,6 +176,7 @@ class ThroughHats {
  private:
   const K& kernel_;
   typename K::Cell cell_;
+  std::array<Vec<D>, D + 1> arms_;  ///< centres of the hats about the origin [m]
   Shares<D> shares_;
   HatSums<D> sums_;
   std::array<HatMotion<D>, D + 1> motion_;

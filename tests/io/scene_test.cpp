@@ -44,7 +44,6 @@ TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
   ASSERT_TRUE(s.projected.has_value());
   EXPECT_EQ(s.projected->values, ValueStencil::mls);
   EXPECT_EQ(s.projected->alpha, 0.25);
-  EXPECT_EQ(s.projected->wall_share, 0.5);
   EXPECT_EQ(s.transfer.scheme, TransferScheme::aflip);
   EXPECT_EQ(s.transfer.pic_damping_crossings, 3);
   EXPECT_FALSE(scene("plane.yaml").projected.has_value());

@@ -81,6 +81,7 @@ TEST(Slaves, AreNodesWhoseCellsCancel)
   nodes.motion.resize(nodes.sum.size());
   nodes.active.resize(nodes.sum.size());
   nodes.least_share = 1e-8;
+  nodes.least_share_of_gross = 0.3;
   NodeSum<2> gets, loses;
   gets.mass = gets.gross = 1;
   loses.mass = -0.9;
