@@ -1,16 +1,12 @@
 """Extremes: what is expected of each is stated before it is run: bounded, or refused with words that name the reason; never NaN, never silent."""
-import hashlib
-
 import numpy as np
 
 import lab as tools
+import meshes
 
 CASE = "extremes"
 FLAT, SOLID, HEAP, LAYERS, PAIR = (f"{CASE}/{name}.yaml" for name in ("scene", "scene_3d", "scene_heap", "scene_layers", "scene_pair"))
 RUBBER = {"name": "rubber", "law": "neo_hookean", "density": 1000, "youngs_modulus": 1.0e5, "poisson_ratio": 0.3}
-
-
-meshes = tools.module(CASE, "meshes")
 
 
 # Measures: histories of bodies that nothing touches.
@@ -101,15 +97,6 @@ def parted(run, alone):
 # The extremes.
 
 
-def written(lab, name, nodes, cells):
-    """Settings for a mesh of our own: its file stands beside the runs and bears a mark of what it holds."""
-    text = meshes.text(nodes, cells)
-    path = lab.runs.resolve() / f"{CASE}_meshes" / f"{name}_{hashlib.sha256(text.encode()).hexdigest()[:8]}.msh"
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
-    return {"mesh": {"file": str(path)}}
-
-
 def grid(*axes):
     """Settings for a plain box: (low, high, cells) of each axis."""
     low, high, cells = zip(*axes)
@@ -138,26 +125,26 @@ def broken_meshes(lab, full):
     flat, solid = meshes.box([side, side]), meshes.box([steps, steps, steps])
     plan = []
     for angle in (30, 10, 3, 1, 0.1):
-        plan.append((f"cells with angles of {angle:g} degrees", FLAT, written(lab, f"flat_{angle:g}", *meshes.slivered(*flat, angle, 7))))
+        plan.append((f"cells with angles of {angle:g} degrees", FLAT, meshes.written(lab, CASE, f"flat_{angle:g}", *meshes.slivered(*flat, angle, 7))))
     for angle in (10, 1, 0.1) if full else (10, 1):
-        plan.append((f"cells with angles of {angle:g} degrees, 3-D", SOLID, written(lab, f"solid_{angle:g}", *meshes.slivered(*solid, angle, 7))))
+        plan.append((f"cells with angles of {angle:g} degrees, 3-D", SOLID, meshes.written(lab, CASE, f"solid_{angle:g}", *meshes.slivered(*solid, angle, 7))))
     for ratio in (1.2, 1.5, 2, 4, 10):
         uneven = meshes.alternating(0, 4, 4, ratio)
-        plan.append((f"cells in turn wide and narrow by {ratio:g}", FLAT, written(lab, f"turns_{ratio:g}", *meshes.box([uneven, uneven]))))
+        plan.append((f"cells in turn wide and narrow by {ratio:g}", FLAT, meshes.written(lab, CASE, f"turns_{ratio:g}", *meshes.box([uneven, uneven]))))
     for ratio in (2, 4, 10):
         jump = np.concatenate([side[:5], np.linspace(2, 4, 4 * ratio + 1)[1:]])
-        mesh = written(lab, f"jump_{ratio:g}", *meshes.box([jump, jump]))
+        mesh = meshes.written(lab, CASE, f"jump_{ratio:g}", *meshes.box([jump, jump]))
         plan.append((f"cells smaller by {ratio:g} beyond the middle", FLAT, {**mesh, "time.end": 1.0}))
     widths = np.geomspace(1, 0.1, 8)
     graded = np.concatenate([[0, 0.5, 1], 1 + 2 * np.cumsum(widths) / np.sum(widths), [3.1, 3.2, 3.5, 4]])
-    plan.append(("cells smaller by 10 across the body, one by one", FLAT, written(lab, "smooth_10", *meshes.box([graded, side]))))
+    plan.append(("cells smaller by 10 across the body, one by one", FLAT, meshes.written(lab, CASE, "smooth_10", *meshes.box([graded, side]))))
     for ratio, end in ((4, 1.0), (10, 0.5)):
         room, fine = {"type": "box", "low": [0, 0], "high": [4, 4]}, {"low": [2, 2], "high": [4, 4]}
         mesh = {"size": 0.5, "regions": [{"name": "all", "shape": room}], "refine": [{"within": fine, "size": 0.5 / ratio}]}
         plan.append((f"cells smaller by {ratio:g} in a box, by gmsh", FLAT, {"mesh": mesh, "time.end": end}))
     plan += [(f"nodes moved by {jitter:g} of the spacing", FLAT, {"mesh.grid.jitter": jitter}) for jitter in (0.3, 0.49)]
     over = np.where(np.arange(len(flat[1]))[:, None] % 2, flat[1], flat[1][:, ::-1])
-    return [*plan, ("cells turned over", FLAT, written(lab, "turned", flat[0], over))]
+    return [*plan, ("cells turned over", FLAT, meshes.written(lab, CASE, "turned", flat[0], over))]
 
 
 def free_flights(lab, full):
@@ -224,10 +211,10 @@ def refusals(lab):
             ("empty body", FLAT, body([1.01, 1.01], [1.02, 1.02], [0, 0]), 2, "has no particles"),
             ("velocity 1 / 0", FLAT, body([1, 1], [3, 3], ["1 / 0", "0"]), 2, "is inf at"),
             ("velocity not a number", FLAT, body([1, 1], [3, 3], ["sqrt(-x)", "0"]), 2, "nan at"),
-            ("cells with angles of 1e-9 degrees", FLAT, written(lab, "flat_1e-9", *meshes.slivered(nodes, cells, 1e-9, 7)), 2, "has no volume"),
-            ("cells that overlap", FLAT, written(lab, "overlap", nodes, doubled), 2, ""),
-            ("node twice in a cell", FLAT, written(lab, "node_twice", nodes, wrong), 2, "twice"),
-            ("node that is not a number", FLAT, written(lab, "nan", hole, cells), 2, ""),
+            ("cells with angles of 1e-9 degrees", FLAT, meshes.written(lab, CASE, "flat_1e-9", *meshes.slivered(nodes, cells, 1e-9, 7)), 2, "has no volume"),
+            ("cells that overlap", FLAT, meshes.written(lab, CASE, "overlap", nodes, doubled), 2, ""),
+            ("node twice in a cell", FLAT, meshes.written(lab, CASE, "node_twice", nodes, wrong), 2, "twice"),
+            ("node that is not a number", FLAT, meshes.written(lab, CASE, "nan", hole, cells), 2, ""),
             ("step below the shortest", FLAT, {"time.min_step": 1}, 1, "below time.min_step"),
             ("escape", FLAT, block, 1, "is outside the mesh"),
             ("gravity stage without rest", HEAP, {"stages[0].duration": 0.02}, 1, "did not come to rest")]
