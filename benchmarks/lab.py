@@ -296,6 +296,11 @@ def label(name):
     return re.sub(r"[^\w.-]+", "_", name)
 
 
+def ended(run, measure):
+    """What is measured of a run that ended well; not a number where it did not."""
+    return measure(run) if run.ending[0] == 0 else float("nan")
+
+
 def rms(values):
     """Root of the mean square over everything."""
     return float(np.sqrt(np.mean(np.square(values))))

@@ -6,6 +6,9 @@ import meshes
 
 CASE = "extremes"
 FLAT, SOLID, HEAP, LAYERS, PAIR = (f"{CASE}/{name}.yaml" for name in ("scene", "scene_3d", "scene_heap", "scene_layers", "scene_pair"))
+KERNELS = {"umls": {"kernel": "umls"}, "linear": {"kernel": "linear"}, "projected": tools.METHODS["projected, aflip"]}  # the first two with the transfer of the scene
+BESIDE = ("plain, 3-D", "cells with angles of 0.1 degrees", "cells in turn wide and narrow by 10", "cells smaller by 10 beyond the middle", "1 particles per cell",
+          "stiffness by 1e+06, density by 1000 across a face", "CFL 1", "torn apart, cells empty")  # flights with projected as well
 RUBBER = {"name": "rubber", "law": "neo_hookean", "density": 1000, "youngs_modulus": 1.0e5, "poisson_ratio": 0.3}
 
 
@@ -161,7 +164,8 @@ def free_flights(lab, full):
     short = {"time.end": 1.5e-3, "outputs.history.every": 1e-5}
     plan += [("cells of 1 mm", FLAT, {**far(0), **short}), ("cells of 1 mm, coordinates of 1e6 m", FLAT, {**far(1e6), **short})]
     torn = {**grid((0, 16, 32), (0, 4, 8)), **body([7, 1], [9, 3], ["40 * (x - 8) / abs(x - 8)", "0"]), "time.end": 0.15}
-    return [*plan, ("torn apart, cells empty", FLAT, torn)]
+    plan.append(("torn apart, cells empty", FLAT, torn))
+    return plan + [(f"{name}, projected, aflip", scene, {**settings, **KERNELS["projected"]}) for name, scene, settings in plan if name in BESIDE]
 
 
 def far(origin):
@@ -180,7 +184,7 @@ def uniform_flights():
             ("particles on faces, edges and vertices, 3-D", SOLID,
              {**grid((0, 32, 8), (0, 32, 8), (0, 32, 8)), **body([4, 4, 4], [12, 12, 12], [3, 2, 1], 1), **soft}),
             ("one particle dragged past 100 nodes", FLAT, drag)]
-    return [(f"{name}, {kernel}", scene, {**settings, "kernel": kernel}) for name, scene, settings in plan for kernel in ("umls", "linear")]
+    return [(f"{name}, {kernel}", scene, {**settings, **method}) for name, scene, settings in plan for kernel, method in KERNELS.items()]
 
 
 def collisions():
@@ -222,19 +226,20 @@ def refusals(lab):
 
 def others(full):
     """(name, scene, settings, measure, bound, why) of what is expected to stay below a bound."""
-    steps, schemes = 1e5 if full else 1e4, ("flip", "tpic")
+    steps = 1e5 if full else 1e4
+    methods = {"flip": tools.METHODS["umls, flip"], "tpic": tools.METHODS["umls, tpic"], "projected, aflip": KERNELS["projected"]}
     gravity = {"loads": [{"type": "gravity", "acceleration": [0, -9.81]}]}
     rest = {**gravity, **body([1, 0], [3, 2], [0, 0]), "boundaries": [{"type": "roller", "on": "y_min"}], "materials[0].youngs_modulus": 1.0e6,
             "time": {"cfl": 0.4, "max_step": 0.003}, "outputs.history.every": 0.03,
             "stages": [{"type": "geostatic", "duration": 10, "residual": 1.0e-3}, {"type": "run", "duration": steps * 0.003}]}
-    plan = [(f"kinetic energy after {steps:g} steps at rest over that at their beginning, {scheme}", FLAT, {**rest, "transfer.scheme": scheme},
-             livelier, 1.0, "what is at rest stays at rest") for scheme in schemes]
-    plan += [(f"kinetic over potential energy of a heap after {steps:g} steps, {scheme}", HEAP,
-              {"stages[1].duration": steps * 2.5e-3, "transfer.scheme": scheme}, unrest, 1e-8, "a heap flatter than its friction stays at rest")
-             for scheme in schemes]
+    plan = [(f"kinetic energy after {steps:g} steps at rest over that at their beginning, {name}", FLAT, {**rest, **method},
+             livelier, 1.0, "what is at rest stays at rest") for name, method in methods.items()]
+    plan += [(f"kinetic over potential energy of a heap after {steps:g} steps, {name}", HEAP,
+              {"stages[1].duration": steps * 2.5e-3, **method}, unrest, 1e-8, "a heap flatter than its friction stays at rest")
+             for name, method in methods.items()]
     plan += [(f"stress in the upper layer of a column, the lower stiffer by {stiff:g}, denser by {dense:g}, {kernel}", LAYERS,
-              {"materials[1].youngs_modulus": 1e7 * stiff, "materials[1].density": 2e3 * dense, "kernel": kernel}, layer_error, 0.05,
-              "density times gravity times depth") for stiff, dense in ((1, 1), (1e6, 1e3)) for kernel in ("umls", "linear")]
+              {"materials[1].youngs_modulus": 1e7 * stiff, "materials[1].density": 2e3 * dense, **KERNELS[kernel]}, layer_error, 0.05,
+              "density times gravity times depth") for stiff, dense in ((1, 1), (1e6, 1e3)) for kernel in KERNELS]
     return [*plan, ("one particle: error of the velocity of fall", FLAT, {**gravity, **body([1.1, 3.1], [1.3, 3.5], [0, 0], 1), "time.end": 0.5},
                     free_fall, 1e-12, "a particle alone falls freely"),
             ("escape: mass that is missing", FLAT, {**body([1, 1], [3, 3], [5, 0]), "on_exit": "delete"}, mass_drift, 1e-12,
@@ -242,11 +247,6 @@ def others(full):
 
 
 # Results.
-
-
-def ended(run, measure):
-    """What is measured of a run that ended well; not a number where it did not."""
-    return measure(run) if run.ending[0] == 0 else float("nan")
 
 
 def bounded(name, value, bound, why, run):
@@ -259,7 +259,7 @@ def bounded_or_refused(name, run):
     """A run may fail with a reason, but not go on with energy from nowhere."""
     status, words = run.ending
     named = status == 1 and any(reason in words for reason in ("turned inside out", "not finite", "no finite stress", "outside the mesh"))
-    value = 0.0 if named else ended(run, gained if name.startswith("CFL") else gained_in_all)
+    value = 0.0 if named else tools.ended(run, gained if name.startswith("CFL") else gained_in_all)
     return bounded(f"energy gained, or 0 where the run was refused in words, {name}", value, 0.01, "bounded, or refused with a reason", run)
 
 
@@ -292,17 +292,17 @@ def evaluate(lab):
     uniform = [(name, start(name, scene, settings)) for name, scene, settings in uniform_flights()]
     thrown = [(name, start(name, scene, settings)) for name, scene, settings in collisions()]
     like = {"materials[1].density": 1.0, "materials[1].youngs_modulus": 1e2}
-    pairs = [(kernel, start(f"beside a heavy block, {kernel}", PAIR, {"kernel": kernel}),
-              start(f"beside its like, {kernel}", PAIR, {"kernel": kernel, **like})) for kernel in ("umls", "linear")]
+    pairs = [(kernel, start(f"beside a heavy block, {kernel}", PAIR, method),
+              start(f"beside its like, {kernel}", PAIR, {**method, **like})) for kernel, method in KERNELS.items()]
     further = [(start(name, scene, settings), name, *rest) for name, scene, settings, *rest in others(full)]
     wrong = [(start(name, scene, settings), name, *rest) for name, scene, settings, *rest in refusals(lab)]
 
-    results = [bounded(f"energy gained, {name}", ended(run, gained), 0.01, "a body alone gains no energy", run) for name, run in free]
-    results += [bounded(f"uniform motion disturbed, {name}", ended(run, strayed), 1e-12, "nothing acts", run) for name, run in uniform]
+    results = [bounded(f"energy gained, {name}", tools.ended(run, gained), 0.01, "a body alone gains no energy", run) for name, run in free]
+    results += [bounded(f"uniform motion disturbed, {name}", tools.ended(run, strayed), 1e-12, "nothing acts", run) for name, run in uniform]
     results += [bounded_or_refused(name, run) for name, run in thrown]
     results += [bounded(f"motion of a light block changed by a heavy one that it never meets, {kernel}", parted(heavy, alike), 1e-6,
                         "they do not meet", heavy) for kernel, heavy, alike in pairs]
-    results += [bounded(name, ended(run, measure), bound, why, run) for run, name, measure, bound, why in further]
+    results += [bounded(name, tools.ended(run, measure), bound, why, run) for run, name, measure, bound, why in further]
     results += [refused(run, name, status, words, free[0][1]) for run, name, status, words in wrong]
     shown = ("plain", "cells with angles of 0.1 degrees", "cells in turn wide and narrow by 4", "nodes moved by 0.49 of the spacing",
              "1 particles per cell", "nu 0.49999, volumes averaged", "CFL 1", "torn apart, cells empty")

@@ -12,6 +12,7 @@ SHOTS = {
     "test 6": {"mesh.geometry": "copper_6.geo", "bodies[0].velocity": [0, 0, -316], "stages[0].duration": 110e-6},
 }
 MESHES = {"quick": [3], "full": [3, 4, 6]}  # cells per radius
+OTHER = {"quick": 2, "full": 3}  # cells per radius of test 1 with another method
 VARIANTS = {"friction 0.1": {"boundaries[0].coefficient": 0.1}, "without averaging of volumes": {"bodies[0].f_bar": False}}
 
 
@@ -70,6 +71,9 @@ def evaluate(lab):
         for count in MESHES[lab.level]:
             size = data[shot]["radius [mm]"] * MM / count
             asked.append((shot, f"{count} cells per radius", lab.run(f"{CASE}/scene.yaml", f"{shot.replace(' ', '_')}_{count}", {**settings, "mesh.size": size})))
+    count = OTHER[lab.level]
+    asked.append(("test 1", f"projected, aflip, {count} cells to the radius", lab.run(f"{CASE}/scene.yaml", f"test_1_projected_{count}", {
+        "mesh.size": data["test 1"]["radius [mm]"] * MM / count, **tools.METHODS["projected, aflip"]})))
     if lab.level == "full":
         size = data["test 1"]["radius [mm]"] * MM / 4
         for name, settings in VARIANTS.items():
