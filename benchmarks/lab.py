@@ -296,6 +296,11 @@ def label(name):
     return re.sub(r"[^\w.-]+", "_", name)
 
 
+def ends(runs):
+    """Of {key: run} those that end well, so that a method that fails somewhere does not take the results of others with it: its run is a result that failed."""
+    return {key: run for key, run in runs.items() if not run.failure()}
+
+
 def ended(run, measure):
     """What is measured of a run that ended well; not a number where it did not."""
     return measure(run) if run.ending[0] == 0 else float("nan")

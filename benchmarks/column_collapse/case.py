@@ -19,7 +19,7 @@ VARIANTS = {
     "drucker_prager, outer": {"materials[0].match": "outer"},
     "drucker_prager, flip": {"transfer.scheme": "flip"},
 }
-JUDGED = {"drucker_prager", "mohr_coulomb"}  # on a rough floor, with the strength of plane strain
+JUDGED = {"drucker_prager", "mohr_coulomb", "drucker_prager, projected, aflip"}  # on a rough floor, with the strength of plane strain
 FULL_ONLY = {"drucker_prager, outer", "drucker_prager, flip", "drucker_prager, floor with friction"}
 WIDTH = 0.1  # m, of the columns in the channel before they are released
 COLUMNS = {  # height over width: cells over the width, room over the width, level
@@ -168,14 +168,15 @@ def evaluate(lab):
         if lab.level == "full" or name not in FULL_ONLY:
             runs[name] = lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{lab.level}"), {"mesh.size": SIZE[lab.level], **changes})
     columns = {ratio: channel(lab, ratio) for ratio, (_, _, level) in COLUMNS.items() if level in ("quick", lab.level)}
+    besides = {"channel, a = 0.5, projected, aflip": channel(lab, 0.5, "projected, aflip")}
+    runs = tools.ends(runs)
     lab.figure(CASE, "verification_bars", lambda figure: draw(figure, runs, data), size=(7.6, 3),
                caption="Column of aluminium bars: final surface and line of failure over the experiment of Bui et al. 2008.")
     lab.figure(CASE, "verification_channel", lambda figure: draw_channel(figure, columns, data), size=(7.6, 3),
                caption="Granular columns in a channel: deposits, and run-outs beside the laws of two experiments.")
     results = [result for name, run in runs.items() for result in judge(name, run, data, name in JUDGED)]
-    named = {f"channel, a = {ratio}": (ratio, run) for ratio, run in columns.items()}
-    named["channel, a = 0.5, projected, aflip"] = 0.5, channel(lab, 0.5, "projected, aflip")
-    return results + [result for name, (ratio, run) in named.items() for result in judge_channel(name, ratio, run, data)]
+    results += [result for ratio, run in columns.items() for result in judge_channel(f"channel, a = {ratio}", ratio, run, data)]
+    return results + [result for name, run in tools.ends(besides).items() for result in judge_channel(name, 0.5, run, data)]
 
 
 def tradeoff(lab):
