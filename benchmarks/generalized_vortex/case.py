@@ -6,6 +6,8 @@ import vtp
 
 CASE = "generalized_vortex"
 SIZES = {"quick": [0.14, 0.1, 0.07], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # m
+FEW = {"quick": [0.14, 0.1], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # of the small rotation
+COARSE = {"quick": [0.2, 0.14], "full": [0.14, 0.1, 0.07]}  # of linear at the large one, which does not converge
 MARKS = {"umls": "o-", "linear": "s--", "projected": "^-"}
 TURNS = [1, 0.1]  # rad, largest rotation: that of the literature, and one in which hardly any particle leaves its cell
 
@@ -82,7 +84,7 @@ def draw(figure, curves, plan, data):
 def evaluate(lab):
     """Results for three kernels and two rotations; judged is the order of umls and projected at the rotation of the literature."""
     data, results, curves = tools.reference(CASE), [], {}
-    plan = {(kernel, turn): {size: start(lab, kernel, turn, size, data) for size in SIZES[lab.level][:None if kernel != "linear" and turn == 1 or lab.level == "full" else 2]}
+    plan = {(kernel, turn): {size: start(lab, kernel, turn, size, data) for size in (FEW if turn < 1 else COARSE if kernel == "linear" else SIZES)[lab.level]}
             for turn in TURNS for kernel in tools.SUITED}
     for (kernel, turn), runs in plan.items():
         errors = [max(errors_over_time(run, turn, data)[1]) for run in runs.values()]

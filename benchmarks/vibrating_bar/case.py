@@ -41,7 +41,7 @@ def beyond(lab, data):
     sizes, half = SIZES[lab.level][:3], {**data, "length [m]": data["length [m]"] / 2}  # a quarter of a wave is half the bar
     coarse = sizes[:2] if lab.level == "quick" else sizes
     runs = [held(lab, size) for size in sizes]
-    swings = {(name, size): large(lab, name, size) for name in SWINGS for size in coarse}
+    swings = {(name, size): large(lab, name, size) for name in SWINGS for size in (coarse[:1] if name == "umls, flip" and lab.level == "quick" else coarse)}
     errors = [bar_mode.displacement_error(run.history, half, 0.001) for run in runs]
     lab.convergence(CASE, "displacement error, held at both ends, tpic, v0 = 0.001 m/s", sizes, errors, expected=2)
     return [tools.Result(CASE, "order of convergence, held at both ends, tpic, v0 = 0.001 m/s", "-", tools.observed_order(sizes, errors), "at least", 1.8, 2.0,
