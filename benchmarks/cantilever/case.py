@@ -170,7 +170,7 @@ def evaluate(lab):
     data, curve, published = tools.reference(CASE), tools.reference(CASE, "fe_history.csv"), tools.reference(CASE, "short_history.csv")
     plan = [*((size, None) for size in SIZES[lab.level]), *((size, OTHER) for size in OTHER_SIZES[lab.level])]
     runs = {named(size, method): (size, started(lab, "scene", "dx", size, method)) for size, method in plan}
-    plan = [*((size, None) for size in SHORT[lab.level]), *((size, OTHER) for size in SHORT[lab.level][:1])]
+    plan = [*((size, None) for size in SHORT[lab.level]), *((size, OTHER) for size in SHORT[lab.level][:None if lab.level == "full" else 1])]
     short = {named(size, method): started(lab, "scene_short", "short_", size, method) for size, method in plan}
     solid = {size: lab.run(f"{CASE}/scene_short_3d.yaml", f"solid_{size}", {"mesh.size": size}) for size in SOLID[lab.level]}
     around = {angle: turned(lab, angle, 0.5) for angle in ANGLES[lab.level]}
