@@ -31,7 +31,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 matplotlib.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True})
 METHODS = {  # for sweeps; linear with tpic turns points inside out
     f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
-    for kernel, scheme in (("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
+    for kernel, scheme in (("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"), ("projected", "aflip"))}
+SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> the transfer that suits it
 OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene
 
 
@@ -293,6 +294,16 @@ def module(case, name="case"):
 def label(name):
     """A name of a result as one of a folder."""
     return re.sub(r"[^\w.-]+", "_", name)
+
+
+def ends(runs):
+    """Of {key: run} those that end well, so that a method that fails somewhere does not take the results of others with it: its run is a result that failed."""
+    return {key: run for key, run in runs.items() if not run.failure()}
+
+
+def ended(run, measure):
+    """What is measured of a run that ended well; not a number where it did not."""
+    return measure(run) if run.ending[0] == 0 else float("nan")
 
 
 def rms(values):

@@ -266,6 +266,13 @@ class Measures(unittest.TestCase):
         self.assertEqual(history["time"].tolist(), [0, 0.5])
         self.assertEqual(history["kinetic"].tolist(), [1, 2])
 
+    def test_an_empty_entry_is_finite_only_where_it_is_the_centre_of_nothing(self):
+        finite, nan = lab.module("extremes").finite, float("nan")
+        for mass, centre, kinetic, expected in ((1, 2, 3, True), (0, nan, 0, True), (1, nan, 3, False), (0, nan, nan, False), (nan, nan, 0, False),
+                                                (1, float("inf"), 3, False)):
+            history = {"mass": np.array([1, mass]), "centre_x": np.array([2, centre]), "kinetic": np.array([3, kinetic])}
+            self.assertIs(bool(finite(history)), expected, (mass, centre, kinetic))
+
 
 class Readme(unittest.TestCase):
     def test_only_what_is_between_the_markers_is_replaced(self):

@@ -8,6 +8,7 @@ CASE = "elastica"
 LOADS = ["1", "2", "9.6"]  # P L^2 / (E' I), E' = E / (1 - nu^2)
 PLAN = {"quick": [("1", 0.5), ("2", 0.5), ("9.6", 0.5), ("2", 0.35)],
         "full": [("1", 0.5), ("2", 0.5), ("9.6", 0.5), ("2", 0.35), ("1", 0.25), ("2", 0.25), ("9.6", 0.25)]}  # load, cell size [m]
+OTHER = ("2", 0.5)  # load and cell size with another method as well
 JUDGED = 0.35  # m, three cells over the height; two are reported
 SHEAR = 5 / 6  # of the area of a rectangle that carries shear
 
@@ -83,12 +84,16 @@ def draw(figure, runs, data):
     right.legend(fontsize=7)
 
 
-def judge(load, size, run, data):
+def settings(load, size, data):
+    """Changes to the scene for a load and cells of `size` [m]."""
+    return {"mesh.size": size, "loads[0].traction": [0, -round(force(load, data) / data["height [m]"], 6)]}
+
+
+def judge(name, load, size, run, data):
     """Results of one run."""
     drop, shortening = tip(run, data)
     asked = ("within", data["slack"]) if size <= JUDGED else ("reported", None)
     plain, source = data["elastica"][load], f"{data['source']}; {data['elastica source']}"
-    name = f"load {load}, cells of {size} m"
     full = theory(load, data)
     return [tools.Result(CASE, f"drop of the tip over the length, {name}", "-", drop, *asked, full[0], source, run),
             tools.Result(CASE, f"shortening over the length, {name}", "-", shortening, "reported", None, full[1], source, run),
@@ -99,9 +104,13 @@ def evaluate(lab):
     """Three loads, two or three meshes."""
     data = tools.reference(CASE)
     runs = {(load, size): lab.run(f"{CASE}/scene.yaml", f"load{load}_dx{size}",
-                                  {"mesh.size": size, "loads[0].traction": [0, -round(force(load, data) / data["height [m]"], 6)]}) for load, size in PLAN[lab.level]}
+                                  settings(load, size, data)) for load, size in PLAN[lab.level]}
     sizes = sorted({size for load, size in runs if load == "2"}, reverse=True)
     lab.convergence(CASE, "relative error of the drop, load 2", sizes, [abs(tip(runs["2", size], data)[0] / theory("2", data)[0] - 1) for size in sizes])
     lab.figure(CASE, "verification_elastica", lambda figure: draw(figure, runs, data), size=(7.6, 3.2),
                caption="Slender beams under dead loads at their tips, at rest, and the theory of beams with large rotations.")
-    return [result for (load, size), run in runs.items() for result in judge(load, size, run, data)]
+    load, size = OTHER
+    beside = lab.run(f"{CASE}/scene.yaml", f"projected_load{load}_dx{size}", {**settings(load, size, data), **tools.METHODS["projected, aflip"]})
+    results = [result for (load, size), run in runs.items() for result in judge(f"load {load}, cells of {size} m", load, size, run, data)]
+    return results + [result for name, run in tools.ends({f"load {load}, cells of {size} m, projected, aflip": beside}).items()
+                      for result in judge(name, load, size, run, data)]

@@ -6,7 +6,9 @@ import vtp
 
 CASE = "generalized_vortex"
 SIZES = {"quick": [0.14, 0.1, 0.07], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # m
-KERNELS = {"umls": "tpic", "linear": "flip"}
+FEW = {"quick": [0.14, 0.1], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # of the small rotation
+COARSE = {"quick": [0.2, 0.14], "full": [0.14, 0.1, 0.07]}  # of linear at the large one, which does not converge
+MARKS = {"umls": "o-", "linear": "s--", "projected": "^-"}
 TURNS = [1, 0.1]  # rad, largest rotation: that of the literature, and one in which hardly any particle leaves its cell
 
 
@@ -53,7 +55,7 @@ def errors_over_time(run, turn, data):
 def start(lab, kernel, turn, size, data):
     """Starts one run."""
     velocity, force = formulas(turn, data)
-    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}", {"mesh.size": size, "kernel": kernel, "transfer.scheme": KERNELS[kernel],
+    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}", {"mesh.size": size, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel],
                                                                         "bodies[0].velocity": velocity, "loads[0].acceleration": force})
 
 
@@ -61,7 +63,7 @@ def draw(figure, curves, plan, data):
     """Left error over size, right particles of the finest run of umls at half time, coloured by the radius at the start."""
     left, right = figure.subplots(1, 2, width_ratios=[1.2, 1])
     for (kernel, turn), (sizes, errors) in curves.items():
-        left.loglog(sizes, np.array(errors) * 100, "o-" if kernel == "umls" else "s--", label=f"{kernel}, {turn} rad")
+        left.loglog(sizes, np.array(errors) * 100, MARKS[kernel], label=f"{kernel}, {turn} rad")
     left.loglog([0.14, 0.07], [20, 5], "k:", label="order 2")
     tools.size_axis(left, SIZES["quick"])
     left.set_ylabel("error in displacement [%]")
@@ -80,14 +82,14 @@ def draw(figure, curves, plan, data):
 
 
 def evaluate(lab):
-    """Results for two kernels and two rotations; judged is the order of umls at the rotation of the literature."""
+    """Results for three kernels and two rotations; judged is the order of umls and projected at the rotation of the literature."""
     data, results, curves = tools.reference(CASE), [], {}
-    plan = {(kernel, turn): {size: start(lab, kernel, turn, size, data) for size in SIZES[lab.level][:None if (kernel, turn) == ("umls", 1) or lab.level == "full" else 2]}
-            for turn in TURNS for kernel in KERNELS}
+    plan = {(kernel, turn): {size: start(lab, kernel, turn, size, data) for size in (FEW if turn < 1 else COARSE if kernel == "linear" else SIZES)[lab.level]}
+            for turn in TURNS for kernel in tools.SUITED}
     for (kernel, turn), runs in plan.items():
         errors = [max(errors_over_time(run, turn, data)[1]) for run in runs.values()]
         curves[kernel, turn] = list(runs), errors
-        name, judged = f"{kernel}, {turn} rad", kernel == "umls" and turn == 1
+        name, judged = f"{kernel}, {turn} rad", kernel != "linear" and turn == 1
         results += [tools.Result(CASE, f"displacement error, {name}, cells of {size} m", "-", value, "reported", None, 0.0, data["source"], run)
                     for (size, run), value in zip(runs.items(), errors)]
         results.append(tools.Result(CASE, f"order of convergence, {name}", "-", tools.observed_order(list(runs), errors), "at least" if judged else "reported",

@@ -53,11 +53,11 @@ def draw(figure, runs, data):
     axis.legend()
 
 
-def judge(size, run, data, judged):
+def judge(name, run, data, judged):
     """Results of one run; the finest mesh of the full level is asked for what it is built for."""
     force, duration, rebound, energy = measures(run, data)
     asked = ("within", data["slack"]) if judged else ("reported", None)
-    name, source = f"cells of {size} m", data["source"]
+    source = data["source"]
     return [
         tools.Result(CASE, f"largest force over Hertz's, {name}", "-", force, *asked, 1.0, source, run),
         tools.Result(CASE, f"duration of the contact over Hertz's, {name}", "-", duration, *asked, 1.0, source, run),
@@ -65,11 +65,19 @@ def judge(size, run, data, judged):
         tools.Result(CASE, f"energy at the end over that at the start, {name}", "-", energy, "reported", None, 1.0, "conserved by the exact solution", run)]
 
 
+def refined(size):
+    """Changes to the scene for cells of `size` [m] at the contact."""
+    return {"mesh.refine[0].size": size, "mesh.refine[1].size": 2 * size}
+
+
 def evaluate(lab):
     """Two or three meshes, refined twice towards the contact."""
     data, sizes = tools.reference(CASE), SIZES[lab.level]
-    runs = {size: lab.run(f"{CASE}/scene.yaml", f"dx{size}", {"mesh.refine[0].size": size, "mesh.refine[1].size": 2 * size}) for size in sizes}
+    runs = {size: lab.run(f"{CASE}/scene.yaml", f"dx{size}", refined(size)) for size in sizes}
+    other = "projected, aflip"
+    beside = {size: lab.run(f"{CASE}/scene.yaml", f"projected_dx{size}", {**refined(size), **tools.METHODS[other]}) for size in (sizes if lab.level == "full" else sizes[:1])}
     lab.convergence(CASE, "error of the largest force", sizes, [abs(measures(runs[size], data)[0] - 1) for size in sizes])
     lab.convergence(CASE, "error of the duration of the contact", sizes, [abs(measures(runs[size], data)[1] - 1) for size in sizes])
     lab.figure(CASE, "verification_hertz", lambda figure: draw(figure, runs, data), caption="Force of a rigid plane on an elastic ball.")
-    return [result for size in sizes for result in judge(size, runs[size], data, lab.level == JUDGED and size == sizes[-1])]
+    named = {f"cells of {size} m": (size, run) for size, run in runs.items()} | {f"cells of {size} m, {other}": (size, run) for size, run in beside.items()}
+    return [result for name, (size, run) in named.items() for result in judge(name, run, data, lab.level == JUDGED and size == sizes[-1])]

@@ -5,7 +5,7 @@ import lab as tools
 
 CASE = "sliding_block"
 COEFFICIENTS = [0, 0.3, 0.5]
-SCHEMES = ["flip", "tpic"]
+METHODS = {"flip": tools.METHODS["umls, flip"], "tpic": tools.METHODS["umls, tpic"], "projected, aflip": tools.METHODS["projected, aflip"]}
 
 
 def slid(history, angle):
@@ -40,9 +40,9 @@ def draw(figure, runs, data):
     for colour, friction in enumerate(COEFFICIENTS):
         time = runs["flip", friction].history["time"]
         axis.plot(time, closed_form(time, data, friction), color=f"C{colour}", label=f"closed form, friction {friction}")
-        for mark, scheme in zip(("o", "+"), SCHEMES):
-            axis.plot(time[::10], slid(runs[scheme, friction].history, angle)[::10], mark, color=f"C{colour}", fillstyle="none",
-                      label=f"talus, {scheme}" if colour == 0 else None)
+        for mark, method in zip(("o", "+", "x"), METHODS):
+            axis.plot(time[::10], slid(runs[method, friction].history, angle)[::10], mark, color=f"C{colour}", fillstyle="none",
+                      label=f"talus, {method}" if colour == 0 else None)
     axis.set(xlabel="time [s]", ylabel="distance slid [m]")
     axis.legend()
 
@@ -58,19 +58,19 @@ def judge_turned(friction, run, turned, data):
 
 
 def evaluate(lab):
-    """Results for three coefficients with two transfers, the same with gravity turned, and the creep of a block that must not move."""
+    """Results for three coefficients with three methods, the same with gravity turned, and the creep of a block that must not move."""
     data, angle, results = tools.reference(CASE), np.radians(tools.reference(CASE)["angle [deg]"]), []
-    plan = [(scheme, friction) for scheme in SCHEMES for friction in COEFFICIENTS]
-    runs = {(scheme, friction): lab.run(f"{CASE}/scene.yaml", f"{scheme}_{friction}", {"boundaries[0].coefficient": friction, "transfer.scheme": scheme})
-            for scheme, friction in plan}
+    runs = {(method, friction): lab.run(f"{CASE}/scene.yaml", f"{tools.label(method)}_{friction}", {"boundaries[0].coefficient": friction, **METHODS[method]})
+            for method in METHODS for friction in COEFFICIENTS}
     turned = {friction: lab.run(f"{CASE}/scene_turned.yaml", f"turned_{friction}", {"boundaries[0].coefficient": friction}) for friction in COEFFICIENTS}
-    rest = lab.run(f"{CASE}/scene_rest.yaml", "rest", {})
-    for (scheme, friction), run in runs.items():
-        results.append(tools.Result(CASE, f"distance slid, friction {friction}, {scheme}", "m", float(slid(run.history, angle)[-1]), "within", data["slack"],
+    rests = {name: lab.run(f"{CASE}/scene_rest.yaml", tools.label(f"rest{name}"), METHODS[method])
+             for name, method in (("", "flip"), (", projected, aflip", "projected, aflip"))}
+    for (method, friction), run in runs.items():
+        results.append(tools.Result(CASE, f"distance slid, friction {friction}, {method}", "m", float(slid(run.history, angle)[-1]), "within", data["slack"],
                                     float(closed_form(run.history["time"][-1], data, friction)), data["source"], run))
     for friction in COEFFICIENTS:
         results += judge_turned(friction, runs["flip", friction], turned[friction], data)
-    results.append(tools.Result(CASE, "creep in 1 s at 25 degrees, friction 0.5", "m", creep(rest), "at most", data["rest"]["largest creep [m]"],
-                                0.0, data["rest"]["source"], rest))
+    results += [tools.Result(CASE, f"creep in 1 s at 25 degrees, friction 0.5{name}", "m", creep(rest), "at most", data["rest"]["largest creep [m]"],
+                             0.0, data["rest"]["source"], rest) for name, rest in tools.ends(rests).items()]
     lab.figure(CASE, "verification_block", lambda figure: draw(figure, runs, data), caption="Distance slid down a face inclined by 45 degrees.")
     return results

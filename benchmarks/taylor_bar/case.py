@@ -11,7 +11,9 @@ SHOTS = {
                "bodies[0].velocity": [0, 0, -188], "stages[0].duration": 110e-6},
     "test 6": {"mesh.geometry": "copper_6.geo", "bodies[0].velocity": [0, 0, -316], "stages[0].duration": 110e-6},
 }
+SHOWN = {"quick": ["test 1", "test 6"], "full": list(SHOTS)}
 MESHES = {"quick": [3], "full": [3, 4, 6]}  # cells per radius
+OTHER = {"quick": 2, "full": 3}  # cells per radius of test 1 with another method
 VARIANTS = {"friction 0.1": {"boundaries[0].coefficient": 0.1}, "without averaging of volumes": {"bodies[0].f_bar": False}}
 
 
@@ -54,7 +56,7 @@ def draw(figure, runs, data):
 
 
 def evaluate(lab):
-    """Three shots of copper on the coarsest mesh; at full level on all meshes, the first with friction and without averaging, and steel."""
+    """Two shots of copper on the coarsest mesh and one of them with another method; at full level three on all meshes, the first with friction and without averaging, and steel."""
     data, results, pictured = tools.reference(CASE), [], {}
 
     def judge(shot, run, note):
@@ -66,10 +68,13 @@ def evaluate(lab):
         results.append(tools.Result(CASE, f"{shot}: largest error of five radii, {note}", "-", error, "reported", None, 0.0, data["source"], run))
 
     asked, steels = [], {}
-    for shot, settings in SHOTS.items():
+    for shot in SHOWN[lab.level]:
         for count in MESHES[lab.level]:
             size = data[shot]["radius [mm]"] * MM / count
-            asked.append((shot, f"{count} cells per radius", lab.run(f"{CASE}/scene.yaml", f"{shot.replace(' ', '_')}_{count}", {**settings, "mesh.size": size})))
+            asked.append((shot, f"{count} cells per radius", lab.run(f"{CASE}/scene.yaml", f"{shot.replace(' ', '_')}_{count}", {**SHOTS[shot], "mesh.size": size})))
+    count = OTHER[lab.level]
+    asked.append(("test 1", f"projected, aflip, {count} cells to the radius", lab.run(f"{CASE}/scene.yaml", f"test_1_projected_{count}", {
+        "mesh.size": data["test 1"]["radius [mm]"] * MM / count, **tools.METHODS["projected, aflip"]})))
     if lab.level == "full":
         size = data["test 1"]["radius [mm]"] * MM / 4
         for name, settings in VARIANTS.items():

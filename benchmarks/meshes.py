@@ -1,4 +1,5 @@
 """Meshes of boxes that nobody would make on purpose, as files of gmsh (version 2.2): nodes and cells as arrays."""
+import hashlib
 import itertools
 
 import numpy as np
@@ -60,3 +61,12 @@ def text(nodes, cells):
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes)), *listed, "$EndNodes", "$Elements", str(len(cells)), *joined,
              "$EndElements"]
     return "\n".join(lines) + "\n"
+
+
+def written(lab, case, name, nodes, cells):
+    """Settings for a mesh of our own: its file stands beside the runs of the case and bears a mark of what it holds."""
+    content = text(nodes, cells)
+    path = lab.runs.resolve() / f"{case}_meshes" / f"{name}_{hashlib.sha256(content.encode()).hexdigest()[:8]}.msh"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(content, encoding="utf-8")
+    return {"mesh": {"file": str(path)}}
