@@ -135,5 +135,55 @@ TEST(Projected, HoldsAFilmOnAWall)
   }
 }
 
+/// A body without stiffness, all of its particles in cells at the boundary of the mesh, which is free: nothing but transfer.
+template <ValueStencil values>
+Real motion_left(Index cells, int steps)
+{
+  ProjectedOptions options;
+  options.values = values;
+  Model<2, Projected<2>> m(unit_box<2>(cells, 0.2), options);
+  m.transfer = {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  add_body<2>(m, "dust", rubber(1e-9, 0, 1000), 6, [](const Vec<2>&) { return true; });
+  std::mt19937 random(3);
+  std::uniform_real_distribution<Real> number(-1e-9, 1e-9);
+  for (auto& v : m.particles.v)
+    v = {number(random), number(random)};
+  make_ready(m, false);
+  const Real start = totals(m.particles).kinetic;
+  for (int step = 0; step < steps; ++step)
+    advance(m, 1e-2);
+  return totals(m.particles).kinetic / start;
+}
+
+TEST(Projected, TransferToAndFroMakesNoMotion)
+{
+  for (const Index cells : {1, 2, 8}) {
+    EXPECT_LT(motion_left<ValueStencil::maxent>(cells, 200), 1) << cells;
+    EXPECT_LT(motion_left<ValueStencil::l2>(cells, 200), 1) << cells;
+    EXPECT_LT(motion_left<ValueStencil::mls>(cells, 200), 1) << cells;
+  }
+}
+
+TEST(Projected, AColumnUnderItsWeightComesToRest)
+{
+  Model<2, Projected<2>> m(Mesh<2>(jittered(box<2>({0, 0}, {2, 12}, {2, 12}), 0.2, 1)));
+  m.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
+  add_body<2>(m, "column", rubber(1e7, 0.3, 1000), 6, [](const Vec<2>& x) { return x[1] < 10; });
+  for (const char* side : {"x_min", "x_max", "y_min"}) {
+    Wall<2> roller;
+    roller.name = side;
+    roller.kind = WallKind::roller;
+    m.walls.add(roller, m.mesh, *m.mesh.facet_set(side));
+  }
+  m.loads.gravity.acceleration = {0, -10};
+  make_ready(m, false);
+  Stage rest = test_stage(6);  // 17 periods of the column
+  rest.damping = 0.8;
+  rest.residual = 1e-3;
+  ASSERT_NO_THROW(run_stage(m, rest, StepLimits{.cfl = 0.4}, [](const auto&, Moment) {}));
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
+    ASSERT_NEAR(m.particles.stress[p][1], -1e4 * (10 - m.particles.x[p][1]), 1e4) << "the weight of a layer of cells";
+}
+
 }  // namespace
 }  // namespace talus::testing
