@@ -96,7 +96,7 @@ void sum_on_nodes(Model<D, K>& m)
 {
   if constexpr (HasNodePart<K, D>) {
     assemble(m.blocks, m.hats.sum);
-    collect(m.kernel.node_part(), m.mesh, m.hats.sum, m.nodes.sum);
+    collect(m.kernel.node_part(), m.mesh, m.hats.sum, !HasOwnValues<K, D>, m.nodes.sum);
   } else {
     assemble(m.blocks, m.nodes.sum);
   }
@@ -107,19 +107,20 @@ template <int D, Kernel<D> K>
 void settle(Model<D, K>& m, Real dt)
 {
   find_net_acceleration(dt, m.nodes);
-  if constexpr (HasNodePart<K, D>)
+  if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>)
     feel(m.kernel.node_part(), m.hats, m.nodes.felt);
   if (m.stage.damping > 0)
     damp(m.stage.damping, dt, m.nodes);
 }
 
-/// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more.
+/// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more where their values mix those of nodes.
 template <int D, Kernel<D> K>
 void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt)
 {
   if constexpr (HasNodePart<K, D>) {
     spread(m.kernel.node_part(), m.nodes.motion, m.hats);
-    m.walls.hold(m.clock.time, dt, m.hats.motion);
+    if constexpr (!HasOwnValues<K, D>)
+      m.walls.hold(m.clock.time, dt, m.hats.motion);
   }
 }
 

@@ -5,33 +5,26 @@
 
 namespace talus {
 
-/// What particles add up to on a hat.
+/// What particles add up to on a hat: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
+/// operators need besides.
 template <int D>
-struct alignas(64) HatSum {
-  Real mass{};                          ///< sum B m [kg]
-  float lightest = NodeSum<D>::unseen;  ///< as in NodeSum
-  Vec<D> momentum = Vec<D>::Zero();     ///< sum B m (v + A (c_n - c_p)) [kg m/s], c_p = sum_n B_n c_n
-  Vec<D> force = Vec<D>::Zero();        ///< sum B f of loads on particles [N]
-  Mat<D> affine = Mat<D>::Zero();       ///< sum B m A [kg/s]
-  Mat<D> tension = Mat<D>::Zero();      ///< sum B V sigma [N m]
-  bool is_seen() const noexcept { return lightest < NodeSum<D>::unseen; }
-  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return momentum + affine * arm; }
+struct HatSum : NodeSum<D> {
+  Mat<D> affine = Mat<D>::Zero();   ///< sum B m A [kg/s]
+  Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma [N m]
+  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept
   {
-    momentum.setZero();
+    NodeSum<D>::clear_momentum();
     affine.setZero();
   }
   void add_momentum(const HatSum& other) noexcept
   {
-    momentum += other.momentum;
+    NodeSum<D>::add_momentum(other);
     affine += other.affine;
   }
   HatSum& operator+=(const HatSum& other) noexcept
   {
-    mass += other.mass;
-    lightest = std::min(lightest, other.lightest);
-    momentum += other.momentum;
-    force += other.force;
+    NodeSum<D>::operator+=(other);
     affine += other.affine;
     tension += other.tension;
     return *this;
@@ -49,9 +42,10 @@ struct Hats {
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
 /// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
-/// linear fields are handed on as they were read, whatever S is.
+/// linear fields are handed on as they were read, whatever S is.  `by_hats_around`: the mass of a node is to be measured by theirs.
 template <int D>
-void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::vector<HatSum<D>>& hats, std::vector<NodeSum<D>>& sum)
+void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::vector<HatSum<D>>& hats, bool by_hats_around,
+             std::vector<NodeSum<D>>& sum)
 {
   for_each_node(std::span(sum), [&](Index v) {
     NodeSum<D> total;
@@ -63,13 +57,14 @@ void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::
       around += hat.mass;
       if (!hat.is_seen())
         return;
-      const Real mass = S * hat.mass;
-      total.mass += mass;
+      total.mass += S * hat.mass;
+      total.gross += static_cast<float>(std::abs(S)) * hat.gross;
       total.lightest = std::min(total.lightest, hat.lightest);
       total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
       total.force += S * hat.force - hat.tension * gradient;
     });
-    total.gross = static_cast<float>(around / ring);
+    if (by_hats_around)
+      total.gross = static_cast<float>(around / ring);
     return total;
   });
 }

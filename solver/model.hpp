@@ -5,8 +5,7 @@
 #include "solver/ledger.hpp"
 #include "solver/loads.hpp"
 #include "solver/relocate.hpp"
-#include "solver/through_hats.hpp"
-#include "solver/through_weights.hpp"
+#include "solver/through_both.hpp"
 #include "solver/transfer.hpp"
 #include "solver/walls.hpp"
 
@@ -35,7 +34,8 @@ struct Timings {
 
 /// The way of a kernel's particles to the nodes and back; what they deposit is its `Sum`, what they read its `Motion`.
 template <int D, Kernel<D> K>
-using Through = std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>;
+using Through = std::conditional_t<HasOwnValues<K, D>, ThroughBoth<D, K>,
+                                   std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>>;
 
 template <int D, Kernel<D> K>
 struct Model {
@@ -155,7 +155,7 @@ void make_ready(Model<D, K>& m, bool by_id)
   for (const Facet facet : m.walls.closed_facets(m.mesh))
     m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
   m.mass.start = totals(m.particles).mass;
-  m.nodes.least_share_of_gross = HasNodePart<K, D> ? least_share_of_hats : least_share_of_cells;
+  m.nodes.least_share_of_gross = HasNodePart<K, D> && !HasOwnValues<K, D> ? least_share_of_hats : least_share_of_cells;
   m.nodes.least_share = m.kernel.claims().non_negative ? least_share : least_share_of_signed_weights;
   index_rows(m);
 }

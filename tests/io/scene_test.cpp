@@ -37,6 +37,14 @@ TEST(Scene, ReadsTheHead)
   EXPECT_EQ(s.file, (folder / "plane.yaml").string());
 }
 
+TEST(Scene, ReadsChoicesOfTheKernelUmls)
+{
+  const Scene s = scene("plane.yaml");
+  ASSERT_TRUE(s.umls.has_value());
+  EXPECT_EQ(s.umls->gradient, UmlsGradient::exact_force);
+  EXPECT_FALSE(scene("solid.yaml").umls.has_value());
+}
+
 TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
 {
   const Scene s = scene("solid.yaml");
