@@ -129,7 +129,7 @@ TYPED_TEST(ExactForceIn, KeepsTheMomentumOfAFreeBlock)
   run_until(m, 0.2);
   EXPECT_FALSE(m.health.worst());
   EXPECT_LT((totals(m.particles).momentum - before.momentum).norm(), 1e-12 * 0.2 * before.mass);
-  EXPECT_LT(totals(m.particles).kinetic, 1.01 * before.kinetic);
+  EXPECT_LT(totals(m.particles).kinetic, before.kinetic) << "some of it has gone into strain";
 }
 
 }  // namespace
