@@ -18,6 +18,7 @@ void with_kernel(std::string_view name, F&& f)
 }
 
 inline void options_of(const Scene&, NoOptions&) {}
+inline void options_of(const Scene& scene, UmlsOptions& options) { options = scene.umls.value_or(options); }
 inline void options_of(const Scene& scene, ProjectedOptions& options) { options = scene.projected.value_or(options); }
 
 template <int D, Kernel<D> K>

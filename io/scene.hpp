@@ -17,6 +17,7 @@
 #include "io/scene_output.hpp"
 #include "io/scene_stages.hpp"
 #include "kernels/projected_options.hpp"
+#include "kernels/umls_options.hpp"
 
 namespace talus {
 
@@ -76,6 +77,7 @@ struct Scene {
   Accuracy accuracy = Accuracy::standard;
   MeshSpec mesh;
   std::string kernel = "umls";
+  std::optional<UmlsOptions> umls;
   std::optional<ProjectedOptions> projected;
   TimeSpec time;
   TransferSpec transfer;
@@ -99,6 +101,7 @@ struct Scene {
             "particles_per_cell and cfl are kept where they are given, and so are meshes from files"),
         group("mesh", &Scene::mesh, "the background mesh"),
         optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
+        group("umls", &Scene::umls, "choices of the kernel umls"),
         group("projected", &Scene::projected, "choices of the kernel projected"),
         optional("time", &Scene::time, any, "-", "end and step"),
         optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),

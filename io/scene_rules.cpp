@@ -29,11 +29,14 @@ class Rules {
  private:
   void kernel()
   {
-    const bool projected = scene_.kernel == "projected";
     known_word("kernel", "kernel", scene_.kernel, kernel_names());
-    if (scene_.projected && !projected)
-      add("projected", fmt::format("these are choices of the kernel projected; the scene's is {}", scene_.kernel));
-    if (projected && scene_.transfer.scheme == TransferScheme::apic)
+    const auto only_of = [&](std::string_view kernel, bool given) {
+      if (given && scene_.kernel != kernel)
+        add(std::string(kernel), fmt::format("these are choices of the kernel {}; the scene's is {}", kernel, scene_.kernel));
+    };
+    only_of("umls", scene_.umls.has_value());
+    only_of("projected", scene_.projected.has_value());
+    if (scene_.kernel == "projected" && scene_.transfer.scheme == TransferScheme::apic)
       add("transfer.scheme", "apic takes its matrix from the weights of particles, which projected does not make; take tpic or aflip");
   }
 

@@ -129,6 +129,18 @@ template <class K, int D>
 concept HasNodePart = requires(const K k) {
   { k.node_part() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
+
+/// A node part for the gradient alone: values are those of the cell part, S = I, and the stencil begins with the vertices of the cell.
+template <class K, int D>
+concept HasOwnValues = HasNodePart<K, D> && requires { requires K::own_values; };
+
+/// A kernel that knows grad w_v [1/m] of the weights at hand, with those up to weights.padded_size[lane] set, and may want it for the force.
+template <class K, int D>
+concept HasSlopesOfValues = requires(const K k, const typename K::Cell& cell, const Pack (&x)[D], const Weights<D, K::max_nodes>& weights,
+                                     Real (&slopes)[D][K::max_nodes]) {
+  { k.pairs_force_with_slopes() } noexcept -> std::same_as<bool>;
+  { k.slopes_of_values(cell, x, 0, weights, slopes) } noexcept;
+};
 // clang-format on
 
 }  // namespace talus

@@ -3,14 +3,15 @@
 #include "core/type_list.hpp"
 #include "kernels/linear.hpp"
 #include "kernels/projected.hpp"
-#include "kernels/umls.hpp"
+#include "kernels/umls_projected.hpp"
 
 namespace talus {
 
 /// Kernels on meshes of dimension D, one line each.
 template <int D>
-using Kernels = TypeList<Linear<D>,      // hats
-                         Umls<D>,        // moving least squares
-                         Projected<D>>;  // hats with operators at the nodes
+using Kernels = TypeList<Linear<D>,          // hats
+                         Umls<D>,            // moving least squares
+                         Projected<D>,       // hats with operators at the nodes
+                         UmlsProjected<D>>;  // values of the second, gradient of the third
 
 }  // namespace talus

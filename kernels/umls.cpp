@@ -1,5 +1,5 @@
 // Unstructured moving least squares: tables, and the two sweeps over the stencil of one particle.
-#include "kernels/umls.hpp"
+#include "kernels/umls_samples.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 #include <string>
 
 #include "core/parallel.hpp"
-#include "kernels/pack.hpp"
 #include "kernels/symmetric.hpp"
 
 namespace talus {
@@ -35,52 +34,6 @@ struct Moments {
   Pack first[D];              ///< W0 c
   Symmetric<D, Pack> spread;  ///< W0^2 S, about the centroid of the weights
 };
-
-/// A particle in its cell.
-template <int D>
-struct Place {
-  Real x[D];  ///< about the origin of the cell
-  Pack hat;   ///< barycentric coordinates, one vertex per lane
-};
-template <int D>
-[[gnu::always_inline]] inline Place<D> place_of(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane) noexcept
-{
-  Place<D> at;
-  at.hat = D == 2 ? Pack{1, 1, 1, 0} / 3 : broadcast(0.25);
-  for (int d = 0; d < D; ++d) {
-    at.x[d] = x[d][lane] - cell.origin[d];
-    at.hat += at.x[d] * load(cell.slope[d]);
-  }
-  return at;
-}
-
-/// 2 R^2 times the quadratic B-spline d(q), q = distance / R: 3/4 - q^2 up to 1/2, (3/2 - q)^2 / 2 up to 3/2, then 0; written with
-/// truncated powers, without branch or division.  The common factor of all samples cancels in the estimate.
-[[gnu::always_inline]] inline Pack profile(const Pack& distance, Real radius) noexcept
-{
-  const Real outer_end = 1.5 * radius, inner_end = 0.5 * radius;
-  const Pack outer = outer_end - smaller(distance, outer_end), inner = inner_end - smaller(distance, inner_end);
-  return outer * outer - 3 * inner * inner;
-}
-
-/// Sample weights 2 R^2 W.
-template <int D>
-[[gnu::always_inline]] inline void sample(const typename Umls<D>::Cell& cell, const Place<D>& at, Real* weight) noexcept
-{
-  Real radius = cell.radius;
-  for (int d = 0; d < D; ++d)
-    radius += cell.radius_slope[d] * at.x[d];
-  for (int i = 0; i < cell.padded_size; i += pack_size) {
-    Pack r2{}, eta = at.hat[0] * load(cell.adjacent[0] + i);
-    for (int d = 0; d < D; ++d) {
-      const Pack r = load(cell.x[d] + i) - at.x[d];
-      r2 = d == 0 ? r * r : r2 + r * r;
-    }
-    for (int a = 1; a <= D; ++a)
-      eta += at.hat[a] * load(cell.adjacent[a] + i);
-    store(weight + i, eta * profile(square_root(r2), radius));
-  }
-}
 
 /// Sums of W, W y and W y (x) y of one particle, four nodes a lane.
 template <int D>
@@ -156,7 +109,7 @@ void hats_instead(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int la
 }  // namespace
 
 template <int D>
-Umls<D>::Umls(const Mesh<D>& mesh)
+Umls<D>::Umls(const Mesh<D>& mesh, const Options& options) : gradient_(options.gradient)
 {
   build_stencils(mesh);
   choose_radii(mesh);

@@ -1,6 +1,7 @@
 #pragma once
 // Unstructured moving least squares (Cao et al., arXiv 2312.10338): weights over the one-ring of a cell's vertices.
 #include "kernels/kernel.hpp"
+#include "kernels/umls_options.hpp"
 
 namespace talus {
 
@@ -22,6 +23,7 @@ class Umls {
   static constexpr std::string_view name = "umls";
   static constexpr std::string_view summary = "moving least squares over the one-ring; gradient continuous between cells";
   static constexpr int max_nodes = D == 2 ? 48 : 128;
+  using Options = UmlsOptions;
 
   struct Cell : StencilCell<D, max_nodes> {
     Real radius, radius_slope[D];                 ///< R at the origin, which is the centroid [m]; grad R [-]
@@ -30,7 +32,7 @@ class Umls {
   };
 
   /// Throws std::invalid_argument if the stencil of a cell has more than max_nodes nodes.
-  explicit Umls(const Mesh<D>& mesh);
+  explicit Umls(const Mesh<D>& mesh, const Options& options = {});
 
   Claims claims() const noexcept
   {
@@ -49,6 +51,11 @@ class Umls {
   void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept;
   void evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept;
 
+  bool pairs_force_with_slopes() const noexcept { return gradient_ == UmlsGradient::exact_force; }
+  /// grad w_v [1/m] of one lane, from its weights, for their padded size.  Jumps across faces, as the gradient of eta does.
+  void slopes_of_values(const Cell& cell, const Pack (&x)[D], int lane, const Weights<D, max_nodes>& weights,
+                        Real (&slopes)[D][max_nodes]) const noexcept;
+
   Real radius(Index node) const noexcept { return radius_[static_cast<std::size_t>(node)]; }  ///< R_v [m]
 
   /// How round S is at x: D^D det S / tr(S)^D, 1 if all directions are seen alike, 0 if a direction is not seen.
@@ -64,10 +71,11 @@ class Umls {
   Csr stencil_;
   std::vector<std::uint8_t> adjacency_;  ///< per entry of stencil_: bit a set if adjacent to vertex a of the cell
   std::vector<Real> radius_;             ///< per node [m]
+  UmlsGradient gradient_;
 };
 
 extern template class Umls<2>;
 extern template class Umls<3>;
-static_assert(Kernel<Umls<2>, 2> && Kernel<Umls<3>, 3>);
+static_assert(Kernel<Umls<2>, 2> && Kernel<Umls<3>, 3> && HasSlopesOfValues<Umls<2>, 2> && HasSlopesOfValues<Umls<3>, 3>);
 
 }  // namespace talus

@@ -87,6 +87,15 @@ std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Place
 }  // namespace
 
 template <int D>
+std::vector<Real> identity_values(const Mesh<D>& mesh)
+{
+  std::vector<Real> S(mesh.ring_of_node().item.size(), 0);
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    S[entry_of(mesh.ring_of_node(), n, n)] = 1;
+  return S;
+}
+
+template <int D>
 std::vector<Real> l2_values(const Mesh<D>& mesh)
 {
   const Csr& ring = mesh.ring_of_node();
@@ -157,6 +166,8 @@ std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha, Real wall_share
   return S;
 }
 
+template std::vector<Real> identity_values<2>(const Mesh<2>&);
+template std::vector<Real> identity_values<3>(const Mesh<3>&);
 template std::vector<Real> l2_values<2>(const Mesh<2>&);
 template std::vector<Real> l2_values<3>(const Mesh<3>&);
 template std::vector<Real> mls_values<2>(const Mesh<2>&, Real);

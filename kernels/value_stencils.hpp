@@ -4,6 +4,10 @@
 
 namespace talus {
 
+/// S = I, for a kernel whose cell part has values of its own.
+template <int D>
+std::vector<Real> identity_values(const Mesh<D>& mesh);
+
 /// The lumped L2 projection on hats, S_nv = int N_n N_v dx / V_n.  Positive everywhere; linear fields are exact only where the
 /// star of the node is symmetric.
 template <int D>

@@ -98,13 +98,14 @@ void sum_on_nodes(Model<D, K>& m)
   }
 }
 
-/// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more.
+/// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more where their values mix those of nodes.
 template <int D, Kernel<D> K>
 void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt)
 {
   if constexpr (HasNodePart<K, D>) {
     spread(m.kernel.node_part(), m.nodes.motion, m.hats);
-    m.walls.hold(m.clock.time, dt, m.hats.motion);
+    if constexpr (!HasOwnValues<K, D>)
+      m.walls.hold(m.clock.time, dt, m.hats.motion);
   }
 }
 

@@ -5,33 +5,25 @@
 
 namespace talus {
 
-/// What particles add up to on a hat.
+/// What particles add up to on a hat: with its share B, momentum sum B m (v + A (x_n - x_p)), and what the operators need besides.
 template <int D>
-struct alignas(64) HatSum {
-  Real mass{};                          ///< sum B m [kg]
-  float lightest = NodeSum<D>::unseen;  ///< as in NodeSum
-  Vec<D> momentum = Vec<D>::Zero();     ///< sum B m (v + A (x_n - x_p)) [kg m/s]
-  Vec<D> force = Vec<D>::Zero();        ///< sum B f of loads on particles [N]
-  Mat<D> affine = Mat<D>::Zero();       ///< sum B m A [kg/s]
-  Mat<D> tension = Mat<D>::Zero();      ///< sum B V sigma [N m]
-  bool is_seen() const noexcept { return lightest < NodeSum<D>::unseen; }
-  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return momentum + affine * arm; }
+struct HatSum : NodeSum<D> {
+  Mat<D> affine = Mat<D>::Zero();   ///< sum B m A [kg/s]
+  Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma [N m]
+  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept
   {
-    momentum.setZero();
+    NodeSum<D>::clear_momentum();
     affine.setZero();
   }
   void add_momentum(const HatSum& other) noexcept
   {
-    momentum += other.momentum;
+    NodeSum<D>::add_momentum(other);
     affine += other.affine;
   }
   HatSum& operator+=(const HatSum& other) noexcept
   {
-    mass += other.mass;
-    lightest = std::min(lightest, other.lightest);
-    momentum += other.momentum;
-    force += other.force;
+    NodeSum<D>::operator+=(other);
     affine += other.affine;
     tension += other.tension;
     return *this;
@@ -58,9 +50,8 @@ void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::
       const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
       if (!hat.is_seen())
         return;
-      const Real mass = S * hat.mass;
-      total.mass += mass;
-      total.gross += static_cast<float>(std::abs(mass));
+      total.mass += S * hat.mass;
+      total.gross += static_cast<float>(std::abs(S)) * hat.gross;
       total.lightest = std::min(total.lightest, hat.lightest);
       total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
       total.force += S * hat.force - hat.tension * gradient;

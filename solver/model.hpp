@@ -5,8 +5,7 @@
 #include "solver/ledger.hpp"
 #include "solver/loads.hpp"
 #include "solver/relocate.hpp"
-#include "solver/through_hats.hpp"
-#include "solver/through_weights.hpp"
+#include "solver/through_both.hpp"
 #include "solver/transfer.hpp"
 #include "solver/walls.hpp"
 
@@ -34,7 +33,8 @@ struct Timings {
 
 /// The way of a kernel's particles to the nodes and back; what they deposit is its `Sum`, what they read its `Motion`.
 template <int D, Kernel<D> K>
-using Through = std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>;
+using Through = std::conditional_t<HasOwnValues<K, D>, ThroughBoth<D, K>,
+                                   std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>>;
 
 template <int D, Kernel<D> K>
 struct Model {

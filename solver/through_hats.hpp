@@ -12,7 +12,8 @@ struct Shares {
   Pack of[D + 1];
 };
 template <int D>
-[[gnu::always_inline]] inline Shares<D> shares_of(const typename Linear<D>::Cell& cell, const Pack (&x)[D], int count) noexcept
+[[gnu::always_inline]] inline Shares<D> shares_of(const Real (&slope)[D][pack_size], const Vec<D>& centroid, const Pack (&x)[D],
+                                                  int count) noexcept
 {
   Pack there{};
   for (int lane = 0; lane < count; ++lane)
@@ -21,16 +22,40 @@ template <int D>
   for (int a = 0; a <= D; ++a) {
     Pack share = broadcast(1.0 / (D + 1));
     for (int d = 0; d < D; ++d)
-      share += cell.dw[d][a] * (x[d] - cell.origin[d]);
+      share += slope[d][a] * (x[d] - centroid[d]);
     shares.of[a] = share * there;
   }
   return shares;
 }
 
-/// Sums over the particles of a run, lanes not yet added.
+/// V sigma shared among the vertices of the cell, summed over the particles of a run; lanes not yet added.
+template <int D>
+struct TensionSums {
+  Pack of[D + 1][Symmetric<D>::size]{};
+
+  [[gnu::always_inline]] void add(const Particles<D>& particles, const Bunch& bunch, const Shares<D>& shares) noexcept
+  {
+    const Pack volume = bunch.lanes([&](std::size_t p) { return particles.volume[p]; });
+    for (int i = 0; i < D; ++i)
+      for (int j = i; j < D; ++j) {
+        const Pack T = volume * bunch.lanes([&](std::size_t p) { return particles.stress[p][Symmetric<3>::place(i, j)]; });
+        for (int a = 0; a <= D; ++a)
+          of[a][Symmetric<D>::place(i, j)] += shares.of[a] * T;
+      }
+  }
+  void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots) const noexcept
+  {
+    for (std::size_t a = 0; a <= D; ++a)
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j)
+          rows[slots[a]].tension(i, j) += sum(of[a][Symmetric<D>::place(i, j)]);
+  }
+};
+
+/// Sums of the rest, alike.
 template <int D>
 struct HatSums {
-  Pack mass[D + 1]{}, momentum[D + 1][D]{}, force[D + 1][D]{}, affine[D + 1][D][D]{}, tension[D + 1][Symmetric<D>::size]{};
+  Pack mass[D + 1]{}, momentum[D + 1][D]{}, force[D + 1][D]{}, affine[D + 1][D][D]{};
 
   template <bool affinely, bool loaded, bool forces>
   void add_to(const typename Linear<D>::Cell& cell, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
@@ -42,19 +67,18 @@ struct HatSums {
       Vec<D> arm;
       for (int d = 0; d < D; ++d)
         arm[d] = cell.x[d][a];
-      if constexpr (forces)
+      if constexpr (forces) {
         row.mass += sum(mass[a]);
+        row.gross += static_cast<float>(sum(mass[a]));
+      }
       Mat<D> K = Mat<D>::Zero();
       for (int i = 0; i < D; ++i) {
         row.momentum[i] += sum(momentum[a][i]);
         if constexpr (loaded)
           row.force[i] += sum(force[a][i]);
-        for (int j = 0; j < D; ++j) {
-          if constexpr (affinely)
+        if constexpr (affinely)
+          for (int j = 0; j < D; ++j)
             K(i, j) = sum(affine[a][i][j]);
-          if constexpr (forces)
-            row.tension(i, j) += sum(tension[a][Symmetric<D>::place(i, j)]);
-        }
       }
       if constexpr (affinely) {
         row.affine += K;
@@ -93,15 +117,6 @@ template <bool affinely, bool loaded, bool forces, int D>
           sums.affine[a][i][j] += B * A[i][j];
     }
   }
-  if constexpr (forces) {
-    const Pack volume = bunch.lanes([&](std::size_t p) { return particles.volume[p]; });
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        const Pack T = volume * bunch.lanes([&](std::size_t p) { return particles.stress[p][Symmetric<3>::place(i, j)]; });
-        for (int a = 0; a <= D; ++a)
-          sums.tension[a][Symmetric<D>::place(i, j)] += shares.of[a] * T;
-      }
-  }
   if constexpr (loaded)
     for (int i = 0; i < D; ++i) {
       const Pack f = bunch.lanes([&](std::size_t p) { return particles.applied[p][i]; });
@@ -111,25 +126,39 @@ template <bool affinely, bool loaded, bool forces, int D>
 }
 
 /// What four particles see of the hats of their cell.
-template <bool with_motion, bool with_gradient, int D>
-[[gnu::always_inline]] inline Seen<D> see(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares) noexcept
+template <bool with_change, int D>
+[[gnu::always_inline]] inline void see_velocity(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares,
+                                                Seen<D>& seen) noexcept
 {
-  Seen<D> seen;
   for (int i = 0; i < D; ++i) {
     seen.v[i] = seen.change[i] = Pack{};
     for (int a = 0; a <= D; ++a) {
       seen.v[i] += shares.of[a] * hats[static_cast<std::size_t>(a)].v[i];
-      if constexpr (with_motion)
+      if constexpr (with_change)
         seen.change[i] += shares.of[a] * hats[static_cast<std::size_t>(a)].change[i];
     }
-    if constexpr (with_gradient)
-      for (int j = 0; j < D; ++j) {
-        seen.L[i][j] = Pack{};
-        for (int a = 0; a <= D; ++a)
-          seen.L[i][j] += shares.of[a] * hats[static_cast<std::size_t>(a)].L(i, j);
-      }
   }
-  return seen;
+}
+template <int D>
+[[gnu::always_inline]] inline void see_gradient(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares,
+                                                Seen<D>& seen) noexcept
+{
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) {
+      seen.L[i][j] = Pack{};
+      for (int a = 0; a <= D; ++a)
+        seen.L[i][j] += shares.of[a] * hats[static_cast<std::size_t>(a)].L(i, j);
+    }
+}
+
+/// The motion of the hats of a cell.
+template <int D>
+std::array<HatMotion<D>, D + 1> hats_of(const std::vector<HatMotion<D>>& hats, std::span<const Index> nodes) noexcept
+{
+  std::array<HatMotion<D>, D + 1> here;
+  for (std::size_t a = 0; a <= D; ++a)
+    here[a] = hats[static_cast<std::size_t>(nodes[a])];
+  return here;
 }
 
 /// The cell at hand, its particles' barycentric coordinates, and the sums of a run.  Lives on the stack of a thread.
@@ -142,29 +171,37 @@ class ThroughHats {
 
   explicit ThroughHats(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
-  void place(const Bunch& bunch, const Pack (&x)[D]) noexcept { shares_ = shares_of<D>(cell_, x, bunch.count); }
+  void place(const Bunch& bunch, const Pack (&x)[D]) noexcept { shares_ = shares_of<D>(cell_.dw, cell_.origin, x, bunch.count); }
 
-  void clear() noexcept { sums_ = {}; }
+  void clear() noexcept
+  {
+    sums_ = {};
+    tension_ = {};
+  }
   template <bool affine, bool loaded, bool forces>
   void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&x)[D], const std::vector<Mat<D>>& fields) noexcept
   {
     talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, x, shares_, sums_);
+    if constexpr (forces)
+      tension_.add(particles, bunch, shares_);
   }
   template <bool affine, bool loaded, bool forces>
   void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
     sums_.template add_to<affine, loaded, forces>(cell_, rows, slots, lightest);
+    if constexpr (forces)
+      tension_.add_to(rows, slots);
   }
 
-  void read(const std::vector<HatMotion<D>>& hats) noexcept
-  {
-    for (std::size_t a = 0; a <= D; ++a)
-      motion_[a] = hats[static_cast<std::size_t>(cell_.nodes[a])];
-  }
+  void read(const std::vector<HatMotion<D>>& hats) noexcept { motion_ = hats_of(hats, cell_.nodes); }
   template <bool with_change, bool with_gradient>
   Seen<D> see(const Bunch&) const noexcept
   {
-    return talus::see<with_change, with_gradient>(motion_, shares_);
+    Seen<D> seen;
+    see_velocity<with_change>(motion_, shares_, seen);
+    if constexpr (with_gradient)
+      see_gradient(motion_, shares_, seen);
+    return seen;
   }
 
  private:
@@ -172,6 +209,7 @@ class ThroughHats {
   typename K::Cell cell_;
   Shares<D> shares_;
   HatSums<D> sums_;
+  TensionSums<D> tension_;
   std::array<HatMotion<D>, D + 1> motion_;
 };
 

@@ -1,140 +1,8 @@
 #pragma once
 // How particles of a cell reach the nodes through the weights of a kernel: deposit on its stencil, and read from it.
-#include "solver/blocks.hpp"
-#include "solver/bunch.hpp"
+#include "solver/deposit.hpp"
 
 namespace talus {
-
-/// Sums over the stencil of one cell, one array per component so that lanes run over nodes.
-template <int D, int N>
-struct CellSums {
-  alignas(64) Real mass[N];
-  alignas(64) Real momentum[D][N];
-  alignas(64) Real force[D][N];
-
-  void clear(int n) noexcept
-  {
-    std::fill_n(mass, n, 0.0);
-    for (int i = 0; i < D; ++i) {
-      std::fill_n(momentum[i], n, 0.0);
-      std::fill_n(force[i], n, 0.0);
-    }
-  }
-  /// `lightest` [kg] of the particles summed.
-  void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
-  {
-    for (std::size_t a = 0; a < slots.size(); ++a) {
-      NodeSum<D>& row = rows[slots[a]];
-      row.mass += mass[a];
-      row.lightest = std::min(row.lightest, lightest);
-      row.gross += static_cast<float>(std::abs(mass[a]));
-      for (int i = 0; i < D; ++i) {
-        row.momentum[i] += momentum[i][a];
-        row.force[i] += force[i][a];
-      }
-    }
-  }
-};
-
-/// V sigma G_v = s_v (slope y_v - shift) [N] of four particles: the stress of each applied to the factors of its weights.
-template <int D>
-struct Tension {
-  Pack slope[D][D], shift[D];
-};
-template <int D, int N>
-Tension<D> tension_of(const Particles<D>& particles, const Bunch& bunch, const Weights<D, N>& weights) noexcept
-{
-  const Pack volume = bunch.lanes([&](std::size_t p) { return particles.volume[p]; });
-  Pack T[D][D];
-  for (int i = 0; i < D; ++i)
-    for (int j = i; j < D; ++j)
-      T[i][j] = T[j][i] = volume * bunch.lanes([&](std::size_t p) { return particles.stress[p][Symmetric<3>::place(i, j)]; });
-  Tension<D> tension;
-  for (int i = 0; i < D; ++i) {
-    tension.shift[i] = Pack{};
-    for (int j = 0; j < D; ++j) {
-      tension.shift[i] += T[i][j] * weights.shift[j];
-      tension.slope[i][j] = Pack{};
-      for (int k = 0; k < D; ++k)
-        tension.slope[i][j] += T[i][k] * weights.H(k, j);
-    }
-  }
-  return tension;
-}
-
-/// m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v.
-/// A is of `fields`, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
-/// MUSL) only momentum is summed.  A sweep per component: all that a sweep needs of the particle stays in registers.
-template <bool affine, bool loaded, bool forces, int D, int N>
-void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vector<Mat<D>>& fields, const StencilCell<D, N>& cell,
-             const Weights<D, N>& weights, CellSums<D, N>& sums) noexcept
-{
-  Tension<D> tension;
-  if constexpr (forces)
-    tension = tension_of(particles, bunch, weights);
-  alignas(64) Real share[N];  // m_p w_v
-  for (int lane = 0; lane < bunch.count; ++lane) {
-    const std::size_t p = bunch.p[lane];
-    const int n = weights.padded_size[lane];
-    const Real* const s = weights.s[lane];
-    const Real* y[D];
-    std::copy_n(weights.y[lane], D, y);
-    const bool y_is_x = y[0] == cell.x[0];
-    const Real m = particles.mass[p];
-    Pack slope[D];
-    for (int j = 0; j < D; ++j)
-      slope[j] = broadcast(-m * weights.slope[j][lane]);
-    const Pack value = broadcast(m * weights.value[lane]);
-    for (int a = 0; a < n; a += pack_size) {
-      Pack w = value;
-      for (int j = 0; j < D; ++j)
-        w += slope[j] * load(y[j] + a);
-      w *= load(s + a);
-      store(share + a, w);
-      if constexpr (forces)
-        store(sums.mass + a, load(sums.mass + a) + w);
-    }
-    const Mat<D>& A = fields[p];
-    for (int i = 0; i < D; ++i) {
-      Real v_origin = particles.v[p][i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
-      Pack A_i[D], T_i[D];
-      for (int j = 0; j < D; ++j) {
-        if constexpr (affine) {
-          A_i[j] = broadcast(A(i, j));
-          v_origin -= A(i, j) * (particles.x[p][j] - cell.origin[j]);
-        }
-        if constexpr (forces)
-          T_i[j] = broadcast(-tension.slope[i][j][lane]);
-      }
-      const Pack v = broadcast(v_origin);
-      Pack shift, per_mass;
-      if constexpr (forces)
-        shift = broadcast(tension.shift[i][lane]);
-      if constexpr (loaded)
-        per_mass = broadcast(particles.applied[p][i] / m);
-      Real* const to_momentum = sums.momentum[i];
-      Real* const to_force = sums.force[i];
-      for (int a = 0; a < n; a += pack_size) {
-        const Pack w = load(share + a);
-        Pack momentum = v, force = shift;
-        for (int j = 0; j < D; ++j) {
-          const Pack y_j = load(y[j] + a);
-          if constexpr (forces)
-            force += T_i[j] * y_j;
-          if constexpr (affine)
-            momentum += A_i[j] * (y_is_x ? y_j : load(cell.x[j] + a));
-        }
-        store(to_momentum + a, load(to_momentum + a) + w * momentum);
-        if constexpr (forces) {
-          Pack sum = load(to_force + a) + load(s + a) * force;
-          if constexpr (loaded)
-            sum += w * per_mass;
-          store(to_force + a, sum);
-        }
-      }
-    }
-  }
-}
 
 /// Motion of the nodes of one cell's stencil, one array per component.
 template <int D, int N>
@@ -142,10 +10,11 @@ struct CellMotion {
   alignas(64) Real v[D][N];
   alignas(64) Real change[D][N];
 
-  void read(const std::vector<NodeMotion<D>>& motion, std::span<const Index> nodes, int padded_size) noexcept
+  template <class Motion>
+  void read(const std::vector<Motion>& motion, std::span<const Index> nodes, int padded_size) noexcept
   {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
-      const NodeMotion<D>& row = motion[static_cast<std::size_t>(nodes[a])];
+      const Motion& row = motion[static_cast<std::size_t>(nodes[a])];
       for (int i = 0; i < D; ++i) {
         v[i][a] = row.v[i];
         change[i][a] = row.change[i];
@@ -279,9 +148,13 @@ class ThroughWeights {
 
   void clear() noexcept { sums_.clear(cell_.padded_size); }
   template <bool affine, bool loaded, bool forces>
-  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
+  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&x)[D], const std::vector<Mat<D>>& fields) noexcept
   {
-    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, sums_);
+    const bool exact = forces && pairs_force_with_slopes();
+    const Tension<D> tension = forces && !exact ? tension_of(particles, bunch, weights_) : Tension<D>{};
+    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, tension, sums_);
+    if (exact)
+      deposit_exact_force(particles, bunch, x);
   }
   template <bool affine, bool loaded, bool forces>
   void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
@@ -301,6 +174,24 @@ class ThroughWeights {
   }
 
  private:
+  bool pairs_force_with_slopes() const noexcept
+  {
+    if constexpr (HasSlopesOfValues<K, D>)
+      return kernel_.pairs_force_with_slopes();
+    else
+      return false;
+  }
+  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const Bunch& bunch,
+                           [[maybe_unused]] const Pack (&x)[D]) noexcept
+  {
+    if constexpr (HasSlopesOfValues<K, D>)
+      for (int lane = 0; lane < bunch.count; ++lane) {
+        alignas(64) Real slopes[D][K::max_nodes];
+        kernel_.slopes_of_values(cell_, x, lane, weights_, slopes);
+        deposit_force(particles, bunch.p[lane], slopes, weights_.padded_size[lane], sums_);
+      }
+  }
+
   const K& kernel_;
   typename K::Cell cell_;
   Weights<D, K::max_nodes> weights_;

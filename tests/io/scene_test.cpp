@@ -37,6 +37,14 @@ TEST(Scene, ReadsTheHead)
   EXPECT_EQ(s.file, (folder / "plane.yaml").string());
 }
 
+TEST(Scene, ReadsChoicesOfTheKernelUmls)
+{
+  const Scene s = scene("plane.yaml");
+  ASSERT_TRUE(s.umls.has_value());
+  EXPECT_EQ(s.umls->gradient, UmlsGradient::exact_force);
+  EXPECT_FALSE(scene("solid.yaml").umls.has_value());
+}
+
 TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
 {
   const Scene s = scene("solid.yaml");
@@ -223,10 +231,10 @@ TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
 TEST(Scene, KnowsWhereEverythingWasAskedFor)
 {
   const Scene s = scene("plane.yaml");
-  EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":26:5");
+  EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":27:5");
   EXPECT_EQ(s.materials.at(1).where.path, "materials[1] \"rock\"");
   EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.path, "boundaries[3]");
-  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 39);
+  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 40);
   EXPECT_EQ(s.outputs.history.value().points.at(0).where.path, "outputs.history.points[0] \"top\"");
 }
 

@@ -91,7 +91,7 @@ std::vector<std::array<Real, D + 1>> trial_points(std::uint32_t seed)
 }
 
 /// The weights of one point over the nodes that matter to it.  With a node part these are the rings of the cell's vertices, and the
-/// weights are those of the hats carried on by the operators.
+/// weights are those of the hats carried on by the operators; where the kernel has values of its own, the gradients alone.
 template <class K, int D>
 class Probe {
  public:
@@ -101,7 +101,7 @@ class Probe {
     kernel_.open(mesh_, c, cell);
     nodes_.assign(cell.nodes.begin(), cell.nodes.end());
     if constexpr (HasNodePart<K, D>) {
-      for (const Index n : cell.nodes)
+      for (const Index n : mesh_.cell(c))
         nodes_.insert(nodes_.end(), mesh_.ring_of_node()[n].begin(), mesh_.ring_of_node()[n].end());
       std::sort(nodes_.begin(), nodes_.end());
       nodes_.erase(std::unique(nodes_.begin(), nodes_.end()), nodes_.end());
@@ -118,6 +118,11 @@ class Probe {
     gradients_.assign(nodes_.size(), Vec<D>::Zero());
     for (int a = 0; a < cell.size; ++a)
       add(a);
+    if constexpr (HasOwnValues<K, D>) {
+      const auto hats = mesh_.barycentric(cell.cell, x);
+      for (std::size_t a = 0; a <= D; ++a)
+        add_row(cell.nodes[a], 0, hats[a]);
+    }
   }
   int size() const { return static_cast<int>(nodes_.size()); }
   Real value(int i) const { return values_[static_cast<std::size_t>(i)]; }
@@ -132,17 +137,25 @@ class Probe {
   void add(int a)
   {
     const auto i = static_cast<std::size_t>(a);
-    if constexpr (HasNodePart<K, D>) {
-      kernel_.node_part().for_each_in_row(cell.nodes[i], [&](Index v, Real S, const Vec<D>& gradient) {
-        const auto at = static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin());
-        values_[at] += weights.w[a] * S;
-        gradients_[at] += weights.w[a] * gradient;
-      });
+    if constexpr (HasOwnValues<K, D>) {
+      values_[entry(cell.nodes[i])] = weights.w[a];
+    } else if constexpr (HasNodePart<K, D>) {
+      add_row(cell.nodes[i], weights.w[a], weights.w[a]);
     } else {
       values_[i] = weights.w[a];
       for (int d = 0; d < D; ++d)
         gradients_[i][d] = weights.dw[d][a];
     }
+  }
+
+  std::size_t entry(Index v) const { return static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin()); }
+  /// `value` of the row of n in S, `hat` of that in D.
+  void add_row(Index n, Real value, Real hat)
+  {
+    kernel_.node_part().for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
+      values_[entry(v)] += value * S;
+      gradients_[entry(v)] += hat * gradient;
+    });
   }
 
   Weights<D, K::max_nodes> factors_;

@@ -43,7 +43,9 @@ using Cases = ::testing::Types<
     Case<3, Umls<3>, Scheme::apic, false>, Case<3, Umls<3>, Scheme::tpic, false>, Case<2, Umls<2>, Scheme::aflip, true>,
     Case<2, Projected<2>, Scheme::flip, true>, Case<2, Projected<2>, Scheme::flip, false>, Case<2, Projected<2>, Scheme::tpic, false>,
     Case<2, Projected<2>, Scheme::aflip, true>, Case<2, Projected<2>, Scheme::aflip, false>, Case<3, Projected<3>, Scheme::flip, true>,
-    Case<3, Projected<3>, Scheme::tpic, true>, Case<3, Projected<3>, Scheme::aflip, true>>;
+    Case<3, Projected<3>, Scheme::tpic, true>, Case<3, Projected<3>, Scheme::aflip, true>, Case<2, UmlsProjected<2>, Scheme::flip, true>,
+    Case<2, UmlsProjected<2>, Scheme::apic, false>, Case<2, UmlsProjected<2>, Scheme::aflip, true>,
+    Case<3, UmlsProjected<3>, Scheme::tpic, false>>;
 TYPED_TEST_SUITE(EveryKernelAndTransfer, Cases);
 
 /// Hats have no bound on force over mass at a node that a particle has only just come to see: without MUSL they live a short time.
@@ -127,10 +129,13 @@ TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalanceWhileStable)
   m.energy = {.kinetic_start = totals(m.particles).kinetic};
   const Real start = m.energy.kinetic_start;
   const Real dt = 0.05 * shortest_crossing(m.mesh, m.materials, m.particles);  // the balance is first order in the step
-  while (m.clock.time < 0.2)
+  Real strained = 0;
+  while (m.clock.time < 0.2) {
     advance(m, dt);
+    strained = std::max(strained, std::abs(m.energy.internal));
+  }
   const Real kinetic = totals(m.particles).kinetic;
-  EXPECT_GT(std::abs(m.energy.internal), 1e-3 * start);
+  EXPECT_GT(strained, 1e-3 * start) << "at some time of the swing, or there is no balance to close";
   EXPECT_LT(std::abs(m.energy.defect(kinetic)), 0.01 * start);
 }
 

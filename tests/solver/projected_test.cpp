@@ -1,4 +1,4 @@
-// The projected kernel in the solver: the way to the nodes is the way back transposed, linear motions are exact at surfaces too.
+// Kernels with a node part in the solver: the way to the nodes is the way back transposed, linear motions are exact at surfaces too.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -8,25 +8,30 @@
 namespace talus::testing {
 namespace {
 
-template <int D_, ValueStencil values_>
+template <int D_, class K_, ValueStencil values = ValueStencil::maxent>
 struct Setting {
   static constexpr int D = D_;
-  static constexpr ValueStencil values = values_;
+  using K = K_;
+  static Options<K> options()
+  {
+    if constexpr (std::is_same_v<Options<K>, ProjectedOptions>)
+      return {.values = values};
+    else
+      return {};
+  }
 };
 template <class S>
 class ProjectedIn : public ::testing::Test {};
-using Settings = ::testing::Types<Setting<2, ValueStencil::maxent>, Setting<2, ValueStencil::mls>, Setting<3, ValueStencil::maxent>,
-                                  Setting<3, ValueStencil::l2>>;
+using Settings = ::testing::Types<Setting<2, Projected<2>>, Setting<2, Projected<2>, ValueStencil::mls>, Setting<2, UmlsProjected<2>>,
+                                  Setting<3, Projected<3>>, Setting<3, Projected<3>, ValueStencil::l2>, Setting<3, UmlsProjected<3>>>;
 TYPED_TEST_SUITE(ProjectedIn, Settings);
 
 /// A ball that cuts cells, with random stress and velocity in its particles; every particle's cell is known.
 template <class S>
-Model<S::D, Projected<S::D>> ball()
+Model<S::D, typename S::K> ball()
 {
   constexpr int D = S::D;
-  ProjectedOptions options;
-  options.values = S::values;
-  Model<D, Projected<D>> m(unit_box<D>(D == 2 ? 10 : 6, 0.2), options);
+  Model<D, typename S::K> m(unit_box<D>(D == 2 ? 10 : 6, 0.2), S::options());
   m.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   add_body<D>(m, "ball", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.4; });
   std::mt19937 random(1);
@@ -43,8 +48,8 @@ Model<S::D, Projected<S::D>> ball()
 }
 
 /// Any velocities at all, and what the particles read of them; nothing moves.
-template <int D>
-void read_random_motion(Model<D, Projected<D>>& m)
+template <int D, Kernel<D> K>
+void read_random_motion(Model<D, K>& m)
 {
   std::mt19937 random(2);
   std::uniform_real_distribution<Real> number(-1, 1);
@@ -110,9 +115,10 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
 }
 
 /// A film of particles on the floor, thinner than a cell, under its own weight: the nodes above it must not run away.
-TEST(Projected, HoldsAFilmOnAWall)
+template <class K>
+void hold_a_film_on_a_wall()
 {
-  Model<2, Projected<2>> m(unit_box<2>(8, 0.2));
+  Model<2, K> m(unit_box<2>(8, 0.2));
   m.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
   add_body<2>(m, "film", rubber(1e5, 0.3, 1000), 12, [](const Vec<2>& x) { return x[1] < 0.1; });
   for (std::size_t p = 0; p < m.particles.id.size(); ++p)
@@ -133,6 +139,12 @@ TEST(Projected, HoldsAFilmOnAWall)
     EXPECT_GT(m.particles.x[p][1], 0);
     EXPECT_LT(m.particles.v[p].norm(), 0.1) << "a tenth of what a fall from the height of a cell gives";
   }
+}
+
+TEST(Projected, HoldsAFilmOnAWall)
+{
+  hold_a_film_on_a_wall<Projected<2>>();
+  hold_a_film_on_a_wall<UmlsProjected<2>>();
 }
 
 }  // namespace

@@ -1,0 +1,23 @@
+#pragma once
+// Choices of the kernel `umls`, as a scene declares them.
+#include "core/fields.hpp"
+#include "core/types.hpp"
+
+namespace talus {
+
+enum class UmlsGradient : std::uint8_t { estimate, exact_force };
+constexpr std::array<std::string_view, 2> words(UmlsGradient) { return {"estimate", "exact_force"}; }
+
+/// What a scene may choose of the kernel `umls`.
+struct UmlsOptions {
+  UmlsGradient gradient = UmlsGradient::estimate;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional_choice("gradient", &UmlsOptions::gradient,
+                        "estimate (of least squares, for forces and strains alike, as published) or exact_force (forces from the "
+                        "exact slopes of the values, strains from the estimate)")};
+  }
+};
+
+}  // namespace talus

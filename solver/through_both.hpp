@@ -1,0 +1,74 @@
+#pragma once
+// How particles of a cell reach the nodes where values are the kernel's own and the gradient is that of the hats' operators.
+#include "solver/through_hats.hpp"
+#include "solver/through_weights.hpp"
+
+namespace talus {
+
+/// Mass, momentum and velocity through the weights of the stencil; tension and velocity gradient through the hats of the cell, whose
+/// vertices are the first nodes of the stencil.  The affine moment of a row stays zero: weights carry it with the momentum.
+template <int D, Kernel<D> K>
+class ThroughBoth {
+ public:
+  using Sum = HatSum<D>;
+  using Motion = HatMotion<D>;
+  static constexpr bool has_apic = true;
+
+  explicit ThroughBoth(const K& kernel) : kernel_(kernel) {}
+  void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
+  void place(const Bunch& bunch, const Pack (&x)[D]) noexcept
+  {
+    kernel_.evaluate(cell_, x, bunch.count, weights_);
+    shares_ = shares_of<D>(cell_.slope, cell_.origin, x, bunch.count);
+  }
+
+  void clear() noexcept
+  {
+    sums_.clear(cell_.padded_size);
+    tension_ = {};
+  }
+  template <bool affine, bool loaded, bool forces>
+  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
+  {
+    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, Tension<D>{}, sums_);
+    if constexpr (forces)
+      tension_.add(particles, bunch, shares_);
+  }
+  template <bool affine, bool loaded, bool forces>
+  void add_to(std::span<Sum> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
+  {
+    sums_.add_to(rows, slots, lightest);
+    if constexpr (forces)
+      tension_.add_to(rows, slots);
+  }
+
+  void read(const std::vector<Motion>& rows) noexcept
+  {
+    motion_.read(rows, cell_.nodes, cell_.padded_size);
+    hats_ = hats_of(rows, cell_.nodes);
+  }
+  template <bool with_change, bool with_gradient>
+  Seen<D> see(const Bunch& bunch) const noexcept
+  {
+    Seen<D> seen = talus::see<with_change, false>(motion_, weights_, bunch.count);
+    if constexpr (with_gradient)
+      see_gradient(hats_, shares_, seen);
+    return seen;
+  }
+  Mat<D> apic_field(int lane, const Vec<D>& x, const Mat<D>& L) const noexcept
+  {
+    return talus::apic_field(cell_, motion_, weights_, lane, x, L);
+  }
+
+ private:
+  const K& kernel_;
+  typename K::Cell cell_;
+  Weights<D, K::max_nodes> weights_;
+  Shares<D> shares_;
+  CellSums<D, K::max_nodes> sums_;
+  TensionSums<D> tension_;
+  CellMotion<D, K::max_nodes> motion_;
+  std::array<HatMotion<D>, D + 1> hats_;
+};
+
+}  // namespace talus
