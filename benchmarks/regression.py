@@ -52,10 +52,10 @@ def compare(records, values, failed):
 
 
 def write(document):
-    """Stores the values of all cases that ran to their end."""
-    broken = {record["case"] for record in document["results"] if "error" in record}
+    """Stores the values of all cases that gave any; a single run that did not end well is a known shortfall, like a number that is wrong."""
+    measured = {record["case"] for record in document["results"] if "error" not in record}
     for case in document["cases"]:
-        if case["case"] in broken:
+        if case["case"] not in measured:
             continue
         values = {r["metric"]: None if r["value"] is None else float(f"{r['value']:.{DIGITS + 4}g}") for r in document["results"] if r["case"] == case["case"]}
         text = json.dumps({"program": case["program"]["version"], "commit": case["program"]["commit"], "level": case["level"],

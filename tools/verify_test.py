@@ -186,12 +186,13 @@ class Regression(unittest.TestCase):
                 (pathlib.Path(folder) / "benchmarks/c").mkdir(parents=True)
                 self.assertEqual(regression.stored("c"), ({}, []))
                 regression.write({"cases": [{"case": "c", "level": "quick", "program": {"version": "1", "commit": "abc"}}],
-                                  "results": [{"case": "c", "metric": "m", "value": 1 / 3, "pass": False}]})
+                                  "results": [{"case": "c", "metric": "m", "value": 1 / 3, "pass": False},
+                                              {"case": "c", "metric": "run r", "value": None, "pass": False, "error": "did not come to rest"}]})
                 values, failed = regression.stored("c")
             finally:
                 regression.ROOT = known
         self.assertFalse(regression.differs(1 / 3, values["m"]))
-        self.assertEqual(failed, ["m"])
+        self.assertEqual(failed, ["m", "run r"])
 
 
 class Tradeoff(unittest.TestCase):
