@@ -102,7 +102,7 @@ void sum_on_nodes(Model<D, K>& m)
   }
 }
 
-/// Local damping, by what particles feel of the net acceleration.
+/// Local damping, by what particles feel of the net acceleration: all of it but where operators stand between nodes and values.
 template <int D, Kernel<D> K>
 void settle(Model<D, K>& m, Real dt)
 {

@@ -107,8 +107,8 @@ inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
 /// are positive it never matters.
 inline constexpr Real least_share_of_cells = 0.3;
 /// With a node part, rows of nodes on a wall stay in the wall: a node beside a wall that carries a film has next to no mass, but the
-/// film's stress pulls at it.  Its mass is measured by that of the hats around.  Under a film half a cell thick it has 0.4 of their mean, as
-/// a fifth of one 0.17; nodes at free surfaces have about 0.9.
+/// film's stress pulls at it.  Its mass is measured by that of the hats around.  On a regular lattice it has 0.4 of their mean under a film
+/// half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
 inline constexpr Real least_share_of_hats = 0.2;
 
 /// Where each id stands now, if anybody asks.
