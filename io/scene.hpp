@@ -44,7 +44,7 @@ enum class TransferScheme : std::uint8_t { flip, apic, tpic, aflip };
 constexpr std::array<std::string_view, 4> words(TransferScheme) { return {"flip", "apic", "tpic", "aflip"}; }
 
 struct TransferSpec {
-  TransferScheme scheme = TransferScheme::flip;
+  TransferScheme scheme = TransferScheme::aflip;
   std::optional<bool> musl;
   std::optional<Real> pic_damping_time, pic_damping_crossings;
   Where where;
@@ -76,7 +76,7 @@ struct Scene {
   Index dimension{};
   Accuracy accuracy = Accuracy::standard;
   MeshSpec mesh;
-  std::string kernel = "umls";
+  std::string kernel = "projected";
   std::optional<UmlsOptions> umls;
   std::optional<ProjectedOptions> projected;
   TimeSpec time;

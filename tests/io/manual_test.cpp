@@ -53,10 +53,10 @@ TEST(Manual, TellsRequiredFromOptionalKeys)
 {
   EXPECT_EQ(row("the scene", "title").at("default"), "required");
   EXPECT_EQ(row("the scene", "mesh").at("default"), "required");
-  EXPECT_EQ(row("the scene", "kernel").at("default"), "umls");
+  EXPECT_EQ(row("the scene", "kernel").at("default"), "projected");
   EXPECT_EQ(row("time", "end").at("default"), "none");
   EXPECT_EQ(row("time", "max_step").at("default"), "none");
-  EXPECT_EQ(row("transfer", "scheme").at("default"), "flip");
+  EXPECT_EQ(row("transfer", "scheme").at("default"), "aflip");
   EXPECT_EQ(row("outputs.particles", "fields").at("default"), "[velocity, displacement, stress]");
   EXPECT_EQ(row("type: geostatic", "elastic").at("default"), "true");
 }

@@ -114,30 +114,32 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
     ASSERT_LT((L - A).norm(), 1e-12);
 }
 
-/// A film of particles on the floor, thinner than a cell, under its own weight: the nodes above it must not run away.
-template <class K>
-void hold_a_film_on_a_wall()
+/// A film of particles on the floor, a fiftieth of a cell thick, that is pulled along it and has ends: the nodes above it have hardly
+/// any mass, and must not run away under its stress.
+TEST(Projected, HoldsAFilmOnAWall)
 {
-  Model<2, K> m(unit_box<2>(8, 0.2));
+  Model<2, Projected<2>> m(unit_box<2>(8, 0.2));
   m.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
-  add_body<2>(m, "film", rubber(1e5, 0.3, 1000), 12, [](const Vec<2>& x) { return x[1] < 0.1; });
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    m.particles.x[p][1] *= 0.1;
-  for (auto& volume : m.particles.volume0)
-    volume *= 0.1;
-  for (auto& mass : m.particles.mass)
-    mass *= 0.1;
+  add_body<2>(m, "film", rubber(1e5, 0.3, 1000), 12, [](const Vec<2>& x) { return x[1] < 0.1 && x[0] > 0.25 && x[0] < 0.75; });
+  const Real share = 0.02;
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    m.particles.v[p] = {0.1 * std::sin(12 * m.particles.x[p][0]), 0};
+    m.particles.x[p][1] *= share;
+    m.particles.volume0[p] *= share;
+    m.particles.mass[p] *= share;
+  }
   Wall<2> floor;
   floor.name = "y_min";
   floor.kind = WallKind::roller;
   m.walls.add(floor, m.mesh, *m.mesh.facet_set("y_min"));
   m.loads.gravity.acceleration = {0, -10};
   make_ready(m, false);
-  run_until(m, 0.2);
-  EXPECT_FALSE(m.health.worst());
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    EXPECT_GT(m.particles.x[p][1], 0);
-    EXPECT_LT(m.particles.v[p].norm(), 0.1) << "a tenth of what a fall from the height of a cell gives";
+  const Real kinetic = totals(m.particles).kinetic;
+  ASSERT_NO_THROW(run_until(m, 0.05));
+  EXPECT_LT(totals(m.particles).kinetic, kinetic);
+  for (const auto& x : m.particles.x) {
+    EXPECT_GT(x[1], 0);
+    EXPECT_LT(x[1], 1.1 * share / 8) << "the height of the film at the start";
   }
 }
 
@@ -191,11 +193,6 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
     ASSERT_NEAR(m.particles.stress[p][1], -1e4 * (10 - m.particles.x[p][1]), 1e4) << "the weight of a layer of cells";
 }
 
-TEST(Projected, HoldsAFilmOnAWall)
-{
-  hold_a_film_on_a_wall<Projected<2>>();
-  hold_a_film_on_a_wall<UmlsProjected<2>>();
-}
 
 }  // namespace
 }  // namespace talus::testing
