@@ -24,6 +24,14 @@ class StopWatch {
   Clock::time_point last_ = Clock::now();
 };
 
+/// Counts what walls did to slaves and hats, which the kinetic energy of nodes knows nothing of.
+inline void count_beyond_nodes(const WallWork& work, EnergyLedger& energy) noexcept
+{
+  energy.walls += work.other;
+  energy.friction += work.friction;
+  energy.nodes += work.friction + work.other;
+}
+
 template <int D, Kernel<D> K>
 void sum_on_nodes(Model<D, K>& m);
 template <int D, Kernel<D> K>
@@ -58,7 +66,7 @@ void advance(Model<D, K>& m, Real dt)
   const WallWork wall_work = m.walls.apply(time, dt, m.nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);
-  m.slaves.follow(m.mesh, m.nodes, m.walls, time + dt, m.nodes.motion);  //  8
+  count_beyond_nodes(m.slaves.follow(m.mesh, m.nodes, time + dt, m.walls, m.nodes.motion), m.energy);  //  8
   record(m, gravity, on_particles + on_mesh, wall_work, dt);
   m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
   watch.lap(m.timings.nodes);
@@ -113,14 +121,14 @@ void settle(Model<D, K>& m, Real dt)
     damp(m.stage.damping, dt, m.nodes);
 }
 
-/// Motion of the nodes -> what particles read: the same, or hats, which walls hold once more where their values mix those of nodes.
+/// Motion of the nodes -> what particles read: the same, or hats, on which walls act once more where their values mix those of nodes.
 template <int D, Kernel<D> K>
 void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt)
 {
   if constexpr (HasNodePart<K, D>) {
     spread(m.kernel.node_part(), m.nodes.motion, m.hats);
     if constexpr (!HasOwnValues<K, D>)
-      m.walls.hold(m.clock.time, dt, m.hats.motion);
+      count_beyond_nodes(m.walls.apply(m.clock.time, dt, m.hats.sum, m.hats.motion), m.energy);
   }
 }
 

@@ -5,32 +5,6 @@
 
 namespace talus {
 
-/// What particles add up to on a hat: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
-/// operators need besides.
-template <int D>
-struct HatSum : NodeSum<D> {
-  Mat<D> affine = Mat<D>::Zero();   ///< sum B m A [kg/s]
-  Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma [N m]
-  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
-  void clear_momentum() noexcept
-  {
-    NodeSum<D>::clear_momentum();
-    affine.setZero();
-  }
-  void add_momentum(const HatSum& other) noexcept
-  {
-    NodeSum<D>::add_momentum(other);
-    affine += other.affine;
-  }
-  HatSum& operator+=(const HatSum& other) noexcept
-  {
-    NodeSum<D>::operator+=(other);
-    affine += other.affine;
-    tension += other.tension;
-    return *this;
-  }
-};
-
 template <int D>
 struct Hats {
   std::vector<HatSum<D>> sum;
@@ -116,7 +90,7 @@ void feel(const NodeOperators<D>& operators, Hats<D>& hats, std::vector<Vec<D>>&
   });
 }
 
-/// Unknowns -> hats that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv; walls hold the rows.
+/// Unknowns -> hats that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
 template <int D>
 void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Hats<D>& hats)
 {

@@ -69,19 +69,19 @@ void Slaves<D>::lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const
 }
 
 template <int D>
-void Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const
+WallWork Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real time, Walls<D>& walls, std::span<NodeMotion<D>> motion) const
 {
+  WallWork work;
   for (const Index slave : slaves_) {
     NodeMotion<D> mean;
     for_each_master(mesh, nodes, slave, [&](Index master, Real share) {
       mean.v += share * motion[static_cast<std::size_t>(master)].v;
       mean.change += share * motion[static_cast<std::size_t>(master)].change;
     });
-    const Vec<D> v = walls.held(slave, time, mean.v);
-    mean.change += v - mean.v;
-    mean.v = v;
+    work += walls.push(slave, time, mass_[static_cast<std::size_t>(slave)], mean);
     motion[static_cast<std::size_t>(slave)] = mean;
   }
+  return work;
 }
 
 template <int D>

@@ -31,6 +31,32 @@ struct alignas(64) NodeSum {
   }
 };
 
+/// What particles add up to on a hat: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
+/// operators need besides.
+template <int D>
+struct HatSum : NodeSum<D> {
+  Mat<D> affine = Mat<D>::Zero();   ///< sum B m A [kg/s]
+  Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma [N m]
+  Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
+  void clear_momentum() noexcept
+  {
+    NodeSum<D>::clear_momentum();
+    affine.setZero();
+  }
+  void add_momentum(const HatSum& other) noexcept
+  {
+    NodeSum<D>::add_momentum(other);
+    affine += other.affine;
+  }
+  HatSum& operator+=(const HatSum& other) noexcept
+  {
+    NodeSum<D>::operator+=(other);
+    affine += other.affine;
+    tension += other.tension;
+    return *this;
+  }
+};
+
 /// How a node moves.  One cache line in 3-D.
 template <int D>
 struct alignas(64) NodeMotion {

@@ -87,51 +87,52 @@ void Walls<D>::settle()
 }
 
 template <int D>
+WallWork Walls<D>::act(const NodeRule& rule, Real time, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs)
+{
+  const Vec<D> v_free = v, v_old = v - change;
+  Vec<D> rubbed = Vec<D>::Zero();
+  const auto push = [&](Index wall, const Vec<D>& by) {
+    walls_[static_cast<std::size_t>(wall)].impulse += mass * by;
+    v += by;
+  };
+  rubs = false;
+  if (rule.whole != none) {
+    push(rule.whole, constrained(rule, time, v) - v);
+  } else {
+    for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
+      bool touched = false;
+      for (const Plane& plane : rule.rollers)
+        push(plane.wall, -v.dot(plane.normal) * plane.normal);
+      for (const Plane& plane : rule.frictions) {
+        const Real into = v.dot(plane.normal);
+        if (into <= 0)
+          continue;
+        push(plane.wall, -into * plane.normal);
+        const Real slip = v.norm(), limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
+        const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
+        push(plane.wall, rub);
+        rubbed += rub;
+        touched = rubs = true;
+      }
+      if (!touched || rule.rollers.size() + rule.frictions.size() == 1)
+        break;
+    }
+  }
+  const Vec<D> v_mid = 0.5 * (v_old + v);
+  const Real friction = mass * rubbed.dot(v_mid);
+  change = v - v_old;
+  return {friction, mass * (v - v_free).dot(v_mid) - friction};
+}
+
+template <int D>
 WallWork Walls<D>::apply(Real time, Real dt, Nodes<D>& nodes)
 {
   WallWork work;
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     rule.rubs = false;
-    if (!nodes.active[n])
-      continue;
-    const Real mass = nodes.sum[n].mass;
-    NodeMotion<D>& motion = nodes.motion[n];
-    const Vec<D> v_old = motion.v - motion.change;
-    Vec<D> v = motion.v, rubbed = Vec<D>::Zero();
-    const auto push = [&](Index wall, const Vec<D>& change) {
-      walls_[static_cast<std::size_t>(wall)].impulse += mass * change;
-      v += change;
-    };
-    if (rule.whole != none) {
-      const Wall<D>& wall = walls_[static_cast<std::size_t>(rule.whole)];
-      push(rule.whole, (wall.kind == WallKind::fixed ? Vec<D>(Vec<D>::Zero()) : Vec<D>(wall.velocity * wall.table(time + dt))) - v);
-    } else {
-      for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
-        bool touched = false;
-        for (const Plane& plane : rule.rollers)
-          push(plane.wall, -v.dot(plane.normal) * plane.normal);
-        for (const Plane& plane : rule.frictions) {
-          const Real into = v.dot(plane.normal);
-          if (into <= 0)
-            continue;
-          push(plane.wall, -into * plane.normal);
-          const Real slip = v.norm(), limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
-          const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
-          push(plane.wall, rub);
-          rubbed += rub;
-          touched = rule.rubs = true;
-        }
-        if (!touched || rule.rollers.size() + rule.frictions.size() == 1)
-          break;
-      }
-    }
-    const Vec<D> v_mid = 0.5 * (v_old + v);
-    const Real all = mass * (v - motion.v).dot(v_mid), friction = mass * rubbed.dot(v_mid);
-    work.friction += friction;
-    work.other += all - friction;
-    motion.change = v - v_old;
-    motion.v = v;
+    if (nodes.active[n])
+      work += act(rule, time + dt, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs);
   }
   return work;
 }
@@ -161,25 +162,25 @@ void Walls<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
 }
 
 template <int D>
-void Walls<D>::hold(Real time, Real dt, std::span<HatMotion<D>> hats) const
+WallWork Walls<D>::apply(Real time, Real dt, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats)
 {
+  WallWork work;
   for (const NodeRule& rule : rules_) {
-    HatMotion<D>& row = hats[static_cast<std::size_t>(rule.node)];
-    if (rule.whole != none) {
-      row.v = constrained(rule, time + dt, row.v);
-      row.change = row.v - constrained(rule, time, row.v);
-      continue;
-    }
-    const auto hold_back = [&](const Vec<D>& normal) {
-      row.v -= row.v.dot(normal) * normal;
-      row.change -= row.change.dot(normal) * normal;
-    };
-    for (const Plane& plane : rule.frictions)
-      if (rule.rubs)
-        hold_back(plane.normal);
-    for (const Plane& plane : rule.rollers)
-      hold_back(plane.normal);
+    const auto n = static_cast<std::size_t>(rule.node);
+    bool rubs{};
+    if (sums[n].is_seen())
+      work += act(rule, time + dt, sums[n].mass, hats[n].v, hats[n].change, rubs);
   }
+  return work;
+}
+
+template <int D>
+WallWork Walls<D>::push(Index node, Real time, Real mass, NodeMotion<D>& motion)
+{
+  bool rubs{};
+  return binds(node) ? act(rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])], time, mass, motion.v,
+                           motion.change, rubs)
+                     : WallWork{};
 }
 
 template <int D>

@@ -33,6 +33,11 @@ struct Wall {
 struct WallWork {
   Real friction{};  ///< of tangential impulses of friction walls, <= 0
   Real other{};     ///< of all other impulses: prescribed motion, inelastic arrival
+  WallWork& operator+=(const WallWork& more) noexcept
+  {
+    friction += more.friction, other += more.other;
+    return *this;
+  }
 };
 
 /// All conditions of a scene, sorted out per node.  Where several meet in a node: `fixed` wins over `velocity` (the earlier
@@ -50,15 +55,15 @@ class Walls {
 
   /// The new velocities of nodes with active mass obey the walls.  Returns the work done.
   WallWork apply(Real time, Real dt, Nodes<D>& nodes);
+  /// So does what particles read on hats, where it is not that of the node alone: the row of a hat on a wall may reach nodes off it.
+  /// `sums` say with which mass a hat moves, and which are seen.
+  WallWork apply(Real time, Real dt, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats);
   /// The kinematic part alone, on remapped velocities (rows: remapped one in `v`, the step's own in `change`).  A node that rubs
   /// keeps the step's own: friction acted on that one, and a strain taken from any other would make energy.
   void hold(Real time, std::span<NodeMotion<D>> remapped) const;
-  /// The same for a node without momentum of its own.
+  /// The same for a node without momentum of its own, and what its own mass [kg] gets of the walls' pushes.
+  WallWork push(Index node, Real time, Real mass, NodeMotion<D>& motion);
   Vec<D> held(Index node, Real time, const Vec<D>& v) const;
-  /// Takes the part into the wall from what particles read, where it is not that of the node alone: the weights of a hat on the wall
-  /// reach nodes off it.
-  void hold(Real time, Real dt, std::span<HatMotion<D>> hats) const;
-
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
   bool binds(Index node) const noexcept
@@ -81,6 +86,8 @@ class Walls {
     bool rubs = false;  ///< the last apply() found it pressed against a friction wall
   };
   NodeRule& rule(Index node);
+  /// Pushes a mass [kg] that moves with v and has changed by `change` in this step; walls keep the impulses.
+  WallWork act(const NodeRule& rule, Real time, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
 
   std::vector<Wall<D>> walls_;

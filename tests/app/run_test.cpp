@@ -152,6 +152,7 @@ TEST_F(Run, SpinGivenByAFormulaIsWholeInTheFirstStep)
   for (const char* scheme : {"apic", "tpic"}) {
     write("spin.yaml", std::string(R"yaml(title: Spinning block
 dimension: 2
+kernel: umls
 mesh: {grid: {low: [-1, -1], high: [1, 1], cells: [8, 8]}}
 time: {end: 0.01}
 materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]

@@ -142,8 +142,8 @@ TEST(Reader, OverridesReplaceValues)
 TEST(Reader, OverridesAddMissingMappings)
 {
   const Scene scene =
-      read_scene(folder / "scenes/smallest.yaml", std::vector<std::string>{"transfer.scheme=apic", "outputs.history.every=0.5"});
-  EXPECT_EQ(scene.transfer.scheme, TransferScheme::apic);
+      read_scene(folder / "scenes/smallest.yaml", std::vector<std::string>{"transfer.scheme=tpic", "outputs.history.every=0.5"});
+  EXPECT_EQ(scene.transfer.scheme, TransferScheme::tpic);
   EXPECT_EQ(scene.outputs.history.value().every, 0.5);
 }
 

@@ -36,7 +36,8 @@ TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
 
   for (auto& row : nodes.motion)
     row = {Vec<2>(3, -2), Vec<2>(0.5, 0)};
-  slaves.follow(mesh, nodes, Walls<2>(), 0, nodes.motion);
+  Walls<2> none_at_all;
+  slaves.follow(mesh, nodes, 0, none_at_all, nodes.motion);
   for (const auto& row : nodes.motion)
     EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
 }

@@ -143,6 +143,43 @@ TEST(Projected, HoldsAFilmOnAWall)
   }
 }
 
+/// A block slides on a rough floor: its momentum is what gravity and the floor gave, and the floor rubs with its share of what it bears.
+template <ValueStencil values>
+void slide_on_a_rough_floor(Scheme scheme)
+{
+  ProjectedOptions options;
+  options.values = values;
+  Model<2, Projected<2>> m(unit_box<2>(8, 0.2), options);
+  m.transfer = {.scheme = scheme, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
+  add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 6, [](const Vec<2>& x) { return x[0] < 0.6 && x[1] < 0.4; });
+  for (auto& v : m.particles.v)
+    v = {2, -0.5};
+  Wall<2> floor;
+  floor.name = "y_min";
+  floor.kind = WallKind::friction;
+  floor.friction = 0.4;
+  m.walls.add(floor, m.mesh, *m.mesh.facet_set("y_min"));
+  m.loads.gravity.acceleration = {1, -10};
+  make_ready(m, false);
+  const Totals<2> start = totals(m.particles);
+  for (int step = 0; step < 60; ++step)
+    advance(m, 1e-3);
+  const Totals<2> end = totals(m.particles);
+  const Vec<2> floor_gave = m.walls.walls()[0].impulse, gravity_gave = end.mass * m.clock.time * m.loads.gravity.acceleration;
+  EXPECT_LT((end.momentum - start.momentum - floor_gave - gravity_gave).norm(), 1e-10 * start.momentum.norm());
+  EXPECT_LT(-floor_gave[0], 0.4 * (1 + 1e-10) * floor_gave[1]);
+  EXPECT_GT(-floor_gave[0], 0.3 * floor_gave[1]);
+}
+
+TEST(Projected, AFloorGivesMomentumAndRubsWithItsShare)
+{
+  for (const Scheme scheme : {Scheme::flip, Scheme::aflip, Scheme::tpic}) {
+    slide_on_a_rough_floor<ValueStencil::maxent>(scheme);
+    slide_on_a_rough_floor<ValueStencil::l2>(scheme);
+    slide_on_a_rough_floor<ValueStencil::mls>(scheme);
+  }
+}
+
 /// A body without stiffness, all of its particles in cells at the boundary of the mesh, which is free: nothing but transfer.
 template <ValueStencil values>
 Real motion_left(Index cells, int steps)
@@ -192,7 +229,6 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
   for (std::size_t p = 0; p < m.particles.id.size(); ++p)
     ASSERT_NEAR(m.particles.stress[p][1], -1e4 * (10 - m.particles.x[p][1]), 1e4) << "the weight of a layer of cells";
 }
-
 
 }  // namespace
 }  // namespace talus::testing
