@@ -29,9 +29,10 @@ matplotlib.use("Agg")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 matplotlib.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True})
-METHODS = {  # for sweeps; linear with tpic turns points inside out
+METHODS = {  # for sweeps, the default first; linear with tpic turns points inside out
     f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
-    for kernel, scheme in (("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"), ("projected", "aflip"))}
+    for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
+METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
 SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> the transfer that suits it
 OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene
 

@@ -191,8 +191,7 @@ def tradeoff(lab):
         scene=f"{CASE}/scene.yaml",
         axes={"mesh": {f"cells of {size} m": {"mesh.size": size} for size in SWEPT[lab.level]},
               "particles": {f"{count} particles": {"bodies[0].particles_per_cell": count} for count in (4, 3, 6)},
-              "kernel": {kernel: {"kernel": kernel} for kernel in ("umls", "linear")},
-              "transfer": {scheme: {"transfer.scheme": scheme} for scheme in ("flip", "tpic")},
+              "method": tools.METHODS,
               "step": {f"CFL {share}": {"time.cfl": share} for share in (0.4, 0.8)}},
         error=lambda run: history_error(run.history, curve, data),
         what="rms error of the tip of the cantilever over 4 s")

@@ -9,6 +9,7 @@ SIZES = {"quick": [0.14, 0.1, 0.07], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # 
 FEW = {"quick": [0.14, 0.1], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # of the small rotation
 COARSE = {"quick": [0.2, 0.14], "full": [0.14, 0.1, 0.07]}  # of linear at the large one, which does not converge
 MARKS = {"umls": "o-", "linear": "s--", "projected": "^-"}
+FEWEST, MANY = 4, 12  # particles per cell: those of the comparison, and as many as it takes when they are drawn apart by several cells
 TURNS = [1, 0.1]  # rad, largest rotation: that of the literature, and one in which hardly any particle leaves its cell
 
 
@@ -52,23 +53,23 @@ def errors_over_time(run, turn, data):
     return times, found
 
 
-def start(lab, kernel, turn, size, data):
-    """Starts one run."""
+def start(lab, kernel, turn, size, data, count=FEWEST):
+    """Starts one run with `count` particles per cell."""
     velocity, force = formulas(turn, data)
-    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}", {"mesh.size": size, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel],
+    label = f"{kernel}_{turn}_dx{size}" if count == FEWEST else f"{kernel}_{turn}_dx{size}_{count}"
+    return lab.run(f"{CASE}/scene.yaml", label, {"mesh.size": size, "bodies[0].particles_per_cell": count, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel],
                                                                         "bodies[0].velocity": velocity, "loads[0].acceleration": force})
 
 
-def draw(figure, curves, plan, data):
-    """Left error over size, right particles of the finest run of umls at half time, coloured by the radius at the start."""
+def draw(figure, curves, run, data):
+    """Left error over size, right particles of one run at half time, those of a sector that was straight in black."""
     left, right = figure.subplots(1, 2, width_ratios=[1.2, 1])
-    for (kernel, turn), (sizes, errors) in curves.items():
-        left.loglog(sizes, np.array(errors) * 100, MARKS[kernel], label=f"{kernel}, {turn} rad")
+    for name, (mark, sizes, errors) in curves.items():
+        left.loglog(sizes, np.array(errors) * 100, mark, label=name)
     left.loglog([0.14, 0.07], [20, 5], "k:", label="order 2")
     tools.size_axis(left, SIZES["quick"])
     left.set_ylabel("error in displacement [%]")
-    left.legend(fontsize=8)
-    run = list(plan["umls", 1].values())[-1]
+    left.legend(fontsize=7)
     frame = vtp.read(run.frames()[len(run.frames()) // 2])
     place = frame["Points"] - frame["displacement"]
     sector = np.abs(np.arctan2(place[:, 1], place[:, 0])) < 0.1
@@ -82,19 +83,21 @@ def draw(figure, curves, plan, data):
 
 
 def evaluate(lab):
-    """Results for three kernels and two rotations; judged is the order of umls and projected at the rotation of the literature."""
+    """Results for three kernels and two rotations, and for many particles; judged is the order at the rotation of the literature, of `projected` with many."""
     data, results, curves = tools.reference(CASE), [], {}
-    plan = {(kernel, turn): {size: start(lab, kernel, turn, size, data) for size in (FEW if turn < 1 else COARSE if kernel == "linear" else SIZES)[lab.level]}
+    plan = {(kernel, turn, FEWEST): {size: start(lab, kernel, turn, size, data) for size in (FEW if turn < 1 else COARSE if kernel == "linear" else SIZES)[lab.level]}
             for turn in TURNS for kernel in tools.SUITED}
-    for (kernel, turn), runs in plan.items():
+    plan["projected", 1, MANY] = {size: start(lab, "projected", 1, size, data, MANY) for size in SIZES[lab.level]}
+    for (kernel, turn, count), runs in plan.items():
         errors = [max(errors_over_time(run, turn, data)[1]) for run in runs.values()]
-        curves[kernel, turn] = list(runs), errors
-        name, judged = f"{kernel}, {turn} rad", kernel != "linear" and turn == 1
+        name = f"{kernel}, {turn} rad" + (f", {count} particles per cell" if count != FEWEST else "")
+        judged = turn == 1 and (kernel, count) in (("umls", FEWEST), ("projected", MANY))
+        curves[name] = MARKS[kernel] if count == FEWEST else "D-", list(runs), errors
         results += [tools.Result(CASE, f"displacement error, {name}, cells of {size} m", "-", value, "reported", None, 0.0, data["source"], run)
                     for (size, run), value in zip(runs.items(), errors)]
         results.append(tools.Result(CASE, f"order of convergence, {name}", "-", tools.observed_order(list(runs), errors), "at least" if judged else "reported",
                                     data["order asked"] if judged else None, 2.0, data["source"], list(runs.values())[-1]))
         lab.convergence(CASE, f"displacement error, {name}", list(runs), errors, expected=2)
-    lab.figure(CASE, "verification_vortex", lambda figure: draw(figure, curves, plan, data), size=(7.4, 3.2),
+    lab.figure(CASE, "verification_vortex", lambda figure: draw(figure, curves, list(plan["projected", 1, MANY].values())[-1], data), size=(7.4, 3.2),
                caption="Generalized vortex: error of the displacement, and a sector of the ring at the largest rotation.")
     return results
