@@ -42,7 +42,7 @@ bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus
 	@build/release/talus_speed
 	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
 
-verify: build  ## run the benchmarks against their references, quick level (up to 8 minutes)
+verify: build  ## run the benchmarks against their references, quick level (about 9 minutes)
 	@tools/verify.sh --level quick --jobs 2 --regression
 
 docs: build  ## write docs/reference/scene.md out of the program

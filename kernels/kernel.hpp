@@ -124,7 +124,7 @@ K make_kernel(const Mesh<D>& mesh, [[maybe_unused]] const Options<K>& options)
 template <int D>
 class NodeOperators;
 
-/// A kernel with a node part: its weights are those of hats, and the operators stand between hats and unknowns.
+/// A kernel with a node part: operators stand between hats and unknowns; its weights are those of hats, unless it HasOwnValues.
 template <class K, int D>
 concept HasNodePart = requires(const K k) {
   { k.node_part() } noexcept -> std::same_as<const NodeOperators<D>&>;

@@ -61,9 +61,9 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   const Real on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
-  m.slaves.lump(m.mesh, m.nodes);                               //  5
-  integrate(gravity, dt, m.nodes);                              //  6
-  const WallWork wall_work = m.walls.apply(time, dt, m.nodes);  //  7
+  m.slaves.lump(m.mesh, m.nodes);                                //  5
+  integrate(gravity, dt, m.nodes);                               //  6
+  const WallWork wall_work = m.walls.apply(time + dt, m.nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);
   count_beyond_nodes(m.slaves.follow(m.mesh, m.nodes, time + dt, m.walls, m.nodes.motion), m.energy);  //  8
@@ -128,7 +128,7 @@ void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt
   if constexpr (HasNodePart<K, D>) {
     spread(m.kernel.node_part(), m.nodes.motion, m.hats);
     if constexpr (!HasOwnValues<K, D>)
-      count_beyond_nodes(m.walls.apply(m.clock.time, dt, m.hats.sum, m.hats.motion), m.energy);
+      count_beyond_nodes(m.walls.apply(m.clock.time + dt, m.hats.sum, m.hats.motion), m.energy);
   }
 }
 

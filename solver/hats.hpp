@@ -1,7 +1,7 @@
 #pragma once
 // The solver's side of a kernel with a node part: particles see the hats of their cell, operators stand between hats and unknowns.
 #include "kernels/node_operators.hpp"
-#include "solver/blocks.hpp"
+#include "solver/nodes.hpp"
 
 namespace talus {
 

@@ -69,7 +69,7 @@ void Slaves<D>::lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const
 }
 
 template <int D>
-WallWork Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real time, Walls<D>& walls, std::span<NodeMotion<D>> motion) const
+WallWork Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion) const
 {
   WallWork work;
   for (const Index slave : slaves_) {
@@ -78,7 +78,7 @@ WallWork Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real time
       mean.v += share * motion[static_cast<std::size_t>(master)].v;
       mean.change += share * motion[static_cast<std::size_t>(master)].change;
     });
-    work += walls.push(slave, time, mass_[static_cast<std::size_t>(slave)], mean);
+    work += walls.apply(slave, end, mass_[static_cast<std::size_t>(slave)], mean);
     motion[static_cast<std::size_t>(slave)] = mean;
   }
   return work;

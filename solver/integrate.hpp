@@ -28,7 +28,7 @@ class Slaves {
   /// Hands on momentum alone, after it was summed anew.
   void lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const;
   /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own.
-  WallWork follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real time, Walls<D>& walls, std::span<NodeMotion<D>> motion) const;
+  WallWork follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion) const;
   /// The same for `v` alone.
   void follow_velocity(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const;
   Index size() const noexcept { return static_cast<Index>(slaves_.size()); }

@@ -12,7 +12,7 @@ struct EnergyLedger {
   Real walls{};                           ///< work of walls other than friction: prescribed motion, inelastic arrival
   Real friction{};                        ///< work of friction, <= 0
   Real damping{};                         ///< work of local damping, <= 0
-  Real nodes{};                           ///< change of the nodes' kinetic energy within the steps
+  Real nodes{};                           ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
   Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
 

@@ -1,7 +1,6 @@
 #include "solver/walls.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace talus {
 
@@ -87,7 +86,7 @@ void Walls<D>::settle()
 }
 
 template <int D>
-WallWork Walls<D>::act(const NodeRule& rule, Real time, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs)
+WallWork Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs)
 {
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
@@ -97,7 +96,7 @@ WallWork Walls<D>::act(const NodeRule& rule, Real time, Real mass, Vec<D>& v, Ve
   };
   rubs = false;
   if (rule.whole != none) {
-    push(rule.whole, constrained(rule, time, v) - v);
+    push(rule.whole, constrained(rule, end, v) - v);
   } else {
     for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
       bool touched = false;
@@ -125,16 +124,23 @@ WallWork Walls<D>::act(const NodeRule& rule, Real time, Real mass, Vec<D>& v, Ve
 }
 
 template <int D>
-WallWork Walls<D>::apply(Real time, Real dt, Nodes<D>& nodes)
+WallWork Walls<D>::apply(Real end, Nodes<D>& nodes)
 {
   WallWork work;
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     rule.rubs = false;
     if (nodes.active[n])
-      work += act(rule, time + dt, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs);
+      work += act(rule, end, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs);
   }
   return work;
+}
+
+template <int D>
+WallWork Walls<D>::apply(Index node, Real end, Real mass, NodeMotion<D>& motion)
+{
+  bool rubs{};
+  return binds(node) ? act(rule_of(node), end, mass, motion.v, motion.change, rubs) : WallWork{};
 }
 
 template <int D>
@@ -162,31 +168,22 @@ void Walls<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
 }
 
 template <int D>
-WallWork Walls<D>::apply(Real time, Real dt, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats)
+WallWork Walls<D>::apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats)
 {
   WallWork work;
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     bool rubs{};
     if (sums[n].is_seen())
-      work += act(rule, time + dt, sums[n].mass, hats[n].v, hats[n].change, rubs);
+      work += act(rule, end, sums[n].mass, hats[n].v, hats[n].change, rubs);
   }
   return work;
 }
 
 template <int D>
-WallWork Walls<D>::push(Index node, Real time, Real mass, NodeMotion<D>& motion)
-{
-  bool rubs{};
-  return binds(node) ? act(rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])], time, mass, motion.v,
-                           motion.change, rubs)
-                     : WallWork{};
-}
-
-template <int D>
 Vec<D> Walls<D>::held(Index node, Real time, const Vec<D>& v) const
 {
-  return binds(node) ? constrained(rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])], time, v) : v;
+  return binds(node) ? constrained(rule_of(node), time, v) : v;
 }
 
 template <int D>
@@ -200,9 +197,7 @@ template <int D>
 std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
 {
   std::vector<Facet> closed = facets_;
-  const auto whole = [&](Index n) {
-    return binds(n) && rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(n)])].whole != none;
-  };
+  const auto whole = [&](Index n) { return binds(n) && rule_of(n).whole != none; };
   for (const Facet facet : mesh.boundary_facets()) {
     const auto nodes = mesh.nodes_of(facet);
     if (std::all_of(nodes.begin(), nodes.end(), whole))

@@ -1,5 +1,5 @@
 #pragma once
-// Conditions on the nodes of the mesh: held, moved, sliding, rubbing.  Each wall keeps the impulse and the work it exerts.
+// Conditions on nodes, on slaves and on hats: held, moved, sliding, rubbing.  Each wall keeps the impulse it exerts; the work is returned.
 #include <string>
 #include <vector>
 
@@ -53,16 +53,17 @@ class Walls {
   /// To be called once after the last add().
   void settle();
 
-  /// The new velocities of nodes with active mass obey the walls.  Returns the work done.
-  WallWork apply(Real time, Real dt, Nodes<D>& nodes);
+  /// The new velocities of nodes with active mass obey the walls at the end of the step [s].  Returns the work done.
+  WallWork apply(Real end, Nodes<D>& nodes);
   /// So does what particles read on hats, where it is not that of the node alone: the row of a hat on a wall may reach nodes off it.
   /// `sums` say with which mass a hat moves, and which are seen.
-  WallWork apply(Real time, Real dt, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats);
+  WallWork apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats);
+  /// And so does a node that follows others: its own mass [kg] gets its part of the walls' pushes.
+  WallWork apply(Index node, Real end, Real mass, NodeMotion<D>& motion);
   /// The kinematic part alone, on remapped velocities (rows: remapped one in `v`, the step's own in `change`).  A node that rubs
   /// keeps the step's own: friction acted on that one, and a strain taken from any other would make energy.
   void hold(Real time, std::span<NodeMotion<D>> remapped) const;
-  /// The same for a node without momentum of its own, and what its own mass [kg] gets of the walls' pushes.
-  WallWork push(Index node, Real time, Real mass, NodeMotion<D>& motion);
+  /// The same for one node.
   Vec<D> held(Index node, Real time, const Vec<D>& v) const;
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
@@ -86,8 +87,12 @@ class Walls {
     bool rubs = false;  ///< the last apply() found it pressed against a friction wall
   };
   NodeRule& rule(Index node);
+  const NodeRule& rule_of(Index node) const noexcept  ///< of a node that is bound
+  {
+    return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];
+  }
   /// Pushes a mass [kg] that moves with v and has changed by `change` in this step; walls keep the impulses.
-  WallWork act(const NodeRule& rule, Real time, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs);
+  WallWork act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
 
   std::vector<Wall<D>> walls_;

@@ -83,7 +83,7 @@ def draw(figure, curves, run, data):
 
 
 def evaluate(lab):
-    """Results for three kernels and two rotations, and for many particles; judged is the order at the rotation of the literature, of `projected` with many."""
+    """Results for three kernels and two rotations, and for many particles; judged is the order at the rotation of the literature, of umls with few and of projected with many."""
     data, results, curves = tools.reference(CASE), [], {}
     plan = {(kernel, turn, FEWEST): {size: start(lab, kernel, turn, size, data) for size in (FEW if turn < 1 else COARSE if kernel == "linear" else SIZES)[lab.level]}
             for turn in TURNS for kernel in tools.SUITED}
