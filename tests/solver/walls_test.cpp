@@ -38,7 +38,7 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
   for (auto& row : nodes.sum)
     row.mass = 1;
   nodes.motion[at] = {v, v};
-  walls.apply(0, 0.1, nodes);
+  walls.apply(0.1, nodes);
   return nodes.motion[at].v;
 }
 
