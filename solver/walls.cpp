@@ -137,6 +137,19 @@ WallWork Walls<D>::apply(Real end, Nodes<D>& nodes)
 }
 
 template <int D>
+WallWork Walls<D>::apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats)
+{
+  WallWork work;
+  for (const NodeRule& rule : rules_) {
+    const auto n = static_cast<std::size_t>(rule.node);
+    bool rubs{};
+    if (sums[n].is_seen())
+      work += act(rule, end, sums[n].mass, hats[n].v, hats[n].change, rubs);
+  }
+  return work;
+}
+
+template <int D>
 WallWork Walls<D>::apply(Index node, Real end, Real mass, NodeMotion<D>& motion)
 {
   bool rubs{};
@@ -165,19 +178,6 @@ void Walls<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
     NodeMotion<D>& row = remapped[static_cast<std::size_t>(rule.node)];
     row.v = rule.rubs ? row.change : constrained(rule, time, row.v);
   }
-}
-
-template <int D>
-WallWork Walls<D>::apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats)
-{
-  WallWork work;
-  for (const NodeRule& rule : rules_) {
-    const auto n = static_cast<std::size_t>(rule.node);
-    bool rubs{};
-    if (sums[n].is_seen())
-      work += act(rule, end, sums[n].mass, hats[n].v, hats[n].change, rubs);
-  }
-  return work;
 }
 
 template <int D>

@@ -65,6 +65,7 @@ class Walls {
   void hold(Real time, std::span<NodeMotion<D>> remapped) const;
   /// The same for one node.
   Vec<D> held(Index node, Real time, const Vec<D>& v) const;
+
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
   bool binds(Index node) const noexcept

@@ -56,9 +56,9 @@ def errors_over_time(run, turn, data):
 def start(lab, kernel, turn, size, data, count=FEWEST):
     """Starts one run with `count` particles per cell."""
     velocity, force = formulas(turn, data)
-    label = f"{kernel}_{turn}_dx{size}" if count == FEWEST else f"{kernel}_{turn}_dx{size}_{count}"
-    return lab.run(f"{CASE}/scene.yaml", label, {"mesh.size": size, "bodies[0].particles_per_cell": count, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel],
-                                                                        "bodies[0].velocity": velocity, "loads[0].acceleration": force})
+    return lab.run(f"{CASE}/scene.yaml", f"{kernel}_{turn}_dx{size}_{count}", {
+        "mesh.size": size, "bodies[0].particles_per_cell": count, "kernel": kernel, "transfer.scheme": tools.SUITED[kernel], "bodies[0].velocity": velocity,
+        "loads[0].acceleration": force})
 
 
 def draw(figure, curves, run, data):
