@@ -171,12 +171,8 @@ Model<2, Linear<2>> leaving(OnExitPolicy policy, bool wall)
   m.exits.policy = policy;
   add_body<2>(
       m, "block", rubber(100, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.6; }, [](const Vec<2>&) { return Vec<2>(2, 0); });
-  if (wall) {
-    Wall<2> right;
-    right.name = "x_max";
-    right.kind = WallKind::roller;
-    m.walls.add(right, m.mesh, *m.mesh.facet_set("x_max"));
-  }
+  if (wall)
+    close_off(m, "x_max", WallKind::roller);
   make_ready(m, true);
   return m;
 }
@@ -241,12 +237,8 @@ void squeeze(Put&& put)
 {
   Model<2, Umls<2>> m(Mesh<2>(jittered(box<2>({0, 0}, {1, 2}, {4, 8}), 0.15, 1)));
   add_body<2>(m, "column", rubber(1e5, 0.0, 1000), 3, [](const Vec<2>& x) { return x[1] < 1.5; });
-  for (const char* side : {"x_min", "x_max", "y_min"}) {
-    Wall<2> roller;
-    roller.name = side;
-    roller.kind = WallKind::roller;
-    m.walls.add(roller, m.mesh, *m.mesh.facet_set(side));
-  }
+  for (const char* side : {"x_min", "x_max", "y_min"})
+    close_off(m, side, WallKind::roller);
   put(m);
   make_ready(m, false);
   Stage rest = test_stage(10);

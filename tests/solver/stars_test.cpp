@@ -194,10 +194,7 @@ TEST(ConductHeat, NeedsAConductivity)
 TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
 {
   auto m = block<2>(rubber(1e6, 0, 1000), 4, 0);
-  Wall<2> clamp;
-  clamp.name = "x_min";
-  clamp.kind = WallKind::roller;
-  m.walls.add(std::move(clamp), m.mesh, *m.mesh.facet_set("x_min"));
+  testing::close_off(m, "x_min", WallKind::roller);
   auto load = carried_by_particles<2>(m.mesh, *m.mesh.facet_set("x_max"), m.particles);
   load.traction = {-100, 0};
   m.loads.on_particles.push_back(std::move(load));
