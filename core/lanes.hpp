@@ -1,5 +1,8 @@
 #pragma once
-// Packs of numbers: sums over a stencil run over whole packs, so that they use the vector unit and need no scalar tail.
+// Packs of numbers: sums over a stencil run over whole packs, so that they use the vector unit and need no scalar tail; and numbers of
+// several particles that compute like one, for laws.
+#include <Eigen/Core>
+#include <cmath>
 #include <cstring>
 
 #include "core/types.hpp"
@@ -17,4 +20,94 @@ inline Pack load(const Real* from) noexcept { return *reinterpret_cast<const Pac
 inline void store(Real* to, const Pack& pack) noexcept { *reinterpret_cast<Pack*>(__builtin_assume_aligned(to, sizeof(Pack))) = pack; }
 inline Real sum(const Pack& a) noexcept { return (a[0] + a[1]) + (a[2] + a[3]); }
 
+/// The same number of several particles, one per lane.  What is written for a Real works for Lanes if it has no `if` about values:
+/// `where` takes their place, and `somewhere` and `everywhere` ask about all lanes at once.
+struct Lanes {
+  Pack of;
+  /// Which lanes something holds for.
+  struct Mask {
+    using Bits = std::int64_t __attribute__((vector_size(sizeof(Pack))));
+    Bits of;
+    bool operator[](int lane) const noexcept { return of[lane] != 0; }
+    friend Mask operator&&(const Mask& a, const Mask& b) noexcept { return {a.of & b.of}; }
+    friend Mask operator||(const Mask& a, const Mask& b) noexcept { return {a.of | b.of}; }
+    friend Mask operator!(const Mask& a) noexcept { return {~a.of}; }
+  };
+
+  Lanes() = default;
+  Lanes(Real all) noexcept : of{all, all, all, all} {}  // NOLINT(google-explicit-constructor): a number is a number in every lane
+  Lanes(const Pack& each) noexcept : of(each) {}        // NOLINT(google-explicit-constructor)
+  Real operator[](int lane) const noexcept { return of[lane]; }
+  void set(int lane, Real to) noexcept { of[lane] = to; }
+
+  Lanes& operator+=(const Lanes& b) noexcept { return of += b.of, *this; }
+  Lanes& operator-=(const Lanes& b) noexcept { return of -= b.of, *this; }
+  Lanes& operator*=(const Lanes& b) noexcept { return of *= b.of, *this; }
+  Lanes& operator/=(const Lanes& b) noexcept { return of /= b.of, *this; }
+  friend Lanes operator+(const Lanes& a, const Lanes& b) noexcept { return a.of + b.of; }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) noexcept { return a.of - b.of; }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) noexcept { return a.of * b.of; }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) noexcept { return a.of / b.of; }
+  friend Lanes operator-(const Lanes& a) noexcept { return -a.of; }
+  friend Mask operator<(const Lanes& a, const Lanes& b) noexcept { return {a.of < b.of}; }
+  friend Mask operator>(const Lanes& a, const Lanes& b) noexcept { return {a.of > b.of}; }
+  friend Mask operator<=(const Lanes& a, const Lanes& b) noexcept { return {a.of <= b.of}; }
+  friend Mask operator>=(const Lanes& a, const Lanes& b) noexcept { return {a.of >= b.of}; }
+  friend Mask operator==(const Lanes& a, const Lanes& b) noexcept { return {a.of == b.of}; }
+};
+
+/// `a` where the condition holds, else `b`; both are worked out.
+inline Lanes where(const Lanes::Mask& condition, const Lanes& a, const Lanes& b) noexcept { return condition.of ? a.of : b.of; }
+inline Real where(bool condition, Real a, Real b) noexcept { return condition ? a : b; }
+inline bool somewhere(const Lanes::Mask& mask) noexcept { return mask[0] || mask[1] || mask[2] || mask[3]; }
+inline bool everywhere(const Lanes::Mask& mask) noexcept { return mask[0] && mask[1] && mask[2] && mask[3]; }
+inline bool somewhere(bool condition) noexcept { return condition; }
+inline bool everywhere(bool condition) noexcept { return condition; }
+
+/// f(lane) of every lane: for what has no form of its own in packs.
+template <class F>
+Lanes in_each_lane(F&& f) noexcept
+{
+  return Pack{f(0), f(1), f(2), f(3)};
+}
+
+// Found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, within 2 units of the last place.
+inline Lanes sqrt(const Lanes& a) noexcept
+{
+  return in_each_lane([&](int i) { return std::sqrt(a[i]); });
+}
+inline Lanes abs(const Lanes& a) noexcept { return a.of < 0 ? -a.of : a.of; }
+inline Lanes max(const Lanes& a, const Lanes& b) noexcept { return a.of < b.of ? b.of : a.of; }
+inline Lanes min(const Lanes& a, const Lanes& b) noexcept { return b.of < a.of ? b.of : a.of; }
+namespace detail {
+/// f(array) by Eigen's vectorised functions.
+template <class F>
+Lanes by_array(const Lanes& a, F&& f) noexcept
+{
+  using Array = Eigen::Array<Real, pack_size, 1>;
+  Array x;
+  std::memcpy(x.data(), &a.of, sizeof(Pack));
+  const Array y = f(x);
+  Lanes result;
+  std::memcpy(&result.of, y.data(), sizeof(Pack));
+  return result;
+}
+}  // namespace detail
+inline Lanes log(const Lanes& a) noexcept
+{
+  return detail::by_array(a, [](const auto& x) { return x.log(); });
+}
+inline Lanes exp(const Lanes& a) noexcept
+{
+  return detail::by_array(a, [](const auto& x) { return x.exp(); });
+}
+
 }  // namespace talus
+
+template <>
+struct Eigen::NumTraits<talus::Lanes> : Eigen::GenericNumTraits<talus::Lanes> {
+  using Real = talus::Lanes;
+  using NonInteger = talus::Lanes;
+  using Literal = talus::Real;
+  enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
+};

@@ -4,15 +4,19 @@
 
 namespace talus {
 
-inline Sym3 pack(const Mat3& a) noexcept
+template <class E>
+Sym3Of<typename E::Scalar> pack(const Eigen::MatrixBase<E>& expression) noexcept
 {
-  Sym3 s;
+  const Mat3Of<typename E::Scalar>& a = expression;
+  Sym3Of<typename E::Scalar> s;
   s << a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2);
   return s;
 }
-inline Mat3 unpack(const Sym3& s) noexcept
+template <class E>
+Mat3Of<typename E::Scalar> unpack(const Eigen::MatrixBase<E>& expression) noexcept
 {
-  Mat3 a;
+  const Sym3Of<typename E::Scalar>& s = expression;
+  Mat3Of<typename E::Scalar> a;
   a << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
   return a;
 }

@@ -19,10 +19,15 @@ template <int D>
 using Vec = Eigen::Matrix<Real, D, 1, Eigen::DontAlign>;
 template <int D>
 using Mat = Eigen::Matrix<Real, D, D, Eigen::DontAlign>;
-using Vec3 = Vec<3>;
-using Mat3 = Mat<3>;
+/// T is a Real, or the Lanes of core/lanes.hpp: the tensors of several particles at once.
+template <class T>
+using Mat3Of = Eigen::Matrix<T, 3, 3, Eigen::DontAlign>;
 /// The six entries xx, yy, zz, xy, yz, xz of a symmetric 3x3 tensor.
-using Sym3 = Eigen::Matrix<Real, 6, 1, Eigen::DontAlign>;
+template <class T>
+using Sym3Of = Eigen::Matrix<T, 6, 1, Eigen::DontAlign>;
+using Vec3 = Vec<3>;
+using Mat3 = Mat3Of<Real>;
+using Sym3 = Sym3Of<Real>;
 
 /// Compressed rows: row i holds item[begin[i]] .. item[begin[i+1]-1].
 struct Csr {

@@ -11,6 +11,15 @@
 
 namespace talus {
 
+/// The tensor of one lane.
+inline Mat3 lane_of(const Mat3Of<Lanes>& all, int lane) noexcept
+{
+  Mat3 one;
+  for (Index k = 0; k < 9; ++k)
+    one(k) = all(k)[lane];
+  return one;
+}
+
 /// Particles [begin, end) of the model follow `law`.  Every index i below counts from 0 inside the body.
 template <class L>
 struct Batch {
@@ -31,6 +40,26 @@ struct Batch {
   Index size() const noexcept { return end - begin; }
   /// Cauchy stress [Pa] of particle i at the end of the step; changes its history.
   Mat3 update(Index i, const Increment& in) noexcept { return law.update(in, history[static_cast<std::size_t>(i)], constants); }
+  /// The same of several particles, one per lane; those beyond `count` repeat the last one and are not changed.  Where the law is not
+  /// written for lanes, one after the other.
+  Mat3Of<Lanes> update(const Index (&i)[pack_size], int count, const IncrementOf<Lanes>& in) noexcept
+  {
+    if constexpr (LawInLanes<L>) {
+      StateRows<State> rows{{}, count};
+      for (int lane = 0; lane < pack_size; ++lane)
+        rows.row[lane] = &history[static_cast<std::size_t>(i[lane])];
+      return law.update(in, rows, constants);
+    } else {
+      Mat3Of<Lanes> stress = Mat3Of<Lanes>::Zero();
+      for (int lane = 0; lane < count; ++lane) {
+        const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
+        const Mat3 after = update(i[lane], Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic});
+        for (Index k = 0; k < 9; ++k)
+          stress(k).set(lane, after(k));
+      }
+      return stress;
+    }
+  }
   /// Upper bound of the speed of sound [m/s] in particle i, deformed by F.
   Real wave_speed(Index i, const Mat3& F) const noexcept
   {
@@ -38,6 +67,17 @@ struct Batch {
       return law.wave_speed(F, history[static_cast<std::size_t>(i)], constants);
     else
       return law.wave_speed(F, constants);
+  }
+  Lanes wave_speed(const Index (&i)[pack_size], int count, const Mat3Of<Lanes>& F) const noexcept
+  {
+    if constexpr (LawInLanes<L>) {
+      return law.wave_speed(F, constants);
+    } else {
+      Lanes speed = 1;
+      for (int lane = 0; lane < count; ++lane)
+        speed.set(lane, wave_speed(i[lane], lane_of(F, lane)));
+      return speed;
+    }
   }
 };
 

@@ -6,19 +6,22 @@
 #include <tuple>
 
 #include "core/fields.hpp"
+#include "core/lanes.hpp"
 #include "core/tensor.hpp"
 
 namespace talus {
 
-/// What a law is told about one step of one particle.
-struct Increment {
-  const Mat3& F;       ///< deformation gradient at the end of the step, relative to the stress-free start [-]
-  const Mat3& L;       ///< velocity gradient of the step [1/s]; F = (I + dt L) F_old
-  const Mat3& stress;  ///< Cauchy stress at its beginning [Pa], tension positive
-  Real dt;             ///< [s]
-  Real viscous;        ///< artificial viscous pressure of the step [Pa], not in `stress`; it works on what keeps internal energy
-  bool elastic;        ///< true in a stage that suspends yielding: answer elastically, leave hardening variables alone
+/// What a law is told about one step of one particle, or of several at once where T is Lanes.
+template <class T>
+struct IncrementOf {
+  const Mat3Of<T>& F;       ///< deformation gradient at the end of the step, relative to the stress-free start [-]
+  const Mat3Of<T>& L;       ///< velocity gradient of the step [1/s]; F = (I + dt L) F_old
+  const Mat3Of<T>& stress;  ///< Cauchy stress at its beginning [Pa], tension positive
+  Real dt;                  ///< [s]
+  T viscous;                ///< artificial viscous pressure of the step [Pa], not in `stress`; it works on what keeps internal energy
+  bool elastic;             ///< true in a stage that suspends yielding: answer elastically, leave hardening variables alone
 };
+using Increment = IncrementOf<Real>;
 
 /// Artificial viscous pressure against the ringing behind shocks, for any law.  The defaults leave less than 1 % of overshoot under the
 /// kernel umls, whose waves are three cells long; finite elements are content with 0.06 and 1.5, which leave 12 % here.
@@ -37,6 +40,59 @@ struct NoHistory {
   static constexpr auto fields() { return std::tuple{}; }
 };
 
+/// The history of several particles, one per lane.  Lanes beyond `count` repeat the last particle and are not written.
+template <class State>
+struct StateRows {
+  State* row[pack_size];
+  int count;
+};
+/// What a law for T changes.
+template <class T, class State>
+using StateOf = std::conditional_t<std::is_same_v<T, Lanes>, StateRows<State>, State>;
+
+/// One variable of a history, for a law that is written once for Real and Lanes.
+template <class State, class Owner>
+Real get(const State& state, Real Owner::*member) noexcept
+{
+  return state.*member;
+}
+template <class State, class Owner>
+Sym3 get(const State& state, Sym3 Owner::*member) noexcept
+{
+  return state.*member;
+}
+template <class State, class Owner>
+Lanes get(const StateRows<State>& rows, Real Owner::*member) noexcept
+{
+  return in_each_lane([&](int i) { return rows.row[i]->*member; });
+}
+template <class State, class Owner>
+Sym3Of<Lanes> get(const StateRows<State>& rows, Sym3 Owner::*member) noexcept
+{
+  Sym3Of<Lanes> all;
+  for (int k = 0; k < 6; ++k)
+    all[k] = in_each_lane([&](int i) { return (rows.row[i]->*member)[k]; });
+  return all;
+}
+template <class State, class Owner, class Value>
+void put(State& state, Value Owner::*member, const Value& value) noexcept
+{
+  state.*member = value;
+}
+template <class State, class Owner>
+void put(StateRows<State>& rows, Real Owner::*member, const Lanes& value) noexcept
+{
+  for (int i = 0; i < rows.count; ++i)
+    rows.row[i]->*member = value[i];
+}
+template <class State, class Owner>
+void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<Lanes>& value) noexcept
+{
+  for (int i = 0; i < rows.count; ++i)
+    for (int k = 0; k < 6; ++k)
+      (rows.row[i]->*member)[k] = value[k][i];
+}
+
 /// A law.  `constants` is what follows from the parameters alone, worked out once per body.  `update` returns the Cauchy stress [Pa] at the end of the step and changes the history; it never throws, prints or
 /// allocates, and answers NaN where it has no answer (for instance det F <= 0).  `wave_speed` [m/s] is an upper bound of the
 /// speed of sound in the state F.  Optional members, found by `requires`:
@@ -50,6 +106,8 @@ struct NoHistory {
 ///                                                                   there is; the law itself is the kind that has all of it
 ///   static constexpr bool isochoric = true                          plastic flow keeps the volume: its bodies average it by default
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
+///   update and wave_speed for several particles at once             written once as templates over T = Real and T = Lanes; the history
+///                                                                   is a StateOf<T, State>, read by get() and written by put()
 /// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
 // clang-format off
 template <class L>
@@ -63,10 +121,21 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
   { law.update(in, state, constants) } noexcept -> std::same_as<Mat3>;
   { law.wave_speed(in.F, constants) } noexcept -> std::same_as<Real>;
 };
+
+/// A law that answers for several particles at once.
+template <class L>
+concept LawInLanes = requires(const L law, const IncrementOf<Lanes>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
+  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<Lanes>>;
+  { law.wave_speed(in.F, constants) } noexcept -> std::same_as<Lanes>;
+};
 // clang-format on
 
 /// What a law answers where it has no answer.
-inline Mat3 no_answer() noexcept { return Mat3::Constant(std::numeric_limits<Real>::quiet_NaN()); }
+template <class T = Real>
+Mat3Of<T> no_answer() noexcept
+{
+  return Mat3Of<T>::Constant(std::numeric_limits<Real>::quiet_NaN());
+}
 
 /// True if the law says that its flow keeps the volume, which locks simplices.
 template <class L>

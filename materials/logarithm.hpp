@@ -154,6 +154,15 @@ inline Mat3 polar_rotation(const Mat3& F) noexcept
 }
 
 /// Upper bound of the largest eigenvalue (Gershgorin): for squares of stretches in wave speeds.
-inline Real largest_eigenvalue_bound(const Mat3& A) noexcept { return A.cwiseAbs().rowwise().sum().maxCoeff(); }
+template <class T>
+T largest_eigenvalue_bound(const Mat3Of<T>& A) noexcept
+{
+  using std::abs, std::max;
+  T bound = 0;
+  for (int i = 0; i < 3; ++i)
+    bound = max(bound, T(abs(A(i, 0)) + abs(A(i, 1)) + abs(A(i, 2))));
+  return bound;
+}
+inline Real largest_eigenvalue_bound(const Mat3& A) noexcept { return largest_eigenvalue_bound<Real>(A); }
 
 }  // namespace talus

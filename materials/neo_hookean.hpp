@@ -23,22 +23,27 @@ struct NeoHookean : Elasticity {
   using Constants = Moduli;
   Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>&, const Moduli& c) const noexcept
   {
-    const Real J = in.F.determinant();
-    if (!(J > 0))
-      return no_answer();
-    const Real lambda = c.lambda, mu = c.shear;
-    return (mu * (in.F * in.F.transpose() - Mat3::Identity()) + lambda * std::log(J) * Mat3::Identity()) / J;
+    using std::log;
+    const T J = in.F.determinant();
+    if (!somewhere(J > 0))
+      return no_answer<T>();
+    const T per_volume = 1 / where(J > 0, J, T(std::numeric_limits<Real>::quiet_NaN())), shear = c.shear * per_volume;
+    Mat3Of<T> stress = shear * (in.F * in.F.transpose());
+    stress.diagonal().array() += c.lambda * per_volume * log(J) - shear;
+    return stress;
   }
 
   /// From the acoustic tensor: rho_0 c^2 = lambda + mu - lambda ln J + mu b_nn along n, mu b_nn across it.
-  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {
-    const Real lambda = c.lambda, mu = c.shear;
-    const Real across = mu * largest_eigenvalue_bound(F * F.transpose());
-    const Real along = across + lambda + mu - lambda * std::log(F.determinant());
-    return std::sqrt(std::max(along, across) / density);
+    using std::log, std::max, std::sqrt;
+    const T across = c.shear * largest_eigenvalue_bound(Mat3Of<T>(F * F.transpose()));
+    const T along = across + (c.lambda + c.shear) - c.lambda * log(T(F.determinant()));
+    return sqrt(T(max(along, across) / density));
   }
 };
 
