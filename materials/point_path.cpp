@@ -93,7 +93,7 @@ class StepSolver {
     }
     PointState<L> to = from;
     to.F += H * from.F;
-    to.stress = law_.update({to.F, H / dt, from.stress, dt, 0, false}, to.history, constants_);
+    to.stress = law_.update(Increment{to.F, H / dt, from.stress, dt, 0, false}, to.history, constants_);
     return to;
   }
 

@@ -137,14 +137,14 @@ TEST(MieGruneisen, ArtificialViscosityHeatsWhatItCompresses)
   Point<JohnsonCook> quiet{.law = law}, viscous{.law = law};
   const Mat3 f = 0.999 * Mat3::Identity(), L = (f - Mat3::Identity()) / 1e-6;
   quiet.step(f, false, 1e-6);
-  const Mat3 stress = law.update({f, L, viscous.stress, 1e-6, 3e8, false}, viscous.state, viscous.constants);
+  const Mat3 stress = law.update(Increment{f, L, viscous.stress, 1e-6, 3e8, false}, viscous.state, viscous.constants);
   EXPECT_EQ((stress - quiet.stress).norm(), 0);
   const Real work = 3e8 * (1 - f.determinant());
   EXPECT_NEAR(viscous.state.internal_energy - quiet.state.internal_energy, work, machine * quiet.state.internal_energy);
   law.mie_gruneisen->gamma = 2;
   Point<JohnsonCook> cold{.law = law}, hot{.law = law};
   cold.step(f, false, 1e-6);
-  const Mat3 heated = law.update({f, L, hot.stress, 1e-6, 3e8, false}, hot.state, hot.constants);
+  const Mat3 heated = law.update(Increment{f, L, hot.stress, 1e-6, 3e8, false}, hot.state, hot.constants);
   EXPECT_NEAR((cold.stress - heated).trace() / 3 / (2 * work), 1, 0.01);  // gamma E, and a little more work by it
 }
 

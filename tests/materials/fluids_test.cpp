@@ -175,7 +175,7 @@ TEST(Newtonian, AStepWithoutDurationTakesTheRateAsItIs)
   rate(0, 1) = 7;
   Newtonian law = oil();
   FluidHistory state;
-  const Mat3 stress = law.update({F, rate, rest, 0, 0, false}, state, {});
+  const Mat3 stress = law.update(Increment{F, rate, rest, 0, 0, false}, state, {});
   EXPECT_NEAR(stress(0, 1), 3 * 7, 1e-14 * 21);
   EXPECT_EQ(state.plastic_work, 0);
 }
@@ -196,7 +196,7 @@ Real flow_stress(const HerschelBulkley& law, Real rate)
   H(0, 1) = gamma;
   FluidHistory state;
   H *= rate / gamma;
-  const Mat3 stress = law.update({F, H, none, gamma / rate, 0, false}, state, law.constants());
+  const Mat3 stress = law.update(Increment{F, H, none, gamma / rate, 0, false}, state, law.constants());
   EXPECT_NEAR(state.plastic_work, stress(0, 1) * gamma, 1e-10 * stress(0, 1) * gamma);
   return stress(0, 1);
 }

@@ -183,13 +183,13 @@ struct Point {
   {
     const Mat3 L_step = (f - Mat3::Identity()) / dt;
     F = f * F;
-    stress = law.update({F, L_step, stress, dt, 0, elastic}, state, constants);
+    stress = law.update(Increment{F, L_step, stress, dt, 0, elastic}, state, constants);
   }
   /// Deforms by the displacement gradient `H` of the step: exact for the smallest strains.
   void strain(const Mat3& H)
   {
     F = F + H * F;
-    stress = law.update({F, H, stress, 1.0, 0, false}, state, constants);
+    stress = law.update(Increment{F, H, stress, 1.0, 0, false}, state, constants);
   }
   void prestress(const Mat3& start)
   {
