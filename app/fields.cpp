@@ -101,7 +101,7 @@ Column particle_column(const Frame<D>& frame, std::span<const Index> rows, std::
   if (name == "F")
     return tensors(name, "", rows, [&](std::size_t r) { return p.F[r]; });
   if (name == "velocity_gradient")
-    return tensors(name, "1/s", rows, [&](std::size_t r) { return embed<D>(p.L[r]); });
+    return tensors(name, "1/s", rows, [&](std::size_t r) { return embed(p.L[r]); });
   return history_column(frame, rows, name);
 }
 

@@ -19,6 +19,48 @@ using Pack = Real __attribute__((vector_size(pack_size * sizeof(Real))));
 inline Pack load(const Real* from) noexcept { return *reinterpret_cast<const Pack*>(__builtin_assume_aligned(from, sizeof(Pack))); }
 inline void store(Real* to, const Pack& pack) noexcept { *reinterpret_cast<Pack*>(__builtin_assume_aligned(to, sizeof(Pack))) = pack; }
 inline Real sum(const Pack& a) noexcept { return (a[0] + a[1]) + (a[2] + a[3]); }
+/// A pack at any address.  (A memcpy would be made in halves, which the load that follows must wait for.)
+using LoosePack = Real __attribute__((vector_size(sizeof(Pack)), aligned(sizeof(Real)), may_alias));
+
+/// Rows to columns of four by four numbers.
+inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
+{
+  using Places = std::int64_t __attribute__((vector_size(sizeof(Pack))));
+  const Pack ab_even = __builtin_shuffle(a, b, Places{0, 4, 2, 6}), ab_odd = __builtin_shuffle(a, b, Places{1, 5, 3, 7});
+  const Pack cd_even = __builtin_shuffle(c, d, Places{0, 4, 2, 6}), cd_odd = __builtin_shuffle(c, d, Places{1, 5, 3, 7});
+  a = __builtin_shuffle(ab_even, cd_even, Places{0, 1, 4, 5});
+  b = __builtin_shuffle(ab_odd, cd_odd, Places{0, 1, 4, 5});
+  c = __builtin_shuffle(ab_even, cd_even, Places{2, 3, 6, 7});
+  d = __builtin_shuffle(ab_odd, cd_odd, Places{2, 3, 6, 7});
+}
+/// n consecutive numbers of four rows -> one pack per number, each lane a row; and back, the first `count` rows.
+template <int n>
+[[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Pack* to) noexcept
+{
+  constexpr int whole = n / pack_size * pack_size;
+  for (int k = 0; k < whole; k += pack_size) {
+    for (int lane = 0; lane < pack_size; ++lane)
+      to[k + lane] = *reinterpret_cast<const LoosePack*>(row[lane] + k);
+    transpose(to[k], to[k + 1], to[k + 2], to[k + 3]);
+  }
+  for (int k = whole; k < n; ++k)
+    to[k] = Pack{row[0][k], row[1][k], row[2][k], row[3][k]};
+}
+template <int n>
+[[gnu::always_inline]] inline void store_rows(const Pack* from, Real* const (&row)[pack_size], int count) noexcept
+{
+  constexpr int whole = n / pack_size * pack_size;
+  for (int k = 0; k < whole; k += pack_size) {
+    Pack of[pack_size] = {from[k], from[k + 1], from[k + 2], from[k + 3]};
+    transpose(of[0], of[1], of[2], of[3]);
+    for (int lane = 0; lane < count; ++lane)
+      *reinterpret_cast<LoosePack*>(row[lane] + k) = of[lane];
+  }
+  for (int k = whole; k < n; ++k)
+    for (int lane = 0; lane < count; ++lane)
+      row[lane][k] = from[k][lane];
+}
+static_assert(pack_size == 4);
 
 /// The same number of several particles, one per lane.  What is written for a Real works for Lanes if it has no `if` about values:
 /// `where` takes their place, and `somewhere` and `everywhere` ask about all lanes at once.
@@ -111,3 +153,17 @@ struct Eigen::NumTraits<talus::Lanes> : Eigen::GenericNumTraits<talus::Lanes> {
   using Literal = talus::Real;
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
 };
+
+namespace talus {
+
+/// The tensor of one lane.
+template <int R, int C>
+Eigen::Matrix<Real, R, C, Eigen::DontAlign> lane_of(const Eigen::Matrix<Lanes, R, C, Eigen::DontAlign>& all, int lane) noexcept
+{
+  Eigen::Matrix<Real, R, C, Eigen::DontAlign> one;
+  for (int k = 0; k < R * C; ++k)
+    one(k) = all(k)[lane];
+  return one;
+}
+
+}  // namespace talus

@@ -29,14 +29,14 @@ inline Mat3 dev(const Mat3& a) noexcept { return a - (a.trace() / 3) * Mat3::Ide
 inline Real second_invariant(const Mat3& a) noexcept { return 0.5 * dev(a).squaredNorm(); }
 inline Real von_mises(const Mat3& a) noexcept { return std::sqrt(3 * second_invariant(a)); }
 
-/// A plane tensor in 3-D: zeros out of plane (plane strain for a velocity gradient).
-template <int D>
-Mat3 embed(const Mat<D>& a) noexcept
+/// A plane tensor in 3-D: zeros out of plane (plane strain for a velocity gradient).  D is the size of `a`.
+template <class T, int D>
+Mat3Of<T> embed(const Eigen::Matrix<T, D, D, Eigen::DontAlign>& a) noexcept
 {
   if constexpr (D == 3) {
     return a;
   } else {
-    Mat3 b = Mat3::Zero();
+    Mat3Of<T> b = Mat3Of<T>::Zero();
     b.template topLeftCorner<D, D>() = a;
     return b;
   }

@@ -11,15 +11,6 @@
 
 namespace talus {
 
-/// The tensor of one lane.
-inline Mat3 lane_of(const Mat3Of<Lanes>& all, int lane) noexcept
-{
-  Mat3 one;
-  for (Index k = 0; k < 9; ++k)
-    one(k) = all(k)[lane];
-  return one;
-}
-
 /// Particles [begin, end) of the model follow `law`.  Every index i below counts from 0 inside the body.
 template <class L>
 struct Batch {
@@ -54,7 +45,7 @@ struct Batch {
       for (int lane = 0; lane < count; ++lane) {
         const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
         const Mat3 after = update(i[lane], Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic});
-        for (Index k = 0; k < 9; ++k)
+        for (Eigen::Index k = 0; k < 9; ++k)
           stress(k).set(lane, after(k));
       }
       return stress;

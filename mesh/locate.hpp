@@ -2,6 +2,7 @@
 // Which cell holds a point: a walk across facets from a hint, a search in a tree of boxes when the walk loses its way.
 #include <optional>
 
+#include "core/lanes.hpp"
 #include "mesh/box_tree.hpp"
 #include "mesh/mesh.hpp"
 
@@ -22,15 +23,27 @@ class Locator {
 
   /// One cell opened for many points: most particles are still deep inside the cell they were in.
   struct Probe {
-    Vec<D> origin;
-    std::array<Vec<D>, D + 1> slope;  ///< gradients of the barycentric coordinates [1/m]
-    Real least;                       ///< a point with all coordinates above this lies in no other cell
-    bool deep(const Vec<D>& x) const noexcept
+    const Vec<D>& origin;
+    const std::array<Vec<D>, D + 1>& slope;  ///< gradients of the barycentric coordinates [1/m]
+    Real least;                              ///< a point with all coordinates above this lies in no other cell
+    bool deep(const Vec<D>& x) const noexcept { return all_above_least<Real>(x); }
+    /// Of several points at once.
+    Lanes::Mask deep_each(const Eigen::Matrix<Lanes, D, 1, Eigen::DontAlign>& x) const noexcept { return all_above_least<Lanes>(x); }
+
+   private:
+    friend class Locator;
+    template <class T>
+    auto all_above_least(const Eigen::Matrix<T, D, 1, Eigen::DontAlign>& x) const noexcept
     {
-      const Vec<D> r = x - origin;
-      bool inside = 1 + slope[0].dot(r) > least;  // false for NaN
+      const auto share = [&](std::size_t a) {
+        T sum = a == 0 ? 1 : 0;
+        for (int d = 0; d < D; ++d)
+          sum += slope[a][d] * (x[d] - origin[d]);
+        return sum;
+      };
+      auto inside = share(0) > least;  // false for NaN
       for (std::size_t a = 1; a <= D; ++a)
-        inside = inside && slope[a].dot(r) > least;
+        inside = inside && share(a) > least;
       return inside;
     }
   };

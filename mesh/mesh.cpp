@@ -140,11 +140,13 @@ void Mesh<D>::measure()
 {
   volume_.resize(cells_.size());
   altitude_.resize(cells_.size());
+  gradients_.resize(cells_.size());
   node_size_.resize(nodes_.size());
   parallel_for(n_cells(), [&](Index c) {
     const Simplex<D> s = corners(c);
     const std::array<Real, D + 1> heights = altitudes<D>(s);
     volume_[c] = signed_volume<D>(s);
+    gradients_[c] = talus::gradients<D>(s);
     altitude_[c] = *std::min_element(heights.begin(), heights.end());
   });
   parallel_for(n_nodes(), [&](Index n) {
@@ -219,12 +221,6 @@ template <int D>
 std::array<Real, D + 1> Mesh<D>::barycentric(Index c, const Vec<D>& x) const noexcept
 {
   return talus::barycentric<D>(corners(c), x);
-}
-
-template <int D>
-std::array<Vec<D>, D + 1> Mesh<D>::gradients(Index c) const noexcept
-{
-  return talus::gradients<D>(corners(c));
 }
 
 template <int D>

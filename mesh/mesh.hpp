@@ -68,7 +68,7 @@ class Mesh {
   /// Barycentric coordinates of x in cell c (sum to one; all >= 0 inside).
   std::array<Real, D + 1> barycentric(Index c, const Vec<D>& x) const noexcept;
   /// Gradients [1/m] of the D+1 barycentric coordinates of cell c.
-  std::array<Vec<D>, D + 1> gradients(Index c) const noexcept;
+  const std::array<Vec<D>, D + 1>& gradients(Index c) const noexcept { return gradients_[static_cast<std::size_t>(c)]; }
 
   /// Nodes of a named group of any dimension (nodes of its facets or cells), ascending; nothing if there is no such group.
   std::optional<std::vector<Index>> node_set(std::string_view name) const;
@@ -88,6 +88,7 @@ class Mesh {
   std::vector<Vec<D>> nodes_;
   std::vector<Cell> cells_;
   std::vector<Real> volume_, altitude_, node_size_;
+  std::vector<std::array<Vec<D>, D + 1>> gradients_;
   std::vector<std::array<Index, D + 1>> neighbours_;
   Csr cells_of_node_, ring_of_node_;
   std::vector<Facet> boundary_facets_;

@@ -5,7 +5,6 @@
 #include "solver/average_volume.hpp"
 #include "solver/gather.hpp"
 #include "solver/model.hpp"
-#include "solver/update_stress.hpp"
 
 namespace talus {
 
@@ -38,8 +37,12 @@ template <int D, Kernel<D> K>
 void settle(Model<D, K>& m, Real dt);
 template <int D, Kernel<D> K>
 void show_to_particles(Model<D, K>& m, Real dt);
+template <int D, Kernel<D> K, class Then>
+void remap(Model<D, K>& m, Real dt, Then&& then);
 template <int D, Kernel<D> K>
-void remap(Model<D, K>& m, Real dt);
+void respond(Model<D, K>& m, Index body, Index block, Real dt);
+template <int D, Kernel<D> K>
+void respond_as_bodies(Model<D, K>& m, Real dt);
 
 /// One step of length dt [s].  Afterwards `m.health` tells whether the state is sound.
 template <int D, Kernel<D> K>
@@ -72,27 +75,17 @@ void advance(Model<D, K>& m, Real dt)
   watch.lap(m.timings.nodes);
 
   show_to_particles(m, dt);  //  9
+  const auto stress = [&](Index body, Index block) { respond(m, body, block, dt); };
+  m.stress_sums.assign(m.order.first.size(), {});
   if (m.transfer.musl) {
     gather_and_return_momentum(m, dt);  // 10
-    remap(m, dt);                       // 11
+    remap(m, dt, stress);               // 11, 12
   } else {
-    gather(m, dt);  // 10
+    gather(m, dt, stress);  // 10, 12
   }
   m.energy.loads += work(m.particles);
-  watch.lap(m.timings.gather);
-
-  m.crossing = std::numeric_limits<Real>::infinity();
-  for (Index body = 0; body < m.n_bodies(); ++body) {
-    AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
-    if (averages_volume(material))
-      average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
-    const StressSums sums = update_stress(m.mesh, material, dt, m.stage.elastic, m.averaged, m.particles, m.health);  // 12
-    if (m.heat)
-      conduct_heat(m.mesh, material, m.order, body, dt, m.particles, *m.heat);
-    m.energy.internal += sums.work;
-    m.crossing = std::min(m.crossing, sums.crossing);
-  }
-  watch.lap(m.timings.stress);
+  respond_as_bodies(m, dt);
+  watch.lap(m.timings.gather);  // its share of stresses is told apart by respond_as_bodies()
 
   m.clock = {m.clock.step + 1, time + dt, dt};
   m.timings.particle_steps += static_cast<Real>(m.particles.size());
@@ -134,8 +127,8 @@ void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt
 
 /// MUSL: momentum of the new particle velocities on the nodes, held by the walls; then L_p from these velocities, while the
 /// particles move with those of the step itself.
-template <int D, Kernel<D> K>
-void remap(Model<D, K>& m, Real dt)
+template <int D, Kernel<D> K, class Then>
+void remap(Model<D, K>& m, Real dt, Then&& then)
 {
   if constexpr (HasNodePart<K, D>) {
     assemble_momentum(m.blocks, m.hats.sum);
@@ -153,10 +146,44 @@ void remap(Model<D, K>& m, Real dt)
   m.slaves.follow_velocity(m.mesh, m.nodes, m.walls, m.clock.time + dt, m.remapped);
   if constexpr (HasNodePart<K, D>) {
     spread_gradient(m.kernel.node_part(), m.remapped, m.hats);
-    gather_gradient(m, m.hats.motion, dt);
+    gather_gradient(m, m.hats.motion, dt, then);
   } else {
-    gather_gradient(m, m.remapped, dt);
+    gather_gradient(m, m.remapped, dt, then);
   }
+}
+
+/// Stress of the particles of a body in a block, unless their law must know those of other blocks first.
+template <int D, Kernel<D> K>
+void respond(Model<D, K>& m, Index body, Index block, Real dt)
+{
+  AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
+  if (const auto rows = m.order.rows(body, block); !rows.empty() && !averages_volume(material))
+    m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, rows, dt, m.stage.elastic, m.averaged, m.particles, m.health);
+}
+
+/// What is of a body as a whole: volumes averaged before the stress, heat after it; and the sums of the step.
+template <int D, Kernel<D> K>
+void respond_as_bodies(Model<D, K>& m, Real dt)
+{
+  StressSums total;
+  for (Index body = 0; body < m.n_bodies(); ++body) {
+    AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
+    if (averages_volume(material)) {
+      average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
+      parallel_for_uneven(m.order.blocks, [&](Index block) {
+        m.stress_sums[m.order.key(body, block)] =
+            update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic, m.averaged, m.particles, m.health);
+      });
+    }
+    if (m.heat)
+      conduct_heat(m.mesh, material, m.order, body, dt, m.particles, *m.heat);
+    for (Index block = 0; block < m.order.blocks; ++block)
+      total += m.stress_sums[m.order.key(body, block)];
+  }
+  m.energy.internal += total.work;
+  m.crossing = total.crossing;
+  m.timings.stress += total.seconds / threads();
+  m.timings.gather -= total.seconds / threads();
 }
 
 /// Work terms and residual of the step, for the audit.

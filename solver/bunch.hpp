@@ -7,33 +7,74 @@
 
 namespace talus {
 
-/// Up to four particles of one cell.
+/// Up to four particles, side by side in the lanes of packs.
 struct Bunch {
   std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
   int count;
 
+  /// Those of `rows` from `begin` on.
+  Bunch(std::span<const Index> rows, std::size_t begin) noexcept
+      : count(static_cast<int>(std::min<std::size_t>(pack_size, rows.size() - begin)))
+  {
+    for (std::size_t lane = 0; lane < pack_size; ++lane)
+      p[lane] = static_cast<std::size_t>(rows[std::min(begin + lane, rows.size() - 1)]);
+  }
   /// f(p) of every lane.
   template <class F>
   Pack lanes(F&& f) const noexcept
   {
     return Pack{f(p[0]), f(p[1]), f(p[2]), f(p[3])};
   }
+  /// The particles' entries of a column: numbers, vectors or tensors.
+  [[gnu::always_inline]] Lanes load(const std::vector<Real>& column) const noexcept
+  {
+    return lanes([&](std::size_t row) { return column[row]; });
+  }
+  template <int R, int C>
+  [[gnu::always_inline]] Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> load(
+      const std::vector<Eigen::Matrix<Real, R, C, Eigen::DontAlign>>& column) const noexcept
+  {
+    Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> all;
+    Pack of[R * C];
+    load_rows<R * C>({column[p[0]].data(), column[p[1]].data(), column[p[2]].data(), column[p[3]].data()}, of);
+    for (int k = 0; k < R * C; ++k)
+      all(k) = of[k];
+    return all;
+  }
+  [[gnu::always_inline]] void store(const Lanes& value, std::vector<Real>& column) const noexcept
+  {
+    for (int lane = 0; lane < count; ++lane)
+      column[p[lane]] = value[lane];
+  }
+  template <int R, int C>
+  [[gnu::always_inline]] void store(const Eigen::Matrix<Lanes, R, C, Eigen::DontAlign>& value,
+                                    std::vector<Eigen::Matrix<Real, R, C, Eigen::DontAlign>>& column) const noexcept
+  {
+    Pack of[R * C];
+    for (int k = 0; k < R * C; ++k)
+      of[k] = value(k).of;
+    store_rows<R * C>(of, {column[p[0]].data(), column[p[1]].data(), column[p[2]].data(), column[p[3]].data()}, count);
+  }
 };
 
+/// f(bunch) for all rows, four at a time.
+template <class F>
+void for_each_bunch(std::span<const Index> rows, F&& f)
+{
+  for (std::size_t begin = 0; begin < rows.size(); begin += pack_size)
+    f(Bunch(rows, begin));
+}
 /// f(bunch, x) for the particles of a run, four at a time.
 template <int D, class F>
 void for_each_bunch(std::span<const Index> run, const std::vector<Vec<D>>& places, F&& f)
 {
-  for (std::size_t begin = 0; begin < run.size(); begin += pack_size) {
-    Bunch bunch;
-    bunch.count = static_cast<int>(std::min<std::size_t>(pack_size, run.size() - begin));
-    for (std::size_t lane = 0; lane < pack_size; ++lane)
-      bunch.p[lane] = static_cast<std::size_t>(run[std::min(begin + lane, run.size() - 1)]);
+  for_each_bunch(run, [&](const Bunch& bunch) {
     Pack x[D];
+    const auto place = bunch.load(places);
     for (int d = 0; d < D; ++d)
-      x[d] = bunch.lanes([&](std::size_t p) { return places[p][d]; });
-    f(std::as_const(bunch), std::as_const(x));
-  }
+      x[d] = place[d].of;
+    f(bunch, std::as_const(x));
+  });
 }
 
 /// What four particles see of the nodes.
@@ -43,23 +84,27 @@ struct Seen {
   Pack L[D][D];          ///< sum v (x) G  [1/s]
 };
 
-/// One lane of what was seen.
+/// Vectors and tensors of four particles.
 template <int D>
-Vec<D> lane_of(const Pack (&v)[D], int lane) noexcept
+using VecOf = Eigen::Matrix<Lanes, D, 1, Eigen::DontAlign>;
+template <int D>
+using MatOf = Eigen::Matrix<Lanes, D, D, Eigen::DontAlign>;
+template <int D>
+VecOf<D> vector_of(const Pack (&v)[D]) noexcept
 {
-  Vec<D> one;
+  VecOf<D> all;
   for (int i = 0; i < D; ++i)
-    one[i] = v[i][lane];
-  return one;
+    all[i] = v[i];
+  return all;
 }
 template <int D>
-Mat<D> lane_of(const Pack (&L)[D][D], int lane) noexcept
+MatOf<D> matrix_of(const Pack (&L)[D][D]) noexcept
 {
-  Mat<D> one;
+  MatOf<D> all;
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j)
-      one(i, j) = L[i][j][lane];
-  return one;
+      all(i, j) = L[i][j];
+  return all;
 }
 
 }  // namespace talus

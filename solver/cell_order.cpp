@@ -1,16 +1,57 @@
 #include "solver/cell_order.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "core/parallel.hpp"
 
 namespace talus {
 
+namespace {
+
+auto& at(auto& array, Index i) { return array[static_cast<std::size_t>(i)]; }
+
+bool before(std::span<const Index> cell, std::span<const std::int64_t> id, Index a, Index b)
+{
+  return at(cell, a) != at(cell, b) ? at(cell, a) < at(cell, b) : at(id, a) < at(id, b);
+}
+
+/// Rows almost in order.
+void insertion_sort(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<Index> rows)
+{
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const Index row = rows[i];
+    std::size_t j = i;
+    for (; j > 0 && before(cell, id, row, rows[j - 1]); --j)
+      rows[j] = rows[j - 1];
+    rows[j] = row;
+  }
+}
+
+/// Sorts the rows of one block by cell, those of a cell as they come; `to` has the same size.
+void count_cells(std::span<const Index> cell, std::span<const Index> rows, std::span<Index> to)
+{
+  std::array<Index, block_cells> position{};
+  for (const Index row : rows)
+    ++at(position, at(cell, row) % block_cells);
+  Index sum = 0;
+  for (Index& count : position)
+    sum += std::exchange(count, sum);
+  for (const Index row : rows)
+    at(to, at(position, at(cell, row) % block_cells)++) = row;
+}
+
+std::span<Index> part(std::vector<Index>& rows, const std::vector<Index>& first, std::size_t key)
+{
+  return std::span(rows).subspan(static_cast<std::size_t>(first[key]), static_cast<std::size_t>(first[key + 1] - first[key]));
+}
+
+}  // namespace
+
 void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
                   CellOrder& order)
 {
-  const auto at = [](auto& array, Index i) -> auto& { return array[static_cast<std::size_t>(i)]; };
   order.blocks = (n_cells + block_cells - 1) / block_cells;
   order.row.resize(cell.size());
   order.first.assign(bodies.size() * static_cast<std::size_t>(order.blocks) + 1, 0);
@@ -31,23 +72,76 @@ void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id,
   }
   order.first.back() = static_cast<Index>(cell.size());
 
-  // rows of a cell by id: a few items each, almost in order already
-  const auto all = static_cast<Index>(bodies.size()) * order.blocks;
-  parallel_for(all, [&](Index key) {
-    const auto rows = std::span(order.row).subspan(static_cast<std::size_t>(at(order.first, key)),
-                                                   static_cast<std::size_t>(at(order.first, key + 1) - at(order.first, key)));
-    for (std::size_t i = 1; i < rows.size(); ++i)
-      for (std::size_t j = i; j > 0 && at(cell, rows[j]) == at(cell, rows[j - 1]) && at(id, rows[j]) < at(id, rows[j - 1]); --j)
-        std::swap(rows[j], rows[j - 1]);
+  parallel_for(static_cast<Index>(order.keys()),
+               [&](Index key) { insertion_sort(cell, id, part(order.row, order.first, static_cast<std::size_t>(key))); });
+}
+
+void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, CellOrder& order)
+{
+  const std::size_t keys = order.keys();
+  const auto n_keys = static_cast<Index>(keys);
+  const auto key_of = [&](std::size_t old_key, Index row) {  // bodies do not change
+    return old_key / static_cast<std::size_t>(order.blocks) * static_cast<std::size_t>(order.blocks) +
+           static_cast<std::size_t>(at(cell, row) / block_cells);
+  };
+  order.moved.resize(order.row.size());
+  order.next_row.resize(order.row.size());
+  order.left.assign(keys, 0);
+  parallel_for(n_keys, [&](Index k) {
+    const auto key = static_cast<std::size_t>(k);
+    auto leaving = part(order.moved, order.first, key);
+    for (const Index row : order.rows(key))
+      if (key_of(key, row) != key)
+        at(leaving, order.left[key]++) = row;
   });
+
+  // Those who leave, few, to where they arrive.
+  order.next_first.assign(keys + 1, 0);
+  for (std::size_t key = 0; key < keys; ++key)
+    for (Index i = 0; i < order.left[key]; ++i)
+      ++order.next_first[key_of(key, at(order.moved, order.first[key] + i)) + 1];
+  for (std::size_t key = 0; key < keys; ++key)
+    order.next_first[key + 1] += order.next_first[key];
+  std::vector<Index>& arrivals = order.next_first;  // key -> its first in `arrived`
+  order.arrived.resize(static_cast<std::size_t>(arrivals.back()));
+  order.count.assign(arrivals.begin(), arrivals.end());
+  for (std::size_t key = 0; key < keys; ++key)
+    for (Index i = 0; i < order.left[key]; ++i) {
+      const Index row = at(order.moved, order.first[key] + i);
+      at(order.arrived, order.count[key_of(key, row)]++) = row;
+    }
+
+  order.count.assign(keys + 1, 0);  // key -> its first row to be
+  for (std::size_t key = 0; key < keys; ++key)
+    order.count[key + 1] = order.count[key] + order.first[key + 1] - order.first[key] - order.left[key] + arrivals[key + 1] - arrivals[key];
+  parallel_for(n_keys, [&](Index k) {
+    const auto key = static_cast<std::size_t>(k);
+    const auto rows = order.rows(key);
+    const auto sorted = part(order.next_row, order.count, key);
+    if (order.left[key] == 0 && arrivals[key + 1] == arrivals[key] &&
+        std::is_sorted(rows.begin(), rows.end(), [&](Index a, Index b) { return at(cell, a) < at(cell, b); })) {
+      std::copy(rows.begin(), rows.end(), sorted.begin());
+    } else {
+      static thread_local std::vector<Index> unsorted;
+      unsorted.clear();
+      for (const Index row : rows)
+        if (key_of(key, row) == key)
+          unsorted.push_back(row);
+      for (Index i = arrivals[key]; i < arrivals[key + 1]; ++i)
+        unsorted.push_back(at(order.arrived, i));
+      count_cells(cell, unsorted, sorted);
+    }
+    insertion_sort(cell, id, sorted);
+  });
+  std::swap(order.row, order.next_row);
+  std::swap(order.first, order.count);
 }
 
 Real disorder(const CellOrder& order) noexcept
 {
-  Index misplaced = 0;
-  for (std::size_t k = 0; k < order.row.size(); ++k)
-    misplaced += order.row[k] != static_cast<Index>(k) ? 1 : 0;
-  return order.row.empty() ? 0 : static_cast<Real>(misplaced) / static_cast<Real>(order.row.size());
+  const auto n = static_cast<Index>(order.row.size());
+  const Index jumps = parallel_sum<Index>(n, [&](Index k) { return k > 0 && at(order.row, k) != at(order.row, k - 1) + 1 ? 1 : 0; });
+  return order.row.empty() ? 0 : static_cast<Real>(jumps) / static_cast<Real>(order.row.size());
 }
 
 }  // namespace talus

@@ -16,20 +16,34 @@ struct CellOrder {
   std::vector<Index> row;    ///< particle rows sorted by (body, cell, id)
   std::vector<Index> first;  ///< (body * blocks + block) -> first position in `row`; one more at the end
   Index blocks = 0;
-  std::vector<Index> count;  ///< scratch: particles per cell
 
-  std::span<const Index> rows(Index body, Index block) const noexcept
+  /// Where in `first` the particles of a body in a block begin.
+  std::size_t key(Index body, Index block) const noexcept
   {
-    const auto key = static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
-    return std::span(row).subspan(static_cast<std::size_t>(first[key]), static_cast<std::size_t>(first[key + 1] - first[key]));
+    return static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
   }
+  std::size_t keys() const noexcept { return first.size() - 1; }
+  std::span<const Index> rows(Index body, Index block) const noexcept { return rows(key(body, block)); }
+  std::span<const Index> rows(std::size_t at) const noexcept
+  {
+    return std::span(row).subspan(static_cast<std::size_t>(first[at]), static_cast<std::size_t>(first[at + 1] - first[at]));
+  }
+
+  // Scratch of both sorts.
+  std::vector<Index> count;            ///< particles per cell, or per block
+  std::vector<Index> next_row, moved;  ///< `row` to be; particles that leave a block, in the part of `moved` that is the block's in `row`
+  std::vector<Index> next_first, left, arrived;
 };
 
 /// Sorts anew from `cell` and `id`; `order` keeps its buffers.  Linear in particles and cells.
 void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
                   CellOrder& order);
 
-/// Share of the particles whose row is not their position in the order.
+/// Sorts after some particles have changed their cells: the same order, but only blocks that somebody has left, entered or moved in are
+/// touched, in parallel.
+void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, CellOrder& order);
+
+/// Share of the particles whose row does not follow that of the particle before them in the order.
 Real disorder(const CellOrder& order) noexcept;
 
 /// f(run) for the particles of each single cell in `rows`, which are sorted by cell.

@@ -45,11 +45,12 @@ struct Tension {
 template <int D, int N>
 Tension<D> tension_of(const Particles<D>& particles, const Bunch& bunch, const Weights<D, N>& weights) noexcept
 {
-  const Pack volume = bunch.lanes([&](std::size_t p) { return particles.volume[p]; });
+  const Pack volume = bunch.load(particles.volume).of;
+  const Sym3Of<Lanes> stress = bunch.load(particles.stress);
   Pack T[D][D];
   for (int i = 0; i < D; ++i)
     for (int j = i; j < D; ++j)
-      T[i][j] = T[j][i] = volume * bunch.lanes([&](std::size_t p) { return particles.stress[p][Symmetric<3>::place(i, j)]; });
+      T[i][j] = T[j][i] = volume * stress[Symmetric<3>::place(i, j)].of;
   Tension<D> tension;
   for (int i = 0; i < D; ++i) {
     tension.shift[i] = Pack{};

@@ -5,26 +5,27 @@
 namespace talus {
 namespace detail {
 
-/// v_p, and L_p and the affine field where the scheme or the stress need them.
-template <bool increments, bool with_gradient, int D, class Through_>
+/// v_p and, if asked for, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme keeps its own.
+/// With `musl` L is found later, from remapped velocities.
+template <bool increments, bool with_gradient, bool musl, int D, class Through_>
 Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const Bunch& bunch, Particles<D>& particles) noexcept
 {
   const Seen<D> seen = through.template see<increments, with_gradient>(bunch);
-  for (int lane = 0; lane < bunch.count; ++lane) {
-    const std::size_t p = bunch.p[lane];
-    const Vec<D> v = lane_of<D>(seen.v, lane);
-    if constexpr (increments)
-      particles.v[p] = (1 - pic) * (particles.v[p] + lane_of<D>(seen.change, lane)) + pic * v;
-    else
-      particles.v[p] = v;
-    if constexpr (with_gradient) {
-      const Mat<D> L = particles.L[p] = lane_of<D>(seen.L, lane);
-      if (!particles.C.empty()) {
-        particles.C[p] = L;
-        if constexpr (Through_::has_apic)
-          if (scheme == Scheme::apic)
-            particles.C[p] = through.apic_field(lane, particles.x[p], L);
-      }
+  VecOf<D> v = vector_of(seen.v);
+  if constexpr (increments)
+    v = Lanes(1 - pic) * (bunch.load(particles.v) + vector_of(seen.change)) + Lanes(pic) * v;
+  bunch.store(v, particles.v);
+  if constexpr (with_gradient) {
+    const MatOf<D> L = matrix_of(seen.L);
+    bunch.store(L, musl ? particles.C : particles.L);
+    if (scheme == Scheme::apic) {
+      if constexpr (Through_::has_apic)
+        for (int lane = 0; lane < bunch.count; ++lane) {
+          const std::size_t p = bunch.p[lane];
+          particles.C[p] = through.apic_field(lane, particles.x[p], lane_of(L, lane));
+        }
+      else
+        bunch.store(L, particles.C);
     }
   }
   return seen;
@@ -32,38 +33,41 @@ Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const Bu
 
 /// x <- x + dt v
 template <int D>
-void move(const Bunch& bunch, const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
+void move(const Bunch& bunch, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
 {
-  for (int lane = 0; lane < bunch.count; ++lane)
-    for (int i = 0; i < D; ++i)
-      particles.x[bunch.p[lane]][i] += dt * v[i][lane];
+  bunch.store(VecOf<D>(vector_of(x) + Lanes(dt) * vector_of(v)), particles.x);
 }
 
-/// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read.
-template <int D, Kernel<D> K, class F>
-void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typename Through<D, K>::Motion>& motion, F&& f)
+/// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read; then done(body), body by body.
+template <int D, Kernel<D> K, class F, class Done>
+void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typename Through<D, K>::Motion>& motion, F&& f, Done&& done)
 {
   Through<D, K> through(m.kernel);
-  for (Index body = 0; body < m.n_bodies(); ++body)
+  for (Index body = 0; body < m.n_bodies(); ++body) {
     for_each_run(m.order.rows(body, b), m.particles.cell, [&](Index c, std::span<const Index> run) {
       through.enter(m.mesh, c);
       through.read(motion);
       f(c, run, through);
     });
+    done(body);
+  }
 }
 
-template <bool increments, int D, Kernel<D> K>
-void gather(Model<D, K>& m, Real dt)
+template <bool increments, int D, Kernel<D> K, class Then>
+void gather(Model<D, K>& m, Real dt, Then&& then)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
   parallel_for_uneven(m.order.blocks, [&](Index b) {
-    for_each_reading_run(m, b, m.motion(), [&](Index, std::span<const Index> run, auto& through) {
-      for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
-        through.place(bunch, x);
-        const Seen<D> seen = take_velocity<increments, true>(through, m.transfer.scheme, pic, bunch, m.particles);
-        move(bunch, seen.v, dt, m.particles);
-      });
-    });
+    for_each_reading_run(
+        m, b, m.motion(),
+        [&](Index, std::span<const Index> run, auto& through) {
+          for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+            through.place(bunch, x);
+            const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, bunch, m.particles);
+            move(bunch, x, seen.v, dt, m.particles);
+          });
+        },
+        [&](Index body) { then(body, b); });
   });
 }
 
@@ -76,25 +80,32 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
       return;
     const auto rows = m.blocks.rows(b);
     std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
-    for_each_reading_run(m, b, m.motion(), [&](Index c, std::span<const Index> run, auto& through) {
-      through.clear();
-      for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
-        through.place(bunch, x);
-        take_velocity<increments, affine>(through, m.transfer.scheme, pic, bunch, m.particles);
-        through.template deposit<affine, false, false>(m.particles, bunch, x, m.particles.affine_fields());
-      });
-      through.template add_to<affine, false, false>(rows, m.blocks.slots(c), NodeSum<D>::unseen);
-    });
+    for_each_reading_run(
+        m, b, m.motion(),
+        [&](Index c, std::span<const Index> run, auto& through) {
+          through.clear();
+          for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+            through.place(bunch, x);
+            take_velocity<increments, affine, true>(through, m.transfer.scheme, pic, bunch, m.particles);
+            through.template deposit<affine, false, false>(m.particles, bunch, x, m.particles.affine_fields());
+          });
+          through.template add_to<affine, false, false>(rows, m.blocks.slots(c), NodeSum<D>::unseen);
+        },
+        [](Index) {});
   });
 }
 
 }  // namespace detail
 
-/// v_p, L_p, the affine field, and x_p <- x_p + dt sum w v.
-template <int D, Kernel<D> K>
-void gather(Model<D, K>& m, Real dt)
+struct Nothing {
+  void operator()(Index, Index) const noexcept {}
+};
+/// v_p, L_p, the affine field, and x_p <- x_p + dt sum w v.  then(body, block) is called when the particles of a body in a block have
+/// been told: they are still in the cache.
+template <int D, Kernel<D> K, class Then = Nothing>
+void gather(Model<D, K>& m, Real dt, Then&& then = {})
 {
-  m.transfer.increments() ? detail::gather<true>(m, dt) : detail::gather<false>(m, dt);
+  m.transfer.increments() ? detail::gather<true>(m, dt, then) : detail::gather<false>(m, dt, then);
 }
 
 /// MUSL, first half: v_p and the affine field, whose momentum goes back at once to the rows of the blocks with the weights at hand.
@@ -110,19 +121,21 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
 
 /// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
 /// What they read holds the remapped velocity, or its gradient, and the step's own velocity in `change`.
-template <int D, Kernel<D> K>
-void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Real dt)
+template <int D, Kernel<D> K, class Then>
+void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Real dt, Then&& then)
 {
   parallel_for_uneven(m.order.blocks, [&](Index b) {
-    detail::for_each_reading_run(m, b, remapped, [&](Index, std::span<const Index> run, auto& through) {
-      for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
-        through.place(bunch, x);
-        const Seen<D> seen = through.template see<true, true>(bunch);
-        for (int lane = 0; lane < bunch.count; ++lane)
-          m.particles.L[bunch.p[lane]] = lane_of<D>(seen.L, lane);
-        detail::move(bunch, seen.change, dt, m.particles);
-      });
-    });
+    detail::for_each_reading_run(
+        m, b, remapped,
+        [&](Index, std::span<const Index> run, auto& through) {
+          for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+            through.place(bunch, x);
+            const Seen<D> seen = through.template see<true, true>(bunch);
+            bunch.store(matrix_of(seen.L), m.particles.L);
+            detail::move(bunch, x, seen.change, dt, m.particles);
+          });
+        },
+        [&](Index body) { then(body, b); });
   });
 }
 

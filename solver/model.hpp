@@ -7,6 +7,7 @@
 #include "solver/relocate.hpp"
 #include "solver/through_both.hpp"
 #include "solver/transfer.hpp"
+#include "solver/update_stress.hpp"
 #include "solver/walls.hpp"
 
 namespace talus {
@@ -57,6 +58,7 @@ struct Model {
   std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
   std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
   std::vector<Real> averaged;           ///< volume ratios of average_volume(), scratch
+  std::vector<StressSums> stress_sums;  ///< of the particles of each body in each block, scratch
 
   Transfer transfer;
   Loads<D> loads;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "kernels/symmetric.hpp"
 
 namespace talus {
 
@@ -35,8 +36,8 @@ struct alignas(64) NodeSum {
 /// operators need besides.
 template <int D>
 struct HatSum : NodeSum<D> {
-  Mat<D> affine = Mat<D>::Zero();   ///< sum B m A [kg/s]
-  Mat<D> tension = Mat<D>::Zero();  ///< sum B V sigma [N m]
+  Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
+  Symmetric<D> tension{};          ///< sum B V sigma [N m]
   Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept
   {
@@ -52,7 +53,8 @@ struct HatSum : NodeSum<D> {
   {
     NodeSum<D>::operator+=(other);
     affine += other.affine;
-    tension += other.tension;
+    for (int k = 0; k < Symmetric<D>::size; ++k)
+      tension.entry[k] += other.tension.entry[k];
     return *this;
   }
 };

@@ -1,47 +1,41 @@
 #include "solver/relocate.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <numeric>
+
+#include "solver/bunch.hpp"
 
 namespace talus {
 
 namespace {
 
-/// Share of rows out of place above which the arrays themselves are re-ordered: below it the gain does not pay for the move.
+/// Disorder above which the arrays themselves are re-ordered: below it the gain does not pay for the move.
 constexpr Real most_disorder = 0.2;
 /// A particle set back onto a wall is placed this share of the cell's smallest altitude inside.
 constexpr Real inset = 1e-6;
 
 std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
-/// column[i] <- column[order[i]], in place: no second copy of the largest arrays.
+/// column[i] <- column[order[i]] by way of `spare`, which is kept: room for one column.
 template <class T>
-void permute_in_place(std::vector<T>& column, std::span<const Index> order, std::vector<std::uint8_t>& done)
+void permute(std::vector<T>& column, std::span<const Index> order, std::vector<std::byte>& spare)
 {
   if (column.empty())
     return;
-  done.assign(order.size(), 0);
-  for (std::size_t start = 0; start < order.size(); ++start) {
-    if (done[start] || order[start] == static_cast<Index>(start))
-      continue;
-    const T kept = column[start];
-    std::size_t to = start;
-    for (auto from = z(order[to]); from != start; from = z(order[to])) {
-      column[to] = column[from];
-      done[to] = 1;
-      to = from;
-    }
-    column[to] = kept;
-    done[to] = 1;
-  }
+  spare.resize(std::max(spare.size(), column.size() * sizeof(T)));
+  T* const sorted = reinterpret_cast<T*>(spare.data());
+  const auto n = static_cast<Index>(order.size());
+  parallel_for(n, [&](Index i) { std::memcpy(static_cast<void*>(sorted + i), &column[z(order[z(i)])], sizeof(T)); });
+  parallel_for(n, [&](Index i) { std::memcpy(static_cast<void*>(&column[z(i)]), sorted + i, sizeof(T)); });
 }
 
 template <int D>
 void follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
 {
-  static thread_local std::vector<std::uint8_t> done;
+  static thread_local std::vector<std::byte> spare;
   static thread_local std::vector<Index> within;
-  particles.for_each_column([&](std::string_view, std::string_view, auto& column) { permute_in_place(column, order.row, done); });
+  particles.for_each_column([&](std::string_view, std::string_view, auto& column) { permute(column, order.row, spare); });
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     within.resize(z(bodies[b].size()));
     for (Index i = 0; i < bodies[b].size(); ++i)
@@ -117,9 +111,12 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
       for (Index body = 0; body < static_cast<Index>(bodies.size()); ++body)
         for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
           const auto probe = locator.probe(mesh, c);
-          for (const Index p : run)
-            if (!probe.deep(particles.x[z(p)]))
-              find(z(p));
+          for_each_bunch(run, [&](const Bunch& bunch) {
+            if (const auto deep = probe.deep_each(bunch.load(particles.x)); !everywhere(deep))
+              for (int lane = 0; lane < bunch.count; ++lane)
+                if (!deep[lane])
+                  find(bunch.p[lane]);
+          });
         });
     });
 
@@ -158,7 +155,10 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
 
   if (!moved)
     return false;
-  sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
+  if (unsorted || rows_changed)
+    sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
+  else
+    sort_again(particles.cell, particles.id, order);
   if (disorder(order) <= most_disorder)
     return rows_changed;
   follow_order(bodies, materials, particles, order);

@@ -2,8 +2,8 @@
 // Stages, the loop over steps, and what stops it.
 #include <fmt/format.h>
 
-#include "solver/advance.hpp"
 #include "solver/initial_stress.hpp"
+#include "solver/instances.hpp"
 #include "solver/stable_step.hpp"
 
 namespace talus {

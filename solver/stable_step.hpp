@@ -4,6 +4,15 @@
 
 namespace talus {
 
+/// The crossing_time of one particle.
+template <int D, class L>
+Real crossing_time_of(const Mesh<D>& mesh, const Batch<L>& batch, const Particles<D>& particles, Index i)
+{
+  const auto p = static_cast<std::size_t>(batch.begin + i);
+  return crossing_time<D>(batch, mesh.altitude(particles.cell[p]), particles.v[p].norm(), batch.wave_speed(i, particles.F[p]),
+                          std::max(-particles.L[p].trace(), Real{0}));
+}
+
 /// Smallest crossing_time over all particles [s]; infinite without particles.  Every step
 /// finds it anew while it has the particles at hand (update_stress); this is for the first one.
 template <int D>
@@ -13,11 +22,7 @@ Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
   for (const auto& material : materials)
     std::visit(
         [&](const auto& batch) {
-          least = parallel_min(batch.size(), least, [&](Index i) {
-            const auto p = static_cast<std::size_t>(batch.begin + i);
-            return crossing_time(mesh, batch, particles, p, batch.wave_speed(i, particles.F[p]),
-                                 std::max(-particles.L[p].trace(), Real{0}));
-          });
+          least = parallel_min(batch.size(), least, [&](Index i) { return crossing_time_of(mesh, batch, particles, i); });
         },
         material);
   return least;
@@ -33,9 +38,7 @@ Index slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
     std::visit(
         [&](const auto& batch) {
           for (Index row = batch.begin; row < batch.end; ++row) {
-            const auto p = static_cast<std::size_t>(row);
-            const Real own = crossing_time(mesh, batch, particles, p, batch.wave_speed(row - batch.begin, particles.F[p]),
-                                           std::max(-particles.L[p].trace(), Real{0}));
+            const Real own = crossing_time_of(mesh, batch, particles, row - batch.begin);
             if (own < least) {
               least = own;
               slowest = row;

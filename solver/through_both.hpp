@@ -25,21 +25,26 @@ class ThroughBoth {
   void clear() noexcept
   {
     sums_.clear(cell_.padded_size);
-    tension_ = {};
+    tension_.clear();
   }
   template <bool affine, bool loaded, bool forces>
   void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
   {
     talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, Tension<D>{}, sums_);
-    if constexpr (forces)
-      tension_.add(particles, bunch, shares_);
+    if constexpr (forces) {
+      Pack tension[padded(Symmetric<D>::size)]{};
+      tension_of(particles, bunch, tension);
+      tension_.template add<Symmetric<D>::size>(shares_, tension);
+    }
   }
   template <bool affine, bool loaded, bool forces>
   void add_to(std::span<Sum> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
     sums_.add_to(rows, slots, lightest);
     if constexpr (forces)
-      tension_.add_to(rows, slots);
+      for (std::size_t a = 0; a <= D; ++a)
+        for (int k = 0; k < Symmetric<D>::size; ++k)
+          rows[slots[a]].tension.entry[k] += tension_.of[a][k];
   }
 
   void read(const std::vector<Motion>& rows) noexcept
@@ -66,7 +71,7 @@ class ThroughBoth {
   Weights<D, K::max_nodes> weights_;
   Shares<D> shares_;
   CellSums<D, K::max_nodes> sums_;
-  TensionSums<D> tension_;
+  CornerSums<D, Symmetric<D>::size> tension_;
   CellMotion<D, K::max_nodes> motion_;
   std::array<HatMotion<D>, D + 1> hats_;
 };

@@ -28,98 +28,115 @@ template <int D>
   return shares;
 }
 
-/// V sigma shared among the vertices of the cell, summed over the particles of a run; lanes not yet added.
-template <int D>
-struct TensionSums {
-  Pack of[D + 1][Symmetric<D>::size]{};
+/// Sums over the particles of a run, on each vertex of their cell, of up to `most` quantities times its share.
+template <int D, int most>
+struct CornerSums {
+  alignas(64) Real of[D + 1][padded(most)];
 
-  [[gnu::always_inline]] void add(const Particles<D>& particles, const Bunch& bunch, const Shares<D>& shares) noexcept
+  void clear() noexcept { std::fill_n(of[0], (D + 1) * padded(most), 0.0); }
+  /// The first n quantities of four particles, one per lane; overwrites them.  Four quantities of one particle a pack while they are
+  /// summed: the sums stay in registers, whatever cells the lanes are from, and nothing is left to be added up across lanes.
+  template <int n>
+  [[gnu::always_inline]] inline void add(const Shares<D>& shares, Pack (&quantities)[padded(n)]) noexcept
   {
-    const Pack volume = bunch.lanes([&](std::size_t p) { return particles.volume[p]; });
-    for (int i = 0; i < D; ++i)
-      for (int j = i; j < D; ++j) {
-        const Pack T = volume * bunch.lanes([&](std::size_t p) { return particles.stress[p][Symmetric<3>::place(i, j)]; });
-        for (int a = 0; a <= D; ++a)
-          of[a][Symmetric<D>::place(i, j)] += shares.of[a] * T;
-      }
-  }
-  void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots) const noexcept
-  {
-    for (std::size_t a = 0; a <= D; ++a)
-      for (int i = 0; i < D; ++i)
-        for (int j = 0; j < D; ++j)
-          rows[slots[a]].tension(i, j) += sum(of[a][Symmetric<D>::place(i, j)]);
-  }
-};
-
-/// Sums of the rest, alike.
-template <int D>
-struct HatSums {
-  Pack mass[D + 1]{}, momentum[D + 1][D]{}, force[D + 1][D]{}, affine[D + 1][D][D]{};
-
-  /// `arms`: centres of the hats about the origin of the cell [m].
-  template <bool affinely, bool loaded, bool forces>
-  void add_to(const std::array<Vec<D>, D + 1>& arms, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
-              float lightest) const noexcept
-  {
+    constexpr int packs = padded(n) / pack_size;
+    for (int k = 0; k < packs; ++k) {
+      Pack* const four = quantities + k * pack_size;
+      transpose(four[0], four[1], four[2], four[3]);
+    }
     for (int a = 0; a <= D; ++a) {
-      HatSum<D>& row = rows[slots[static_cast<std::size_t>(a)]];
-      row.lightest = std::min(row.lightest, lightest);
-      if constexpr (forces) {
-        row.mass += sum(mass[a]);
-        row.gross += static_cast<float>(sum(mass[a]));
+      Pack sums[packs];
+      for (int k = 0; k < packs; ++k)
+        sums[k] = load(of[a] + k * pack_size);
+      for (int lane = 0; lane < pack_size; ++lane) {
+        const Pack share = broadcast(shares.of[a][lane]);
+        for (int k = 0; k < packs; ++k)
+          sums[k] += share * quantities[k * pack_size + lane];
       }
-      Mat<D> K = Mat<D>::Zero();
-      for (int i = 0; i < D; ++i) {
-        row.momentum[i] += sum(momentum[a][i]);
-        if constexpr (loaded)
-          row.force[i] += sum(force[a][i]);
-        if constexpr (affinely)
-          for (int j = 0; j < D; ++j)
-            K(i, j) = sum(affine[a][i][j]);
-      }
-      if constexpr (affinely) {
-        row.affine += K;
-        row.momentum += K * arms[static_cast<std::size_t>(a)];
-      }
+      for (int k = 0; k < packs; ++k)
+        store(of[a] + k * pack_size, sums[k]);
     }
   }
 };
 
+/// V sigma of four particles.
+template <int D>
+[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const Bunch& bunch, Pack* to) noexcept
+{
+  const Pack volume = bunch.load(particles.volume).of;
+  const Sym3Of<Lanes> stress = bunch.load(particles.stress);
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j)
+      to[Symmetric<D>::place(i, j)] = volume * stress[Symmetric<3>::place(i, j)].of;
+}
+
+/// What particles of a run deposit, in this order: momentum, m A if `affine`, mass and V sigma if `forces`, load if `loaded`.
+template <int D, bool affine, bool loaded, bool forces>
+struct Deposit {
+  static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + (forces ? 1 : 0),
+                       load = tension + (forces ? Symmetric<D>::size : 0), size = load + (loaded ? D : 0);
+};
+template <int D>
+using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
+
 /// Adds a bunch, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
-template <bool affinely, bool loaded, bool forces, int D>
+template <bool affine, bool loaded, bool forces, int D>
 [[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vector<Mat<D>>& fields,
                                            const Pack (&x)[D], const Shares<D>& shares, HatSums<D>& sums) noexcept
 {
-  const Pack m = bunch.lanes([&](std::size_t p) { return particles.mass[p]; });
-  Pack momentum[D], A[D][D];
-  for (int i = 0; i < D; ++i) {
-    momentum[i] = bunch.lanes([&](std::size_t p) { return particles.v[p][i]; });
-    if constexpr (affinely)
-      for (int j = 0; j < D; ++j) {
-        A[i][j] = bunch.lanes([&](std::size_t p) { return fields[p](i, j); });
-        momentum[i] -= A[i][j] * x[j];
-        A[i][j] *= m;
+  using Of = Deposit<D, affine, loaded, forces>;
+  Pack quantities[padded(Of::size)]{};
+  const Pack m = bunch.load(particles.mass).of;
+  const VecOf<D> v = bunch.load(particles.v);
+  for (int i = 0; i < D; ++i)
+    quantities[i] = v[i].of;
+  if constexpr (affine) {
+    const MatOf<D> A = bunch.load(fields);
+    for (int j = 0; j < D; ++j)
+      for (int i = 0; i < D; ++i) {
+        quantities[i] -= A(i, j).of * x[j];
+        quantities[Of::field + j * D + i] = m * A(i, j).of;
       }
-    momentum[i] *= m;
   }
-  for (int a = 0; a <= D; ++a) {
-    const Pack B = shares.of[a];
-    if constexpr (forces)
-      sums.mass[a] += B * m;
-    for (int i = 0; i < D; ++i) {
-      sums.momentum[a][i] += B * momentum[i];
-      if constexpr (affinely)
-        for (int j = 0; j < D; ++j)
-          sums.affine[a][i][j] += B * A[i][j];
-    }
+  for (int i = 0; i < D; ++i)
+    quantities[i] *= m;
+  if constexpr (forces) {
+    quantities[Of::mass] = m;
+    tension_of(particles, bunch, quantities + Of::tension);
   }
-  if constexpr (loaded)
-    for (int i = 0; i < D; ++i) {
-      const Pack f = bunch.lanes([&](std::size_t p) { return particles.applied[p][i]; });
-      for (int a = 0; a <= D; ++a)
-        sums.force[a][i] += shares.of[a] * f;
+  if constexpr (loaded) {
+    const VecOf<D> f = bunch.load(particles.applied);
+    for (int i = 0; i < D; ++i)
+      quantities[Of::load + i] = f[i].of;
+  }
+  sums.template add<Of::size>(shares, quantities);
+}
+
+/// Sums of a run -> rows of its block.  `arms`: centres of the hats about the origin of the cell [m].
+template <bool affine, bool loaded, bool forces, int D>
+void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
+            float lightest) noexcept
+{
+  using Of = Deposit<D, affine, loaded, forces>;
+  for (std::size_t a = 0; a <= D; ++a) {
+    HatSum<D>& row = rows[slots[a]];
+    const Real* const of = sums.of[a];
+    row.lightest = std::min(row.lightest, lightest);
+    row.momentum += Eigen::Map<const Vec<D>>(of);
+    if constexpr (affine) {
+      const Eigen::Map<const Mat<D>> K(of + Of::field);
+      row.affine += K;
+      row.momentum += K * arms[a];
     }
+    if constexpr (forces) {
+      row.mass += of[Of::mass];
+      row.gross += static_cast<float>(of[Of::mass]);
+      for (int k = 0; k < Symmetric<D>::size; ++k)
+        row.tension.entry[k] += of[Of::tension + k];
+    }
+    if constexpr (loaded)
+      row.force += Eigen::Map<const Vec<D>>(of + Of::load);
+  }
 }
 
 /// What four particles see of the hats of their cell.
@@ -175,11 +192,7 @@ class ThroughHats {
   }
   void place(const Bunch& bunch, const Pack (&x)[D]) noexcept { shares_ = shares_of<D>(cell_.dw, cell_.origin, x, bunch.count); }
 
-  void clear() noexcept
-  {
-    sums_ = {};
-    tension_ = {};
-  }
+  void clear() noexcept { sums_.clear(); }
   template <bool affine, bool loaded, bool forces>
   void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
   {
@@ -188,15 +201,11 @@ class ThroughHats {
       for (int d = 0; d < D; ++d)
         x[d] += shares_.of[a] * arms_[static_cast<std::size_t>(a)][d];
     talus::deposit<affine, loaded, forces>(particles, bunch, fields, x, shares_, sums_);
-    if constexpr (forces)
-      tension_.add(particles, bunch, shares_);
   }
   template <bool affine, bool loaded, bool forces>
   void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
-    sums_.template add_to<affine, loaded, forces>(arms_, rows, slots, lightest);
-    if constexpr (forces)
-      tension_.add_to(rows, slots);
+    talus::add_to<affine, loaded, forces>(sums_, arms_, rows, slots, lightest);
   }
 
   void read(const std::vector<HatMotion<D>>& hats) noexcept { motion_ = hats_of(hats, cell_.nodes); }
@@ -216,7 +225,6 @@ class ThroughHats {
   std::array<Vec<D>, D + 1> arms_;  ///< centres of the hats about the origin [m]
   Shares<D> shares_;
   HatSums<D> sums_;
-  TensionSums<D> tension_;
   std::array<HatMotion<D>, D + 1> motion_;
 };
 

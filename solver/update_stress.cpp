@@ -1,78 +1,122 @@
 #include "solver/update_stress.hpp"
 
+#include <chrono>
+
 namespace talus {
 
 namespace {
 
 /// The in-plane part of a multiplied by s, in 3-D all of it.
 template <int D>
-Mat3 scaled_in_plane(Mat3 a, Real s) noexcept
+Mat3Of<Lanes> scaled_in_plane(Mat3Of<Lanes> a, const Lanes& s) noexcept
 {
-  a.template topLeftCorner<D, D>() *= s;
+  a.topLeftCorner<D, D>() *= s;
   return a;
 }
 
-template <int D, class L>
-[[gnu::flatten]] StressSums update_particle(const Mesh<D>& mesh, Batch<L>& batch, Index i, Real dt, bool elastic,
-                                            const std::vector<Real>& averaged, Particles<D>& particles, Health& health) noexcept
-{
-  const auto p = static_cast<std::size_t>(batch.begin + i);
-  const Mat3 velocity_gradient = embed<D>(particles.L[p]), F_old = particles.F[p];
-  const Sym3 stored = particles.stress[p];
-  const Real volume_before = particles.volume[p];
-  const Mat3 F = F_old + dt * (velocity_gradient * F_old);
-  particles.F[p] = F;
-  const Real J = F.determinant();
-  if (!(J > 0)) {
-    health.report(particles.id[p], std::isfinite(J) ? Trouble::inverted : Trouble::not_finite);
-    return {};
+/// StressSums, one particle per lane.
+struct StressLanes {
+  Lanes work = 0, crossing = std::numeric_limits<Real>::infinity();
+  StressSums total() const noexcept
+  {
+    StressSums sums{sum(work.of)};
+    for (int lane = 0; lane < pack_size; ++lane)
+      sums.crossing = std::min(sums.crossing, crossing[lane]);
+    return sums;
   }
-  particles.volume[p] = J * particles.volume0[p];
-  const Real shrinking = std::max(-particles.L[p].trace(), Real{0});
+};
 
-  Mat3 told_F = F, told_L = velocity_gradient, told_stress = unpack(stored);
+/// a : L, with L in the plane where D is 2.
+template <int D>
+Lanes stress_power(const Sym3Of<Lanes>& a, const Eigen::Matrix<Lanes, D, D, Eigen::DontAlign>& L) noexcept
+{
+  Lanes power = a[0] * L(0, 0) + a[1] * L(1, 1) + a[3] * (L(0, 1) + L(1, 0));
+  if constexpr (D == 3)
+    power += a[2] * L(2, 2) + a[4] * (L(1, 2) + L(2, 1)) + a[5] * (L(0, 2) + L(2, 0));
+  return power;
+}
+
+template <int D, class L>
+[[gnu::flatten]] void update_bunch(const Mesh<D>& mesh, Batch<L>& batch, const Bunch& bunch, Real dt, bool elastic,
+                                   const std::vector<Real>& averaged, Particles<D>& particles, Health& health, StressLanes& sums) noexcept
+{
+  const auto rate = bunch.load(particles.L);
+  const Mat3Of<Lanes> velocity_gradient = embed(rate);
+  Mat3Of<Lanes> F = bunch.load(particles.F);
+  F.template topLeftCorner<D, D>() += Lanes(dt) * (rate * F.template topLeftCorner<D, D>());
+  bunch.store(F, particles.F);
+  const Lanes J = F.determinant();
+  const auto good = J > 0;  // false for NaN
+  if (!everywhere(good))
+    for (int lane = 0; lane < bunch.count; ++lane)
+      if (!good[lane])
+        health.report(particles.id[bunch.p[lane]], std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+  const Lanes volume_before = bunch.load(particles.volume), volume = J * bunch.load(particles.volume0);
+  bunch.store(volume, particles.volume);
+  const Lanes shrinking = max(-Lanes(rate.trace()), 0);
+  const Lanes h = bunch.lanes([&](std::size_t p) { return mesh.altitude(particles.cell[p]); });
+
+  const Sym3Of<Lanes> stored = bunch.load(particles.stress);
+  Mat3Of<Lanes> told_F = F, told_L = velocity_gradient, told_stress = unpack(stored);
   if (batch.averages_volume) {
-    const Real ratio = std::pow(averaged[p] / J, Real{1} / D), ratio_before = particles.volume_ratio[p];
-    particles.volume_ratio[p] = ratio;
-    const Real s = ratio / ratio_before;
+    const Lanes ratio = in_each_lane([&](int lane) { return std::pow(averaged[bunch.p[lane]] / J[lane], Real{1} / D); });
+    const Lanes s = ratio / bunch.load(particles.volume_ratio);
+    bunch.store(ratio, particles.volume_ratio);
     told_F = scaled_in_plane<D>(F, ratio);
     told_L = scaled_in_plane<D>(velocity_gradient, s);
     for (int d = 0; d < D; ++d)
       told_L(d, d) += (s - 1) / dt;
   }
-  const Real wave_speed = batch.wave_speed(i, told_F);
-  Real q = 0;
+  Index i[pack_size];
+  for (int lane = 0; lane < pack_size; ++lane)
+    i[lane] = static_cast<Index>(bunch.p[lane]) - batch.begin;
+  const Lanes wave_speed = batch.wave_speed(i, bunch.count, told_F);
+  Lanes q = 0;
   if (batch.viscosity) {
-    const Real h = mesh.altitude(particles.cell[p]), density = particles.mass[p] / particles.volume[p];
-    told_stress.diagonal().array() += particles.viscous[p];
-    q = density * h * shrinking * (batch.viscosity->quadratic * h * shrinking + batch.viscosity->linear * wave_speed);
-    particles.viscous[p] = q;
+    told_stress.diagonal().array() += bunch.load(particles.viscous);
+    q = bunch.load(particles.mass) / volume * h * shrinking *
+        (batch.viscosity->quadratic * h * shrinking + batch.viscosity->linear * wave_speed);
+    bunch.store(q, particles.viscous);
   }
-  Mat3 after = batch.update(i, Increment{told_F, told_L, told_stress, dt, q, elastic});
+  Mat3Of<Lanes> after = batch.update(i, bunch.count, {told_F, told_L, told_stress, dt, q, elastic});
   after.diagonal().array() -= q;
-  const Sym3 stress = pack(after);
-  if (!std::isfinite(stress.sum()))
-    health.report(particles.id[p], Trouble::no_answer);
-  particles.stress[p] = stress;
-  const Mat3 mean = 0.5 * (volume_before * unpack(stored) + particles.volume[p] * after);
-  return {dt * mean.cwiseProduct(velocity_gradient).sum(), crossing_time(mesh, batch, particles, p, wave_speed, shrinking)};
+  const Sym3Of<Lanes> stress = pack(after);
+  if (const Lanes trace = stress.sum(); !everywhere(trace - trace == 0))  // infinite or NaN
+    for (int lane = 0; lane < bunch.count; ++lane)
+      if (good[lane] && !std::isfinite(trace[lane]))
+        health.report(particles.id[bunch.p[lane]], Trouble::no_answer);
+  bunch.store(stress, particles.stress);
+
+  const Lanes work = 0.5 * dt * (volume_before * stress_power<D>(stored, rate) + volume * stress_power<D>(stress, rate));
+  const Lanes speed = sqrt(Lanes(bunch.load(particles.v).squaredNorm()));
+  const Lanes crossing = crossing_time<D>(batch, h, speed, wave_speed, shrinking);
+  const auto there = Lanes(Pack{0, 1, 2, 3}) < static_cast<Real>(bunch.count);
+  sums.work += where(there, work, 0);
+  sums.crossing = min(sums.crossing, crossing);  // lanes that repeat a particle change nothing
 }
 
 }  // namespace
 
 template <int D>
-StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, Real dt, bool elastic, const std::vector<Real>& averaged,
-                         Particles<D>& particles, Health& health)
+StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<const Index> rows, Real dt, bool elastic,
+                         const std::vector<Real>& averaged, Particles<D>& particles, Health& health)
 {
-  return std::visit(
+  const auto begin = std::chrono::steady_clock::now();
+  StressLanes lanes;
+  std::visit(
       [&](auto& batch) {
-        return parallel_sum<StressSums>(batch.size(),
-                                        [&](Index i) { return update_particle(mesh, batch, i, dt, elastic, averaged, particles, health); });
+        for_each_bunch(rows,
+                       [&](const Bunch& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, particles, health, lanes); });
       },
       material);
+  StressSums sums = lanes.total();
+  sums.seconds = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
+  return sums;
 }
 
-template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, Real, bool, const std::vector<Real>&, Particles<2>&, Health&);
-template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, Real, bool, const std::vector<Real>&, Particles<3>&, Health&);
+template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&, Particles<2>&,
+                                     Health&);
+template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&, Particles<3>&,
+                                     Health&);
 
 }  // namespace talus

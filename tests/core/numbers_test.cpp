@@ -65,7 +65,7 @@ TEST(Tensor, PlaneTensorsAreEmbeddedWithZerosOutOfPlane)
 {
   Mat<2> a;
   a << 1, 2, 3, 4;
-  const Mat3 b = embed<2>(a);
+  const Mat3 b = embed(a);
   EXPECT_EQ((b.topLeftCorner<2, 2>()), a);
   EXPECT_EQ(b.squaredNorm(), 30);
 }

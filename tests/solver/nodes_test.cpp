@@ -1,6 +1,8 @@
 // Nodes with next to no mass, order by cell, exits, initial stress, loads.
 #include <gtest/gtest.h>
 
+#include <random>
+
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::testing {
@@ -162,6 +164,39 @@ TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
   EXPECT_EQ(order.rows(1, 0).size(), 4U);
   EXPECT_EQ(order.rows(1, 1).size(), 1U);
   EXPECT_EQ(order.rows(1, 2).size(), 0U);
+}
+
+TEST(CellOrder, SortingAgainGivesWhatSortingAnewDoes)
+{
+  constexpr Index n_cells = 5 * block_cells + 7, n = 4000;
+  std::mt19937 bits(3);
+  const auto up_to = [&](Index end) { return std::uniform_int_distribution<Index>(0, end - 1)(bits); };
+  std::vector<Index> cell(n);
+  std::vector<std::int64_t> id(n);
+  for (Index p = 0; p < n; ++p)
+    cell[static_cast<std::size_t>(p)] = up_to(n_cells), id[static_cast<std::size_t>(p)] = (p * 1237) % n;
+  const std::vector<Body> bodies{{"a", 0, 2500, {}}, {"none", 2500, 2500, {}}, {"b", 2500, n, {}}};
+  CellOrder again, anew;
+  sort_by_cell(cell, id, bodies, n_cells, again);
+  for (const Index movers : {0, 1, 30, 1000, n}) {
+    for (Index i = 0; i < movers; ++i)
+      cell[static_cast<std::size_t>(up_to(n))] = up_to(n_cells);
+    if (movers == 30)  // and a block that nobody is left in
+      for (Index& c : cell)
+        c = c / block_cells == 2 ? 0 : c;
+    sort_again(cell, id, again);
+    sort_by_cell(cell, id, bodies, n_cells, anew);
+    ASSERT_EQ(again.row, anew.row) << movers;
+    ASSERT_EQ(again.first, anew.first) << movers;
+  }
+}
+
+TEST(CellOrder, DisorderIsTheShareOfRowsThatDoNotFollow)
+{
+  CellOrder order;
+  EXPECT_EQ(disorder(order), 0);
+  order.row = {4, 5, 6, 0, 1, 2, 3, 7};  // a block that was moved as a whole is read as fast as before
+  EXPECT_EQ(disorder(order), 2.0 / 8);
 }
 
 /// A block that flies to the right, out of the mesh.
