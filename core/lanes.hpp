@@ -117,7 +117,7 @@ inline Lanes exp(const Lanes& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.exp(); });
 }
-/// a^n of a > 0, to |n ln a| roundings; 0 of a = 0 with n > 0.
+/// a^n of a > 0, to 2 |n ln a| units of the last place, what two of the logarithm come to; 0 of a = 0 with n > 0.
 inline Lanes pow(const Lanes& a, Real n) noexcept { return where(a == 0 && Lanes(n) > 0, 0, exp(n * log(a))); }
 
 /// ln(1 + a), of small a to the last digits.

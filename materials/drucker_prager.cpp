@@ -42,7 +42,7 @@ struct ReturnMap {
   T left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
   Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};        ///< of the cone by multiplier, while some is left
 
-  ConeOf<T> cone_after(const T& multiplier) const noexcept { return c.cone_at(T(plastic_strain + multiplier / sqrt3)); }
+  ConeOf<T> cone_after(const T& multiplier) const noexcept { return c.cone_at(T(plastic_strain + multiplier * (1 / sqrt3))); }
 
   /// Along the cone, tau falls by G and the mean stress by K q_psi per multiplier.  While the cone shrinks linearly the consistency
   /// condition is a m^2 - b m + excess = 0, of which the smallest root counts; without one the strength drops to residual at once.
@@ -138,13 +138,14 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const Sym3Of<T> b = push_forward(in.dt * in.L, get(state, &State::elastic_left));
   const Sym3Of<T> twice_strain = log1p(b);
   const T volume_strain = 0.5 * trace(twice_strain);
-  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
+  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
   Point<T> trial{c.bulk * volume_strain, c.shear * sqrt(T(2 * squared_norm(shear_strain))), 0, 0};
   if (!everywhere(J > 0 && isfinite(T(trial.mean + trial.tau))))
     return no_answer_somewhere(*this, in, state, c);
+  const T per_volume = 1 / J;
   if (in.elastic) {
     put(state, &State::elastic_left, b);
-    return unpack(scale_and_shift(2 * c.shear / J, shear_strain, trial.mean / J));
+    return unpack(scale_and_shift(2 * c.shear * per_volume, shear_strain, trial.mean * per_volume));
   }
 
   // What opened before fills first, and carries no tension while it does.
@@ -156,9 +157,9 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
 
   const T kept = where(trial.tau > 0, end.tau / trial.tau, 0);
   if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; somewhere(changed)) {
-    const Sym3Of<T> left = expm1(scale_and_shift(2 * kept, shear_strain, 2 * end.mean / (3 * c.bulk)));
+    const Sym3Of<T> left = expm1(scale_and_shift(2 * kept, shear_strain, end.mean * (2 / (3 * c.bulk))));
     put(state, &State::elastic_left, where(changed, left, b));
-    put(state, &State::plastic_strain, T(plastic_strain + end.multiplier / sqrt3));
+    put(state, &State::plastic_strain, T(plastic_strain + end.multiplier * (1 / sqrt3)));
     const T work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
     // Associated flow without cohesion dissipates nothing, up to rounding.
     put(state, &State::plastic_work, T(get(state, &State::plastic_work) + max(work, T(0))));
@@ -166,7 +167,7 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   } else {
     put(state, &State::elastic_left, b);
   }
-  return unpack(scale_and_shift(2 * c.shear * kept / J, shear_strain, end.mean / J));
+  return unpack(scale_and_shift(2 * c.shear * kept * per_volume, shear_strain, end.mean * per_volume));
 }
 template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<Lanes> DruckerPrager::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;

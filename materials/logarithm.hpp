@@ -192,19 +192,21 @@ inline Sym3Of<Lanes> expm1_by_axes(const Sym3Of<Lanes>& E) noexcept
 
 /// R of F = R U, det F > 0.  Newton's iteration with the scaling of Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160; it
 /// converges quadratically from every regular F and has no trouble with equal stretches.  NaN where F is singular.
-inline Mat3 polar_rotation(const Mat3& F) noexcept
+template <class T>
+Mat3Of<T> polar_rotation(const Mat3Of<T>& F) noexcept
 {
+  using std::abs, std::sqrt;
   constexpr int enough = 30;  // condition 1e12 takes 9
   constexpr Real rounding = 1e-15;
-  Mat3 R = F;
+  Mat3Of<T> R = F;
   for (int i = 0; i < enough; ++i) {
-    const Mat3 inverse = R.inverse().transpose();
-    const Real change_of_scale = std::sqrt(inverse.norm() / R.norm());
-    const Real scale = std::abs(change_of_scale - 1) < 1e-2 ? 1 : change_of_scale;
-    const Mat3 next = 0.5 * (scale * R + inverse / scale);
-    const Real change = (next - R).squaredNorm();
+    const Mat3Of<T> inverse = R.inverse().transpose();
+    const T change_of_scale = sqrt(T(inverse.norm() / R.norm()));
+    const T scale = where(abs(change_of_scale - 1) < 1e-2, 1, change_of_scale);
+    const Mat3Of<T> next = 0.5 * (scale * R + T(1 / scale) * inverse);
+    const T change = (next - R).squaredNorm();
     R = next;
-    if (!(change > 3 * rounding * rounding))
+    if (!somewhere(change > 3 * rounding * rounding))
       break;
   }
   return R;

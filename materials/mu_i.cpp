@@ -25,7 +25,7 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
   const Sym3Of<T> b = push_forward(in.dt * in.L, get(state, &State::elastic_left));
   const Sym3Of<T> twice_strain = log1p(b);
   const T volume_strain = 0.5 * trace(twice_strain);
-  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
+  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
   const T tau = c.shear * sqrt(T(2 * squared_norm(shear_strain)));
   if (!everywhere(J > 0 && isfinite(T(volume_strain + tau))))
     return no_answer_somewhere(*this, in, state, c);
@@ -53,9 +53,9 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
   const T kept = where(m > 0, max(T(1 - c.shear * m / tau), T(0)), 1);
   Sym3Of<T> left = b;
   if (const auto changed = m > 0 || closing || p == 0; somewhere(changed))
-    left = where(changed, expm1(scale_and_shift(2 * kept, shear_strain, -2 * p / (3 * c.bulk))), b);
+    left = where(changed, expm1(scale_and_shift(2 * kept, shear_strain, p * (-2 / (3 * c.bulk)))), b);
   put(state, &State::elastic_left, left);
-  put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + m / std::numbers::sqrt3));
+  put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + m * std::numbers::inv_sqrt3));
   put(state, &State::plastic_work, T(get(state, &State::plastic_work) + kept * tau * m));
   return unpack(scale_and_shift(2 * c.shear * kept / J, shear_strain, -p / J));
 }

@@ -22,7 +22,7 @@ struct ElasticTrial {
     using std::sqrt;
     const Sym3Of<T> twice_strain = log1p(left);
     volume_strain = 0.5 * trace(twice_strain);
-    shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
+    shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
     shear = sqrt(T(squared_norm(shear_strain) * (2.0 / 3)));
   }
   MaskOf<T> is_finite() const noexcept
@@ -31,7 +31,7 @@ struct ElasticTrial {
     return isfinite(T(volume_strain + shear));
   }
   /// Elastic left Cauchy-Green tensor minus identity with the share `kept` of the shear strain.
-  Sym3Of<T> left_with(const T& kept) const noexcept { return expm1(scale_and_shift(2 * kept, shear_strain, 2 * volume_strain / 3)); }
+  Sym3Of<T> left_with(const T& kept) const noexcept { return expm1(scale_and_shift(2 * kept, shear_strain, volume_strain * (2.0 / 3))); }
 };
 
 /// Elastic left Cauchy-Green tensor minus identity that belongs to the Kirchhoff stress deviator `s` and a logarithmic volume strain.

@@ -122,18 +122,46 @@ class LawInLanesContract : public ::testing::Test {
     else
       return sample<L>();
   }
+  /// Variants with what sample() leaves out.
+  static std::vector<L> laws()
+  {
+    std::vector<L> all{law()};
+    if constexpr (requires { law().reference_rate; }) {
+      all.push_back(law());
+      all.back().reference_rate = 1;
+      all.back().thermal_exponent = 0.8;
+    }
+    if constexpr (std::is_same_v<L, VonMises>) {
+      all.push_back(law());
+      all.back().rate = CowperSymonds{.reference_rate = 40, .exponent = 5};
+      all.push_back(law());
+      all.back().voce.reset();
+      all.back().power.reset();
+    }
+    if constexpr (std::is_same_v<L, DruckerPrager>) {
+      all.push_back(law());
+      all.back().tension_cutoff.reset();
+      all.back().softening_strain.reset();
+      all.back().residual_cohesion.reset();
+      all.back().residual_friction_angle.reset();
+      all.push_back(all.back());
+      all.back().friction_angle = all.back().dilation_angle = 0;
+    }
+    return all;
+  }
 };
 TYPED_TEST_SUITE(LawInLanesContract, AllKinds<Laws>::Types);
 
-/// Differences of all history variables by what the larger is, or by one.
+/// The largest difference of history variables, by what the larger is, or by one, or by the stiffness where it is an energy.
 template <class State>
 Real difference(const State& a, const State& b)
 {
   Real worst = 0;
   for_each_field<State>([&]<class Owner, class Value>(const History<Owner, Value>& field) {
+    const Real least = field.unit == "J/m^3" ? testing::sample_stiffness : 1;
     const auto compare = [&](Real x, Real y) {
       if (x != y && !(std::isnan(x) && std::isnan(y)))
-        worst = std::max(worst, std::isfinite(x - y) ? std::abs(x - y) / std::max({Real{1}, std::abs(x), std::abs(y)}) : HUGE_VAL);
+        worst = std::max(worst, std::isfinite(x - y) ? std::abs(x - y) / std::max({least, std::abs(x), std::abs(y)}) : HUGE_VAL);
     };
     if constexpr (std::is_same_v<Value, Real>)
       compare(a.*field.member, b.*field.member);
@@ -192,7 +220,7 @@ class Neighbours {
         const Real speed = alone_.wave_speed(lane, end);
         ASSERT_NEAR(speeds[lane], speed, allowed * speed);
       }
-      ASSERT_LE(difference(together_.history[i], alone_.history[i]), allowed * size) << "lane " << lane << " of " << count;
+      ASSERT_LE(difference(together_.history[i], alone_.history[i]), allowed) << "lane " << lane << " of " << count;
       F_[i] = end;
       stress_[i] = answer;
     }
@@ -215,8 +243,9 @@ class Neighbours {
 TYPED_TEST(LawInLanesContract, EveryLaneAnswersAsItWouldAlone)
 {
   Dice dice(10);
-  for (int path = 0; path < 60 && !this->HasFatalFailure(); ++path) {
-    Neighbours<TypeParam> neighbours(this->law());
+  const auto laws = this->laws();
+  for (int path = 0; path < 120 && !this->HasFatalFailure(); ++path) {
+    Neighbours<TypeParam> neighbours(laws[static_cast<std::size_t>(path) % laws.size()]);
     for (int n = 0; n < 40 && !this->HasFatalFailure(); ++n) {
       std::array<Mat3, pack_size> f;
       for (Mat3& each : f)  // some stay elastic, some flow, some leave the series of the logarithm
