@@ -4,6 +4,8 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <utility>
 
 #include "core/types.hpp"
 
@@ -101,10 +103,22 @@ struct Lanes {
 /// `a` where the condition holds, else `b`; both are worked out.
 inline Lanes where(const Lanes::Mask& condition, const Lanes& a, const Lanes& b) noexcept { return condition.of ? a.of : b.of; }
 inline Real where(bool condition, Real a, Real b) noexcept { return condition ? a : b; }
-inline bool somewhere(const Lanes::Mask& mask) noexcept { return mask[0] || mask[1] || mask[2] || mask[3]; }
-inline bool everywhere(const Lanes::Mask& mask) noexcept { return mask[0] && mask[1] && mask[2] && mask[3]; }
+inline bool somewhere(const Lanes::Mask& mask) noexcept { return ((mask.of[0] | mask.of[1]) | (mask.of[2] | mask.of[3])) != 0; }
+inline bool everywhere(const Lanes::Mask& mask) noexcept { return ((mask.of[0] & mask.of[1]) & (mask.of[2] & mask.of[3])) != 0; }
 inline bool somewhere(bool condition) noexcept { return condition; }
 inline bool everywhere(bool condition) noexcept { return condition; }
+/// bool for a Real, Lanes::Mask for Lanes.
+template <class T>
+using MaskOf = decltype(std::declval<T>() > std::declval<T>());
+/// The same of tensors, entry by entry.
+template <class T>
+Sym3Of<T> where(const MaskOf<T>& condition, const Sym3Of<T>& a, const Sym3Of<T>& b) noexcept
+{
+  Sym3Of<T> chosen;
+  for (int k = 0; k < 6; ++k)
+    chosen[k] = where(condition, a[k], b[k]);
+  return chosen;
+}
 
 /// f(lane) of every lane: for what has no form of its own in packs.
 template <class F>
@@ -113,14 +127,6 @@ Lanes in_each_lane(F&& f) noexcept
   return Pack{f(0), f(1), f(2), f(3)};
 }
 
-// Found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, within 2 units of the last place.
-inline Lanes sqrt(const Lanes& a) noexcept
-{
-  return in_each_lane([&](int i) { return std::sqrt(a[i]); });
-}
-inline Lanes abs(const Lanes& a) noexcept { return a.of < 0 ? -a.of : a.of; }
-inline Lanes max(const Lanes& a, const Lanes& b) noexcept { return a.of < b.of ? b.of : a.of; }
-inline Lanes min(const Lanes& a, const Lanes& b) noexcept { return b.of < a.of ? b.of : a.of; }
 namespace detail {
 /// f(array) by Eigen's vectorised functions.
 template <class F>
@@ -135,6 +141,16 @@ Lanes by_array(const Lanes& a, F&& f) noexcept
   return result;
 }
 }  // namespace detail
+
+// Found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, within 2 units of the last place.
+inline Lanes sqrt(const Lanes& a) noexcept
+{
+  return detail::by_array(a, [](const auto& x) { return x.sqrt(); });
+}
+inline Lanes abs(const Lanes& a) noexcept { return a.of < 0 ? -a.of : a.of; }
+inline Lanes max(const Lanes& a, const Lanes& b) noexcept { return a.of < b.of ? b.of : a.of; }
+inline Lanes min(const Lanes& a, const Lanes& b) noexcept { return b.of < a.of ? b.of : a.of; }
+inline Lanes::Mask isfinite(const Lanes& a) noexcept { return abs(a) <= std::numeric_limits<Real>::max(); }
 inline Lanes log(const Lanes& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.log(); });
@@ -143,6 +159,40 @@ inline Lanes exp(const Lanes& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.exp(); });
 }
+/// a^n of a > 0, to 2 |n ln a| units of the last place, what two of the logarithm come to; 0 of a = 0 with n > 0.
+inline Lanes pow(const Lanes& a, Real n) noexcept { return where(a == 0 && Lanes(n) > 0, 0, exp(n * log(a))); }
+
+/// ln(1 + a), of small a to the last digits.
+inline Lanes log1p(const Lanes& a) noexcept
+{
+  // 2 artanh(s): the first term that the series leaves out is below 0.0527^16 / 17 of the first.
+  constexpr Real near = 0.1;
+  if (everywhere(abs(a) <= near)) {
+    const Lanes s = a / (2 + a), s2 = s * s;
+    Lanes sum = 1.0 / 15;
+    for (int k = 13; k >= 3; k -= 2)
+      sum = 1.0 / k + sum * s2;
+    return 2 * s + 2 * s * (s2 * sum);
+  }
+  // What rounding of 1 + a does to the logarithm it does to the denominator as well.       [Kahan; Higham 2002, ch. 1.14.1]
+  const Lanes u = 1 + a, rounded = u - 1;
+  return where(rounded == 0 || !isfinite(u), where(u < 0, std::numeric_limits<Real>::quiet_NaN(), a), log(u) * (a / rounded));
+}
+/// exp(a) - 1, of small a to the last digits.
+inline Lanes expm1(const Lanes& a) noexcept
+{
+  // The first term that the series leaves out is below 0.1^11 / 12! of the first.
+  constexpr Real near = 0.1;
+  if (everywhere(abs(a) <= near)) {
+    Lanes sum = 1;
+    for (int k = 11; k >= 3; --k)
+      sum = 1 + sum * a * (1.0 / k);
+    return a + a * (0.5 * a * sum);
+  }
+  // As above; beyond the middle range exp(a) alone is as good.
+  const Lanes u = exp(a), rounded = u - 1;
+  return where(abs(a) < 1, where(rounded == 0, a, rounded * (a / log(u))), rounded);
+}
 
 }  // namespace talus
 
@@ -150,7 +200,7 @@ template <>
 struct Eigen::NumTraits<talus::Lanes> : Eigen::GenericNumTraits<talus::Lanes> {
   using Real = talus::Lanes;
   using NonInteger = talus::Lanes;
-  using Literal = talus::Real;
+  using Literal = talus::Lanes;
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
 };
 

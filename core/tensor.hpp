@@ -1,5 +1,7 @@
 #pragma once
 // Small-tensor algebra that Eigen does not name: packing, deviators, Lame constants, embedding of plane tensors.
+#include <cmath>
+
 #include "core/types.hpp"
 
 namespace talus {
@@ -21,13 +23,34 @@ Mat3Of<typename E::Scalar> unpack(const Eigen::MatrixBase<E>& expression) noexce
   return a;
 }
 
-inline Mat3 sym(const Mat3& a) noexcept { return 0.5 * (a + a.transpose()); }
+template <class E>
+Mat3Of<typename E::Scalar> sym(const Eigen::MatrixBase<E>& expression) noexcept
+{
+  const Mat3Of<typename E::Scalar>& a = expression.derived();
+  return 0.5 * (a + a.transpose());
+}
 inline Mat3 skew(const Mat3& a) noexcept { return 0.5 * (a - a.transpose()); }
-inline Mat3 dev(const Mat3& a) noexcept { return a - (a.trace() / 3) * Mat3::Identity(); }
+template <class E>
+Mat3Of<typename E::Scalar> dev(const Eigen::MatrixBase<E>& expression) noexcept
+{
+  using T = typename E::Scalar;
+  const Mat3Of<T>& a = expression.derived();
+  return a - T(a.trace() / 3) * Mat3Of<T>::Identity();
+}
 
 /// J2 = s:s/2 of the deviator of a; sqrt(J2) is the shear measure tau of the Drucker-Prager law.
-inline Real second_invariant(const Mat3& a) noexcept { return 0.5 * dev(a).squaredNorm(); }
-inline Real von_mises(const Mat3& a) noexcept { return std::sqrt(3 * second_invariant(a)); }
+template <class E>
+typename E::Scalar second_invariant(const Eigen::MatrixBase<E>& a) noexcept
+{
+  return 0.5 * dev(a).cwiseAbs2().sum();
+}
+template <class E>
+typename E::Scalar von_mises(const Eigen::MatrixBase<E>& a) noexcept
+{
+  using std::sqrt;
+  using T = typename E::Scalar;
+  return sqrt(T(3 * second_invariant(a)));
+}
 
 /// A plane tensor in 3-D: zeros out of plane (plane strain for a velocity gradient).  D is the size of `a`.
 template <class T, int D>

@@ -35,21 +35,13 @@ struct Batch {
   /// written for lanes, one after the other.
   Mat3Of<Lanes> update(const Index (&i)[pack_size], int count, const IncrementOf<Lanes>& in) noexcept
   {
-    if constexpr (LawInLanes<L>) {
-      StateRows<State> rows{{}, count};
-      for (int lane = 0; lane < pack_size; ++lane)
-        rows.row[lane] = &history[static_cast<std::size_t>(i[lane])];
+    StateRows<State> rows{{}, count};
+    for (int lane = 0; lane < pack_size; ++lane)
+      rows.row[lane] = &history[static_cast<std::size_t>(i[lane])];
+    if constexpr (LawInLanes<L>)
       return law.update(in, rows, constants);
-    } else {
-      Mat3Of<Lanes> stress = Mat3Of<Lanes>::Zero();
-      for (int lane = 0; lane < count; ++lane) {
-        const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
-        const Mat3 after = update(i[lane], Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic});
-        for (Eigen::Index k = 0; k < 9; ++k)
-          stress(k).set(lane, after(k));
-      }
-      return stress;
-    }
+    else
+      return update_one_by_one(law, in, rows, constants);
   }
   /// Upper bound of the speed of sound [m/s] in particle i, deformed by F.
   Real wave_speed(Index i, const Mat3& F) const noexcept

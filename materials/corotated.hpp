@@ -23,22 +23,25 @@ struct Corotated : Elasticity {
   using Constants = Moduli;
   Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
-    const Real J = in.F.determinant();
-    if (!(J > 0))
-      return no_answer();
+    const T J = in.F.determinant();
+    if (!everywhere(J > 0))
+      return no_answer_somewhere(*this, in, state, c);
     const Real lambda = c.lambda, mu = c.shear;
-    const Mat3 kirchhoff = 2 * mu * (in.F - polar_rotation(in.F)) * in.F.transpose() + lambda * J * (J - 1) * Mat3::Identity();
-    return sym(kirchhoff) / J;
+    const Mat3Of<T> kirchhoff = 2 * mu * (in.F - polar_rotation(in.F)) * in.F.transpose() + T(lambda * J * (J - 1)) * Mat3Of<T>::Identity();
+    return sym(kirchhoff) * T(1 / J);
   }
 
   /// rho_0 c^2 <= 2 mu b_nn + lambda J^2: the volume term is linear along rank-one directions but for lambda (J - 1)^2 / 2.
-  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {
-    const Real lambda = c.lambda, mu = c.shear;
-    const Real J = F.determinant();
-    return std::sqrt((2 * mu * largest_eigenvalue_bound(F * F.transpose()) + std::max(lambda, Real{0}) * J * J) / density);
+    using std::sqrt;
+    const T J = F.determinant();
+    const T stretch = largest_eigenvalue_bound(Mat3Of<T>(F * F.transpose()));
+    return sqrt(T((2 * c.shear * stretch + std::max(c.lambda, Real{0}) * J * J) / density));
   }
 };
 

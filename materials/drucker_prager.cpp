@@ -16,64 +16,72 @@ constexpr Real never = std::numeric_limits<Real>::infinity();
 Real radians(Real degrees) noexcept { return degrees * (std::numbers::pi / 180); }
 
 /// Largest mean stress the cone allows.
-Real tip(const Cone& cone) noexcept { return cone.q > 0 ? cone.k / cone.q : never; }
+template <class T>
+T tip(const ConeOf<T>& cone) noexcept
+{
+  return where(cone.q > 0, cone.k / cone.q, never);
+}
 
 /// A state of stress by its two measures, and how it was reached from the trial state.
+template <class T>
 struct Point {
-  Real mean, tau;            ///< Kirchhoff stress [Pa]
-  Real multiplier, opening;  ///< plastic multiplier; logarithmic volume that opened
+  T mean, tau;            ///< Kirchhoff stress [Pa]
+  T multiplier, opening;  ///< plastic multiplier; logarithmic volume that opened
+  friend Point where(const MaskOf<T>& condition, const Point& a, const Point& b) noexcept
+  {
+    return {where(condition, a.mean, b.mean), where(condition, a.tau, b.tau), where(condition, a.multiplier, b.multiplier),
+            where(condition, a.opening, b.opening)};
+  }
 };
-
 /// Backward Euler from a trial state outside the yield surface.
+template <class T>
 struct ReturnMap {
   const DruckerPrager::Constants& c;
-  Real plastic_strain;
-  Cone start = c.cone_at(plastic_strain);
-  Real left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
-  Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};           ///< of the cone by multiplier, while some is left
+  T plastic_strain;
+  ConeOf<T> start = c.cone_at(plastic_strain);
+  T left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
+  Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};        ///< of the cone by multiplier, while some is left
 
-  Cone cone_after(Real multiplier) const noexcept { return c.cone_at(plastic_strain + multiplier / sqrt3); }
+  ConeOf<T> cone_after(const T& multiplier) const noexcept { return c.cone_at(T(plastic_strain + multiplier * (1 / sqrt3))); }
 
   /// Along the cone, tau falls by G and the mean stress by K q_psi per multiplier.  While the cone shrinks linearly the consistency
   /// condition is a m^2 - b m + excess = 0, of which the smallest root counts; without one the strength drops to residual at once.
-  Point to_cone(const Point& trial) const noexcept
+  Point<T> to_cone(const Point<T>& trial) const noexcept
   {
-    const Real excess = trial.tau + start.q * trial.mean - start.k;
+    using std::sqrt;
+    const T excess = trial.tau + start.q * trial.mean - start.k;
     const Real a = -slope.q * c.bulk * c.q_psi;
-    const Real b = c.shear + c.bulk * start.q * c.q_psi + slope.k - slope.q * trial.mean;
-    const Real discriminant = b * b - 4 * a * excess;
-    Real m = never;
-    if (b > 0 && discriminant >= 0)
-      m = 2 * excess / (b + std::sqrt(discriminant));
-    if (!(m <= left))
-      m = (trial.tau + c.residual.q * trial.mean - c.residual.k) / (c.shear + c.bulk * c.residual.q * c.q_psi);
+    const T b = c.shear + c.bulk * start.q * c.q_psi + slope.k - slope.q * trial.mean;
+    const T discriminant = b * b - 4 * a * excess;
+    T m = where(b > 0 && discriminant >= 0, 2 * excess / (b + sqrt(discriminant)), never);
+    if (!everywhere(m <= left))
+      m = where(m <= left, m, (trial.tau + c.residual.q * trial.mean - c.residual.k) / (c.shear + c.bulk * c.residual.q * c.q_psi));
     return {trial.mean - c.bulk * c.q_psi * m, trial.tau - c.shear * m, m, 0};
   }
 
   /// To the plane of the cut-off, its edge with the cone, or the tip of the cone, by opening.
-  Point to_opening(const Point& trial, Real cutoff) const noexcept
+  Point<T> to_opening(const Point<T>& trial, const T& cutoff) const noexcept
   {
-    Real m = 0;
-    if (const Real excess = trial.tau + start.q * cutoff - start.k; cutoff < never && excess > 0) {
-      m = excess / (c.shear + slope.k - slope.q * cutoff);
-      if (!(m >= 0 && m <= left))
-        m = (trial.tau + c.residual.q * cutoff - c.residual.k) / c.shear;
-    }
-    Real mean = cutoff;
-    if (!(cutoff < tip(cone_after(m)))) {
-      m = trial.tau / c.shear;
-      mean = tip(cone_after(m));
-    }
-    return {mean, std::max(trial.tau - c.shear * m, Real{0}), m, (trial.mean - mean) / c.bulk - c.q_psi * m};
+    using std::max;
+    const T plane = where(cutoff < never, cutoff, 0);  // so that zero slopes do not meet infinity
+    const T excess = trial.tau + start.q * plane - start.k;
+    T m = excess / (c.shear + slope.k - slope.q * plane);
+    m = where(m >= 0 && m <= left, m, (trial.tau + c.residual.q * plane - c.residual.k) / c.shear);
+    m = where(cutoff < never && excess > 0, m, 0);
+    const auto on_plane = cutoff < tip(cone_after(m));
+    m = where(on_plane, m, trial.tau / c.shear);
+    const T mean = where(on_plane, cutoff, tip(cone_after(m)));
+    return {mean, max(T(trial.tau - c.shear * m), T(0)), m, (trial.mean - mean) / c.bulk - c.q_psi * m};
   }
 
-  Point operator()(const Point& trial, Real cutoff) const noexcept
+  Point<T> operator()(const Point<T>& trial, const T& cutoff) const noexcept
   {
-    Point end = trial;
-    if (trial.tau + start.q * trial.mean - start.k > 0)
-      end = to_cone(trial);
-    if (end.mean > std::min(cutoff, tip(cone_after(end.multiplier))))
-      end = to_opening(trial, cutoff);
+    using std::min;
+    Point<T> end = trial;
+    if (const auto sheared = trial.tau + start.q * trial.mean - start.k > 0; somewhere(sheared))
+      end = where(sheared, to_cone(trial), trial);
+    if (const auto opens = end.mean > min(cutoff, tip(cone_after(end.multiplier))); somewhere(opens))
+      end = where(opens, to_opening(trial, cutoff), end);
     return end;
   }
 };
@@ -122,39 +130,47 @@ DruckerPrager::Constants DruckerPrager::constants() const noexcept
           .cutoff = tension_cutoff.value_or(never)};
 }
 
-Mat3 DruckerPrager::update(const Increment& in, State& state, const Constants& c) const noexcept
+template <class T>
+Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
 {
-  const Real J = in.F.determinant();
-  const Sym3 b = push_forward(in.dt * in.L, state.elastic_left);
-  const Sym3 twice_strain = log1p(b);
-  const Real volume_strain = 0.5 * trace(twice_strain);
-  const Sym3 shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
-  Point trial{c.bulk * volume_strain, c.shear * std::sqrt(2 * squared_norm(shear_strain)), 0, 0};
-  if (!(J > 0 && std::isfinite(trial.mean + trial.tau)))
-    return no_answer();
+  using std::isfinite, std::max, std::sqrt;
+  const T J = in.F.determinant();
+  const Sym3Of<T> b = push_forward(in.dt * in.L, get(state, &State::elastic_left));
+  const Sym3Of<T> twice_strain = log1p(b);
+  const T volume_strain = 0.5 * trace(twice_strain);
+  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
+  Point<T> trial{c.bulk * volume_strain, c.shear * sqrt(T(2 * squared_norm(shear_strain))), 0, 0};
+  if (!everywhere(J > 0 && isfinite(T(trial.mean + trial.tau))))
+    return no_answer_somewhere(*this, in, state, c);
+  const T per_volume = 1 / J;
   if (in.elastic) {
-    state.elastic_left = b;
-    return unpack(scale_and_shift(2 * c.shear / J, shear_strain, trial.mean / J));
+    put(state, &State::elastic_left, b);
+    return unpack(scale_and_shift(2 * c.shear * per_volume, shear_strain, trial.mean * per_volume));
   }
 
   // What opened before fills first, and carries no tension while it does.
-  const bool closing = state.opened_volume > 0 && trial.mean < 0;
-  if (closing)
-    trial.mean += c.bulk * state.opened_volume;
-  const ReturnMap map{c, state.plastic_strain};
-  const Point end = map(trial, closing ? 0 : c.cutoff);
+  const T opened = get(state, &State::opened_volume), plastic_strain = get(state, &State::plastic_strain);
+  const auto closing = opened > 0 && trial.mean < 0;
+  trial.mean = where(closing, trial.mean + c.bulk * opened, trial.mean);
+  const ReturnMap<T> map{c, plastic_strain};
+  const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
-  const Real kept = trial.tau > 0 ? end.tau / trial.tau : 0;
-  if (closing || end.multiplier > 0 || end.opening > 0)
-    state.elastic_left = expm1(scale_and_shift(2 * kept, shear_strain, 2 * end.mean / (3 * c.bulk)));
-  else
-    state.elastic_left = b;
-  state.plastic_strain += end.multiplier / sqrt3;
-  const Real work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
-  state.plastic_work += std::max(work, Real{0});  // associated flow without cohesion dissipates nothing, up to rounding
-  state.opened_volume = (closing ? 0 : state.opened_volume) + end.opening;
-  return unpack(scale_and_shift(2 * c.shear * kept / J, shear_strain, end.mean / J));
+  const T kept = where(trial.tau > 0, end.tau / trial.tau, 0);
+  if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; somewhere(changed)) {
+    const Sym3Of<T> left = expm1(scale_and_shift(2 * kept, shear_strain, end.mean * (2 / (3 * c.bulk))));
+    put(state, &State::elastic_left, where(changed, left, b));
+    put(state, &State::plastic_strain, T(plastic_strain + end.multiplier * (1 / sqrt3)));
+    const T work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
+    // Associated flow without cohesion dissipates nothing, up to rounding.
+    put(state, &State::plastic_work, T(get(state, &State::plastic_work) + max(work, T(0))));
+    put(state, &State::opened_volume, T(where(closing, 0, opened) + end.opening));
+  } else {
+    put(state, &State::elastic_left, b);
+  }
+  return unpack(scale_and_shift(2 * c.shear * kept * per_volume, shear_strain, end.mean * per_volume));
 }
+template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
+template Mat3Of<Lanes> DruckerPrager::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;
 
 void DruckerPrager::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -171,10 +187,14 @@ Real DruckerPrager::yield(const Mat3&, const State& state) const noexcept
   return tau + now.q * c.bulk * trace(strain) - now.k;
 }
 
-Real DruckerPrager::wave_speed(const Mat3& F, const Constants& c) const noexcept
+template <class T>
+T DruckerPrager::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
 {
-  return std::sqrt((c.bulk + 4 * c.shear / 3) * (1 + std::max(-std::log(F.determinant()), Real{0})) / density);
+  using std::log, std::max, std::sqrt;
+  return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
 }
+template Real DruckerPrager::wave_speed(const Mat3&, const Constants&) const noexcept;
+template Lanes DruckerPrager::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
 
 void DruckerPrager::check(std::vector<std::string>& problems) const
 {

@@ -17,10 +17,12 @@ enum class ConeMatch : std::uint8_t { outer, inner, plane_strain };
 constexpr auto words(ConeMatch) { return std::array<std::string_view, 3>{"outer", "inner", "plane_strain"}; }
 
 /// Yield where tau + q s = k with tau = sqrt(J2) and s = tr/3 (tension positive) of the Kirchhoff stress.
-struct Cone {
-  Real q;  ///< slope [-]
-  Real k;  ///< strength at s = 0 [Pa]
+template <class T>
+struct ConeOf {
+  T q;  ///< slope [-]
+  T k;  ///< strength at s = 0 [Pa]
 };
+using Cone = ConeOf<Real>;
 
 /// Drucker-Prager with non-associated flow (g = tau + q_psi s) in Kirchhoff stress and logarithmic strain, return by backward Euler;
 /// isotropy makes the return act on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens where the
@@ -87,19 +89,23 @@ struct DruckerPrager : Elasticity {
     Real softening_strain;  ///< infinite if nothing softens
     Real q_psi;             ///< slope of the plastic potential [-]
     Real cutoff;            ///< Pa, infinite if there is only the tip of the cone
-    Cone cone_at(Real plastic_strain) const noexcept
+    template <class T>
+    ConeOf<T> cone_at(const T& plastic_strain) const noexcept
     {
-      return plastic_strain < softening_strain ? Cone{peak.q + plastic_strain * slope.q, peak.k + plastic_strain * slope.k} : residual;
+      const auto softens = plastic_strain < softening_strain;
+      return {where(softens, peak.q + plastic_strain * slope.q, residual.q), where(softens, peak.k + plastic_strain * slope.k, residual.k)};
     }
   };
   Constants constants() const noexcept;
 
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, State& state) const noexcept;
   /// tau + q s - k of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is that over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
   /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
-  Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "core/fields.hpp"
+#include "core/lanes.hpp"
 
 namespace talus {
 
@@ -40,14 +42,13 @@ struct MieGruneisenCurve {
   }
 
   /// Pressure without energy [Pa] at the compression e = 1 - V/V0.
-  Real cold_pressure(Real e) const noexcept
+  template <class T = Real>
+  T cold_pressure(const std::type_identity_t<T>& e) const noexcept
   {
-    if (e < 0)
-      return bulk * e / (1 - e);
-    if (e > straight)
-      return straight_pressure + straight_slope * (e - straight);
-    const Real margin = 1 - s * e;
-    return bulk * e * (1 - 0.5 * gamma * e) / (margin * margin);
+    const T margin = 1 - s * e;
+    const T compressed =
+        where(e > straight, straight_pressure + straight_slope * (e - straight), bulk * e * (1 - 0.5 * gamma * e) / (margin * margin));
+    return where(e < 0, bulk * e / (1 - e), compressed);
   }
   /// The compression that has a cold pressure [Pa] on the curved part; NaN in tension beyond -bulk, which no volume has.
   Real compression_at(Real pressure) const noexcept
@@ -58,9 +59,11 @@ struct MieGruneisenCurve {
     return 2 * pressure / (b + std::sqrt(discriminant));
   }
   /// Upper bound of the slope of pressure by e along the isentrope through a state on the Hugoniot or below it [Pa].
-  Real stiffness(Real e) const noexcept
+  template <class T = Real>
+  T stiffness(const std::type_identity_t<T>& e) const noexcept
   {
-    const Real at = std::clamp(e, Real{0}, straight), margin = 1 - s * at;
+    using std::max, std::min;
+    const T at = min(max(e, T(0)), T(straight)), margin = 1 - s * at;
     return bulk * (1 + s * at) / (margin * margin * margin);
   }
 };

@@ -23,26 +23,30 @@ struct Hencky : Elasticity {
   using Constants = Moduli;
   Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
-    const Real J = in.F.determinant();
-    return J > 0 ? Mat3(kirchhoff(in.F, c) / J) : no_answer();
+    const T J = in.F.determinant();
+    return everywhere(J > 0) ? Mat3Of<T>(kirchhoff(in.F, c) * T(1 / J)) : no_answer_somewhere(*this, in, state, c);
   }
 
   /// Along a principal axis n rho_0 c^2 = lambda + 2 mu - J stress_nn; across, from n towards m, mu r ln(r) / (r - 1) with r = b_n / b_m,
   /// which is at most mu (1 + ln r).
-  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {
+    using std::max, std::sqrt;
     const Real lambda = c.lambda, mu = c.shear;
-    const Real stress = largest_eigenvalue_bound(kirchhoff(F, c));
-    return std::sqrt(std::max(lambda + 2 * mu + stress, mu + 2 * stress) / density);
+    const T stress = largest_eigenvalue_bound(kirchhoff(F, c));
+    return sqrt(T(max(T(lambda + 2 * mu + stress), T(mu + 2 * stress)) / density));
   }
 
  private:
-  static Mat3 kirchhoff(const Mat3& F, const Moduli& c) noexcept
+  template <class T>
+  static Mat3Of<T> kirchhoff(const Mat3Of<T>& F, const Moduli& c) noexcept
   {
     const Real lambda = c.lambda, mu = c.shear;
-    const Sym3 strain = scale_and_shift(0.5, log1p(push_forward(F - Mat3::Identity(), Sym3::Zero())), 0);
+    const Sym3Of<T> strain = scale_and_shift(0.5, log1p(push_forward(F - Mat3Of<T>::Identity(), Sym3Of<T>::Zero())), 0);
     return unpack(scale_and_shift(2 * mu, strain, lambda * trace(strain)));
   }
 };

@@ -55,25 +55,35 @@ struct HerschelBulkley : WeaklyCompressible {
   }
 
   /// Pa s at a shear rate [1/s].
-  Real viscosity(Real rate, const Constants& c) const noexcept
+  template <class T = Real>
+  T viscosity(const std::type_identity_t<T>& rate, const Constants& c) const noexcept
   {
-    const Real power = flow_index == 1 ? 1 : std::pow(std::clamp(rate, c.slowest, c.fastest), flow_index - 1);
-    const Real yielding = rate > 0 ? -std::expm1(-regularisation * rate) / rate : regularisation;
+    using std::expm1, std::max, std::min, std::pow;
+    T power = 1;
+    if (flow_index != 1)
+      power = pow(min(max(rate, T(c.slowest)), T(c.fastest)), flow_index - 1);
+    const T yielding = where(rate > 0, -expm1(T(-regularisation * rate)) / rate, regularisation);
     return consistency * power + yield_stress * yielding;
   }
 
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
   {
-    const Real J = in.F.determinant();
-    if (!(J > 0))
-      return no_answer();
-    const Sym3 D = rate_of_deformation(in);
-    const Sym3 shear = add_diagonal(D, -trace(D) / 3);
-    const Real rate = std::sqrt(2 * squared_norm(shear)), eta = viscosity(rate, c);
-    state.plastic_work += J * in.dt * eta * rate * rate;
-    return unpack(scale_and_shift(2 * eta, shear, -pressure(J, in.elastic)));
+    using std::sqrt;
+    const T J = in.F.determinant();
+    if (!everywhere(J > 0))
+      return no_answer_somewhere(*this, in, state, c);
+    const Sym3Of<T> D = rate_of_deformation(in);
+    const Sym3Of<T> shear = add_diagonal(D, -trace(D) / 3);
+    const T rate = sqrt(T(2 * squared_norm(shear))), eta = viscosity<T>(rate, c);
+    put(state, &State::plastic_work, T(get(state, &State::plastic_work) + J * in.dt * eta * rate * rate));
+    return unpack(scale_and_shift(2 * eta, shear, -pressure<T>(J, in.elastic)));
   }
-  Real wave_speed(const Mat3& F, const Constants&) const noexcept { return sound_speed(F.determinant()); }
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Constants&) const noexcept
+  {
+    return sound_speed<T>(F.determinant());
+  }
   /// 4/3 of the largest viscosity over density; that of a shear-thickening fluid is counted as if rest and highest_rate met.
   Real diffusivity(const Constants& c) const noexcept
   {

@@ -11,121 +11,143 @@ namespace {
 
 using MetalConstants = JohnsonCookMetal::Constants;
 
-Real homologous(const JohnsonCookMetal& metal, Real temperature, const MetalConstants& c) noexcept
+template <class T>
+T homologous(const JohnsonCookMetal& metal, const T& temperature, const MetalConstants& c) noexcept
 {
-  return std::clamp((temperature - metal.room_temperature) * c.range_inverse, Real{0}, Real{1});
+  using std::max, std::min;
+  return min(max(T((temperature - metal.room_temperature) * c.range_inverse), T(0)), T(1));
 }
 
 /// Strength [Pa of Cauchy stress], or what it gains.
+template <class T>
 struct Strength {
-  Real value, by_strain, by_temperature;
+  T value, by_strain, by_temperature;
 };
 
 /// Strength at slow rates, fast near the state before the step.
+template <class T>
 struct SlowStrength {
   const JohnsonCookMetal& metal;
   const MetalConstants& c;
-  PowerNear hardening, softening;
+  PowerNear<T> hardening, softening;
 
-  SlowStrength(const JohnsonCookMetal& of, const MetalConstants& constants, Real plastic_strain, Real temperature) noexcept
+  SlowStrength(const JohnsonCookMetal& of, const MetalConstants& constants, const T& plastic_strain, const T& temperature) noexcept
       : metal(of),
         c(constants),
         hardening(plastic_strain, of.hardening_exponent),
         softening(homologous(of, temperature, constants), of.thermal_exponent)
   {}
   /// The slopes are those at positive plastic strain.
-  Strength operator()(Real plastic_strain, Real temperature) const noexcept
+  Strength<T> operator()(const T& plastic_strain, const T& temperature) const noexcept
   {
-    const Real heat = homologous(metal, temperature, c);
-    const Real gain = metal.hardening_coefficient * hardening(plastic_strain), cold = metal.yield_stress + gain;
-    const Real lost = heat > 0 ? softening(heat) : 0;
-    const Real lost_slope = heat > 0 && heat < 1 ? metal.thermal_exponent * lost / heat * c.range_inverse : 0;
+    const T heat = homologous(metal, temperature, c);
+    const T gain = metal.hardening_coefficient * hardening(plastic_strain), cold = metal.yield_stress + gain;
+    T lost = 0, lost_slope = 0;
+    if (const auto warm = heat > 0; somewhere(warm)) {
+      lost = where(warm, softening(heat), 0);
+      lost_slope = where(warm && heat < 1, metal.thermal_exponent * lost / heat * c.range_inverse, 0);
+    }
     return {cold * (1 - lost), metal.hardening_exponent * gain / plastic_strain * (1 - lost), -cold * lost_slope};
   }
 };
 
 /// Plastic flow of one step.
+template <class T>
 struct PlasticFlow {
-  Real strain = 0;  ///< plastic
-  Real mises = 0;   ///< Cauchy stress at the end [Pa]
-  Real work = 0;    ///< per initial volume [J/m^3]
+  T strain = 0;  ///< plastic
+  T mises = 0;   ///< Cauchy stress at the end [Pa]
+  T work = 0;    ///< per initial volume [J/m^3]
 };
 
 /// Backward Euler from a trial stress above the strength before the step.
+template <class T>
 struct JohnsonCookReturn {
   const JohnsonCookMetal& metal;
   const MetalConstants& c;
-  const SlowStrength& slow;
-  Strength start;                    ///< before the step
-  Real J, J_before;                  ///< at the end of the step and before
-  Real mises, stiffness;             ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
-  Real plastic_strain, temperature;  ///< before the step
-  Real relative;                     ///< plastic rate over the reference, by plastic strain of the step
-  Real tried = 0;                    ///< plastic strain of the step
-  ValueAndSlope tried_factor{1, 0};  ///< of its rate
+  const SlowStrength<T>& slow;
+  Strength<T> start;                      ///< before the step
+  T J, J_before;                          ///< at the end of the step and before
+  T mises, stiffness;                     ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
+  T plastic_strain, temperature;          ///< before the step
+  Real relative;                          ///< plastic rate over the reference, by plastic strain of the step
+  T tried = 0;                            ///< plastic strain of the step
+  ValueAndSlopeOf<T> tried_factor{1, 0};  ///< of its rate
 
-  ValueAndSlope rate_factor(Real x) const noexcept
+  ValueAndSlopeOf<T> rate_factor(const T& x) const noexcept
   {
-    const Real rate = relative * x;
-    return rate > 1 ? ValueAndSlope{1 + metal.rate_coefficient * std::log(rate), metal.rate_coefficient / x} : ValueAndSlope{1, 0};
+    using std::log;
+    const T rate = relative * x;
+    const auto fast = rate > 1;
+    if (!somewhere(fast))
+      return {1, 0};
+    return {where(fast, 1 + metal.rate_coefficient * log(rate), 1), where(fast, metal.rate_coefficient / x, 0)};
   }
   /// Trapezoidal in the Kirchhoff stress: the strength before and after the step, at the rate of the step.
-  Real work(Real x, Real factor, Real end) const noexcept { return 0.5 * x * (J_before * factor * start.value + J * end); }
+  T work(const T& x, const T& factor, const T& end) const noexcept { return 0.5 * x * (J_before * factor * start.value + J * end); }
 
   /// Stress less strength if the plastic strain of the step is x.
-  ValueAndSlope operator()(Real x) noexcept
+  ValueAndSlopeOf<T> operator()(const T& x) noexcept
   {
-    const ValueAndSlope factor = rate_factor(x);
+    const ValueAndSlopeOf<T> factor = rate_factor(x);
     tried = x;
     tried_factor = factor;
-    const Real heated = temperature + c.heat * work(x, factor.value, mises - stiffness * x);
-    const Real heating = 0.5 * c.heat * (J_before * start.value * (factor.value + x * factor.slope) + J * (mises - 2 * stiffness * x));
-    const Strength end = slow(plastic_strain + x, heated);
+    const T heated = temperature + c.heat * work(x, factor.value, mises - stiffness * x);
+    const T heating = 0.5 * c.heat * (J_before * start.value * (factor.value + x * factor.slope) + J * (mises - 2 * stiffness * x));
+    const Strength<T> end = slow(plastic_strain + x, heated);
     return {mises - stiffness * x - factor.value * end.value,
             -stiffness - factor.slope * end.value - factor.value * (end.by_strain + end.by_temperature * heating)};
   }
-  PlasticFlow flow(const Mat3& stress_before) noexcept
+  PlasticFlow<T> flow(const Mat3Of<T>& stress_before, const MaskOf<T>& flows) noexcept
   {
-    const Real going_on = std::max(start.value, von_mises(stress_before));  // flow that goes on hardens from there at the same rate
-    const Real hardening = start.by_strain + start.by_temperature * c.heat * J * going_on;
-    const Real x = positive_root(*this, mises / stiffness, (mises - going_on) / (stiffness + hardening));
-    const Real factor = tried_factor.value + tried_factor.slope * (x - tried);  // exact: the last step is 1e-6 of x
-    const Real end = std::max(mises - stiffness * x, Real{0});
+    using std::max;
+    const T going_on = max(start.value, von_mises(stress_before));  // flow that goes on hardens from there at the same rate
+    const T hardening = start.by_strain + start.by_temperature * c.heat * J * going_on;
+    const T x = positive_root<T>(*this, mises / stiffness, (mises - going_on) / (stiffness + hardening), flows);
+    const T factor = tried_factor.value + tried_factor.slope * (x - tried);  // exact: the last step is 1e-6 of x
+    const T end = max(T(mises - stiffness * x), T(0));
     return {x, end, work(x, factor, end)};
   }
 };
 
 /// Internal energy of one step by the trapezoidal rule, which makes it linear in the pressure at the end.
+template <class T>
 struct EnergyStep {
-  Real volume_change;  ///< by initial volume
-  Real rest;           ///< energy at the end, but for the work of the pressure there [J/m^3]
+  T volume_change;  ///< by initial volume
+  T rest;           ///< energy at the end, but for the work of the pressure there [J/m^3]
 
   /// What shear stores is known by the Kirchhoff stress `mises`, mises^2 / (6 G); what it loses is plastic work.
-  EnergyStep(const Increment& in, Real change, Real energy_before, Real mises_before, Real mises, Real plastic_work, Real shear) noexcept
+  EnergyStep(const IncrementOf<T>& in, const T& change, const T& energy_before, const T& mises_before, const T& mises,
+             const T& plastic_work, Real shear) noexcept
       : volume_change(change)
   {
-    const Real stored = (mises - mises_before) * (mises + mises_before) / (6 * shear);
+    const T stored = (mises - mises_before) * (mises + mises_before) / (6 * shear);
     rest = energy_before + stored + plastic_work + (in.stress.trace() / 6 - in.viscous) * volume_change;
   }
-  Real energy(Real pressure) const noexcept { return rest - 0.5 * pressure * volume_change; }
+  T energy(const T& pressure) const noexcept { return rest - 0.5 * pressure * volume_change; }
   /// A step that compresses by more than 1/gamma is none; its pressure stays finite.
-  Real pressure(const MieGruneisenCurve& curve, Real compression) const noexcept
+  T pressure(const MieGruneisenCurve& curve, const T& compression) const noexcept
   {
-    return (curve.cold_pressure(compression) + curve.gamma * rest) / std::max(1 + 0.5 * curve.gamma * volume_change, 0.5);
+    using std::max;
+    return (curve.cold_pressure<T>(compression) + curve.gamma * rest) / max(T(1 + 0.5 * curve.gamma * volume_change), T(0.5));
   }
 };
 
 }  // namespace
 
-Real JohnsonCookDamage::fracture_strain(Real triaxiality, Real relative_rate, Real homologous) const noexcept
+template <class T>
+T JohnsonCookDamage::fracture_strain(const std::type_identity_t<T>& triaxiality, const std::type_identity_t<T>& relative_rate,
+                                     const std::type_identity_t<T>& homologous) const noexcept
 {
+  using std::exp, std::log, std::max, std::min;
   constexpr Real least = 1e-6;
   constexpr Real largest_exponent = 100;  // as good as never; keeps zero times infinity away
-  const Real by_pressure = d1 + d2 * std::exp(std::min(d3 * triaxiality, largest_exponent));
-  const Real by_rate = 1 + d4 * std::log(std::max(relative_rate, Real{1}));
-  const Real by_heat = 1 + d5 * homologous;
-  return by_pressure > 0 && by_rate > 0 && by_heat > 0 ? std::max(by_pressure * by_rate * by_heat, least) : least;
+  const T by_pressure = d1 + d2 * exp(min(T(d3 * triaxiality), T(largest_exponent)));
+  const T by_rate = 1 + d4 * log(max(relative_rate, T(1)));
+  const T by_heat = 1 + d5 * homologous;
+  return where(by_pressure > 0 && by_rate > 0 && by_heat > 0, max(T(by_pressure * by_rate * by_heat), T(least)), least);
 }
+template Real JohnsonCookDamage::fracture_strain<Real>(const Real&, const Real&, const Real&) const noexcept;
+template Lanes JohnsonCookDamage::fracture_strain<Lanes>(const Lanes&, const Lanes&, const Lanes&) const noexcept;
 
 JohnsonCookMetal::Constants JohnsonCookMetal::constants() const noexcept
 {
@@ -147,60 +169,67 @@ Real JohnsonCookMetal::flow_stress(Real plastic_strain, Real plastic_rate, Real 
 {
   const Constants c = constants();
   const Real rate = std::max(plastic_rate / reference_rate, Real{1});
-  return SlowStrength(*this, c, plastic_strain, temperature)(plastic_strain, temperature).value * (1 + rate_coefficient * std::log(rate));
+  return SlowStrength<Real>(*this, c, plastic_strain, temperature)(plastic_strain, temperature).value *
+         (1 + rate_coefficient * std::log(rate));
 }
 
-Mat3 JohnsonCookMetal::update(const Increment& in, const Memory& memory, const Constants& c) const noexcept
+template <class T>
+std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memory<T>& memory, const Constants& c) const noexcept
 {
-  const Real J = in.F.determinant();
-  const ElasticTrial trial(in, memory.elastic_left);
-  if (!(J > 0 && trial.is_finite()))
-    return no_answer();
-  const bool failed_before = memory.damage && *memory.damage >= 1;
-  const Real stiffness = 3 * c.shear / J, mises = stiffness * trial.shear, relative = c.rate_inverse / in.dt;
-  const Real temperature = started(memory.temperature);
-  PlasticFlow flow{.mises = failed_before ? 0 : mises};
-  if (!in.elastic && !failed_before) {
-    const SlowStrength slow(*this, c, memory.plastic_strain, temperature);
-    if (const Strength start = slow(memory.plastic_strain, temperature); mises > start.value)
-      flow = JohnsonCookReturn{*this, c, slow, start, J, J / growth_of(in), mises, stiffness, memory.plastic_strain, temperature, relative}
-                 .flow(in.stress);
+  using std::expm1, std::max, std::min;
+  const T J = in.F.determinant();
+  const ElasticTrial<T> trial(in, memory.elastic_left);
+  if (!everywhere(J > 0 && trial.is_finite()))
+    return {};
+  const auto failed_before = memory.damage >= 1;
+  const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear, growth = growth_of(in);
+  const Real relative = c.rate_inverse / in.dt;
+  const T temperature = started(memory.temperature);
+  PlasticFlow<T> flow{.mises = where(failed_before, 0, mises)};
+  if (!in.elastic && !everywhere(failed_before)) {
+    const SlowStrength<T> slow(*this, c, memory.plastic_strain, temperature);
+    const Strength<T> start = slow(memory.plastic_strain, temperature);
+    if (const auto flows = !failed_before && mises > start.value; somewhere(flows)) {
+      JohnsonCookReturn<T> map{*this, c, slow, start, J, J / growth, mises, stiffness, memory.plastic_strain, temperature, relative};
+      const PlasticFlow<T> found = map.flow(in.stress, flows);
+      flow = {where(flows, found.strain, 0), where(flows, found.mises, flow.mises), where(flows, found.work, 0)};
+    }
   }
   memory.plastic_strain += flow.strain;
   memory.plastic_work += flow.work;
   memory.temperature = temperature + c.heat * flow.work;
 
-  Real pressure = -c.bulk * trial.volume_strain / J;
-  std::optional<EnergyStep> step;
-  if (c.curve && memory.energy) {
-    const Real compression = -std::expm1(trial.volume_strain);
-    const Real growth = growth_of(in);
-    step.emplace(in, (1 - compression) * (1 - 1 / growth), *memory.energy, von_mises(in.stress) * J / growth, J * flow.mises, flow.work,
+  T pressure = -c.bulk * trial.volume_strain / J;
+  std::optional<EnergyStep<T>> step;
+  if (c.curve && memory.keeps_energy) {
+    const T compression = -expm1(trial.volume_strain);
+    step.emplace(in, (1 - compression) * (1 - 1 / growth), memory.energy, von_mises(in.stress) * J / growth, J * flow.mises, flow.work,
                  c.shear);
     pressure = step->pressure(*c.curve, compression);
   }
 
-  if (damage && memory.damage && flow.strain > 0) {
-    const Real triaxiality = -pressure / std::max(flow.mises, std::numeric_limits<Real>::min());
-    const Real strain = damage->fracture_strain(triaxiality, relative * flow.strain, homologous(*this, memory.temperature, c));
-    *memory.damage = std::min(*memory.damage + flow.strain / strain, Real{1});
+  if (const auto flowing = flow.strain > 0; damage && memory.keeps_damage && somewhere(flowing)) {
+    const T triaxiality = -pressure / max(flow.mises, T(std::numeric_limits<Real>::min()));
+    const T strain = damage->fracture_strain<T>(triaxiality, relative * flow.strain, homologous(*this, memory.temperature, c));
+    memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
   }
-  const bool failed = memory.damage && *memory.damage >= 1;
-  if (failed && !failed_before) {
-    const auto released = [&](Real cauchy, Real modulus) { return J * cauchy * J * cauchy / (2 * modulus); };
-    memory.plastic_work += released(flow.mises, 3 * c.shear) + released(std::min(pressure, Real{0}), c.bulk);
-  }
-  if (failed) {
-    flow.mises = 0;
-    pressure = std::max(pressure, Real{0});
+  if (const auto failed = memory.damage >= 1; somewhere(failed)) {
+    const auto released = [&](const T& cauchy, Real modulus) -> T { return J * cauchy * J * cauchy / (2 * modulus); };
+    const T all = released(flow.mises, 3 * c.shear) + released(min(pressure, T(0)), c.bulk);
+    memory.plastic_work += where(failed && !failed_before, all, 0);
+    flow.mises = where(failed, 0, flow.mises);
+    pressure = where(failed, max(pressure, T(0)), pressure);
   }
   if (step)
-    *memory.energy = step->energy(pressure);
+    memory.energy = step->energy(pressure);
 
-  const Real kept = mises > 0 ? flow.mises / mises : 1;
-  memory.elastic_left = kept < 1 ? trial.left_with(kept) : trial.left;
+  const T kept = where(mises > 0, flow.mises / mises, 1);
+  const auto changed = kept < 1;
+  memory.elastic_left = somewhere(changed) ? where(changed, trial.left_with(kept), trial.left) : trial.left;
   return unpack(scale_and_shift(2 * c.shear * kept / J, trial.shear_strain, -pressure));
 }
+template std::optional<Mat3> JohnsonCookMetal::update(const Increment&, Memory<Real>&, const Constants&) const noexcept;
+template std::optional<Mat3Of<Lanes>> JohnsonCookMetal::update(const IncrementOf<Lanes>&, Memory<Lanes>&, const Constants&) const noexcept;
 
 void JohnsonCookMetal::prestress(const Mat3& stress, Sym3& elastic_left) const noexcept
 {
@@ -212,14 +241,19 @@ void JohnsonCookMetal::prestress(const Mat3& stress, Sym3& elastic_left) const n
 
 /// rho_0 c^2 = J^2 dp/de + 4 G / 3 - (Kirchhoff deviator)_nn along the direction n of compression, that deviator taken as in uniaxial
 /// strain with the same volume; it works on the energy as well, hence 1 + gamma.  Without a curve as in Drucker-Prager.
-Real JohnsonCookMetal::wave_speed(const Mat3& F, const Constants& c) const noexcept
+template <class T>
+T JohnsonCookMetal::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
 {
-  const Real J = F.determinant(), shortening = std::max(-std::log(J), Real{0}), shear = 4 * c.shear / 3;
+  using std::log, std::max, std::min, std::sqrt;
+  const T J = F.determinant(), shortening = max(T(-log(J)), T(0));
+  const Real shear = 4 * c.shear / 3;
   if (!c.curve)
-    return std::sqrt((c.bulk + shear) * (1 + shortening) / density);
-  const Real volume = std::min(J, Real{1});
-  return std::sqrt((volume * volume * c.curve->stiffness(1 - J) + shear * (1 + (1 + c.curve->gamma) * shortening)) / density);
+    return sqrt(T((c.bulk + shear) * (1 + shortening) / density));
+  const T volume = min(J, T(1));
+  return sqrt(T((volume * volume * c.curve->stiffness<T>(1 - J) + shear * (1 + (1 + c.curve->gamma) * shortening)) / density));
 }
+template Real JohnsonCookMetal::wave_speed(const Mat3&, const Constants&) const noexcept;
+template Lanes JohnsonCookMetal::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
 
 void JohnsonCookMetal::check(std::vector<std::string>& problems) const
 {

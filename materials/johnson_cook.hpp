@@ -30,7 +30,9 @@ struct JohnsonCookDamage {
 
   /// `triaxiality` is mean stress / von Mises stress, `relative_rate` the plastic rate over the reference (counted as 1 below it),
   /// `homologous` 0 at room and 1 at melting temperature.
-  Real fracture_strain(Real triaxiality, Real relative_rate, Real homologous) const noexcept;
+  template <class T = Real>
+  T fracture_strain(const std::type_identity_t<T>& triaxiality, const std::type_identity_t<T>& relative_rate,
+                    const std::type_identity_t<T>& homologous) const noexcept;
 };
 
 /// What the four kinds of the law have in common: parameters and formulas.  Formulas and numbers: docs/materials.md.
@@ -53,20 +55,28 @@ struct JohnsonCookMetal : Elasticity {
 
   /// Strength at a plastic strain [-], plastic strain rate [1/s] and temperature [K], in Pa of Cauchy stress.
   Real flow_stress(Real plastic_strain, Real plastic_rate, Real temperature) const noexcept;
-  Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
   /// Of heat.
   Real diffusivity(const Constants&) const noexcept { return conductivity ? *conductivity / (density * specific_heat) : 0; }
 
  protected:
   /// The temperature a history says [K]: that of the parameters while it says nothing.
-  Real started(Real temperature) const noexcept { return temperature > 0 ? temperature : initial_temperature.value_or(room_temperature); }
-  /// The history of one particle; null where a kind has none.
+  template <class T>
+  T started(const T& temperature) const noexcept
+  {
+    return where(temperature > 0, temperature, initial_temperature.value_or(room_temperature));
+  }
+  /// The history of a particle, or of several.  What a kind does not keep stays zero.
+  template <class T>
   struct Memory {
-    Sym3& elastic_left;
-    Real &plastic_strain, &plastic_work, &temperature;
-    Real *damage, *energy;
+    Sym3Of<T> elastic_left;
+    T plastic_strain, plastic_work, temperature, damage, energy;
+    bool keeps_damage, keeps_energy;
   };
-  Mat3 update(const Increment& in, const Memory& memory, const Constants& c) const noexcept;
+  /// Nothing, and no change of the memory, if somewhere there is no answer.
+  template <class T>
+  std::optional<Mat3Of<T>> update(const IncrementOf<T>& in, Memory<T>& memory, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, Sym3& elastic_left) const noexcept;
 };
 
@@ -157,18 +167,36 @@ struct JohnsonCookOf : JohnsonCookMetal {
   State initial_state() const noexcept
   {
     State state;
-    state.temperature = started(0);
+    state.temperature = started(Real{0});
     return state;
   }
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
   {
-    Real *damage_of = nullptr, *energy_of = nullptr;
+    Memory<T> memory{.elastic_left = get(state, &State::elastic_left),
+                     .plastic_strain = get(state, &State::plastic_strain),
+                     .plastic_work = get(state, &State::plastic_work),
+                     .temperature = get(state, &State::temperature),
+                     .damage = 0,
+                     .energy = 0,
+                     .keeps_damage = with_damage,
+                     .keeps_energy = with_energy};
     if constexpr (with_damage)
-      damage_of = &state.damage;
+      memory.damage = get(state, &State::damage);
     if constexpr (with_energy)
-      energy_of = &state.internal_energy;
-    return JohnsonCookMetal::update(
-        in, {state.elastic_left, state.plastic_strain, state.plastic_work, state.temperature, damage_of, energy_of}, c);
+      memory.energy = get(state, &State::internal_energy);
+    const std::optional<Mat3Of<T>> stress = JohnsonCookMetal::update(in, memory, c);
+    if (!stress)
+      return no_answer_somewhere(*this, in, state, c);
+    put(state, &State::elastic_left, memory.elastic_left);
+    put(state, &State::plastic_strain, memory.plastic_strain);
+    put(state, &State::plastic_work, memory.plastic_work);
+    put(state, &State::temperature, memory.temperature);
+    if constexpr (with_damage)
+      put(state, &State::damage, memory.damage);
+    if constexpr (with_energy)
+      put(state, &State::internal_energy, memory.energy);
+    return *stress;
   }
   void prestress(const Mat3& stress, State& state) const noexcept { JohnsonCookMetal::prestress(stress, state.elastic_left); }
   /// sqrt(3 J2) less the strength at rates up to the reference, nothing after failure.  Above zero, by what the rate adds, in faster flow.

@@ -79,23 +79,36 @@ void put(State& state, Value Owner::*member, const Value& value) noexcept
 {
   state.*member = value;
 }
+namespace detail {
+/// f(lane) of the lanes that are written; mostly these are all.
+template <class F>
+void for_each_lane(int count, F&& f) noexcept
+{
+  if (count == pack_size) {
+    f(0), f(1), f(2), f(3);
+  } else {
+    for (int i = 0; i < count; ++i)
+      f(i);
+  }
+}
+}  // namespace detail
 template <class State, class Owner>
 void put(StateRows<State>& rows, Real Owner::*member, const Lanes& value) noexcept
 {
-  for (int i = 0; i < rows.count; ++i)
-    rows.row[i]->*member = value[i];
+  detail::for_each_lane(rows.count, [&](int i) { rows.row[i]->*member = value[i]; });
 }
 template <class State, class Owner>
 void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<Lanes>& value) noexcept
 {
-  for (int i = 0; i < rows.count; ++i)
+  detail::for_each_lane(rows.count, [&](int i) {
     for (int k = 0; k < 6; ++k)
       (rows.row[i]->*member)[k] = value[k][i];
+  });
 }
 
-/// A law.  `constants` is what follows from the parameters alone, worked out once per body.  `update` returns the Cauchy stress [Pa] at the end of the step and changes the history; it never throws, prints or
-/// allocates, and answers NaN where it has no answer (for instance det F <= 0).  `wave_speed` [m/s] is an upper bound of the
-/// speed of sound in the state F.  Optional members, found by `requires`:
+/// A law.  `constants` is what follows from the parameters alone, worked out once per body.  `update` returns the Cauchy stress [Pa] at the
+/// end of the step and changes the history; it never throws, prints or allocates, and answers NaN where it has no answer (for instance
+/// det F <= 0).  `wave_speed` [m/s] is an upper bound of the speed of sound in the state F.  Optional members, found by `requires`:
 ///   void check(std::vector<std::string>& problems) const            rules between parameters, in words
 ///   State initial_state() const                                     history of a particle at rest, where zero is not it
 ///   void prestress(const Mat3& stress, State&) const noexcept       history that makes `stress` the stress at F = I (K0 start)
@@ -135,6 +148,34 @@ template <class T = Real>
 Mat3Of<T> no_answer() noexcept
 {
   return Mat3Of<T>::Constant(std::numeric_limits<Real>::quiet_NaN());
+}
+
+/// The answers of several particles one after the other, for laws and states that are not worth lanes.  Lanes beyond `count` are zero.
+template <class L>
+Mat3Of<Lanes> update_one_by_one(const L& law, const IncrementOf<Lanes>& in, const StateRows<typename L::State>& rows,
+                                const typename L::Constants& constants) noexcept
+{
+  Mat3Of<Lanes> stress = Mat3Of<Lanes>::Zero();
+  for (int lane = 0; lane < rows.count; ++lane) {
+    const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
+    const Mat3 after = law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic}, *rows.row[lane], constants);
+    for (Index k = 0; k < 9; ++k)
+      stress(k).set(lane, after(k));
+  }
+  return stress;
+}
+
+/// What a law answers where some lane has no answer: to the others it must, so it is asked one lane at a time.
+template <class L>
+Mat3 no_answer_somewhere(const L&, const Increment&, const typename L::State&, const typename L::Constants&) noexcept
+{
+  return no_answer();
+}
+template <class L>
+Mat3Of<Lanes> no_answer_somewhere(const L& law, const IncrementOf<Lanes>& in, const StateRows<typename L::State>& rows,
+                                  const typename L::Constants& constants) noexcept
+{
+  return update_one_by_one(law, in, rows, constants);
 }
 
 /// True if the law says that its flow keeps the volume, which locks simplices.

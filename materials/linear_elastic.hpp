@@ -26,25 +26,28 @@ struct LinearElastic : Elasticity {
   using Constants = Moduli;
   Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
-    if (!(in.F.determinant() > 0))
-      return no_answer();
+    if (!everywhere(in.F.determinant() > 0))
+      return no_answer_somewhere(*this, in, state, c);
     const Real lambda = c.lambda, mu = c.shear;
-    const Mat3 H = in.dt * in.L;
-    const Sym3 strain = scale_and_shift(0.5, log1p(push_forward(H.transpose(), Sym3::Zero())), 0);  // C - I = f^T f - I
-    const Mat3 R = (Mat3::Identity() + H) * unpack(add_diagonal(expm1(scale_and_shift(-1, strain, 0)), 1));
-    const Mat3 unrotated = in.stress + unpack(scale_and_shift(2 * mu, strain, lambda * trace(strain)));
+    const Mat3Of<T> H = in.dt * in.L;
+    const Sym3Of<T> strain = scale_and_shift(0.5, log1p(push_forward(H.transpose(), Sym3Of<T>::Zero())), 0);  // C - I = f^T f - I
+    const Mat3Of<T> R = (Mat3Of<T>::Identity() + H) * unpack(add_diagonal(expm1(scale_and_shift(-1, strain, 0)), 1));
+    const Mat3Of<T> unrotated = in.stress + unpack(scale_and_shift(2 * mu, strain, lambda * trace(strain)));
     return sym(R * unrotated * R.transpose());
   }
 
   /// The stress is its own history: it may start from any value.
   void prestress(const Mat3&, State&) const noexcept {}
 
-  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {
+    using std::sqrt;
     const Real lambda = c.lambda, mu = c.shear;
-    return std::sqrt((lambda + 2 * mu) * F.determinant() / density);
+    return sqrt(T((lambda + 2 * mu) * F.determinant() / density));
   }
 };
 

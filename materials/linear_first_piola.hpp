@@ -26,21 +26,24 @@ struct LinearFirstPiola : Elasticity {
   using Constants = Moduli;
   Moduli constants() const noexcept { return moduli(); }
 
-  Mat3 update(const Increment& in, State&, const Moduli& c) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
-    const Real J = in.F.determinant();
-    if (!(J > 0))
-      return no_answer();
+    const T J = in.F.determinant();
+    if (!everywhere(J > 0))
+      return no_answer_somewhere(*this, in, state, c);
     const Real lambda = c.lambda, mu = c.shear;
-    const Mat3 G = in.F - Mat3::Identity();
-    const Mat3 P = lambda * G.trace() * Mat3::Identity() + 2 * mu * G;
+    const Mat3Of<T> G = in.F - Mat3Of<T>::Identity();
+    const Mat3Of<T> P = T(lambda * G.trace()) * Mat3Of<T>::Identity() + 2 * mu * G;
     return sym(P * in.F.transpose()) / J;
   }
 
-  Real wave_speed(const Mat3& F, const Moduli& c) const noexcept
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {
+    using std::sqrt;
     const Real lambda = c.lambda, mu = c.shear;
-    return std::sqrt((lambda + 2 * mu) * largest_eigenvalue_bound(F * F.transpose()) / density);
+    return sqrt(T((lambda + 2 * mu) * largest_eigenvalue_bound(Mat3Of<T>(F * F.transpose())) / density));
   }
 };
 

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "core/lanes.hpp"
 #include "core/tensor.hpp"
 
 namespace talus {
@@ -14,30 +15,49 @@ inline constexpr Real series_radius = 0.1;
 /// Up to here, as in most soil and metal, fewer terms do.
 inline constexpr Real short_series_radius = 0.01;
 
-inline Real trace(const Sym3& a) noexcept { return a[0] + a[1] + a[2]; }
-/// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
-inline Sym3 scale_and_shift(Real s, const Sym3& a, Real m) noexcept
+template <class E>
+typename E::Scalar trace(const Eigen::MatrixBase<E>& a) noexcept
 {
-  Sym3 sum;
+  static_assert(E::RowsAtCompileTime == 6);
+  return a[0] + a[1] + a[2];
+}
+/// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
+template <class E>
+Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s, const Eigen::MatrixBase<E>& expression,
+                                           const typename E::Scalar& m) noexcept
+{
+  const Sym3Of<typename E::Scalar>& a = expression.derived();
+  Sym3Of<typename E::Scalar> sum;
   sum << s * a[0] + m, s * a[1] + m, s * a[2] + m, s * a[3], s * a[4], s * a[5];
   return sum;
 }
-inline Sym3 add_diagonal(const Sym3& a, Real m) noexcept { return scale_and_shift(1, a, m); }
-/// a:a
-inline Real squared_norm(const Sym3& a) noexcept
+template <class E>
+Sym3Of<typename E::Scalar> add_diagonal(const Eigen::MatrixBase<E>& a, const typename E::Scalar& m) noexcept
 {
+  return scale_and_shift(1, a, m);
+}
+/// a:a
+template <class E>
+typename E::Scalar squared_norm(const Eigen::MatrixBase<E>& expression) noexcept
+{
+  const Sym3Of<typename E::Scalar>& a = expression.derived();
   return a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + 2 * (a[3] * a[3] + a[4] * a[4] + a[5] * a[5]);
 }
 
 /// (I + H)(I + b)(I + H)^T - I: the left Cauchy-Green tensor minus identity after a step with displacement gradient H.
-inline Sym3 push_forward(const Mat3& H, const Sym3& b) noexcept
+template <class E>
+Sym3Of<typename E::Scalar> push_forward(const Eigen::MatrixBase<E>& gradient, const Sym3Of<typename E::Scalar>& b) noexcept
 {
-  const Mat3 old = unpack(b);
-  const auto half = [&](int i, int j) { return old(i, j) + H(i, 0) * old(0, j) + H(i, 1) * old(1, j) + H(i, 2) * old(2, j) + H(i, j); };
-  const auto entry = [&](int i, int j) {
+  using T = typename E::Scalar;
+  const Mat3Of<T>& H = gradient.derived();
+  const Mat3Of<T> old = unpack(b);
+  const auto half = [&](int i, int j) -> T {
+    return old(i, j) + H(i, 0) * old(0, j) + H(i, 1) * old(1, j) + H(i, 2) * old(2, j) + H(i, j);
+  };
+  const auto entry = [&](int i, int j) -> T {
     return half(i, j) + H(j, i) + half(i, 0) * H(j, 0) + half(i, 1) * H(j, 1) + half(i, 2) * H(j, 2);
   };
-  Sym3 pushed;
+  Sym3Of<T> pushed;
   pushed << entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2);
   return pushed;
 }
@@ -46,23 +66,23 @@ namespace detail {
 
 /// sum_k c[k] X^(k+1), `terms` of them, of a symmetric trace-free X.  Cayley-Hamilton, X^3 = J2 X + J3 I, keeps every power in the span of
 /// I, X, X^2, so that one product of matrices is enough.
-template <std::size_t terms, std::size_t N>
-Sym3 trace_free_series(const Sym3& X, const std::array<Real, N>& c) noexcept
+template <std::size_t terms, class T, std::size_t N>
+Sym3Of<T> trace_free_series(const Sym3Of<T>& X, const std::array<Real, N>& c) noexcept
 {
-  const Real xx = X[0], yy = X[1], zz = X[2], xy = X[3], yz = X[4], xz = X[5];
-  Sym3 X2;
+  const T xx = X[0], yy = X[1], zz = X[2], xy = X[3], yz = X[4], xz = X[5];
+  Sym3Of<T> X2;
   X2 << xx * xx + xy * xy + xz * xz, xy * xy + yy * yy + yz * yz, xz * xz + yz * yz + zz * zz, xy * (xx + yy) + xz * yz,
       xy * xz + yz * (yy + zz), xz * (xx + zz) + xy * yz;
-  const Real J2 = 0.5 * trace(X2);
-  const Real J3 = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  Real a = 0, b = 0, d = 0;  // sum so far = a I + b X + d X^2
+  const T J2 = 0.5 * trace(X2);
+  const T J3 = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  T a = 0, b = 0, d = 0;  // sum so far = a I + b X + d X^2
   for (std::size_t k = terms; k-- > 0;) {
-    const Real b_new = a + d * J2 + c[k];
+    const T b_new = a + d * J2 + c[k];
     a = d * J3;
     d = b;
     b = b_new;
   }
-  Sym3 sum;
+  Sym3Of<T> sum;
   sum << b * xx + d * X2[0] + a, b * yy + d * X2[1] + a, b * zz + d * X2[2] + a, b * xy + d * X2[3], b * yz + d * X2[4], b * xz + d * X2[5];
   return sum;
 }
@@ -101,53 +121,92 @@ inline Sym3 expm1_by_axes(const Sym3& E) noexcept
 {
   return in_principal_axes(E, [](Real x) { return std::expm1(x); });
 }
+/// f of the tensor in every lane.
+template <class F>
+Sym3Of<Lanes> tensor_in_each_lane(const Sym3Of<Lanes>& all, F&& f) noexcept
+{
+  Sym3Of<Lanes> result;
+  for (int lane = 0; lane < pack_size; ++lane) {
+    Sym3 one;
+    for (int k = 0; k < 6; ++k)
+      one[k] = all[k][lane];
+    one = f(one);
+    for (int k = 0; k < 6; ++k)
+      result[k].set(lane, one[k]);
+  }
+  return result;
+}
+inline Sym3Of<Lanes> log1p_by_axes(const Sym3Of<Lanes>& B) noexcept;
+inline Sym3Of<Lanes> expm1_by_axes(const Sym3Of<Lanes>& E) noexcept;
 
 }  // namespace detail
 
 /// ln(I + B) of a symmetric B.  NaN where I + B is not positive definite.
-inline Sym3 log1p(const Sym3& B) noexcept
+template <class Expression>
+Sym3Of<typename Expression::Scalar> log1p(const Eigen::MatrixBase<Expression>& expression) noexcept
 {
-  const Real mean = trace(B) * (1.0 / 3);
-  const Real scale = 1 / (1 + mean);
-  const Sym3 X = scale_and_shift(scale, B, -mean * scale);
-  const Real size = squared_norm(X);
-  if (!(mean > -1 && size <= series_radius * series_radius))
+  using std::log1p;
+  using T = typename Expression::Scalar;
+  const Sym3Of<T>& B = expression.derived();
+  const T mean = trace(B) * (1.0 / 3);
+  const T scale = 1 / (1 + mean);
+  const Sym3Of<T> X = scale_and_shift(scale, B, -mean * scale);
+  const T size = squared_norm(X);
+  if (!everywhere(mean > -1 && size <= series_radius * series_radius))
     return detail::log1p_by_axes(B);
-  const Real volumetric = std::log1p(mean);
-  if (size <= short_series_radius * short_series_radius)
+  const T volumetric = log1p(mean);
+  if (everywhere(size <= short_series_radius * short_series_radius))
     return add_diagonal(detail::trace_free_series<8>(X, detail::logarithm_series), volumetric);
   return add_diagonal(detail::trace_free_series<14>(X, detail::logarithm_series), volumetric);
 }
 
 /// exp(E) - I of a symmetric E.
-inline Sym3 expm1(const Sym3& E) noexcept
+template <class Expression>
+Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& expression) noexcept
 {
-  const Real mean = trace(E) * (1.0 / 3);
-  const Sym3 X = add_diagonal(E, -mean);
-  const Real size = squared_norm(X);
-  if (!(size <= series_radius * series_radius))
+  using std::expm1;
+  using T = typename Expression::Scalar;
+  const Sym3Of<T>& E = expression.derived();
+  const T mean = trace(E) * (1.0 / 3);
+  const Sym3Of<T> X = add_diagonal(E, -mean);
+  const T size = squared_norm(X);
+  if (!everywhere(size <= series_radius * series_radius))
     return detail::expm1_by_axes(E);
-  const Real volumetric = std::expm1(mean);
-  if (size <= short_series_radius * short_series_radius)
+  const T volumetric = expm1(mean);
+  if (everywhere(size <= short_series_radius * short_series_radius))
     return scale_and_shift(1 + volumetric, detail::trace_free_series<6>(X, detail::exponential_series), volumetric);
   return scale_and_shift(1 + volumetric, detail::trace_free_series<9>(X, detail::exponential_series), volumetric);
 }
 
+namespace detail {
+// Where one lane is beyond the series every lane is asked alone: it may be within.
+inline Sym3Of<Lanes> log1p_by_axes(const Sym3Of<Lanes>& B) noexcept
+{
+  return tensor_in_each_lane(B, [](const Sym3& one) { return log1p(one); });
+}
+inline Sym3Of<Lanes> expm1_by_axes(const Sym3Of<Lanes>& E) noexcept
+{
+  return tensor_in_each_lane(E, [](const Sym3& one) { return expm1(one); });
+}
+}  // namespace detail
+
 /// R of F = R U, det F > 0.  Newton's iteration with the scaling of Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160; it
 /// converges quadratically from every regular F and has no trouble with equal stretches.  NaN where F is singular.
-inline Mat3 polar_rotation(const Mat3& F) noexcept
+template <class T>
+Mat3Of<T> polar_rotation(const Mat3Of<T>& F) noexcept
 {
+  using std::abs, std::sqrt;
   constexpr int enough = 30;  // condition 1e12 takes 9
   constexpr Real rounding = 1e-15;
-  Mat3 R = F;
+  Mat3Of<T> R = F;
   for (int i = 0; i < enough; ++i) {
-    const Mat3 inverse = R.inverse().transpose();
-    const Real change_of_scale = std::sqrt(inverse.norm() / R.norm());
-    const Real scale = std::abs(change_of_scale - 1) < 1e-2 ? 1 : change_of_scale;
-    const Mat3 next = 0.5 * (scale * R + inverse / scale);
-    const Real change = (next - R).squaredNorm();
+    const Mat3Of<T> inverse = R.inverse().transpose();
+    const T change_of_scale = sqrt(T(inverse.norm() / R.norm()));
+    const T scale = where(abs(change_of_scale - 1) < 1e-2, 1, change_of_scale);
+    const Mat3Of<T> next = 0.5 * (scale * R + T(1 / scale) * inverse);
+    const T change = (next - R).squaredNorm();
     R = next;
-    if (!(change > 3 * rounding * rounding))
+    if (!somewhere(change > 3 * rounding * rounding))
       break;
   }
   return R;

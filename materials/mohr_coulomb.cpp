@@ -182,7 +182,7 @@ struct SofteningReturn {
 Sym3 along_axes(const Mat3& axes, const Vec3& values) noexcept { return pack(axes * values.asDiagonal() * axes.transpose()); }
 
 /// cos(3 angle) of Lode's angle: 1 if the two smaller principal values are equal, -1 if the two larger are, NaN without shear.
-Real lode_cosine(const ElasticTrial& trial) noexcept
+Real lode_cosine(const ElasticTrial<Real>& trial) noexcept
 {
   const Sym3& e = trial.shear_strain;
   const Real J3 = e[0] * (e[1] * e[2] - e[4] * e[4]) - e[3] * (e[3] * e[2] - e[4] * e[5]) + e[5] * (e[3] * e[4] - e[1] * e[5]);
@@ -192,7 +192,7 @@ Real lode_cosine(const ElasticTrial& trial) noexcept
 
 /// True if the trial state is inside by invariants alone.  The planes are outside the cone tau sqrt(1 + sine^2/3) + sine mean = cohesive,
 /// which they touch; beyond it the principal stresses decide by Lode's angle, which near the edges has half of the digits.
-bool surely_inside(const ElasticTrial& trial, Real mean, Real tau, const ShearStrength& strength, Real cutoff) noexcept
+bool surely_inside(const ElasticTrial<Real>& trial, Real mean, Real tau, const ShearStrength& strength, Real cutoff) noexcept
 {
   if (tau * std::sqrt(1 + strength.sine * strength.sine / 3) + strength.sine * mean <= strength.cohesive &&
       mean + 2 / square_root_of_3 * tau <= cutoff)
@@ -205,7 +205,7 @@ bool surely_inside(const ElasticTrial& trial, Real mean, Real tau, const ShearSt
 }
 
 /// Principal axes of the shear strain.  The closed form is three times as fast, and exact to 1e-13 unless two values are nearly equal.
-Eigen::SelfAdjointEigenSolver<Mat3> principal_axes(const ElasticTrial& trial) noexcept
+Eigen::SelfAdjointEigenSolver<Mat3> principal_axes(const ElasticTrial<Real>& trial) noexcept
 {
   constexpr Real distinct = 0.99;
   Eigen::SelfAdjointEigenSolver<Mat3> axes;

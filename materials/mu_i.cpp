@@ -17,44 +17,50 @@ Real MuI::friction(Real inertial) const noexcept
   return static_friction + (limiting_friction - static_friction) * inertial / (inertial_number + inertial);
 }
 
-Mat3 MuI::update(const Increment& in, State& state, const Constants& c) const noexcept
+template <class T>
+Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
 {
-  const Real J = in.F.determinant();
-  const Sym3 b = push_forward(in.dt * in.L, state.elastic_left);
-  const Sym3 twice_strain = log1p(b);
-  const Real volume_strain = 0.5 * trace(twice_strain);
-  const Sym3 shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
-  const Real tau = c.shear * std::sqrt(2 * squared_norm(shear_strain));
-  if (!(J > 0 && std::isfinite(volume_strain + tau)))
-    return no_answer();
+  using std::isfinite, std::max, std::sqrt;
+  const T J = in.F.determinant();
+  const Sym3Of<T> b = push_forward(in.dt * in.L, get(state, &State::elastic_left));
+  const Sym3Of<T> twice_strain = log1p(b);
+  const T volume_strain = 0.5 * trace(twice_strain);
+  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
+  const T tau = c.shear * sqrt(T(2 * squared_norm(shear_strain)));
+  if (!everywhere(J > 0 && isfinite(T(volume_strain + tau))))
+    return no_answer_somewhere(*this, in, state, c);
   if (in.elastic) {
-    state.elastic_left = b;
+    put(state, &State::elastic_left, b);
     return unpack(scale_and_shift(2 * c.shear / J, shear_strain, c.bulk * volume_strain / J));
   }
 
   // What opened before fills first; what is above zero after that stays open.
-  const bool closing = state.opened_volume > 0;
-  const Real strain = volume_strain + state.opened_volume;
-  const Real p = std::max(-c.bulk * strain, Real{0});
-  state.opened_volume = std::max(strain, Real{0});
+  const T opened = get(state, &State::opened_volume);
+  const auto closing = opened > 0;
+  const T strain = volume_strain + opened;
+  const T p = max(T(-c.bulk * strain), T(0));
+  put(state, &State::opened_volume, max(strain, T(0)));
 
   // Plastic shear m of the step: (tau - mu_s p - G m) (m + a) = (mu_2 - mu_s) p m, a the shear of the step at which I = I_0.
-  Real m = 0;
-  if (const Real excess = tau - static_friction * p; excess > 0) {
-    const Real a = in.dt * c.rate_scale * std::sqrt(p / J);
-    const Real linear = c.shear * a + (limiting_friction - static_friction) * p - excess;
-    const Real root = std::sqrt(linear * linear + 4 * c.shear * excess * a);
-    m = linear > 0 ? 2 * excess * a / (linear + root) : (root - linear) / (2 * c.shear);
+  T m = 0;
+  const T excess = tau - static_friction * p;
+  if (const auto flows = excess > 0; somewhere(flows)) {
+    const T a = in.dt * c.rate_scale * sqrt(T(p / J));
+    const T linear = c.shear * a + (limiting_friction - static_friction) * p - excess;
+    const T root = sqrt(T(linear * linear + 4 * c.shear * excess * a));
+    m = where(flows, where(linear > 0, 2 * excess * a / (linear + root), (root - linear) / (2 * c.shear)), 0);
   }
-  const Real kept = m > 0 ? std::max(1 - c.shear * m / tau, Real{0}) : 1;
-  if (m > 0 || closing || p == 0)
-    state.elastic_left = expm1(scale_and_shift(2 * kept, shear_strain, -2 * p / (3 * c.bulk)));
-  else
-    state.elastic_left = b;
-  state.plastic_strain += m / std::numbers::sqrt3;
-  state.plastic_work += kept * tau * m;
+  const T kept = where(m > 0, max(T(1 - c.shear * m / tau), T(0)), 1);
+  Sym3Of<T> left = b;
+  if (const auto changed = m > 0 || closing || p == 0; somewhere(changed))
+    left = where(changed, expm1(scale_and_shift(2 * kept, shear_strain, p * (-2 / (3 * c.bulk)))), b);
+  put(state, &State::elastic_left, left);
+  put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + m * std::numbers::inv_sqrt3));
+  put(state, &State::plastic_work, T(get(state, &State::plastic_work) + kept * tau * m));
   return unpack(scale_and_shift(2 * c.shear * kept / J, shear_strain, -p / J));
 }
+template Mat3 MuI::update(const Increment&, State&, const Constants&) const noexcept;
+template Mat3Of<Lanes> MuI::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;
 
 void MuI::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -70,10 +76,14 @@ Real MuI::yield(const Mat3&, const State& state) const noexcept
   return tau + limiting_friction * c.bulk * trace(strain);
 }
 
-Real MuI::wave_speed(const Mat3& F, const Constants& c) const noexcept
+template <class T>
+T MuI::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
 {
-  return std::sqrt((c.bulk + 4 * c.shear / 3) * (1 + std::max(-std::log(F.determinant()), Real{0})) / density);
+  using std::log, std::max, std::sqrt;
+  return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
 }
+template Real MuI::wave_speed(const Mat3&, const Constants&) const noexcept;
+template Lanes MuI::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
 
 void MuI::check(std::vector<std::string>& problems) const
 {

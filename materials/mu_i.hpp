@@ -56,13 +56,15 @@ struct MuI : Elasticity {
 
   /// mu of steady flow at an inertial number.
   Real friction(Real inertial) const noexcept;
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, State& state) const noexcept;
   /// tau - mu_2 p of the Kirchhoff stress that belongs to the elastic strain of `state`: how much friction there is below mu_2 p depends
   /// on the rate of shear.
   Real yield(const Mat3& stress, const State& state) const noexcept;
   /// That of DruckerPrager: the elasticity is the same.
-  Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

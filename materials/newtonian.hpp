@@ -27,21 +27,28 @@ struct Newtonian : WeaklyCompressible {
   struct Constants {};
   Constants constants() const noexcept { return {}; }
 
-  Mat3 update(const Increment& in, State& state, const Constants&) const noexcept
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
   {
-    const Real J = in.F.determinant();
-    if (!(J > 0))
-      return no_answer();
-    const Sym3 D = rate_of_deformation(in);
-    const Real growth = trace(D), p = pressure(J, in.elastic);
-    Real resistance = volume_viscosity * growth;
+    using std::min;
+    const T J = in.F.determinant();
+    if (!everywhere(J > 0))
+      return no_answer_somewhere(*this, in, state, c);
+    const Sym3Of<T> D = rate_of_deformation(in);
+    const T growth = trace(D), p = pressure<T>(J, in.elastic);
+    T resistance = volume_viscosity * growth;
     if (!(tension || in.elastic))
-      resistance = std::min(resistance, p);
-    const Sym3 shear = add_diagonal(D, -growth / 3);
-    state.plastic_work += J * in.dt * (2 * viscosity * squared_norm(shear) + resistance * growth);
+      resistance = min(resistance, p);
+    const Sym3Of<T> shear = add_diagonal(D, -growth / 3);
+    const T work = J * in.dt * (2 * viscosity * squared_norm(shear) + resistance * growth);
+    put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
     return unpack(scale_and_shift(2 * viscosity, shear, resistance - p));
   }
-  Real wave_speed(const Mat3& F, const Constants&) const noexcept { return sound_speed(F.determinant()); }
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Constants&) const noexcept
+  {
+    return sound_speed<T>(F.determinant());
+  }
   /// Of a wave of compression: (4/3 mu + zeta) / density.
   Real diffusivity(const Constants&) const noexcept { return (4 * viscosity / 3 + volume_viscosity) / density; }
 };

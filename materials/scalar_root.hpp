@@ -3,48 +3,67 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
+#include <type_traits>
 
-#include "core/types.hpp"
+#include "core/lanes.hpp"
 
 namespace talus {
 
 /// A function at a point.
-struct ValueAndSlope {
-  Real value, slope;
+template <class T>
+struct ValueAndSlopeOf {
+  T value, slope;
 };
+using ValueAndSlope = ValueAndSlopeOf<Real>;
 
 /// The x in (0, high] where a falling function f, with f(0) > 0 >= f(high), is zero.  Newton's method from `guess`.  Where that would
 /// leave the bracket, or does not halve its own step (infinite slopes at zero do both), the bracket is halved by magnitude, so that roots
 /// of 1e-200 are found as well.  It ends with the first Newton step below 1e-6 of the root: convergence is quadratic, so what is left is
-/// of the order of 1e-12.
-template <std::regular_invocable<Real> F>
-Real positive_root(F&& f, Real high, Real guess) noexcept
+/// of the order of 1e-12.  Of Lanes every lane is a search of its own; f is told again where one that ended did, and only those of
+/// `looking` are waited for.
+template <class T = Real, std::invocable<T> F>
+T positive_root(F&& f, std::type_identity_t<T> high, const std::type_identity_t<T>& guess, const MaskOf<T>& looking = T(1) > T(0)) noexcept
 {
+  using std::abs, std::isfinite, std::min, std::sqrt;
   constexpr Real last_step = 1e-6;
   constexpr Real rounding = 1e-15;
-  constexpr int enough = 100;                  // bisections of a bracket of one order of magnitude down to rounding take 52
-  Real low = 0, down = 1e-2, step = 2 * high;  // a step may go anywhere in the bracket once, then it must halve
-  const auto middle = [&] { return low > 0 ? std::sqrt(low) * std::sqrt(high) : high * (down *= down); };
-  Real x = guess > 0 && guess <= high ? guess : middle();
-  for (int i = 0; i < enough; ++i) {
-    const ValueAndSlope at = f(x);
-    if (at.value == 0)
-      return x;
-    (at.value > 0 ? low : high) = x;
-    const Real change = -at.value / at.slope, newton = x + change;
-    if (std::isfinite(at.slope) && newton > low && newton <= high * (1 + rounding) && std::abs(change) <= 0.5 * step) {
-      if (std::abs(change) <= last_step * newton)
-        return std::min(newton, high);
-      x = newton;
-      step = std::abs(change);
-    } else {
-      x = middle();
-      step = 2 * (high - low);
-      if (step <= 2 * rounding * high)
-        return x;
+  constexpr int enough = 100;               // bisections of a bracket of one order of magnitude down to rounding take 52
+  T low = 0, down = 1e-2, step = 2 * high;  // a step may go anywhere in the bracket once, then it must halve
+  const auto middle = [&](const MaskOf<T>& asked) -> T {
+    down = where(asked && low <= 0, down * down, down);
+    return where(low > 0, sqrt(low) * sqrt(high), high * down);
+  };
+  T x = guess;
+  if (const auto bad = !(guess > 0 && guess <= high); somewhere(bad))
+    x = where(bad, middle(bad), x);
+  T root = x;
+  auto open = looking;
+  for (int i = 0; i < enough && somewhere(open); ++i) {
+    const ValueAndSlopeOf<T> at = f(x);
+    const auto above = at.value > 0;
+    low = where(open && above, x, low);
+    high = where(open && !above, x, high);
+    const T change = -at.value / at.slope, newton = x + change;
+    const auto exact = at.value == 0;
+    const auto fine = isfinite(at.slope) && newton > low && newton <= high * (1 + rounding) && abs(change) <= 0.5 * step;
+    const auto last = fine && abs(change) <= last_step * newton;
+    root = where(open, where(exact, x, where(last, min(newton, high), x)), root);
+    open = open && !exact && !last;
+    if (!somewhere(open))
+      break;
+    const auto halved = open && !fine;
+    T next = newton;
+    step = where(open, abs(change), step);
+    if (somewhere(halved)) {
+      next = where(halved, middle(halved), next);
+      step = where(halved, 2 * (high - low), step);
+      root = where(halved, next, root);
+      open = open && !(halved && step <= 2 * rounding * high);
     }
+    root = where(open, next, root);
+    x = where(open, next, x);
   }
-  return x;
+  return root;
 }
 
 }  // namespace talus

@@ -8,23 +8,25 @@ namespace talus {
 namespace {
 
 /// Strength in slow loading by plastic strain, fast near that before the step; the slope is that at positive plastic strain.
+template <class T>
 struct Hardening {
   const VonMises& law;
-  PowerNear gain;
+  PowerNear<T> gain;
 
-  Hardening(const VonMises& of, Real plastic_strain) noexcept
-      : law(of), gain(of.power ? plastic_strain : 0, of.power ? of.power->exponent : 1)
+  Hardening(const VonMises& of, const T& plastic_strain) noexcept
+      : law(of), gain(of.power ? plastic_strain : T(0), of.power ? of.power->exponent : 1)
   {}
-  ValueAndSlope operator()(Real plastic_strain) const noexcept
+  ValueAndSlopeOf<T> operator()(const T& plastic_strain) const noexcept
   {
-    ValueAndSlope strength{law.yield_stress + law.hardening_modulus * plastic_strain, law.hardening_modulus};
+    using std::exp;
+    ValueAndSlopeOf<T> strength{law.yield_stress + law.hardening_modulus * plastic_strain, law.hardening_modulus};
     if (law.voce) {
-      const Real missing = law.voce->saturation * std::exp(-law.voce->exponent * plastic_strain);
+      const T missing = law.voce->saturation * exp(T(-law.voce->exponent * plastic_strain));
       strength.value += law.voce->saturation - missing;
       strength.slope += law.voce->exponent * missing;
     }
     if (law.power) {
-      const Real gained = law.power->coefficient * gain(plastic_strain);
+      const T gained = law.power->coefficient * gain(plastic_strain);
       strength.value += gained;
       strength.slope += law.power->exponent * gained / plastic_strain;
     }
@@ -33,36 +35,40 @@ struct Hardening {
 };
 
 /// Backward Euler from a trial stress above the strength before the step.
+template <class T>
 struct VonMisesReturn {
   const VonMises& law;
-  const Hardening& slow;
-  ValueAndSlope start;    ///< strength before the step [Pa]
-  Real mises, stiffness;  ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
-  Real plastic_strain;    ///< before the step
-  Real relative, power;   ///< plastic rate over D, by plastic strain of the step; 1/q
+  const Hardening<T>& slow;
+  ValueAndSlopeOf<T> start;  ///< strength before the step [Pa]
+  T mises, stiffness;        ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
+  T plastic_strain;          ///< before the step
+  Real relative, power;      ///< plastic rate over D, by plastic strain of the step; 1/q
 
-  ValueAndSlope rate_factor(Real x) const noexcept
+  ValueAndSlopeOf<T> rate_factor(const T& x) const noexcept
   {
+    using std::pow;
     if (!law.rate)
       return {1, 0};
-    const Real gain = std::pow(relative * x, power);
+    const T gain = pow(T(relative * x), power);
     return {1 + gain, power * gain / x};
   }
   /// Stress less strength if the plastic strain of the step is x.
-  ValueAndSlope operator()(Real x) const noexcept
+  ValueAndSlopeOf<T> operator()(const T& x) const noexcept
   {
-    const ValueAndSlope end = slow(plastic_strain + x), factor = rate_factor(x);
+    const ValueAndSlopeOf<T> end = slow(plastic_strain + x), factor = rate_factor(x);
     return {mises - stiffness * x - end.value * factor.value, -stiffness - end.slope * factor.value - end.value * factor.slope};
   }
-  Real plastic_increment(const Mat3& stress_before) const noexcept
+  T plastic_increment(const Mat3Of<T>& stress_before, const MaskOf<T>& yields) const noexcept
   {
-    const Real going_on = std::max(start.value, talus::von_mises(stress_before));  // flow that goes on hardens from there at the same rate
-    return positive_root(*this, (mises - start.value) / stiffness, (mises - going_on) / (stiffness + start.slope));
+    using std::max;
+    const T going_on = max(start.value, talus::von_mises(stress_before));  // flow that goes on hardens from there at the same rate
+    return positive_root<T>(*this, (mises - start.value) / stiffness, (mises - going_on) / (stiffness + start.slope), yields);
   }
 };
 
 /// Cauchy stress with the share `kept` of the shear.
-Mat3 stress_with(const ElasticTrial& trial, Real J, Real kept, const VonMises::Constants& c) noexcept
+template <class T>
+Mat3Of<T> stress_with(const ElasticTrial<T>& trial, const T& J, const T& kept, const VonMises::Constants& c) noexcept
 {
   return unpack(scale_and_shift(2 * c.shear * kept / J, trial.shear_strain, c.bulk * trial.volume_strain / J));
 }
@@ -82,31 +88,37 @@ VonMises::Constants VonMises::constants() const noexcept
 Real VonMises::flow_stress(Real plastic_strain, Real plastic_rate) const noexcept
 {
   const Real factor = rate ? 1 + std::pow(plastic_rate / rate->reference_rate, 1 / rate->exponent) : 1;
-  return Hardening(*this, plastic_strain)(plastic_strain).value * factor;
+  return Hardening<Real>(*this, plastic_strain)(plastic_strain).value * factor;
 }
 
-Mat3 VonMises::update(const Increment& in, State& state, const Constants& c) const noexcept
+template <class T>
+Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
 {
-  const Real J = in.F.determinant();
-  const ElasticTrial trial(in, state.elastic_left);
-  if (!(J > 0 && trial.is_finite()))
-    return no_answer();
-  const Real stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // Cauchy stress by equivalent strain: J stays in the return
-  const Hardening slow(*this, state.plastic_strain);
-  const ValueAndSlope start = slow(state.plastic_strain);
-  if (in.elastic || !(mises > start.value)) {
-    state.elastic_left = trial.left;
-    return stress_with(trial, J, 1, c);
+  const T J = in.F.determinant();
+  const ElasticTrial<T> trial(in, get(state, &State::elastic_left));
+  if (!everywhere(J > 0 && trial.is_finite()))
+    return no_answer_somewhere(*this, in, state, c);
+  const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // Cauchy stress by equivalent strain: J stays in the return
+  const T plastic_strain = get(state, &State::plastic_strain);
+  const Hardening<T> slow(*this, plastic_strain);
+  const ValueAndSlopeOf<T> start = slow(plastic_strain);
+  const auto yields = mises > start.value;
+  if (in.elastic || !somewhere(yields)) {
+    put(state, &State::elastic_left, trial.left);
+    return stress_with(trial, J, T(1), c);
   }
-  const VonMisesReturn map{*this, slow, start, mises, stiffness, state.plastic_strain, c.rate_inverse / in.dt, c.rate_power};
-  const Real x = c.closed_form ? (mises - start.value) / (stiffness + hardening_modulus) : map.plastic_increment(in.stress);
-  const Real end = mises - stiffness * x;
-  state.elastic_left = trial.left_with(end / mises);
-  state.plastic_strain += x;
+  const VonMisesReturn<T> map{*this, slow, start, mises, stiffness, plastic_strain, c.rate_inverse / in.dt, c.rate_power};
+  const T root = c.closed_form ? T((mises - start.value) / (stiffness + hardening_modulus)) : map.plastic_increment(in.stress, yields);
+  const T x = where(yields, root, 0), end = mises - stiffness * x, kept = where(yields, end / mises, 1);
+  put(state, &State::elastic_left, where(yields, trial.left_with(kept), trial.left));
+  put(state, &State::plastic_strain, T(plastic_strain + x));
   // Trapezoidal in the Kirchhoff stress, exact for linear hardening: the strength before and after the step, at the rate of the step.
-  state.plastic_work += 0.5 * x * J * (map.rate_factor(x).value * start.value / growth_of(in) + end);
-  return stress_with(trial, J, end / mises, c);
+  const T work = 0.5 * x * J * (map.rate_factor(x).value * start.value / growth_of(in) + end);
+  put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
+  return stress_with(trial, J, kept, c);
 }
+template Mat3 VonMises::update(const Increment&, State&, const Constants&) const noexcept;
+template Mat3Of<Lanes> VonMises::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;
 
 void VonMises::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -119,9 +131,13 @@ Real VonMises::yield(const Mat3& stress, const State& state) const noexcept
   return talus::von_mises(stress) - flow_stress(state.plastic_strain, 0);
 }
 
-Real VonMises::wave_speed(const Mat3& F, const Constants& c) const noexcept
+template <class T>
+T VonMises::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
 {
-  return std::sqrt((c.bulk + 4 * c.shear / 3) * (1 + std::max(-std::log(F.determinant()), Real{0})) / density);
+  using std::log, std::max, std::sqrt;
+  return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
 }
+template Real VonMises::wave_speed(const Mat3&, const Constants&) const noexcept;
+template Lanes VonMises::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
 
 }  // namespace talus

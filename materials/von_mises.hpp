@@ -85,12 +85,14 @@ struct VonMises : Elasticity {
   /// Strength at a plastic strain [-] and a plastic strain rate [1/s], in Pa of Cauchy stress.
   Real flow_stress(Real plastic_strain, Real plastic_rate) const noexcept;
 
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, State& state) const noexcept;
   /// sqrt(3 J2) less the strength of slow loading: above zero, by what the rate adds, while a law with `rate` flows.
   Real yield(const Mat3& stress, const State& state) const noexcept;
   /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
-  Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

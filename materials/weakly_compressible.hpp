@@ -2,6 +2,7 @@
 // What fluids have in common: pressure by volume, and a rate of deformation that a rotation leaves at zero.
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "materials/law.hpp"
 #include "materials/logarithm.hpp"
@@ -16,13 +17,20 @@ struct WeaklyCompressible {
   bool tension = false;
 
   /// Pa at volume ratio J, negative in tension; `elastic` suspends the cut at zero.
-  Real pressure(Real J, bool elastic) const noexcept
+  template <class T = Real>
+  T pressure(const std::type_identity_t<T>& J, bool elastic) const noexcept
   {
-    const Real p = bulk_modulus / exponent * (std::pow(J, -exponent) - 1);
-    return tension || elastic ? p : std::max(p, Real{0});
+    using std::max, std::pow;
+    const T p = bulk_modulus / exponent * (pow(J, -exponent) - 1);
+    return tension || elastic ? p : max(p, T(0));
   }
   /// sqrt(dp / d density), without the cut at zero.
-  Real sound_speed(Real J) const noexcept { return std::sqrt(bulk_modulus / density * std::pow(J, 1 - exponent)); }
+  template <class T = Real>
+  T sound_speed(const std::type_identity_t<T>& J) const noexcept
+  {
+    using std::pow, std::sqrt;
+    return sqrt(T(bulk_modulus / density * pow(J, 1 - exponent)));
+  }
 };
 
 /// The fields of a law that inherits WeaklyCompressible, to be joined with its own by std::tuple_cat.
@@ -49,11 +57,12 @@ struct FluidHistory {
 };
 
 /// Rate of deformation of a step [1/s]: ln(f f^T) / (2 dt) with f = I + dt L, so that a finite rotation has none; sym(L) if dt = 0.
-inline Sym3 rate_of_deformation(const Increment& in) noexcept
+template <class T>
+Sym3Of<T> rate_of_deformation(const IncrementOf<T>& in) noexcept
 {
   if (!(in.dt > 0))
     return pack(sym(in.L));
-  return scale_and_shift(0.5 / in.dt, log1p(push_forward(in.dt * in.L, Sym3::Zero())), 0);
+  return scale_and_shift(0.5 / in.dt, log1p(push_forward(in.dt * in.L, Sym3Of<T>::Zero())), 0);
 }
 
 }  // namespace talus

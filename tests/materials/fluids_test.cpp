@@ -109,9 +109,9 @@ TEST(WeaklyCompressible, SpeedOfSoundIsTheSlopeOfPressureByDensity)
     constexpr Real h = 1e-5;  // its square is the error
     const Real slope = (resting_pressure(law, J * (1 - h)) - resting_pressure(law, J * (1 + h))) /
                        (law.density / (J * (1 - h)) - law.density / (J * (1 + h)));
-    EXPECT_NEAR(law.wave_speed(std::cbrt(J) * Mat3::Identity(), {}) / std::sqrt(slope), 1, 1e-8);
+    EXPECT_NEAR(law.wave_speed(Mat3(std::cbrt(J) * Mat3::Identity()), {}) / std::sqrt(slope), 1, 1e-8);
   }
-  EXPECT_NEAR(law.wave_speed(Mat3::Identity(), {}), std::sqrt(K / 900), 1e-12 * std::sqrt(K / 900));
+  EXPECT_NEAR(law.wave_speed(Mat3(Mat3::Identity()), {}), std::sqrt(K / 900), 1e-12 * std::sqrt(K / 900));
 }
 
 TEST(Newtonian, ShearStressIsViscosityTimesRateInManySteps)

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/SVD>
+#include <array>
 
 #include "tests/materials/samples.hpp"
 
@@ -51,6 +52,33 @@ TEST(Logarithm, ExponentialUndoesIt)
   for (const Real size : {1e-10, 1e-3, 0.05, 0.3, 1.0}) {
     const Sym3 strain = pack(dice.symmetric(size));
     EXPECT_LE((log1p(expm1(strain)) - strain).norm(), 1e-14 * strain.norm() * std::exp(2 * strain.norm()));
+  }
+}
+
+TEST(Logarithm, InLanesIsThatOfEveryTensorAlone)
+{
+  Dice dice(5);
+  for (int n = 0; n < 2000; ++n) {
+    std::array<Sym3, pack_size> each;
+    Sym3Of<Lanes> all;
+    for (int lane = 0; lane < pack_size; ++lane) {
+      auto& a = each[static_cast<std::size_t>(lane)];
+      a = add_diagonal(pack(dice.symmetric(std::pow(10, dice.real(-12, n % 3 - 2.0)))), dice.real(-0.5, 3) * (n % 2));
+      for (int k = 0; k < 6; ++k)
+        all[k].set(lane, a[k]);
+    }
+    const Sym3Of<Lanes> logarithms = log1p(all), exponentials = expm1(all);
+    for (int lane = 0; lane < pack_size; ++lane) {
+      const Sym3& a = each[static_cast<std::size_t>(lane)];
+      const Sym3 log_of = log1p(a), exp_of = expm1(a);
+      for (int k = 0; k < 6; ++k) {
+        if (log_of.allFinite())
+          EXPECT_NEAR(logarithms[k][lane], log_of[k], 1e-14 * log_of.norm());
+        else
+          EXPECT_TRUE(std::isnan(logarithms[k][lane]));
+        EXPECT_NEAR(exponentials[k][lane], exp_of[k], 1e-14 * exp_of.norm());
+      }
+    }
   }
 }
 

@@ -1,5 +1,6 @@
 // Nanoseconds per stress update of every law: small steps around a strained state, for soil elastic and flowing.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include "tests/materials/samples.hpp"
 
@@ -10,43 +11,84 @@ using namespace talus::testing;
 
 enum class Regime { elastic, flowing, large_strain };
 
+/// Particles of one law on their way into a regime.
+template <class L>
+struct Body {
+  static constexpr int n = 1024;
+  Batch<L> batch;
+  std::vector<Mat3> gradient, F, stress;
+
+  explicit Body(Regime regime) : batch(make_batch(law_in(regime), 0, n, "body"))
+  {
+    Dice dice(1);
+    const Real size = regime == Regime::elastic ? 1e-6 : regime == Regime::flowing ? 1e-2 : 0.3;
+    for (int i = 0; i < n; ++i) {
+      gradient.push_back(dice.matrix(size));
+      F.push_back(Mat3::Identity() + gradient.back());
+      stress.push_back(-1e5 * Mat3::Identity());
+      prestress(batch, i, stress.back());
+    }
+  }
+  static L law_in(Regime regime)
+  {
+    L law = sample<L>();
+    if constexpr (requires { law.cohesion; })
+      if (regime == Regime::large_strain)
+        law.cohesion = 1e8, law.tension_cutoff.reset(), law.softening_strain.reset();
+    return law;
+  }
+};
+
 template <class L>
 void update(benchmark::State& timer, Regime regime)
 {
-  constexpr int n = 1024;
-  Dice dice(1);
-  const Real size = regime == Regime::elastic ? 1e-6 : regime == Regime::flowing ? 1e-2 : 0.3;
-  L law = sample<L>();
-  if constexpr (requires { law.cohesion; })
-    if (regime == Regime::large_strain)
-      law.cohesion = 1e8, law.tension_cutoff.reset(), law.softening_strain.reset();
-  AnyBatch any = make_batch(law, 0, n, "body");
-  auto& batch = std::get<Batch<L>>(any);
-  std::vector<Mat3> gradient, F, stress;
-  for (int i = 0; i < n; ++i) {
-    gradient.push_back(dice.matrix(size));
-    F.push_back(Mat3::Identity() + gradient.back());
-    stress.push_back(-1e5 * Mat3::Identity());
-    prestress(batch, i, stress.back());
-  }
-  const auto start = batch.history;
+  Body<L> body(regime);
+  const auto start = body.batch.history;
   for (auto _ : timer) {
-    batch.history = start;
-    for (Index i = 0; i < n; ++i) {
+    body.batch.history = start;
+    for (Index i = 0; i < body.n; ++i) {
       const auto p = static_cast<std::size_t>(i);
-      stress[p] = batch.update(i, {F[p], gradient[p], stress[p], 1.0, 0, false});
+      body.stress[p] = body.batch.update(i, Increment{body.F[p], body.gradient[p], body.stress[p], 1.0, 0, false});
+    }
+    benchmark::DoNotOptimize(body.stress.data());
+  }
+  timer.SetItemsProcessed(timer.iterations() * body.n);
+}
+
+/// Four particles at once; their tensors are packed already, as after gathering from nodes.
+template <class L>
+void update_in_lanes(benchmark::State& timer, Regime regime)
+{
+  Body<L> body(regime);
+  const auto packed = [&](const std::vector<Mat3>& all) {
+    std::vector<Mat3Of<Lanes>> packs(all.size() / pack_size);
+    for (std::size_t p = 0; p < packs.size(); ++p)
+      for (Index k = 0; k < 9; ++k)
+        packs[p](k) = in_each_lane([&](int lane) { return all[p * pack_size + static_cast<std::size_t>(lane)](k); });
+    return packs;
+  };
+  const auto gradient = packed(body.gradient), F = packed(body.F);
+  auto stress = packed(body.stress);
+  const auto start = body.batch.history;
+  for (auto _ : timer) {
+    body.batch.history = start;
+    for (Index i = 0; i < body.n; i += pack_size) {
+      const auto p = static_cast<std::size_t>(i / pack_size);
+      const Index rows[pack_size] = {i, i + 1, i + 2, i + 3};
+      stress[p] = body.batch.update(rows, pack_size, IncrementOf<Lanes>{F[p], gradient[p], stress[p], 1.0, 0, false});
     }
     benchmark::DoNotOptimize(stress.data());
   }
-  timer.SetItemsProcessed(timer.iterations() * n);
+  timer.SetItemsProcessed(timer.iterations() * body.n);
 }
 
 const bool registered = [] {
   for_each_type(Laws{}, []<class L>() {
-    const std::string name(L::name);
-    benchmark::RegisterBenchmark(("update/" + name + "/elastic").c_str(), update<L>, Regime::elastic);
-    benchmark::RegisterBenchmark(("update/" + name + "/flowing").c_str(), update<L>, Regime::flowing);
-    benchmark::RegisterBenchmark(("update/" + name + "/large_strain").c_str(), update<L>, Regime::large_strain);
+    for (const auto& [name, regime] :
+         {std::pair{"elastic", Regime::elastic}, std::pair{"flowing", Regime::flowing}, std::pair{"large_strain", Regime::large_strain}}) {
+      benchmark::RegisterBenchmark(fmt::format("update/{}/{}", L::name, name).c_str(), update<L>, regime);
+      benchmark::RegisterBenchmark(fmt::format("update_in_lanes/{}/{}", L::name, name).c_str(), update_in_lanes<L>, regime);
+    }
   });
   return true;
 }();
