@@ -29,17 +29,16 @@ void insertion_sort(std::span<const Index> cell, std::span<const std::int64_t> i
   }
 }
 
-/// Sorts the rows of one block by cell, those of a cell as they come; `to` has the same size.
-void count_cells(std::span<const Index> cell, std::span<const Index> rows, std::span<Index> to)
+/// Sorts the rows of one block by cell, those of a cell as they come; each(f) calls f(row) for all of them.
+template <class Each>
+void count_cells(std::span<const Index> cell, Each&& each, std::span<Index> to)
 {
   std::array<Index, block_cells> position{};
-  for (const Index row : rows)
-    ++at(position, at(cell, row) % block_cells);
+  each([&](Index row) { ++at(position, at(cell, row) % block_cells); });
   Index sum = 0;
   for (Index& count : position)
     sum += std::exchange(count, sum);
-  for (const Index row : rows)
-    at(to, at(position, at(cell, row) % block_cells)++) = row;
+  each([&](Index row) { at(to, at(position, at(cell, row) % block_cells)++) = row; });
 }
 
 std::span<Index> part(std::vector<Index>& rows, const std::vector<Index>& first, std::size_t key)
@@ -84,6 +83,7 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
     return old_key / static_cast<std::size_t>(order.blocks) * static_cast<std::size_t>(order.blocks) +
            static_cast<std::size_t>(at(cell, row) / block_cells);
   };
+  order.arrived.reserve(order.row.size());  // never grows within a step
   order.moved.resize(order.row.size());
   order.next_row.resize(order.row.size());
   order.left.assign(keys, 0);
@@ -122,14 +122,14 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
         std::is_sorted(rows.begin(), rows.end(), [&](Index a, Index b) { return at(cell, a) < at(cell, b); })) {
       std::copy(rows.begin(), rows.end(), sorted.begin());
     } else {
-      static thread_local std::vector<Index> unsorted;
-      unsorted.clear();
-      for (const Index row : rows)
-        if (key_of(key, row) == key)
-          unsorted.push_back(row);
-      for (Index i = arrivals[key]; i < arrivals[key + 1]; ++i)
-        unsorted.push_back(at(order.arrived, i));
-      count_cells(cell, unsorted, sorted);
+      const auto each = [&](auto&& f) {
+        for (const Index row : rows)
+          if (key_of(key, row) == key)
+            f(row);
+        for (Index i = arrivals[key]; i < arrivals[key + 1]; ++i)
+          f(at(order.arrived, i));
+      };
+      count_cells(cell, each, sorted);
     }
     insertion_sort(cell, id, sorted);
   });
