@@ -9,15 +9,15 @@ namespace talus {
 template <class E>
 Sym3Of<typename E::Scalar> pack(const Eigen::MatrixBase<E>& expression) noexcept
 {
-  const Mat3Of<typename E::Scalar>& a = expression;
+  const Mat3Of<typename E::Scalar>& a = expression.derived();
   Sym3Of<typename E::Scalar> s;
   s << a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(1, 2), a(0, 2);
   return s;
 }
 template <class E>
-Mat3Of<typename E::Scalar> unpack(const Eigen::MatrixBase<E>& expression) noexcept
+[[gnu::always_inline]] inline Mat3Of<typename E::Scalar> unpack(const Eigen::MatrixBase<E>& expression) noexcept
 {
-  const Sym3Of<typename E::Scalar>& s = expression;
+  const Sym3Of<typename E::Scalar>& s = expression.derived();
   Mat3Of<typename E::Scalar> a;
   a << s[0], s[3], s[5], s[3], s[1], s[4], s[5], s[4], s[2];
   return a;

@@ -22,9 +22,11 @@ typename E::Scalar trace(const Eigen::MatrixBase<E>& a) noexcept
   return a[0] + a[1] + a[2];
 }
 /// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
+// Inlined by order, like others below: of lanes they are long enough to be calls, and would pass their tensors through memory.
 template <class E>
-Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s, const Eigen::MatrixBase<E>& expression,
-                                           const typename E::Scalar& m) noexcept
+[[gnu::always_inline]] inline Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s,
+                                                                         const Eigen::MatrixBase<E>& expression,
+                                                                         const typename E::Scalar& m) noexcept
 {
   const Sym3Of<typename E::Scalar>& a = expression.derived();
   Sym3Of<typename E::Scalar> sum;
@@ -51,11 +53,13 @@ Sym3Of<typename E::Scalar> push_forward(const Eigen::MatrixBase<E>& gradient, co
   using T = typename E::Scalar;
   const Mat3Of<T>& H = gradient.derived();
   const Mat3Of<T> old = unpack(b);
-  const auto half = [&](int i, int j) -> T {
-    return old(i, j) + H(i, 0) * old(0, j) + H(i, 1) * old(1, j) + H(i, 2) * old(2, j) + H(i, j);
+  const auto half = [&](int i, int j) __attribute__((always_inline))
+  {
+    return T(old(i, j) + H(i, 0) * old(0, j) + H(i, 1) * old(1, j) + H(i, 2) * old(2, j) + H(i, j));
   };
-  const auto entry = [&](int i, int j) -> T {
-    return half(i, j) + H(j, i) + half(i, 0) * H(j, 0) + half(i, 1) * H(j, 1) + half(i, 2) * H(j, 2);
+  const auto entry = [&](int i, int j) __attribute__((always_inline))
+  {
+    return T(half(i, j) + H(j, i) + half(i, 0) * H(j, 0) + half(i, 1) * H(j, 1) + half(i, 2) * H(j, 2));
   };
   Sym3Of<T> pushed;
   pushed << entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2);
@@ -67,7 +71,7 @@ namespace detail {
 /// sum_k c[k] X^(k+1), `terms` of them, of a symmetric trace-free X.  Cayley-Hamilton, X^3 = J2 X + J3 I, keeps every power in the span of
 /// I, X, X^2, so that one product of matrices is enough.
 template <std::size_t terms, class T, std::size_t N>
-Sym3Of<T> trace_free_series(const Sym3Of<T>& X, const std::array<Real, N>& c) noexcept
+[[gnu::always_inline]] inline Sym3Of<T> trace_free_series(const Sym3Of<T>& X, const std::array<Real, N>& c) noexcept
 {
   const T xx = X[0], yy = X[1], zz = X[2], xy = X[3], yz = X[4], xz = X[5];
   Sym3Of<T> X2;
