@@ -80,19 +80,20 @@ void Laps::step_done(Real particle_steps, const Totals& phases)
 {
   ++steps_;
   if (steps_ >= BenchPlan::warm_up && (steps_ - BenchPlan::warm_up) % plan_.steps == 0)
-    marks_.push_back({Clock::now(), particle_steps, phases});
+    marks_.push_back({Clock::now(), std::clock(), particle_steps, phases});
 }
 
 void Laps::fill(BenchResult& result) const
 {
   constexpr Real nano = 1e9;
   const std::size_t n_phases = marks_.front().phases.size();
-  std::vector<Real> whole;
+  std::vector<Real> whole, cpu;
   std::vector<std::vector<Real>> of_phase(n_phases + 1);
   for (std::size_t i = 1; i < marks_.size(); ++i) {
     const Mark &from = marks_[i - 1], &to = marks_[i];
     const Real scale = nano / (to.particle_steps - from.particle_steps);
     whole.push_back(scale * std::chrono::duration<Real>(to.time - from.time).count());
+    cpu.push_back(scale * static_cast<Real>(to.cpu - from.cpu) / CLOCKS_PER_SEC);
     Real rest = whole.back();
     for (std::size_t k = 0; k < n_phases; ++k) {
       of_phase[k].push_back(scale * (to.phases[k].second - from.phases[k].second));
@@ -102,6 +103,7 @@ void Laps::fill(BenchResult& result) const
   }
   result.steps = plan_.steps;
   result.ns = measured(whole);
+  result.cpu = measured(cpu);
   for (std::size_t k = 0; k < n_phases; ++k)
     result.phases.push_back({std::string(marks_.front().phases[k].first), measured(of_phase[k]).median});
   result.phases.push_back({"rest", measured(of_phase[n_phases]).median});

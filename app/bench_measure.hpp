@@ -1,6 +1,7 @@
 #pragma once
 // Time of whole steps: some steps to warm up, then repeats of equally many.
 #include <chrono>
+#include <ctime>
 #include <utility>
 
 #include "app/bench_block.hpp"
@@ -21,13 +22,14 @@ class Laps {
   explicit Laps(const BenchPlan& plan) : plan_(plan) {}
   /// To be called after every step.
   void step_done(Real particle_steps, const Totals& phases);
-  /// ns of the result and of its phases, whose last one is the rest.
+  /// Times of the result and of its phases, whose last one is the rest.
   void fill(BenchResult& result) const;
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Mark {
     Clock::time_point time;
+    std::clock_t cpu;  ///< of all threads
     Real particle_steps;
     Totals phases;
   };

@@ -67,19 +67,22 @@ std::string heading(const BenchReport& r)
 std::string table(const std::vector<BenchResult>& results)
 {
   const auto phases = phase_names(results);
-  std::string text = setting_names() + fmt::format("{:>9}{:>8}{:>11}", "M/s/core", "ns", "min-max");
+  std::string text = setting_names() + fmt::format("{:>9}{:>8}{:>11}{:>8}", "M/s/core", "ns", "min-max", "cpu ns");
   for (const std::string& name : phases)
     text += fmt::format("{:>8}", name);
   text += fmt::format("{:>7}{:>7}{:>7}{:>8}{:>7}\n", "B held", "moved", "% bw", "FMA fit", "x yard");
   for (const BenchResult& r : results) {
-    text += setting_entry(r.setting) + fmt::format("{:>9.3f}{:>8.1f}{:>11}", r.rate(), r.ns.median, spread_entry(r.ns));
+    text +=
+        setting_entry(r.setting) + fmt::format("{:>9.3f}{:>8.1f}{:>11}{:>8.1f}", r.rate(), r.ns.median, spread_entry(r.ns), r.cpu.median);
     for (const std::string& name : phases)
       text += fmt::format("{:>8}", phase_entry(r, name));
     text += fmt::format("{:>7.0f}{:>7.0f}{:>7.1f}{:>8.0f}{:>7}\n", r.bytes_held, r.bytes_moved, percent * r.bandwidth_share, r.fma_room,
                         r.over_yardstick ? fmt::format("{:.2f}", *r.over_yardstick) : "-");
   }
   return text +
-         "M/s/core: million particle-steps per second and core; ns: wall time of a particle-step, median of the repeats, then by phase\n"
+         "M/s/core: million particle-steps per second and core; ns: wall time of a particle-step, median of the repeats; cpu ns: processor "
+         "time of all\n"
+         "threads; then wall time by phase\n"
          "B held: columns of a particle; moved: the least that memory must carry per particle-step; % bw: of the triad's bandwidth\n"
          "FMA fit: multiply-adds the cores could have done meanwhile; x yard: time over that of a structured grid with B-splines\n";
 }
@@ -87,32 +90,36 @@ std::string table(const std::vector<BenchResult>& results)
 std::string option_table(const std::vector<BenchResult>& results)
 {
   const BenchResult& base = results.front();
-  std::string text = fmt::format("what options cost: {}\n{:<16}{:>8}{:>11}{:>9}{:>8}\n", describe(base.setting), "option", "ns", "min-max",
-                                 "more ns", "more %");
+  std::string text = fmt::format("what options cost: {}\n{:<16}{:>8}{:>11}{:>9}{:>8}{:>8}{:>11}{:>9}{:>8}\n", describe(base.setting),
+                                 "option", "ns", "min-max", "more ns", "more %", "cpu ns", "min-max", "more ns", "more %");
+  const auto entry = [](const Measured& m, const Measured& of_base) {
+    return fmt::format("{:>8.1f}{:>11}{:>+9.1f}{:>+8.1f}", m.median, spread_entry(m), m.median - of_base.median,
+                       percent * (m.median / of_base.median - 1));
+  };
   for (const BenchResult& r : results)
-    text += fmt::format("{:<16}{:>8.1f}{:>11}{:>+9.1f}{:>+8.1f}\n", r.setting.option.empty() ? "-" : r.setting.option, r.ns.median,
-                        spread_entry(r.ns), r.ns.median - base.ns.median, percent * (r.ns.median / base.ns.median - 1));
+    text += fmt::format("{:<16}{}{}\n", r.setting.option.empty() ? "-" : r.setting.option, entry(r.ns, base.ns), entry(r.cpu, base.cpu));
   return text;
 }
 
 std::string comparison(const BenchReport& now, const BenchReport& then)
 {
-  std::string text = fmt::format("compared with {} ({}), {} on {}\n{}{:<17}{:>9}{:>9}{:>9}\n", then.version, then.commit, then.compiler,
-                                 then.processor, setting_names(), "option", "ns now", "then", "ratio");
-  for (const BenchResult& r : now.results) {
-    const BenchResult* const old = find(then, r.setting);
-    text += setting_entry(r.setting) + fmt::format("{:<17}{:>9.1f}", r.setting.option.empty() ? "-" : r.setting.option, r.ns.median);
-    if (old == nullptr) {
-      text += fmt::format("{:>9}{:>9}\n", "-", "-");
-      continue;
-    }
-    const bool faster = r.ns.most<old->ns.least, slower = r.ns.least> old->ns.most;
-    text += fmt::format("{:>9.1f}{:>9.3f}{}{}\n", old->ns.median, r.ns.median / old->ns.median,
-                        faster   ? "  faster"
-                        : slower ? "  slower"
-                                 : "",
-                        r.particles == old->particles ? "" : fmt::format("  (then {} particles)", old->particles));
-  }
+  std::string text =
+      fmt::format("compared with {} ({}), {} on {}\n{}{:<17}{:>9}{:>9}{:>8}{:>8}{:>9}{:>9}{:>8}\n", then.version, then.commit,
+                  then.compiler, then.processor, setting_names(), "option", "ns now", "then", "ratio", "", "cpu now", "then", "ratio");
+  const auto entry = [](const Measured& m, const Measured& old) {
+    const bool faster = m.most<old.least, slower = m.least> old.most;
+    return fmt::format("{:>9.1f}{:>9.1f}{:>8.3f}{:>8}", m.median, old.median, m.median / old.median,
+                       faster   ? "faster"
+                       : slower ? "slower"
+                                : "");
+  };
+  for (const BenchResult& r : now.results)
+    if (const BenchResult* const old = find(then, r.setting))
+      text += setting_entry(r.setting) +
+              fmt::format("{:<17}{}{}{}\n", r.setting.option.empty() ? "-" : r.setting.option, entry(r.ns, old->ns), entry(r.cpu, old->cpu),
+                          r.particles == old->particles ? "" : fmt::format("  (then {} particles)", old->particles));
+    else
+      text += fmt::format("only now: {}\n", describe(r.setting));
   for (const BenchResult& old : then.results)
     if (find(now, old.setting) == nullptr)
       text += fmt::format("only then: {}\n", describe(old.setting));

@@ -30,6 +30,7 @@ OrderedJson object_of(const BenchResult& r)
       {"threads", s.threads}, {"precision", s.precision}, {"option", s.option}, {"particles", r.particles}, {"steps", r.steps}};
   json["particle_steps_per_second_and_core"] = 1e6 * r.rate();
   json["ns_per_particle_step"] = object_of(r.ns);
+  json["cpu_ns_per_particle_step"] = object_of(r.cpu);
   json["phases [ns]"] = OrderedJson::object();
   for (const BenchPhase& phase : r.phases)
     json["phases [ns]"][phase.name] = phase.ns;
@@ -54,6 +55,7 @@ BenchResult result_of(const OrderedJson& json)
   json.at("particles").get_to(r.particles);
   json.at("steps").get_to(r.steps);
   r.ns = measured_of(json.at("ns_per_particle_step"));
+  r.cpu = measured_of(json.at("cpu_ns_per_particle_step"));
   for (const auto& [name, value] : json.at("phases [ns]").items())
     r.phases.push_back({name, value.get<Real>()});
   json.at("bytes_per_particle").get_to(r.bytes_held);

@@ -33,6 +33,7 @@ struct BenchResult {
   BenchSetting setting;
   std::int64_t particles{}, steps{};  ///< steps of one repeat
   Measured ns;                        ///< wall time per particle-step
+  Measured cpu;                       ///< processor time of all threads per particle-step [ns]
   std::vector<BenchPhase> phases;
   Real bytes_held{};                   ///< columns and history of a particle [B]
   Real bytes_moved{};                  ///< per particle-step, the least that memory has to bring and take [B]
