@@ -31,6 +31,7 @@ class CommandLine {
     add_render();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
     add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
+    add_bench();
     CLI::App* manual = app_.add_subcommand("manual", "every key of a scene, as Markdown");
     manual->add_flag("--schema", schema_, "as JSON Schema, for editors");
     manual->callback([this] { print_manual(schema_); });
@@ -132,6 +133,30 @@ class CommandLine {
     suite->callback([&options] { run_suite(options); });
   }
 
+  void add_bench()
+  {
+    constexpr int most_particles = 100'000'000;
+    CLI::App* bench = app_.add_subcommand("bench", "speed of whole steps beside what the machine can do and beside a structured grid");
+    const auto list = [&](const char* name, auto& values, const char* help) {
+      return bench->add_option(name, values, help)->delimiter(',');
+    };
+    list("--kernel", bench_.kernels, "kernels, such as projected,umls");
+    list("--transfer", bench_.transfers, "transfer schemes");
+    list("--law", bench_.laws, "constitutive laws");
+    list("--dimension", bench_.dimensions, "2, 3 or both")->check(CLI::Range(2, 3));
+    list("--threads", bench_.threads, "numbers of threads")->check(CLI::Range(1, 1024));
+    list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(CLI::Range(1, 100));
+    CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, dimension: hours");
+    bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
+    bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(CLI::Range(1000, most_particles));
+    bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(CLI::Range(1, 1000));
+    bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(CLI::Range(1, most_steps));
+    bench->add_option("--json", bench_.json, "write all of it to this file");
+    bench->add_option("--from", bench_.from, "measure nothing, show such a file");
+    bench->add_option("--compare", bench_.compare, "print times over those of such a file");
+    bench->callback([this] { talus::bench(bench_); });
+  }
+
   CLI::App app_;
   RunOptions run_;
   std::filesystem::path check_scene_;
@@ -140,6 +165,7 @@ class CommandLine {
   MeshOptions mesh_;
   RenderOptions render_;
   SuiteOptions verify_, tradeoff_;
+  BenchOptions bench_;
   bool schema_ = false;
 };
 

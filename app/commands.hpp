@@ -66,6 +66,19 @@ struct SuiteOptions {
 /// Replaces this process by the suite of benchmarks/, which runs this program.  EnvironmentError.
 [[noreturn]] void run_suite(const SuiteOptions& options);
 
+struct BenchOptions {
+  std::vector<std::string> kernels, transfers, laws;
+  std::vector<int> dimensions, threads, per_cell;
+  bool all = false;      ///< the whole product
+  bool options = false;  ///< what one case costs with each option of a scene
+  Index particles = 1'000'000;
+  int repeats = 3, steps = 5;
+  std::optional<std::filesystem::path> json, from, compare;
+};
+/// Measures the speed of whole steps and prints a table; with `from` shows what a file has.  SceneErrors for words and files that mean
+/// nothing.
+void bench(const BenchOptions& options);
+
 /// Every key of a scene: Markdown, or JSON Schema.
 void print_manual(bool schema);
 void print_info();

@@ -43,6 +43,18 @@ Real plastic_work(const Frame<D>& frame)
   return total;
 }
 
+/// Columns and history of a particle [B].
+template <int D>
+Real bytes_per_particle(const Frame<D>& frame)
+{
+  std::size_t bytes = 0;
+  frame.particles.for_each_column(
+      [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+  for (const AnyBatch& material : frame.materials)
+    std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
+  return static_cast<Real>(bytes) / static_cast<Real>(frame.particles.size());
+}
+
 /// The body of a particle row.
 inline std::size_t body_of(const std::vector<Body>& bodies, Index row)
 {

@@ -24,17 +24,6 @@ Real total(const std::vector<Stage>& stages)
 }
 
 template <int D>
-Real storage_of(const Frame<D>& frame)
-{
-  std::size_t bytes = 0;
-  frame.particles.for_each_column(
-      [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
-  for (const AnyBatch& material : frame.materials)
-    std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
-  return static_cast<Real>(bytes) / static_cast<Real>(frame.particles.size());
-}
-
-template <int D>
 BodySummary summary_of(const Frame<D>& frame, std::size_t b)
 {
   const Body& body = frame.bodies[b];
@@ -72,7 +61,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
 template <int D>
 void Recorder<D>::open(const Frame<D>& frame)
 {
-  bytes_per_particle_ = storage_of(frame);
+  bytes_per_particle_ = talus::bytes_per_particle(frame);
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
     bodies_.push_back(summary_of(frame, b));
   if (outputs_.history) {

@@ -208,19 +208,6 @@ Stage stage_of(const GeostaticSpec& spec)
           .where = spec.where};
 }
 
-Transfer transfer_of(const TransferSpec& spec)
-{
-  Transfer transfer;
-  constexpr Scheme schemes[] = {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip};  // in the order of TransferScheme
-  transfer.scheme = schemes[static_cast<std::size_t>(spec.scheme)];
-  transfer.musl = spec.musl.value_or(transfer.increments());
-  transfer.pic_damping_time = spec.pic_damping_time;
-  transfer.pic_damping_crossings = spec.pic_damping_crossings;
-  if (transfer.scheme == Scheme::aflip && !spec.pic_damping_time && !spec.pic_damping_crossings)
-    transfer.pic_damping_crossings = 25;  // measured: docs/kernels.md
-  return transfer;
-}
-
 template <int D>
 void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
 {
@@ -238,6 +225,19 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
 }
 
 }  // namespace
+
+Transfer transfer_of(const TransferSpec& spec)
+{
+  Transfer transfer;
+  constexpr Scheme schemes[] = {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip};  // in the order of TransferScheme
+  transfer.scheme = schemes[static_cast<std::size_t>(spec.scheme)];
+  transfer.musl = spec.musl.value_or(transfer.increments());
+  transfer.pic_damping_time = spec.pic_damping_time;
+  transfer.pic_damping_crossings = spec.pic_damping_crossings;
+  if (transfer.scheme == Scheme::aflip && !spec.pic_damping_time && !spec.pic_damping_crossings)
+    transfer.pic_damping_crossings = 25;  // measured: docs/kernels.md
+  return transfer;
+}
 
 std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::path(scene.file).parent_path(); }
 

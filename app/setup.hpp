@@ -26,6 +26,9 @@ struct Setup {
 template <int D>
 Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh);
 
+/// The scheme of a scene, with the defaults that go with it.
+Transfer transfer_of(const TransferSpec& spec);
+
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);
 

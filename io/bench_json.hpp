@@ -1,0 +1,69 @@
+#pragma once
+// What `talus bench` measured, and its file.
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+/// A number that was measured several times.
+struct Measured {
+  Real median{}, least{}, most{};
+};
+
+/// What runs: words of a scene, and the block it runs on.
+struct BenchSetting {
+  std::string kernel, transfer, law;
+  int dimension{}, per_cell{}, threads{};
+  std::string precision = "double";
+  std::string option = {};  ///< what the block has besides, such as "f_bar"; empty for nothing
+  bool operator==(const BenchSetting&) const = default;
+};
+
+struct BenchPhase {
+  std::string name;
+  Real ns{};  ///< per particle-step, median
+};
+
+struct BenchResult {
+  BenchSetting setting;
+  std::int64_t particles{}, steps{};  ///< steps of one repeat
+  Measured ns;                        ///< wall time per particle-step
+  Measured cpu;                       ///< processor time of all threads per particle-step [ns]
+  std::vector<BenchPhase> phases;
+  Real bytes_held{};                   ///< columns and history of a particle [B]
+  Real bytes_moved{};                  ///< per particle-step, the least that memory has to bring and take [B]
+  Real bandwidth_share{};              ///< bytes_moved over what the memory could have moved in that time
+  Real fma_room{};                     ///< multiply-adds that the cores could have done in the time of a particle-step
+  std::optional<Real> over_yardstick;  ///< its time over that of the yardstick of equal dimension and threads
+  bool is_yardstick() const noexcept { return setting.kernel == "yardstick"; }
+  /// Million particle-steps per second and core.
+  Real rate() const noexcept { return 1e3 / (ns.median * setting.threads); }
+};
+
+/// What the machine can do at best.
+struct MachineLimit {
+  int threads{};
+  Real triad{};  ///< a = b + s c on arrays far larger than the cache [B/s]
+  Real fma{};    ///< multiply-adds of doubles in packs [1/s]
+};
+
+struct BenchReport {
+  std::string version, commit, compiler, build, flags;
+  std::string processor;
+  int cores{};
+  std::vector<MachineLimit> limits;
+  std::vector<BenchResult> results;
+};
+
+/// Writes the file as a whole or not at all; EnvironmentError naming it.
+void write_bench(const std::filesystem::path& file, const BenchReport& report);
+
+/// Reads such a file.  SceneErrors: it is not there, or it is something else.
+BenchReport read_bench(const std::filesystem::path& file);
+
+}  // namespace talus
