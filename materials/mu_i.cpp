@@ -25,7 +25,7 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
   const Sym3Of<T> b = push_forward(in.dt * in.L, get(state, &State::elastic_left));
   const Sym3Of<T> twice_strain = log1p(b);
   const T volume_strain = 0.5 * trace(twice_strain);
-  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
+  const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
   const T tau = c.shear * sqrt(T(2 * squared_norm(shear_strain)));
   if (!everywhere(J > 0 && isfinite(T(volume_strain + tau))))
     return no_answer_somewhere(*this, in, state, c);

@@ -22,7 +22,8 @@ struct ElasticTrial {
     using std::sqrt;
     const Sym3Of<T> twice_strain = log1p(left);
     volume_strain = 0.5 * trace(twice_strain);
-    shear_strain = scale_and_shift(0.5, twice_strain, volume_strain * (-1.0 / 3));
+    // Divided, not times a third: a product would be fused with the sum and leave shear in a pure change of volume.
+    shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
     shear = sqrt(T(squared_norm(shear_strain) * (2.0 / 3)));
   }
   MaskOf<T> is_finite() const noexcept
