@@ -62,7 +62,7 @@ BenchReport measured_report(const BenchOptions& options)
 {
   const int all_threads = threads();
   const auto settings = options.options ? option_settings(options) : bench_settings(options, all_threads);
-  Bench bench({options.particles, options.repeats, options.steps});
+  Bench bench({options.particles, options.warm_up, options.repeats, options.steps});
   std::vector<int> used{1, all_threads};
   std::vector<std::pair<int, int>> yardsticks;
   for (const BenchSetting& s : settings) {

@@ -79,7 +79,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
 void Laps::step_done(Real particle_steps, const Totals& phases)
 {
   ++steps_;
-  if (steps_ >= BenchPlan::warm_up && (steps_ - BenchPlan::warm_up) % plan_.steps == 0)
+  if (steps_ >= plan_.warm_up && (steps_ - plan_.warm_up) % plan_.steps == 0)
     marks_.push_back({Clock::now(), std::clock(), particle_steps, phases});
 }
 
@@ -104,6 +104,7 @@ void Laps::fill(BenchResult& result) const
   result.steps = plan_.steps;
   result.ns = measured(whole);
   result.cpu = measured(cpu);
+  result.repeats = whole;
   for (std::size_t k = 0; k < n_phases; ++k)
     result.phases.push_back({std::string(marks_.front().phases[k].first), measured(of_phase[k]).median});
   result.phases.push_back({"rest", measured(of_phase[n_phases]).median});

@@ -10,8 +10,7 @@ namespace talus {
 
 struct BenchPlan {
   Index particles{};  ///< about as many
-  int repeats{}, steps{};
-  static constexpr int warm_up = 2;  ///< the first step sorts the particles and sizes all buffers
+  int warm_up{}, repeats{}, steps{};
   int all_steps() const noexcept { return warm_up + repeats * steps; }
 };
 

@@ -149,6 +149,7 @@ class CommandLine {
     CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, dimension: hours");
     bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
     bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(CLI::Range(1000, most_particles));
+    bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(CLI::Range(1, most_steps));
     bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(CLI::Range(1, 1000));
     bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(CLI::Range(1, most_steps));
     bench->add_option("--json", bench_.json, "write all of it to this file");

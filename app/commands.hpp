@@ -72,7 +72,7 @@ struct BenchOptions {
   bool all = false;      ///< the whole product
   bool options = false;  ///< what one case costs with each option of a scene
   Index particles = 1'000'000;
-  int repeats = 3, steps = 5;
+  int warm_up = 10, repeats = 3, steps = 5;
   std::optional<std::filesystem::path> json, from, compare;
 };
 /// Measures the speed of whole steps and prints a table; with `from` shows what a file has.  SceneErrors for words and files that mean

@@ -34,6 +34,7 @@ OrderedJson object_of(const BenchResult& r)
   json["phases [ns]"] = OrderedJson::object();
   for (const BenchPhase& phase : r.phases)
     json["phases [ns]"][phase.name] = phase.ns;
+  json["repeats [ns]"] = r.repeats;
   json["bytes_per_particle"] = r.bytes_held;
   json["bytes_moved_per_particle_step"] = r.bytes_moved;
   json["share_of_bandwidth"] = r.bandwidth_share;
@@ -58,6 +59,7 @@ BenchResult result_of(const OrderedJson& json)
   r.cpu = measured_of(json.at("cpu_ns_per_particle_step"));
   for (const auto& [name, value] : json.at("phases [ns]").items())
     r.phases.push_back({name, value.get<Real>()});
+  json.at("repeats [ns]").get_to(r.repeats);
   json.at("bytes_per_particle").get_to(r.bytes_held);
   json.at("bytes_moved_per_particle_step").get_to(r.bytes_moved);
   json.at("share_of_bandwidth").get_to(r.bandwidth_share);

@@ -35,6 +35,7 @@ struct BenchResult {
   Measured ns;                        ///< wall time per particle-step
   Measured cpu;                       ///< processor time of all threads per particle-step [ns]
   std::vector<BenchPhase> phases;
+  std::vector<Real> repeats;           ///< wall time per particle-step of each, in order [ns]
   Real bytes_held{};                   ///< columns and history of a particle [B]
   Real bytes_moved{};                  ///< per particle-step, the least that memory has to bring and take [B]
   Real bandwidth_share{};              ///< bytes_moved over what the memory could have moved in that time

@@ -22,6 +22,7 @@ TEST(BenchJson, ReadsBackWhatItWrote)
   result.setting = {.kernel = "umls", .transfer = "tpic", .law = "mu_i", .dimension = 3, .per_cell = 8, .threads = 4, .option = "f_bar"};
   result.particles = 1'000'000, result.steps = 5;
   result.ns = {100.25, 99.5, 103}, result.cpu = {399, 398, 401};
+  result.repeats = {103, 99.5, 100.25};
   result.phases = {{"scatter", 60.5}, {"anything", 39.75}};
   result.bytes_held = 368, result.bytes_moved = 700, result.bandwidth_share = 0.1, result.fma_room = 1234;
   report.results.push_back(result);
@@ -40,6 +41,7 @@ TEST(BenchJson, ReadsBackWhatItWrote)
   EXPECT_EQ(back.results[0].setting, result.setting);
   EXPECT_EQ(back.results[0].ns.most, 103);
   EXPECT_EQ(back.results[0].cpu.least, 398);
+  EXPECT_EQ(back.results[0].repeats, result.repeats);
   ASSERT_EQ(back.results[0].phases.size(), 2u);
   EXPECT_EQ(back.results[0].phases[1].name, "anything");
   EXPECT_EQ(back.results[0].phases[1].ns, 39.75);
