@@ -79,19 +79,17 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
 {
   const std::size_t keys = order.keys();
   const auto n_keys = static_cast<Index>(keys);
-  const auto key_of = [&](std::size_t old_key, Index row) {  // bodies do not change
-    return old_key / static_cast<std::size_t>(order.blocks) * static_cast<std::size_t>(order.blocks) +
-           static_cast<std::size_t>(at(cell, row) / block_cells);
-  };
+  const auto base_of = [&](std::size_t key) { return key - key % static_cast<std::size_t>(order.blocks); };  // bodies do not change
+  const auto key_of = [&](std::size_t base, Index row) { return base + static_cast<std::size_t>(at(cell, row) / block_cells); };
   order.arrived.reserve(order.row.size());  // never grows within a step
   order.moved.resize(order.row.size());
   order.next_row.resize(order.row.size());
   order.left.assign(keys, 0);
   parallel_for(n_keys, [&](Index k) {
-    const auto key = static_cast<std::size_t>(k);
+    const auto key = static_cast<std::size_t>(k), base = base_of(key);
     auto leaving = part(order.moved, order.first, key);
     for (const Index row : order.rows(key))
-      if (key_of(key, row) != key)
+      if (key_of(base, row) != key)
         at(leaving, order.left[key]++) = row;
   });
 
@@ -99,7 +97,7 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
   order.next_first.assign(keys + 1, 0);
   for (std::size_t key = 0; key < keys; ++key)
     for (Index i = 0; i < order.left[key]; ++i)
-      ++order.next_first[key_of(key, at(order.moved, order.first[key] + i)) + 1];
+      ++order.next_first[key_of(base_of(key), at(order.moved, order.first[key] + i)) + 1];
   for (std::size_t key = 0; key < keys; ++key)
     order.next_first[key + 1] += order.next_first[key];
   std::vector<Index>& arrivals = order.next_first;  // key -> its first in `arrived`
@@ -108,14 +106,14 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
   for (std::size_t key = 0; key < keys; ++key)
     for (Index i = 0; i < order.left[key]; ++i) {
       const Index row = at(order.moved, order.first[key] + i);
-      at(order.arrived, order.count[key_of(key, row)]++) = row;
+      at(order.arrived, order.count[key_of(base_of(key), row)]++) = row;
     }
 
   order.count.assign(keys + 1, 0);  // key -> its first row to be
   for (std::size_t key = 0; key < keys; ++key)
     order.count[key + 1] = order.count[key] + order.first[key + 1] - order.first[key] - order.left[key] + arrivals[key + 1] - arrivals[key];
   parallel_for(n_keys, [&](Index k) {
-    const auto key = static_cast<std::size_t>(k);
+    const auto key = static_cast<std::size_t>(k), base = base_of(key);
     const auto rows = order.rows(key);
     const auto sorted = part(order.next_row, order.count, key);
     if (order.left[key] == 0 && arrivals[key + 1] == arrivals[key] &&
@@ -124,7 +122,7 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
     } else {
       const auto each = [&](auto&& f) {
         for (const Index row : rows)
-          if (key_of(key, row) == key)
+          if (key_of(base, row) == key)
             f(row);
         for (Index i = arrivals[key]; i < arrivals[key + 1]; ++i)
           f(at(order.arrived, i));

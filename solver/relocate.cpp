@@ -11,7 +11,7 @@ namespace talus {
 namespace {
 
 /// Disorder above which the arrays themselves are re-ordered: below it the gain does not pay for the move.
-constexpr Real most_disorder = 0.2;
+constexpr Real most_disorder = 0.4;
 /// A particle set back onto a wall is placed this share of the cell's smallest altitude inside.
 constexpr Real inset = 1e-6;
 
