@@ -59,7 +59,7 @@ template <int D, class L>
   const Sym3Of<Lanes> stored = bunch.load(particles.stress);
   Mat3Of<Lanes> told_F = F, told_L = velocity_gradient, told_stress = unpack(stored);
   if (batch.averages_volume) {
-    const Lanes ratio = in_each_lane([&](int lane) { return std::pow(averaged[bunch.p[lane]] / J[lane], Real{1} / D); });
+    const Lanes to_average = bunch.load(averaged) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
     const Lanes s = ratio / bunch.load(particles.volume_ratio);
     bunch.store(ratio, particles.volume_ratio);
     told_F = scaled_in_plane<D>(F, ratio);
@@ -81,9 +81,9 @@ template <int D, class L>
   Mat3Of<Lanes> after = batch.update(i, bunch.count, {told_F, told_L, told_stress, dt, q, elastic});
   after.diagonal().array() -= q;
   const Sym3Of<Lanes> stress = pack(after);
-  if (const Lanes trace = stress.sum(); !everywhere(trace - trace == 0))  // infinite or NaN
+  if (const Lanes sum_of_entries = stress.sum(); !everywhere(isfinite(sum_of_entries)))
     for (int lane = 0; lane < bunch.count; ++lane)
-      if (good[lane] && !std::isfinite(trace[lane]))
+      if (good[lane] && !std::isfinite(sum_of_entries[lane]))
         health.report(particles.id[bunch.p[lane]], Trouble::no_answer);
   bunch.store(stress, particles.stress);
 
