@@ -134,7 +134,7 @@ void GridMpm<D>::sort()
   const auto key = [&](const GridParticle<D>& p) {
     std::array<Index, D> first;
     for (int d = 0; d < D; ++d)
-      first[static_cast<std::size_t>(d)] = static_cast<Index>(p.x[d] * n_ + 0.5);
+      first[static_cast<std::size_t>(d)] = static_cast<Index>(std::lround(p.x[d] * n_));
     return node_of(first);
   };
   for (const auto& p : particles_)

@@ -10,7 +10,8 @@ if(TALUS_WERROR)
   list(APPEND TALUS_WARNINGS -Werror)
 endif()
 add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${TALUS_COMPILE_OPTIONS};${TALUS_WARNINGS}>")
-add_compile_definitions($<$<CONFIG:Release>:EIGEN_NO_DEBUG>)
+# Packs of four numbers are entries of tensors; where the processor has no vectors of their size Eigen would align such tensors for less.
+add_compile_definitions($<$<CONFIG:Release>:EIGEN_NO_DEBUG> EIGEN_MAX_STATIC_ALIGN_BYTES=32)
 include_directories(${PROJECT_SOURCE_DIR})
 
 # The exception: sources of the tests, with a precompiled header of their own; an inline function means the same in either. The two warnings

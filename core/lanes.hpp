@@ -78,6 +78,7 @@ struct Lanes {
     friend Mask operator!(const Mask& a) noexcept { return {~a.of}; }
   };
 
+  // cppcheck-suppress uninitMemberVar ; as that of a Real is
   Lanes() = default;
   Lanes(Real all) noexcept : of{all, all, all, all} {}  // NOLINT(google-explicit-constructor): a number is a number in every lane
   Lanes(const Pack& each) noexcept : of(each) {}        // NOLINT(google-explicit-constructor)
@@ -201,6 +202,7 @@ struct Eigen::NumTraits<talus::Lanes> : Eigen::GenericNumTraits<talus::Lanes> {
   using Real = talus::Lanes;
   using NonInteger = talus::Lanes;
   using Literal = talus::Lanes;
+  // NOLINTNEXTLINE(readability-identifier-naming): Eigen's names
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
 };
 

@@ -41,7 +41,7 @@ class Linear {
     cell.padded_size = max_nodes;
     cell.nodes = stencil(mesh, c);
     cell.origin = centroid(mesh, c);
-    const auto gradients = mesh.gradients(c);
+    const auto& gradients = mesh.gradients(c);
     for (int a = 0; a < max_nodes; ++a) {
       const bool real = a <= D;
       const Vec<D>& at = mesh.node(cell.nodes[real ? static_cast<std::size_t>(a) : 0]);

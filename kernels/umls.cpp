@@ -210,7 +210,7 @@ void Umls<D>::open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept
     for (std::size_t a = 0; a <= D; ++a)
       cell.adjacent[a][i] = bits[a];
   }
-  const auto gradients = mesh.gradients(c);
+  const auto& gradients = mesh.gradients(c);
   cell.radius = 0;
   for (std::size_t a = 0; a <= D; ++a)
     cell.radius += radius(cell.nodes[a]) / (D + 1);

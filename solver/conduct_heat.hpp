@@ -36,7 +36,7 @@ void conduct_heat(const Mesh<D>& mesh, AnyBatch& material, const CellOrder& orde
       }
     });
     sums.flow.gather(mesh, order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
-      const auto gradients = mesh.gradients(c);
+      const auto& gradients = mesh.gradients(c);
       Vec<D> slope = Vec<D>::Zero();
       for (std::size_t a = 0; a <= D; ++a) {
         const auto& [capacity, content] = sums.content[mesh.cell(c)[a]];

@@ -12,7 +12,7 @@ Real mass_above(const Mesh<D>& mesh, std::span<const Real> density, Vec<D> x, In
   Real mass = 0;
   for (Index crossed = 0; c != none && crossed <= mesh.n_cells(); ++crossed) {  // a straight line meets each cell once
     const auto B = mesh.barycentric(c, x);
-    const auto gradient = mesh.gradients(c);
+    const auto& gradient = mesh.gradients(c);
     Real way = std::numeric_limits<Real>::infinity();
     std::size_t exit = 0;
     for (std::size_t k = 0; k <= D; ++k) {

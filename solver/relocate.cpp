@@ -24,10 +24,11 @@ void permute(std::vector<T>& column, std::span<const Index> order, std::vector<s
   if (column.empty())
     return;
   spare.resize(std::max(spare.size(), column.size() * sizeof(T)));
-  T* const sorted = reinterpret_cast<T*>(spare.data());
+  std::byte* const sorted = spare.data();
+  std::byte* const rows = reinterpret_cast<std::byte*>(column.data());
   const auto n = static_cast<Index>(order.size());
-  parallel_for(n, [&](Index i) { std::memcpy(static_cast<void*>(sorted + i), &column[z(order[z(i)])], sizeof(T)); });
-  parallel_for(n, [&](Index i) { std::memcpy(static_cast<void*>(&column[z(i)]), sorted + i, sizeof(T)); });
+  parallel_for(n, [&](Index i) { std::memcpy(sorted + z(i) * sizeof(T), rows + z(order[z(i)]) * sizeof(T), sizeof(T)); });
+  parallel_for(n, [&](Index i) { std::memcpy(rows + z(i) * sizeof(T), sorted + z(i) * sizeof(T), sizeof(T)); });
 }
 
 template <int D>
