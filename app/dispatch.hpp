@@ -74,7 +74,7 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     for (const AnyBatch& material : m.materials)
       std::visit([&](const auto& batch) { cost.particle_bytes += bytes(batch.history); }, material);
     cost.mesh_bytes = static_cast<std::int64_t>(m.mesh.nodes().size_bytes() + m.mesh.cells().size_bytes()) +
-                      m.mesh.n_cells() * static_cast<std::int64_t>(2 * sizeof(Real)) + bytes(m.mesh.cells_of_node().item) +
+                      m.mesh.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(m.mesh.cells_of_node().item) +
                       bytes(m.mesh.ring_of_node().item);
     cost.node_bytes =
         bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.hats.sum) + bytes(m.hats.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
