@@ -220,7 +220,7 @@ Vec<D> Mesh<D>::area_vector(Facet f) const noexcept
 template <int D>
 std::array<Real, D + 1> Mesh<D>::barycentric(Index c, const Vec<D>& x) const noexcept
 {
-  return talus::barycentric<D>(corners(c), x);
+  return talus::barycentric<D>(gradients(c), node(cell(c)[0]), x);
 }
 
 template <int D>

@@ -102,12 +102,11 @@ std::array<Vec<D>, D + 1> gradients(const Simplex<D>& s) noexcept
   return g;
 }
 
-/// Barycentric coordinates of x: sum to one, all >= 0 inside.
+/// Barycentric coordinates of x from their gradients and the first corner: sum to one, all >= 0 inside.
 template <int D>
-std::array<Real, D + 1> barycentric(const Simplex<D>& s, const Vec<D>& x) noexcept
+std::array<Real, D + 1> barycentric(const std::array<Vec<D>, D + 1>& g, const Vec<D>& first_corner, const Vec<D>& x) noexcept
 {
-  const std::array<Vec<D>, D + 1> g = gradients<D>(s);
-  const Vec<D> r = x - s[0];
+  const Vec<D> r = x - first_corner;
   std::array<Real, D + 1> lambda;
   lambda[0] = 1;
   for (int a = 1; a <= D; ++a) {
@@ -115,6 +114,13 @@ std::array<Real, D + 1> barycentric(const Simplex<D>& s, const Vec<D>& x) noexce
     lambda[0] -= lambda[a];
   }
   return lambda;
+}
+
+/// The same of a simplex whose gradients nobody knows yet.
+template <int D>
+std::array<Real, D + 1> barycentric(const Simplex<D>& s, const Vec<D>& x) noexcept
+{
+  return barycentric<D>(gradients<D>(s), s[0], x);
 }
 
 /// The point with these barycentric coordinates.
