@@ -119,6 +119,35 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
     EXPECT_LE((by_total[p] - by_increments[p]).norm(), 1e-12 * 1e6);  // rounding of five steps
 }
 
+TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
+{
+  const auto stretched = [] {
+    auto m = block<2>(rubber(1e6, 0.3, 1000), 2);
+    make_ready(m, false);
+    for (std::size_t p = 0; p < m.particles.L.size(); ++p)
+      m.particles.L[p] = (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}};
+    return m;
+  };
+  const auto update = [](auto& m, std::span<const Index> rows) {
+    return update_stress(m.mesh, m.materials[0], rows, 1e-3, false, m.averaged, m.particles, m.health);
+  };
+  const std::vector<Index> rows{7, 2, 3, 11, 5, 0};
+  for (std::size_t n = 1; n <= rows.size(); ++n) {
+    auto together = stretched(), alone = stretched();
+    const StressSums sums = update(together, std::span(rows).first(n));
+    StressSums one_by_one;
+    for (std::size_t i = 0; i < n; ++i)
+      one_by_one += update(alone, std::span(rows).subspan(i, 1));
+    EXPECT_GT(sums.work, 0);
+    EXPECT_NEAR(sums.work, one_by_one.work, 1e-14 * one_by_one.work) << n;
+    EXPECT_EQ(sums.crossing, one_by_one.crossing) << n;
+    for (std::size_t p = 0; p < alone.particles.F.size(); ++p) {
+      EXPECT_EQ(together.particles.F[p], alone.particles.F[p]);
+      EXPECT_EQ(together.particles.stress[p], alone.particles.stress[p]);
+    }
+  }
+}
+
 TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
 {
   LinearElastic law;
