@@ -20,8 +20,8 @@ Vec<D> outer_force(const Frame<D>& frame)
 {
   const Real time = frame.clock.time, ramp = frame.stage.ramp(time);
   Vec<D> force = (frame.mass.start - frame.mass.deleted) * frame.loads.gravity(time, ramp);
-  for (const Vec<D>& applied : frame.particles.applied)
-    force += applied;
+  for (std::size_t p = 0; p < frame.particles.applied.size(); ++p)
+    force += frame.particles.applied[p];
   for (const auto& load : frame.loads.on_mesh)
     for (std::size_t k = 0; k < load.node.size(); ++k)
       if (frame.nodes.sum[static_cast<std::size_t>(load.node[k])].mass > 0)

@@ -38,12 +38,14 @@ void set_swirling(Real speed, Particles<D>& particles)
 {
   for (std::size_t p = 0; p < particles.x.size(); ++p) {
     const Real x = M_PI * particles.x[p][0], y = M_PI * particles.x[p][1];
-    Vec<D>& v = particles.v[p];
+    Vec<D> v = Vec<D>::Zero();
     v[0] = speed * std::sin(x) * std::cos(y);
     v[1] = -speed * std::cos(x) * std::sin(y);
-    Mat<D>& L = particles.L[p];
+    particles.v.set(p, v);
+    Mat<D> L = Mat<D>::Zero();
     L(0, 0) = M_PI * speed * std::cos(x) * std::cos(y), L(0, 1) = -M_PI * speed * std::sin(x) * std::sin(y);
     L(1, 0) = -L(0, 1), L(1, 1) = -L(0, 0);
+    particles.L.set(p, L);
   }
 }
 
@@ -61,8 +63,9 @@ Particles<D> bench_particles(const Mesh<D>& mesh, int per_cell, Real density)
       p.id.push_back(p.size());
       p.cell.push_back(cell);
       p.x.push_back(x);
-      p.volume0.push_back(mesh.volume(cell) / per_cell);
-      p.mass.push_back(density * p.volume0.back());
+      const Real volume = mesh.volume(cell) / per_cell;
+      p.volume0.push_back(volume);
+      p.mass.push_back(density * volume);
     }
   }
   p.v.assign(p.id.size(), Vec<D>::Zero());
@@ -128,6 +131,7 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   cells.fill(cells_a_side(D, particles, simplices * setting.per_cell));
   BenchBlock<D> block{.scene = {}, .mesh = Mesh<D>(jittered(box<D>(Vec<D>::Zero(), Vec<D>::Ones(), cells), bench_jitter, 1)), .setup = {}};
   block.scene.kernel = setting.kernel;
+  block.scene.precision = setting.precision == "single" ? Precision::single : Precision::full;
   Setup<D>& setup = block.setup;
   const AnyLaw law = bench_law(setting.law);
   setup.particles = bench_particles<D>(block.mesh, setting.per_cell, std::visit([](const auto& l) { return l.density; }, law));

@@ -12,9 +12,10 @@ namespace talus {
 
 namespace {
 
-std::vector<std::string> transfer_names()
+template <class Choice>
+std::vector<std::string> names_of(Choice choice)
 {
-  constexpr auto names = words(TransferScheme{});
+  const auto names = words(choice);
   return {names.begin(), names.end()};
 }
 
@@ -30,7 +31,7 @@ std::vector<std::string> chosen(const std::string& option, const std::vector<std
 
 /// The words on the command line as values of each axis.
 struct Axes {
-  std::vector<std::string> kernels, transfers, laws;
+  std::vector<std::string> kernels, transfers, laws, precisions;
   std::vector<int> dimensions, threads, per_cell;  ///< per_cell empty: the usual ones of each dimension
 };
 
@@ -41,9 +42,10 @@ Axes axes_of(const BenchOptions& o, int all_threads)
   Axes axes;
   axes.kernels = chosen("--kernel", o.kernels, all ? kernel_names() : std::vector<std::string>{"projected", "umls", "linear"},
                         kernel_names(), problems);
-  axes.transfers =
-      chosen("--transfer", o.transfers, all ? transfer_names() : std::vector<std::string>{"tpic", "aflip"}, transfer_names(), problems);
+  const auto transfers = names_of(TransferScheme{}), precisions = names_of(Precision{});
+  axes.transfers = chosen("--transfer", o.transfers, all ? transfers : std::vector<std::string>{"tpic", "aflip"}, transfers, problems);
   axes.laws = chosen("--law", o.laws, all ? bench_laws() : std::vector<std::string>{"neo_hookean"}, bench_laws(), problems);
+  axes.precisions = chosen("--precision", o.precisions, all ? precisions : std::vector<std::string>{"double"}, precisions, problems);
   axes.dimensions = !o.dimensions.empty() ? o.dimensions : all ? std::vector{3, 2} : std::vector{3};
   axes.threads = !o.threads.empty() ? o.threads : all && all_threads > 1 ? std::vector{1, all_threads} : std::vector{1};
   axes.per_cell = o.per_cell;
@@ -71,8 +73,9 @@ std::vector<BenchSetting> product(const Axes& axes, bool all)
       for (const std::string& law : axes.laws)
         for (const std::string& kernel : axes.kernels)
           for (const std::string& transfer : axes.transfers)
-            for (const int n : axes.threads)
-              list.push_back({kernel, transfer, law, dimension, per_cell, n});
+            for (const std::string& precision : axes.precisions)
+              for (const int n : axes.threads)
+                list.push_back({kernel, transfer, law, dimension, per_cell, n, precision});
   return list;
 }
 
@@ -81,8 +84,8 @@ std::vector<BenchSetting> product(const Axes& axes, bool all)
 std::vector<BenchSetting> bench_settings(const BenchOptions& o, int all_threads)
 {
   const Axes axes = axes_of(o, all_threads);
-  const bool any_word =
-      !o.kernels.empty() || !o.transfers.empty() || !o.laws.empty() || !o.dimensions.empty() || !o.threads.empty() || !o.per_cell.empty();
+  const bool any_word = !o.kernels.empty() || !o.transfers.empty() || !o.laws.empty() || !o.precisions.empty() || !o.dimensions.empty() ||
+                        !o.threads.empty() || !o.per_cell.empty();
   auto list = product(axes, o.all);
   if (any_word || o.all)
     return list;
@@ -94,6 +97,9 @@ std::vector<BenchSetting> bench_settings(const BenchOptions& o, int all_threads)
     list.push_back({"projected", "aflip", law, 3, 8, 1});
   for (const char* transfer : {"tpic", "aflip"})
     list.push_back({"projected", transfer, "neo_hookean", 3, 2, 1});
+  for (const int dimension : {3, 2})
+    list.push_back({"projected", "tpic", "neo_hookean", dimension, dimension == 3 ? 8 : 4, 1, "single"});
+  list.push_back({"umls", "tpic", "neo_hookean", 3, 8, 1, "single"});
   if (all_threads > 1)
     list.push_back({"projected", "aflip", "neo_hookean", 3, 8, all_threads});
   return list;
@@ -113,8 +119,9 @@ std::vector<BenchSetting> option_settings(const BenchOptions& o)
 
 std::string describe(const BenchSetting& s)
 {
-  return fmt::format("{} {} {} {}-D {} a cell {} thread{}{}{}", s.kernel, s.transfer, s.law, s.dimension, s.per_cell, s.threads,
-                     s.threads == 1 ? "" : "s", s.option.empty() ? "" : " + ", s.option);
+  return fmt::format("{} {} {} {}-D {} a cell {}{} thread{}{}{}", s.kernel, s.transfer, s.law, s.dimension, s.per_cell,
+                     s.precision == "double" ? "" : s.precision + " ", s.threads, s.threads == 1 ? "" : "s", s.option.empty() ? "" : " + ",
+                     s.option);
 }
 
 }  // namespace talus

@@ -128,6 +128,7 @@ class CommandLine {
     if (verify) {
       suite->add_option("--kernel", options.kernel, "kernel of every run that does not choose one itself");
       suite->add_option("--transfer", options.transfer, "transfer scheme of every run that does not choose one itself");
+      suite->add_option("--precision", options.precision, "double or single, of every run that does not choose itself");
       suite->add_flag("--regression", options.regression, "status 1 only where something is worse than in the last release");
     }
     suite->callback([&options] { run_suite(options); });
@@ -143,10 +144,11 @@ class CommandLine {
     list("--kernel", bench_.kernels, "kernels, such as projected,umls");
     list("--transfer", bench_.transfers, "transfer schemes");
     list("--law", bench_.laws, "constitutive laws");
+    list("--precision", bench_.precisions, "double, single or both");
     list("--dimension", bench_.dimensions, "2, 3 or both")->check(CLI::Range(2, 3));
     list("--threads", bench_.threads, "numbers of threads")->check(CLI::Range(1, 1024));
     list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(CLI::Range(1, 100));
-    CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, dimension: hours");
+    CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, precision, dimension: hours");
     bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
     bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(CLI::Range(1000, most_particles));
     bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(CLI::Range(1, most_steps));

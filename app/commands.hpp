@@ -58,7 +58,7 @@ void render_results(const RenderOptions& options);
 struct SuiteOptions {
   std::string suite;  ///< verify or tradeoff
   std::vector<std::string> cases;
-  std::optional<std::string> level, kernel, transfer;
+  std::optional<std::string> level, kernel, transfer, precision;
   std::optional<std::filesystem::path> out;
   std::optional<int> jobs, threads;
   bool reuse = false, regression = false;
@@ -67,7 +67,7 @@ struct SuiteOptions {
 [[noreturn]] void run_suite(const SuiteOptions& options);
 
 struct BenchOptions {
-  std::vector<std::string> kernels, transfers, laws;
+  std::vector<std::string> kernels, transfers, laws, precisions;
   std::vector<int> dimensions, threads, per_cell;
   bool all = false;      ///< the whole product
   bool options = false;  ///< what one case costs with each option of a scene

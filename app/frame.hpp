@@ -36,10 +36,8 @@ template <int D>
 Real plastic_work(const Frame<D>& frame)
 {
   Real total = 0;
-  for (std::size_t b = 0; b < frame.bodies.size(); ++b) {
-    const auto first = static_cast<std::size_t>(frame.bodies[b].begin), count = static_cast<std::size_t>(frame.bodies[b].size());
-    total += total_plastic_work(frame.materials[b], std::span(frame.particles.volume0).subspan(first, count));
-  }
+  for (const AnyBatch& material : frame.materials)
+    total += total_plastic_work(material, frame.particles.volume0);
   return total;
 }
 

@@ -137,7 +137,8 @@ void HistoryWriter<D>::add_point(const Frame<D>& frame, std::int64_t id, std::ve
   put<D>(frame.particles.x[p], row);
   put<D>(frame.particles.x[p] - frame.particles.x0[p], row);
   put<D>(frame.particles.v[p], row);
-  row.insert(row.end(), frame.particles.stress[p].begin(), frame.particles.stress[p].end());
+  const Sym3 stress = frame.particles.stress[p];
+  row.insert(row.end(), stress.begin(), stress.end());
 }
 
 template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&);

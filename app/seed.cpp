@@ -126,8 +126,12 @@ class Seeder {
         const auto values = evaluate(formula, places);
         const auto slopes = gradients(formula, places, sizes);
         for (std::size_t p = 0; p < count; ++p) {
-          particles.v[first + p][d] = values[p];
-          particles.L[first + p].row(d) = slopes[p].template head<D>();
+          Vec<D> v = particles.v[first + p];
+          v[d] = values[p];
+          particles.v.set(first + p, v);
+          Mat<D> L = particles.L[first + p];
+          L.row(d) = slopes[p].template head<D>();
+          particles.L.set(first + p, L);
         }
       } catch (const std::invalid_argument& e) {
         complaints_.add(spec.where, fmt::format("velocity[{}]", d), e.what());

@@ -35,32 +35,44 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
   c = __builtin_shuffle(ab_even, cd_even, Places{2, 3, 6, 7});
   d = __builtin_shuffle(ab_odd, cd_odd, Places{2, 3, 6, 7});
 }
-/// n consecutive numbers of four rows -> one pack per number, each lane a row; and back, the first `count` rows.
-template <int n>
-[[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Pack* to) noexcept
+/// Four numbers at any address, kept in double or in single precision.
+[[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
+[[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
+using LooseSinglePack = float __attribute__((vector_size(pack_size * sizeof(float)), aligned(sizeof(float)), may_alias));
+[[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept
+{
+  return __builtin_convertvector(*reinterpret_cast<const LooseSinglePack*>(from), Pack);
+}
+[[gnu::always_inline]] inline void store_loose(float* to, const Pack& pack) noexcept
+{
+  *reinterpret_cast<LooseSinglePack*>(to) = __builtin_convertvector(pack, LooseSinglePack);
+}
+/// n consecutive numbers of four rows -> one pack per number, each lane a row; and back, the first `count` rows.  N is double or float.
+template <int n, class N>
+[[gnu::always_inline]] inline void load_rows(const N* const (&row)[pack_size], Pack* to) noexcept
 {
   constexpr int whole = n / pack_size * pack_size;
   for (int k = 0; k < whole; k += pack_size) {
     for (int lane = 0; lane < pack_size; ++lane)
-      to[k + lane] = *reinterpret_cast<const LoosePack*>(row[lane] + k);
+      to[k + lane] = load_loose(row[lane] + k);
     transpose(to[k], to[k + 1], to[k + 2], to[k + 3]);
   }
   for (int k = whole; k < n; ++k)
     to[k] = Pack{row[0][k], row[1][k], row[2][k], row[3][k]};
 }
-template <int n>
-[[gnu::always_inline]] inline void store_rows(const Pack* from, Real* const (&row)[pack_size], int count) noexcept
+template <int n, class N>
+[[gnu::always_inline]] inline void store_rows(const Pack* from, N* const (&row)[pack_size], int count) noexcept
 {
   constexpr int whole = n / pack_size * pack_size;
   for (int k = 0; k < whole; k += pack_size) {
     Pack of[pack_size] = {from[k], from[k + 1], from[k + 2], from[k + 3]};
     transpose(of[0], of[1], of[2], of[3]);
     for (int lane = 0; lane < count; ++lane)
-      *reinterpret_cast<LoosePack*>(row[lane] + k) = of[lane];
+      store_loose(row[lane] + k, of[lane]);
   }
   for (int k = whole; k < n; ++k)
     for (int lane = 0; lane < count; ++lane)
-      row[lane][k] = from[k][lane];
+      row[lane][k] = static_cast<N>(from[k][lane]);
 }
 static_assert(pack_size == 4);
 

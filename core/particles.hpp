@@ -4,6 +4,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/column.hpp"
 #include "core/error.hpp"
 #include "core/tensor.hpp"
 
@@ -17,50 +18,67 @@ struct Body {
   Index size() const noexcept { return end - begin; }
 };
 
-/// All particles.  The columns in the second group are empty unless the scene needs them.
+/// All particles.  The columns in the second group are empty unless the scene needs them.  Places stay in double whatever the rest is kept
+/// in: a slow particle moves less in a step than a coordinate can tell in single precision.  F is kept as its difference to I then, for the
+/// same reason.
 template <int D>
 struct Particles {
-  std::vector<std::int64_t> id;     ///< survives sorting and deletion
-  std::vector<Index> cell;          ///< the cell that holds x
-  std::vector<Vec<D>> x, v;         ///< position [m], velocity [m/s]
-  std::vector<Mat<D>> L;            ///< velocity gradient [1/s]
-  std::vector<Mat3> F;              ///< deformation gradient, plane strain in 2-D
-  std::vector<Sym3> stress;         ///< Cauchy stress [Pa], tension positive
-  std::vector<Real> mass, volume0;  ///< mass [kg], volume at the start [m^D, unit thickness in 2-D]
-  std::vector<Real> volume;         ///< det F times volume0
+  std::vector<std::int64_t> id;            ///< survives sorting and deletion
+  std::vector<Index> cell;                 ///< the cell that holds x
+  std::vector<Vec<D>> x;                   ///< position [m]
+  ParticleColumn<Vec<D>> v;                ///< velocity [m/s]
+  ParticleColumn<Mat<D>> L;                ///< velocity gradient [1/s]
+  ParticleColumn<Mat3, Rest::identity> F;  ///< deformation gradient, plane strain in 2-D
+  ParticleColumn<Sym3> stress;             ///< Cauchy stress [Pa], tension positive
+  ParticleColumn<Real> mass, volume0;      ///< mass [kg], volume at the start [m^D, unit thickness in 2-D]
+  ParticleColumn<Real> volume;             ///< det F times volume0
 
-  std::vector<Mat<D>> C;           ///< affine field, where it is not L [1/s]
-  std::vector<Vec<D>> x0;          ///< where displacement counts from [m]
-  std::vector<Vec<D>> applied;     ///< force of loads other than gravity [N]
-  std::vector<Real> applied_at;    ///< applied . x before the move [J]
-  std::vector<Real> volume_ratio;  ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
-  std::vector<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
+  ParticleColumn<Mat<D>> C;           ///< affine field, where it is not L [1/s]
+  std::vector<Vec<D>> x0;             ///< where displacement counts from [m]
+  ParticleColumn<Vec<D>> applied;     ///< force of loads other than gravity [N]
+  std::vector<Real> applied_at;       ///< applied . x before the move [J]
+  ParticleColumn<Real> volume_ratio;  ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
+  ParticleColumn<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
-  const std::vector<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
+  const ParticleColumn<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
 
-  /// f(name, unit, column) for every column, empty ones too: resizing, sorting, bytes per particle.
+  Precision precision() const noexcept { return F.precision(); }
+  void keep_in(Precision precision)
+  {
+    for_each_kind_of_column(
+        *this, [](std::string_view, std::string_view, const auto&) {},
+        [&](std::string_view, std::string_view, auto& column) { column.keep_in(precision); });
+  }
+
+  /// f(name, unit, rows) for every column, empty ones too: resizing, sorting, bytes per particle.
   template <class F_>
   void for_each_column(F_&& f)
   {
-    each(*this, f);
+    for_each_kind_of_column(*this, f, [&](std::string_view name, std::string_view unit, auto& column) {
+      column.visit([&](auto& rows) { f(name, unit, rows); });
+    });
   }
   template <class F_>
   void for_each_column(F_&& f) const
   {
-    each(*this, f);
+    for_each_kind_of_column(*this, f, [&](std::string_view name, std::string_view unit, const auto& column) {
+      column.visit([&](const auto& rows) { f(name, unit, rows); });
+    });
   }
 
  private:
-  template <class Self, class F_>
-  static void each(Self& self, F_&& f)
+  /// `plain` of what is no number of the particle's motion and of places, `kept` of what the precision concerns.
+  template <class Self, class Plain, class Kept>
+  static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& kept)
   {
-    f("id", "-", self.id), f("cell", "-", self.cell), f("position", "m", self.x), f("velocity", "m/s", self.v),
-        f("velocity_gradient", "1/s", self.L);
-    f("deformation_gradient", "-", self.F), f("stress", "Pa", self.stress), f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0),
-        f("volume", "m^D", self.volume);
-    f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied), f("applied_at", "J", self.applied_at);
-    f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous);
+    plain("id", "-", self.id), plain("cell", "-", self.cell), plain("position", "m", self.x), kept("velocity", "m/s", self.v),
+        kept("velocity_gradient", "1/s", self.L);
+    kept("deformation_gradient", "-", self.F), kept("stress", "Pa", self.stress), kept("mass", "kg", self.mass),
+        kept("volume0", "m^D", self.volume0), kept("volume", "m^D", self.volume);
+    kept("affine", "1/s", self.C), plain("start", "m", self.x0), kept("applied", "N", self.applied),
+        plain("applied_at", "J", self.applied_at);
+    kept("volume_ratio", "-", self.volume_ratio), kept("viscous_pressure", "Pa", self.viscous);
   }
 };
 

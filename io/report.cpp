@@ -86,6 +86,7 @@ std::string to_json(const RunSummary& s)
   json["dimension"] = s.dimension;
   json["kernel"] = s.kernel;
   json["transfer"] = s.transfer;
+  json["precision"] = s.precision;
   json["mesh"] = {{"nodes", s.mesh_nodes}, {"cells", s.mesh_cells}, {"quality", to_object(s.mesh_quality)}};
   json["bodies"] = to_list(s.bodies);
   json["stages"] = to_list(s.stages);

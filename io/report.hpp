@@ -61,7 +61,7 @@ struct RunSummary {
   std::string message;  ///< why it failed
 
   int dimension{};
-  std::string kernel, transfer;
+  std::string kernel, transfer, precision;
   int threads{};
 
   std::int64_t mesh_nodes{}, mesh_cells{};

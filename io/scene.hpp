@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/column.hpp"
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "io/scene_bodies.hpp"
@@ -79,6 +80,7 @@ struct Scene {
   std::string kernel = "projected";
   std::optional<UmlsOptions> umls;
   std::optional<ProjectedOptions> projected;
+  Precision precision = Precision::full;
   TimeSpec time;
   TransferSpec transfer;
   std::vector<MaterialSpec> materials;
@@ -103,6 +105,9 @@ struct Scene {
         optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
         group("umls", &Scene::umls, "choices of the kernel umls"),
         group("projected", &Scene::projected, "choices of the kernel projected"),
+        optional_choice("precision", &Scene::precision,
+                        "in which numbers particles are kept; single takes little more than half the memory, and some accuracy where "
+                        "strains are small"),
         optional("time", &Scene::time, any, "-", "end and step"),
         optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
         required_list("materials", &Scene::materials, "constitutive laws with their constants"),

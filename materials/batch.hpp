@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/column.hpp"
 #include "core/error.hpp"
 #include "core/parallel.hpp"
 #include "materials/laws.hpp"
@@ -182,19 +183,19 @@ inline bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept
   return std::visit([&](auto& typed) { return prestress(typed, i, stress); }, batch);
 }
 
-/// Energy [J] dissipated so far in a body whose particles had the volumes `volume0` [m^3]; 0 for a law without "plastic_work".
+/// Energy [J] dissipated so far in a body; `volume0` [m^3] of all particles of the model.  0 for a law without "plastic_work".
 template <class L>
-Real total_plastic_work(const Batch<L>& batch, std::span<const Real> volume0)
+Real total_plastic_work(const Batch<L>& batch, const ParticleColumn<Real>& volume0)
 {
   Real total = 0;
   for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
     if constexpr (std::decay_t<decltype(column)>::components == 1)
       if (key == "plastic_work")
-        total += parallel_sum<Real>(column.size(), [&](Index i) { return volume0[static_cast<std::size_t>(i)] * column[i]; });
+        total += parallel_sum<Real>(column.size(), [&](Index i) { return volume0[static_cast<std::size_t>(batch.begin + i)] * column[i]; });
   });
   return total;
 }
-inline Real total_plastic_work(const AnyBatch& batch, std::span<const Real> volume0)
+inline Real total_plastic_work(const AnyBatch& batch, const ParticleColumn<Real>& volume0)
 {
   return std::visit([&](const auto& typed) { return total_plastic_work(typed, volume0); }, batch);
 }

@@ -7,13 +7,14 @@
 
 namespace talus {
 
-/// Up to four particles, side by side in the lanes of packs.
-struct Bunch {
+/// Up to four particles, side by side in the lanes of packs; their columns are kept in numbers S.
+template <class S>
+struct BunchOf {
   std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
   int count;
 
   /// Those of `rows` from `begin` on.
-  Bunch(std::span<const Index> rows, std::size_t begin) noexcept
+  BunchOf(std::span<const Index> rows, std::size_t begin) noexcept
       : count(static_cast<int>(std::min<std::size_t>(pack_size, rows.size() - begin)))
   {
     for (std::size_t lane = 0; lane < pack_size; ++lane)
@@ -25,50 +26,102 @@ struct Bunch {
   {
     return Pack{f(p[0]), f(p[1]), f(p[2]), f(p[3])};
   }
+
   /// The particles' entries of a column: numbers, vectors or tensors.
-  [[gnu::always_inline]] Lanes load(const std::vector<Real>& column) const noexcept
+  template <class Value, Rest rest>
+  [[gnu::always_inline]] auto load(const ParticleColumn<Value, rest>& column) const noexcept
   {
-    return lanes([&](std::size_t row) { return column[row]; });
+    auto all = load(column.template rows<S>());
+    if constexpr (rest == Rest::identity && std::is_same_v<S, float>)
+      for (int i = 0; i < all.rows(); ++i)
+        all(i, i) += 1;
+    return all;
   }
-  template <int R, int C>
+  template <class Value, Rest rest>
+  [[gnu::always_inline]] void store(const In<Lanes, Value>& value, ParticleColumn<Value, rest>& column) const noexcept
+  {
+    if constexpr (rest == Rest::identity && std::is_same_v<S, float>)
+      store(In<Lanes, Value>(value - In<Lanes, Value>::Identity()), column.template rows<S>());
+    else
+      store(value, column.template rows<S>());
+  }
+  template <class Row>
+  [[gnu::always_inline]] auto load(const std::vector<Row>& column) const noexcept
+  {
+    return load(column.data());
+  }
+  template <class Row>
+  [[gnu::always_inline]] void store(const In<Lanes, Row>& value, std::vector<Row>& column) const noexcept
+  {
+    store(value, column.data());
+  }
+  /// The entry of one lane.
+  template <class Value>
+  [[gnu::always_inline]] Value of(int lane, const ParticleColumn<Value>& column) const noexcept
+  {
+    const auto& row = column.template rows<S>()[p[lane]];
+    if constexpr (std::is_same_v<S, Real>)
+      return row;
+    else
+      return ParticleColumn<Value>::widened(row);
+  }
+
+ private:
+  template <class N>
+  requires std::is_arithmetic_v<N>
+  [[gnu::always_inline]] Lanes load(const N* rows) const noexcept
+  {
+    return lanes([&](std::size_t row) { return static_cast<Real>(rows[row]); });
+  }
+  template <class N, int R, int C>
   [[gnu::always_inline]] Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> load(
-      const std::vector<Eigen::Matrix<Real, R, C, Eigen::DontAlign>>& column) const noexcept
+      const Eigen::Matrix<N, R, C, Eigen::DontAlign>* rows) const noexcept
   {
     Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> all;
     Pack of[R * C];
-    load_rows<R * C>({column[p[0]].data(), column[p[1]].data(), column[p[2]].data(), column[p[3]].data()}, of);
+    load_rows<R * C>({rows[p[0]].data(), rows[p[1]].data(), rows[p[2]].data(), rows[p[3]].data()}, of);
     for (int k = 0; k < R * C; ++k)
       all(k) = of[k];
     return all;
   }
-  [[gnu::always_inline]] void store(const Lanes& value, std::vector<Real>& column) const noexcept
+  template <class N>
+  requires std::is_arithmetic_v<N>
+  [[gnu::always_inline]] void store(const Lanes& value, N* rows) const noexcept
   {
     for (int lane = 0; lane < count; ++lane)
-      column[p[lane]] = value[lane];
+      rows[p[lane]] = static_cast<N>(value[lane]);
   }
-  template <int R, int C>
+  template <class N, int R, int C>
   [[gnu::always_inline]] void store(const Eigen::Matrix<Lanes, R, C, Eigen::DontAlign>& value,
-                                    std::vector<Eigen::Matrix<Real, R, C, Eigen::DontAlign>>& column) const noexcept
+                                    Eigen::Matrix<N, R, C, Eigen::DontAlign>* rows) const noexcept
   {
     Pack of[R * C];
     for (int k = 0; k < R * C; ++k)
       of[k] = value(k).of;
-    store_rows<R * C>(of, {column[p[0]].data(), column[p[1]].data(), column[p[2]].data(), column[p[3]].data()}, count);
+    store_rows<R * C>(of, {rows[p[0]].data(), rows[p[1]].data(), rows[p[2]].data(), rows[p[3]].data()}, count);
   }
 };
+using Bunch = BunchOf<Real>;
+
+/// f(S()) with the numbers the particles are kept in.
+template <int D, class F>
+decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
+{
+  return particles.precision() == Precision::single ? f(float()) : f(Real());
+}
 
 /// f(bunch) for all rows, four at a time.
-template <class F>
+template <class S = Real, class F>
 void for_each_bunch(std::span<const Index> rows, F&& f)
 {
   for (std::size_t begin = 0; begin < rows.size(); begin += pack_size)
-    f(Bunch(rows, begin));
+    f(BunchOf<S>(rows, begin));
 }
 /// f(bunch, x) for the particles of a run, four at a time.
-template <int D, class F>
-void for_each_bunch(std::span<const Index> run, const std::vector<Vec<D>>& places, F&& f)
+template <class S, int D, class F>
+void for_each_placed_bunch(std::span<const Index> run, const std::vector<Vec<D>>& places, F&& f)
 {
-  for_each_bunch(run, [&](const Bunch& bunch) {
+  for_each_bunch<S>(run, [&](const BunchOf<S>& bunch) {
     Pack x[D];
     const auto place = bunch.load(places);
     for (int d = 0; d < D; ++d)

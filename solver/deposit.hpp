@@ -42,8 +42,8 @@ template <int D>
 struct Tension {
   Pack slope[D][D], shift[D];
 };
-template <int D, int N>
-Tension<D> tension_of(const Particles<D>& particles, const Bunch& bunch, const Weights<D, N>& weights) noexcept
+template <int D, int N, class S>
+Tension<D> tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, const Weights<D, N>& weights) noexcept
 {
   const Pack volume = bunch.load(particles.volume).of;
   const Sym3Of<Lanes> stress = bunch.load(particles.stress);
@@ -67,8 +67,8 @@ Tension<D> tension_of(const Particles<D>& particles, const Bunch& bunch, const W
 /// m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G.
 /// A is of `fields`, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
 /// MUSL) only momentum is summed.  A sweep per component: all that a sweep needs of the particle stays in registers.
-template <bool affine, bool loaded, bool forces, int D, int N>
-void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vector<Mat<D>>& fields, const StencilCell<D, N>& cell,
+template <bool affine, bool loaded, bool forces, int D, int N, class S>
+void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const ParticleColumn<Mat<D>>& fields, const StencilCell<D, N>& cell,
              const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
 {
   alignas(64) Real share[N];  // m_p w_v
@@ -79,7 +79,7 @@ void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vecto
     const Real* y[D];
     std::copy_n(weights.y[lane], D, y);
     const bool y_is_x = y[0] == cell.x[0];
-    const Real m = particles.mass[p];
+    const Real m = bunch.of(lane, particles.mass);
     Pack slope[D];
     for (int j = 0; j < D; ++j)
       slope[j] = broadcast(-m * weights.slope[j][lane]);
@@ -93,9 +93,10 @@ void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vecto
       if constexpr (forces)
         store(sums.mass + a, load(sums.mass + a) + w);
     }
-    const Mat<D>& A = fields[p];
+    const Mat<D> A = affine ? bunch.of(lane, fields) : Mat<D>(Mat<D>::Zero());
+    const Vec<D> v_p = bunch.of(lane, particles.v), f_p = loaded ? bunch.of(lane, particles.applied) : Vec<D>(Vec<D>::Zero());
     for (int i = 0; i < D; ++i) {
-      Real v_origin = particles.v[p][i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
+      Real v_origin = v_p[i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
       Pack A_i[D], T_i[D];
       for (int j = 0; j < D; ++j) {
         if constexpr (affine) {
@@ -110,7 +111,7 @@ void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vecto
       if constexpr (forces)
         shift = broadcast(tension.shift[i][lane]);
       if constexpr (loaded)
-        per_mass = broadcast(particles.applied[p][i] / m);
+        per_mass = broadcast(f_p[i] / m);
       Real* const to_momentum = sums.momentum[i];
       Real* const to_force = sums.force[i];
       for (int a = 0; a < n; a += pack_size) {
@@ -136,12 +137,15 @@ void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vecto
 }
 
 /// f_v -= V sigma grad w_v of one particle, for the first n nodes.
-template <int D, int N>
-void deposit_force(const Particles<D>& particles, std::size_t p, const Real (&slopes)[D][N], int n, CellSums<D, N>& sums) noexcept
+template <int D, int N, class S>
+void deposit_force(const Particles<D>& particles, const BunchOf<S>& bunch, int lane, const Real (&slopes)[D][N], int n,
+                   CellSums<D, N>& sums) noexcept
 {
+  const Real volume = bunch.of(lane, particles.volume);
+  const Sym3 stress = bunch.of(lane, particles.stress);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
-      const Pack T = broadcast(particles.volume[p] * particles.stress[p][Symmetric<3>::place(i, j)]);
+      const Pack T = broadcast(volume * stress[Symmetric<3>::place(i, j)]);
       for (int a = 0; a < n; a += pack_size)
         store(sums.force[i] + a, load(sums.force[i] + a) - T * load(slopes[j] + a));
     }

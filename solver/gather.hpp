@@ -7,8 +7,8 @@ namespace detail {
 
 /// v_p and, if asked for, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme keeps its own.
 /// With `musl` L is found later, from remapped velocities.
-template <bool increments, bool with_gradient, bool musl, int D, class Through_>
-Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const Bunch& bunch, Particles<D>& particles) noexcept
+template <bool increments, bool with_gradient, bool musl, int D, class Through_, class S>
+Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const BunchOf<S>& bunch, Particles<D>& particles) noexcept
 {
   const Seen<D> seen = through.template see<increments, with_gradient>(bunch);
   VecOf<D> v = vector_of(seen.v);
@@ -22,7 +22,7 @@ Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const Bu
       if constexpr (Through_::has_apic)
         for (int lane = 0; lane < bunch.count; ++lane) {
           const std::size_t p = bunch.p[lane];
-          particles.C[p] = through.apic_field(lane, particles.x[p], lane_of(L, lane));
+          particles.C.set(p, through.apic_field(lane, particles.x[p], lane_of(L, lane)));
         }
       else
         bunch.store(L, particles.C);
@@ -32,8 +32,8 @@ Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const Bu
 }
 
 /// x <- x + dt v
-template <int D>
-void move(const Bunch& bunch, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
+template <int D, class S>
+void move(const BunchOf<S>& bunch, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
 {
   bunch.store(VecOf<D>(vector_of(x) + Lanes(dt) * vector_of(v)), particles.x);
 }
@@ -53,7 +53,7 @@ void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typen
   }
 }
 
-template <bool increments, int D, Kernel<D> K, class Then>
+template <class S, bool increments, int D, Kernel<D> K, class Then>
 void gather(Model<D, K>& m, Real dt, Then&& then)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
@@ -61,7 +61,7 @@ void gather(Model<D, K>& m, Real dt, Then&& then)
     for_each_reading_run(
         m, b, m.motion(),
         [&](Index, std::span<const Index> run, auto& through) {
-          for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+          for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
             through.place(bunch, x);
             const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, bunch, m.particles);
             move(bunch, x, seen.v, dt, m.particles);
@@ -71,7 +71,7 @@ void gather(Model<D, K>& m, Real dt, Then&& then)
   });
 }
 
-template <bool increments, bool affine, int D, Kernel<D> K>
+template <class S, bool increments, bool affine, int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D, K>& m, Real dt)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
@@ -84,7 +84,7 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
         m, b, m.motion(),
         [&](Index c, std::span<const Index> run, auto& through) {
           through.clear();
-          for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+          for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
             through.place(bunch, x);
             take_velocity<increments, affine, true>(through, m.transfer.scheme, pic, bunch, m.particles);
             through.template deposit<affine, false, false>(m.particles, bunch, x, m.particles.affine_fields());
@@ -105,18 +105,22 @@ struct Nothing {
 template <int D, Kernel<D> K, class Then = Nothing>
 void gather(Model<D, K>& m, Real dt, Then&& then = {})
 {
-  m.transfer.increments() ? detail::gather<true>(m, dt, then) : detail::gather<false>(m, dt, then);
+  in_numbers_of(m.particles, [&]<class S>(S) {
+    m.transfer.increments() ? detail::gather<S, true>(m, dt, then) : detail::gather<S, false>(m, dt, then);
+  });
 }
 
 /// MUSL, first half: v_p and the affine field, whose momentum goes back at once to the rows of the blocks with the weights at hand.
 template <int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D, K>& m, Real dt)
 {
-  if (!m.transfer.affine())
-    detail::gather_and_return_momentum<true, false>(m, dt);
-  else
-    m.transfer.increments() ? detail::gather_and_return_momentum<true, true>(m, dt)
-                            : detail::gather_and_return_momentum<false, true>(m, dt);
+  in_numbers_of(m.particles, [&]<class S>(S) {
+    if (!m.transfer.affine())
+      detail::gather_and_return_momentum<S, true, false>(m, dt);
+    else
+      m.transfer.increments() ? detail::gather_and_return_momentum<S, true, true>(m, dt)
+                              : detail::gather_and_return_momentum<S, false, true>(m, dt);
+  });
 }
 
 /// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
@@ -124,18 +128,20 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
 template <int D, Kernel<D> K, class Then>
 void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Real dt, Then&& then)
 {
-  parallel_for_uneven(m.order.blocks, [&](Index b) {
-    detail::for_each_reading_run(
-        m, b, remapped,
-        [&](Index, std::span<const Index> run, auto& through) {
-          for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
-            through.place(bunch, x);
-            const Seen<D> seen = through.template see<true, true>(bunch);
-            bunch.store(matrix_of(seen.L), m.particles.L);
-            detail::move(bunch, x, seen.change, dt, m.particles);
-          });
-        },
-        [&](Index body) { then(body, b); });
+  in_numbers_of(m.particles, [&]<class S>(S) {
+    parallel_for_uneven(m.order.blocks, [&](Index b) {
+      detail::for_each_reading_run(
+          m, b, remapped,
+          [&](Index, std::span<const Index> run, auto& through) {
+            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
+              through.place(bunch, x);
+              const Seen<D> seen = through.template see<true, true>(bunch);
+              bunch.store(matrix_of(seen.L), m.particles.L);
+              detail::move(bunch, x, seen.change, dt, m.particles);
+            });
+          },
+          [&](Index body) { then(body, b); });
+    });
   });
 }
 

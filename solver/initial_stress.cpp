@@ -53,7 +53,7 @@ void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const st
             bodies[b].where,
             fmt::format("law \"{}\" of body \"{}\" cannot start from a K0 stress; leave initial_stress out and let gravity grow (ramp)",
                         law_name(materials[b]), bodies[b].name));
-      particles.stress[p] = pack(stress);
+      particles.stress.set(p, pack(stress));
     }
 }
 

@@ -56,7 +56,8 @@ template <int D>
 Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
 {
   Real size = 0;
-  std::fill(particles.applied.begin(), particles.applied.end(), Vec<D>::Zero());
+  particles.applied.assign(particles.applied.size(), Vec<D>::Zero());
+  const auto add = [&](std::size_t p, const Vec<D>& force) { particles.applied.set(p, particles.applied[p] + force); };
   for (const auto& load : loads.on_particles) {
     const Real factor = ramp * load.table(time);
     for (std::size_t k = 0; k < load.id.size(); ++k) {
@@ -66,13 +67,13 @@ Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
       const auto p = static_cast<std::size_t>(row);
       const Mat<D> F = particles.F[p].template topLeftCorner<D, D>();
       const Vec<D> area = particles.F[p].determinant() * F.inverse().transpose() * load.area[k];
-      particles.applied[p] += factor * (load.area[k].norm() * load.traction - load.pressure * area);
+      add(p, factor * (load.area[k].norm() * load.traction - load.pressure * area));
     }
   }
   for (const auto& load : loads.of_place) {
     const std::vector<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
     for (std::size_t p = 0; p < particles.applied.size(); ++p)
-      particles.applied[p] += ramp * particles.mass[p] * load.acceleration(place[p], time);
+      add(p, ramp * particles.mass[p] * load.acceleration(place[p], time));
   }
   for (std::size_t p = 0; p < particles.applied.size(); ++p)
     particles.applied_at[p] = particles.applied[p].dot(particles.x[p]), size += particles.applied[p].norm();

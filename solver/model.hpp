@@ -167,10 +167,8 @@ template <int D, Kernel<D> K>
 Real plastic_work(const Model<D, K>& m)
 {
   Real total = 0;
-  for (std::size_t b = 0; b < m.bodies.size(); ++b)
-    total += total_plastic_work(
-        m.materials[b],
-        std::span(m.particles.volume0).subspan(static_cast<std::size_t>(m.bodies[b].begin), static_cast<std::size_t>(m.bodies[b].size())));
+  for (const AnyBatch& material : m.materials)
+    total += total_plastic_work(material, m.particles.volume0);
   return total;
 }
 

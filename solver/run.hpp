@@ -132,11 +132,9 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
                     m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "",
                     stage.duration, m.residual, *stage.residual));
   if (stage.residual) {
-    for (auto& v : m.particles.v)
-      v.setZero();
+    m.particles.v.assign(m.particles.v.size(), Vec<D>::Zero());
     for (auto* affine : {&m.particles.L, &m.particles.C})
-      for (auto& A : *affine)
-        A.setZero();
+      affine->assign(affine->size(), Mat<D>::Zero());
   }
   if (stage.reset_displacement && !m.particles.x0.empty())
     m.particles.x0 = m.particles.x;

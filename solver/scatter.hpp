@@ -7,16 +7,17 @@
 namespace talus {
 namespace detail {
 
-template <int D>
+template <class S, int D>
 float lightest_of(const Particles<D>& particles, std::span<const Index> run) noexcept
 {
+  const S* const mass = particles.mass.template rows<S>();
   float lightest = NodeSum<D>::unseen;
   for (const Index p : run)
-    lightest = std::min(lightest, static_cast<float>(particles.mass[static_cast<std::size_t>(p)]));
+    lightest = std::min(lightest, static_cast<float>(mass[p]));
   return lightest;
 }
 
-template <bool affine, bool loaded, int D, Kernel<D> K>
+template <class S, bool affine, bool loaded, int D, Kernel<D> K>
 void scatter(Model<D, K>& m)
 {
   parallel_for_uneven(m.blocks.size(), [&](Index b) {
@@ -29,11 +30,11 @@ void scatter(Model<D, K>& m)
           std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
         through.enter(m.mesh, c);
         through.clear();
-        for_each_bunch<D>(run, m.particles.x, [&](const Bunch& bunch, const Pack(&x)[D]) {
+        for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
           through.place(bunch, x);
           through.template deposit<affine, loaded, true>(m.particles, bunch, x, m.particles.affine_fields());
         });
-        through.template add_to<affine, loaded, true>(rows, m.blocks.slots(c), lightest_of(m.particles, run));
+        through.template add_to<affine, loaded, true>(rows, m.blocks.slots(c), lightest_of<S>(m.particles, run));
       });
     m.blocks.occupied[static_cast<std::size_t>(b)] = occupied ? 1 : 0;
   });
@@ -46,10 +47,12 @@ template <int D, Kernel<D> K>
 void scatter(Model<D, K>& m)
 {
   const bool loaded = !m.particles.applied.empty();
-  if (m.transfer.affine())
-    loaded ? detail::scatter<true, true>(m) : detail::scatter<true, false>(m);
-  else
-    loaded ? detail::scatter<false, true>(m) : detail::scatter<false, false>(m);
+  in_numbers_of(m.particles, [&]<class S>(S) {
+    if (m.transfer.affine())
+      loaded ? detail::scatter<S, true, true>(m) : detail::scatter<S, true, false>(m);
+    else
+      loaded ? detail::scatter<S, false, true>(m) : detail::scatter<S, false, false>(m);
+  });
 }
 
 }  // namespace talus

@@ -16,7 +16,8 @@ class ThroughBoth {
 
   explicit ThroughBoth(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
-  void place(const Bunch& bunch, const Pack (&x)[D]) noexcept
+  template <class S>
+  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
   {
     kernel_.evaluate(cell_, x, bunch.count, weights_);
     shares_ = shares_of<D>(cell_.slope, cell_.origin, x, bunch.count);
@@ -27,8 +28,8 @@ class ThroughBoth {
     sums_.clear(cell_.padded_size);
     tension_.clear();
   }
-  template <bool affine, bool loaded, bool forces>
-  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
+  template <bool affine, bool loaded, bool forces, class S>
+  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&)[D], const ParticleColumn<Mat<D>>& fields) noexcept
   {
     talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, Tension<D>{}, sums_);
     if constexpr (forces) {
@@ -52,8 +53,8 @@ class ThroughBoth {
     motion_.read(rows, cell_.nodes, cell_.padded_size);
     hats_ = hats_of(rows, cell_.nodes);
   }
-  template <bool with_change, bool with_gradient>
-  Seen<D> see(const Bunch& bunch) const noexcept
+  template <bool with_change, bool with_gradient, class S>
+  Seen<D> see(const BunchOf<S>& bunch) const noexcept
   {
     Seen<D> seen = talus::see<with_change, false>(motion_, weights_, bunch.count);
     if constexpr (with_gradient)

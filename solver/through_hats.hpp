@@ -60,8 +60,8 @@ struct CornerSums {
 };
 
 /// V sigma of four particles.
-template <int D>
-[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const Bunch& bunch, Pack* to) noexcept
+template <int D, class S>
+[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, Pack* to) noexcept
 {
   const Pack volume = bunch.load(particles.volume).of;
   const Sym3Of<Lanes> stress = bunch.load(particles.stress);
@@ -80,8 +80,8 @@ template <int D>
 using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
 
 /// Adds a bunch, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
-template <bool affine, bool loaded, bool forces, int D>
-[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const Bunch& bunch, const std::vector<Mat<D>>& fields,
+template <bool affine, bool loaded, bool forces, int D, class S>
+[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const ParticleColumn<Mat<D>>& fields,
                                            const Pack (&x)[D], const Shares<D>& shares, HatSums<D>& sums) noexcept
 {
   using Of = Deposit<D, affine, loaded, forces>;
@@ -190,11 +190,15 @@ class ThroughHats {
     for (std::size_t a = 0; a <= D; ++a)
       arms_[a] = kernel_.node_part().centre(cell_.nodes[a]) - cell_.origin;
   }
-  void place(const Bunch& bunch, const Pack (&x)[D]) noexcept { shares_ = shares_of<D>(cell_.dw, cell_.origin, x, bunch.count); }
+  template <class S>
+  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  {
+    shares_ = shares_of<D>(cell_.dw, cell_.origin, x, bunch.count);
+  }
 
   void clear() noexcept { sums_.clear(); }
-  template <bool affine, bool loaded, bool forces>
-  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&)[D], const std::vector<Mat<D>>& fields) noexcept
+  template <bool affine, bool loaded, bool forces, class S>
+  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&)[D], const ParticleColumn<Mat<D>>& fields) noexcept
   {
     Pack x[D]{};  // sum B c: the place where values are read is the one about which they are handed on
     for (int a = 0; a <= D; ++a)
@@ -209,8 +213,8 @@ class ThroughHats {
   }
 
   void read(const std::vector<HatMotion<D>>& hats) noexcept { motion_ = hats_of(hats, cell_.nodes); }
-  template <bool with_change, bool with_gradient>
-  Seen<D> see(const Bunch&) const noexcept
+  template <bool with_change, bool with_gradient, class S>
+  Seen<D> see(const BunchOf<S>&) const noexcept
   {
     Seen<D> seen;
     see_velocity<with_change>(motion_, shares_, seen);

@@ -144,11 +144,15 @@ class ThroughWeights {
 
   explicit ThroughWeights(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
-  void place(const Bunch& bunch, const Pack (&x)[D]) noexcept { kernel_.evaluate(cell_, x, bunch.count, weights_); }
+  template <class S>
+  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  {
+    kernel_.evaluate(cell_, x, bunch.count, weights_);
+  }
 
   void clear() noexcept { sums_.clear(cell_.padded_size); }
-  template <bool affine, bool loaded, bool forces>
-  void deposit(const Particles<D>& particles, const Bunch& bunch, const Pack (&x)[D], const std::vector<Mat<D>>& fields) noexcept
+  template <bool affine, bool loaded, bool forces, class S>
+  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&x)[D], const ParticleColumn<Mat<D>>& fields) noexcept
   {
     const bool exact = forces && pairs_force_with_slopes();
     const Tension<D> tension = forces && !exact ? tension_of(particles, bunch, weights_) : Tension<D>{};
@@ -163,8 +167,8 @@ class ThroughWeights {
   }
 
   void read(const std::vector<NodeMotion<D>>& nodes) noexcept { motion_.read(nodes, cell_.nodes, cell_.padded_size); }
-  template <bool with_change, bool with_gradient>
-  Seen<D> see(const Bunch& bunch) const noexcept
+  template <bool with_change, bool with_gradient, class S>
+  Seen<D> see(const BunchOf<S>& bunch) const noexcept
   {
     return talus::see<with_change, with_gradient>(motion_, weights_, bunch.count);
   }
@@ -181,14 +185,15 @@ class ThroughWeights {
     else
       return false;
   }
-  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const Bunch& bunch,
+  template <class S>
+  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const BunchOf<S>& bunch,
                            [[maybe_unused]] const Pack (&x)[D]) noexcept
   {
     if constexpr (HasSlopesOfValues<K, D>)
       for (int lane = 0; lane < bunch.count; ++lane) {
         alignas(64) Real slopes[D][K::max_nodes];
         kernel_.slopes_of_values(cell_, x, lane, weights_, slopes);
-        deposit_force(particles, bunch.p[lane], slopes, weights_.padded_size[lane], sums_);
+        deposit_force(particles, bunch, lane, slopes, weights_.padded_size[lane], sums_);
       }
   }
 

@@ -36,8 +36,8 @@ Lanes stress_power(const Sym3Of<Lanes>& a, const Eigen::Matrix<Lanes, D, D, Eige
   return power;
 }
 
-template <int D, class L>
-[[gnu::flatten]] void update_bunch(const Mesh<D>& mesh, Batch<L>& batch, const Bunch& bunch, Real dt, bool elastic,
+template <int D, class L, class S>
+[[gnu::flatten]] void update_bunch(const Mesh<D>& mesh, Batch<L>& batch, const BunchOf<S>& bunch, Real dt, bool elastic,
                                    const std::vector<Real>& averaged, Particles<D>& particles, Health& health, StressLanes& sums) noexcept
 {
   const auto rate = bunch.load(particles.L);
@@ -105,8 +105,10 @@ StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<cons
   StressLanes lanes;
   std::visit(
       [&](auto& batch) {
-        for_each_bunch(rows,
-                       [&](const Bunch& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, particles, health, lanes); });
+        in_numbers_of(particles, [&]<class S>(S) {
+          for_each_bunch<S>(
+              rows, [&](const BunchOf<S>& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, particles, health, lanes); });
+        });
       },
       material);
   StressSums sums = lanes.total();

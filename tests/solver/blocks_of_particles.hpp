@@ -35,12 +35,21 @@ void add_body(
       p.L.push_back(Mat<D>::Zero());
       p.F.push_back(Mat3::Identity());
       p.stress.push_back(Sym3::Zero());
-      p.volume0.push_back(m.mesh.volume(c) / per_cell);
-      p.mass.push_back(law.density * p.volume0.back());
+      const Real volume = m.mesh.volume(c) / per_cell;
+      p.volume0.push_back(volume);
+      p.mass.push_back(law.density * volume);
     }
   }
   m.bodies.push_back({name, begin, p.size(), {}});
   m.materials.push_back(make_any_batch(law, begin, p.size(), name));
+}
+
+/// Every row of a column, f(row) -> its value, in order.
+template <class Column, class F>
+void set_each(Column& column, F&& f)
+{
+  for (std::size_t p = 0; p < column.size(); ++p)
+    column.set(p, f(p));
 }
 
 /// Seeds the affine field too, so that a rigid or linear motion starts exact.
@@ -48,10 +57,10 @@ template <int D, Kernel<D> K>
 void set_velocity(Model<D, K>& m, const Mat<D>& A, const Vec<D>& b)
 {
   for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    m.particles.v[p] = A * m.particles.x[p] + b;
-    m.particles.L[p] = A;
+    m.particles.v.set(p, A * m.particles.x[p] + b);
+    m.particles.L.set(p, A);
     if (!m.particles.C.empty())
-      m.particles.C[p] = A;
+      m.particles.C.set(p, A);
   }
 }
 

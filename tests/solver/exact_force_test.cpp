@@ -29,9 +29,7 @@ Model<D, Umls<D>> stressed_block(UmlsGradient gradient)
   advance(m, 1e-12);
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(-1, 1);
-  for (auto& stress : m.particles.stress)
-    for (Index k = 0; k < 6; ++k)
-      stress[k] = number(random);
+  set_each(m.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
   scatter(m);
   sum_on_nodes(m);
   return m;
@@ -119,8 +117,7 @@ TYPED_TEST(ExactForceIn, KeepsTheMomentumOfAFreeBlock)
 {
   constexpr int D = TypeParam::D;
   auto m = stressed_block<D>(UmlsGradient::exact_force);
-  for (auto& stress : m.particles.stress)
-    stress.setZero();
+  m.particles.stress.assign(m.particles.stress.size(), Sym3::Zero());
   Mat<D> A = Mat<D>::Zero();
   A(0, 1) = -0.6;
   A(0, 0) = 0.3;

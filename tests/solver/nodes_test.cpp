@@ -60,7 +60,7 @@ void drag_across_a_vertex(Scheme scheme)
   const Vec<2> v(1, 0.4);
   m.particles.x[0] = m.mesh.node(vertex) - 0.02 * v;
   m.particles.cell[0] = m.locator(m.mesh, m.particles.x[0], none).value();
-  m.particles.v[0] = v;
+  m.particles.v.set(0, v);
   make_ready(m, false);
   for (int step = 0; step < 40; ++step)  // hits the vertex exactly after half of them
     advance(m, 1e-3);
@@ -111,8 +111,8 @@ TEST(Slaves, LendANodeWithoutMassTheMotionAroundIt)
   }
   make_ready(m, false);
   advance(m, 1e-4);
-  for (const auto& L : m.particles.L)
-    EXPECT_LT(L.norm(), 1e-11) << "all move alike, and nothing is strained";
+  for (std::size_t p = 0; p < m.particles.L.size(); ++p)
+    EXPECT_LT(m.particles.L[p].norm(), 1e-11) << "all move alike, and nothing is strained";
 }
 
 /// How far the bounces of a light block have strained it, alone or beside one a thousand times as dense that it never meets.

@@ -36,14 +36,15 @@ Model<S::D, typename S::K> ball()
   add_body<D>(m, "ball", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.4; });
   std::mt19937 random(1);
   std::uniform_real_distribution<Real> number(-1, 1);
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    Vec<D> v;
     for (int d = 0; d < D; ++d)
-      m.particles.x[p][d] += 1e-3 * number(random), m.particles.v[p][d] = number(random);
+      m.particles.x[p][d] += 1e-3 * number(random), v[d] = number(random);
+    m.particles.v.set(p, v);
+  }
   make_ready(m, false);
   advance(m, 1e-12);
-  for (auto& stress : m.particles.stress)
-    for (Index k = 0; k < 6; ++k)
-      stress[k] = number(random);
+  set_each(m.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
   return m;
 }
 
@@ -86,8 +87,7 @@ TYPED_TEST(ProjectedIn, MomentumIsScatteredByTheTransposeOfTheGather)
   scatter(m);
   sum_on_nodes(m);
   read_random_motion(m);
-  for (auto& velocity : m.particles.v)
-    velocity.setZero();
+  m.particles.v.assign(m.particles.v.size(), Vec<TypeParam::D>::Zero());
   gather(m, 0);  // flip: the increment, which is the velocity here
   Real nodes = 0, particles = 0, size = 0;
   for (std::size_t n = 0; n < m.nodes.sum.size(); ++n)
@@ -110,8 +110,8 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
     m.nodes.motion[static_cast<std::size_t>(n)].v = A * m.mesh.node(n) + Vec<D>::Ones();
   show_to_particles(m, 0);
   gather(m, 0);
-  for (const auto& L : m.particles.L)
-    ASSERT_LT((L - A).norm(), 1e-12);
+  for (std::size_t p = 0; p < m.particles.L.size(); ++p)
+    ASSERT_LT((m.particles.L[p] - A).norm(), 1e-12);
 }
 
 /// A film of particles on the floor, a fiftieth of a cell thick, that is pulled along it and has ends: the nodes above it have hardly
@@ -123,10 +123,10 @@ TEST(Projected, HoldsAFilmOnAWall)
   add_body<2>(m, "film", rubber(1e5, 0.3, 1000), 12, [](const Vec<2>& x) { return x[1] < 0.1 && x[0] > 0.25 && x[0] < 0.75; });
   const Real share = 0.02;
   for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    m.particles.v[p] = {0.1 * std::sin(12 * m.particles.x[p][0]), 0};
+    m.particles.v.set(p, {0.1 * std::sin(12 * m.particles.x[p][0]), 0});
     m.particles.x[p][1] *= share;
-    m.particles.volume0[p] *= share;
-    m.particles.mass[p] *= share;
+    m.particles.volume0.set(p, share * m.particles.volume0[p]);
+    m.particles.mass.set(p, share * m.particles.mass[p]);
   }
   close_off(m, "y_min", WallKind::roller);
   m.loads.gravity.acceleration = {0, -10};
@@ -149,8 +149,7 @@ void slide_on_a_rough_floor(Scheme scheme)
   Model<2, Projected<2>> m(unit_box<2>(8, 0.2), options);
   m.transfer = {.scheme = scheme, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
   add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 6, [](const Vec<2>& x) { return x[0] < 0.6 && x[1] < 0.4; });
-  for (auto& v : m.particles.v)
-    v = {2, -0.5};
+  m.particles.v.assign(m.particles.v.size(), Vec<2>{2, -0.5});
   const Real friction = 0.4;
   close_off(m, "y_min", WallKind::friction, friction);
   m.loads.gravity.acceleration = {1, -10};
@@ -192,8 +191,7 @@ Real motion_left(Index cells, int steps)
   add_body<2>(m, "dust", rubber(1e-9, 0, 1000), 6, [](const Vec<2>&) { return true; });
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(-1e-9, 1e-9);
-  for (auto& v : m.particles.v)
-    v = {number(random), number(random)};
+  set_each(m.particles.v, [&](std::size_t) { return Vec<2>{number(random), number(random)}; });
   make_ready(m, false);
   const Real start = totals(m.particles).kinetic;
   for (int step = 0; step < steps; ++step)

@@ -12,6 +12,7 @@ namespace {
 
 using testing::add_body;
 using testing::rubber;
+using testing::set_each;
 using testing::unit_box;
 
 template <int D, class L>
@@ -65,8 +66,7 @@ void averages_volumes()
   constexpr Real dt = 1e-3;
 
   const Mat<D> uniform = -5 * Mat<D>::Identity();
-  for (auto& L : m.particles.L)
-    L = uniform;
+  m.particles.L.assign(m.particles.L.size(), uniform);
   average_volume(m.mesh, m.order, 0, dt, m.particles, sums, averaged);
   const Real ratio = (Mat<D>::Identity() + dt * uniform).determinant();
   for (const Real J : averaged)
@@ -76,7 +76,7 @@ void averages_volumes()
   std::uniform_real_distribution<Real> any_rate(-20, 20);
   Real volume = 0, kept = 0, spread = 0, spread_averaged = 0;
   for (std::size_t p = 0; p < averaged.size(); ++p)
-    m.particles.L[p] = any_rate(bits) * Mat<D>::Identity();
+    m.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
   average_volume(m.mesh, m.order, 0, dt, m.particles, sums, averaged);
   for (std::size_t p = 0; p < averaged.size(); ++p) {
     const Real own = (Mat<D>::Identity() + dt * m.particles.L[p]).determinant();
@@ -101,8 +101,7 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
     std::mt19937 bits(2);
     std::uniform_real_distribution<Real> any_rate(-10, 10);
     for (int step = 0; step < 5; ++step) {
-      for (auto& L : m.particles.L)
-        L = Mat<2>::NullaryExpr([&] { return any_rate(bits); });
+      set_each(m.particles.L, [&](std::size_t) { return Mat<2>(Mat<2>::NullaryExpr([&] { return any_rate(bits); })); });
       average_volume(m.mesh, m.order, 0, 1e-3, m.particles, *m.stars, m.averaged);
       update_all(m, 1e-3);
     }
@@ -125,7 +124,7 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
     auto m = block<2>(rubber(1e6, 0.3, 1000), 2);
     make_ready(m, false);
     for (std::size_t p = 0; p < m.particles.L.size(); ++p)
-      m.particles.L[p] = (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}};
+      m.particles.L.set(p, (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}});
     return m;
   };
   const auto update = [](auto& m, std::span<const Index> rows) {
@@ -162,8 +161,7 @@ TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
   constexpr Real dt = 1e-4, rate = 3;
   for (const Real sign : {-1.0, -1.0, 1.0, 0.0}) {
     for (auto* m : {&plain, &viscous}) {
-      for (auto& L : m->particles.L)
-        L = Mat<2>{{sign * rate, 0}, {0, 0}};
+      m->particles.L.assign(m->particles.L.size(), Mat<2>{{sign * rate, 0}, {0, 0}});
       update_all(*m, dt);
     }
     const Real h = viscous.mesh.altitude(viscous.particles.cell[0]);
@@ -179,8 +177,7 @@ TEST(BulkViscosity, ShortensTheStep)
 {
   auto m = block<2>(rubber(1e6, 0, 1000), 2, 0);
   make_ready(m, false);
-  for (auto& L : m.particles.L)
-    L = -Mat<2>::Identity();
+  m.particles.L.assign(m.particles.L.size(), -Mat<2>::Identity());
   const Real without = shortest_crossing(m.mesh, m.materials, m.particles);
   std::visit([](auto& batch) { batch.viscosity = BulkViscosity{.linear = 1, .quadratic = 0}; }, m.materials[0]);
   const Real with = shortest_crossing(m.mesh, m.materials, m.particles);
