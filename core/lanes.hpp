@@ -1,6 +1,10 @@
 #pragma once
 // Packs of numbers: sums over a stencil run over whole packs, so that they use the vector unit and need no scalar tail; and numbers of
 // several particles that compute like one, for laws.
+#ifdef __AVX__
+#include <immintrin.h>
+#endif
+
 #include <Eigen/Core>
 #include <cmath>
 #include <cstring>
@@ -38,15 +42,17 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 /// Four numbers at any address, kept in double or in single precision.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
-using LooseSinglePack = float __attribute__((vector_size(pack_size * sizeof(float)), aligned(sizeof(float)), may_alias));
-[[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept
-{
-  return __builtin_convertvector(*reinterpret_cast<const LooseSinglePack*>(from), Pack);
-}
+#ifdef __AVX__  // the compiler converts in halves, by way of memory
+[[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept { return _mm256_cvtps_pd(_mm_loadu_ps(from)); }
+[[gnu::always_inline]] inline void store_loose(float* to, const Pack& pack) noexcept { _mm_storeu_ps(to, _mm256_cvtpd_ps(pack)); }
+#else
+[[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept { return Pack{from[0], from[1], from[2], from[3]}; }
 [[gnu::always_inline]] inline void store_loose(float* to, const Pack& pack) noexcept
 {
-  *reinterpret_cast<LooseSinglePack*>(to) = __builtin_convertvector(pack, LooseSinglePack);
+  for (int i = 0; i < pack_size; ++i)
+    to[i] = static_cast<float>(pack[i]);
 }
+#endif
 /// n consecutive numbers of four rows -> one pack per number, each lane a row; and back, the first `count` rows.  N is double or float.
 template <int n, class N>
 [[gnu::always_inline]] inline void load_rows(const N* const (&row)[pack_size], Pack* to) noexcept
