@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/expression.hpp"
+#include "core/parallel.hpp"
 #include "mesh/quadrature.hpp"
 
 namespace talus {
@@ -26,8 +27,7 @@ class Seeder {
       return;
     const Index begin = seeds_.particles.size();
     const Real density = std::visit([](const auto& law) { return law.density; }, material->law);
-    for (const Index c : *cells)
-      fill(c, *points, spec, density);
+    fill(*cells, *points, spec, density);
     const Index end = seeds_.particles.size();
     if (begin == end)
       complaints_.add(spec.where, "",
@@ -46,13 +46,7 @@ class Seeder {
     set_velocity(spec, begin, end);
   }
 
-  Seeds<D> take()
-  {
-    Particles<D>& p = seeds_.particles;
-    p.F.assign(p.id.size(), Mat3::Identity());
-    p.stress.assign(p.id.size(), Sym3::Zero());
-    return std::move(seeds_);
-  }
+  Seeds<D> take() { return std::move(seeds_); }
 
  private:
   void complain_of_count(const BodySpec& spec)
@@ -86,25 +80,50 @@ class Seeder {
     return found == scene_.materials.end() ? nullptr : &*found;  // the reader has complained
   }
 
-  void fill(Index cell, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density)
+  /// f(x) for the particles of a cell that lie in the shape.
+  template <class F>
+  void for_each_place(Index cell, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, F&& f) const
   {
-    Particles<D>& p = seeds_.particles;
     const auto corners = mesh_.corners(cell);
-    const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
     for (const auto& point : points) {
       Vec<D> x = Vec<D>::Zero();
       for (std::size_t a = 0; a <= D; ++a)
         x += point[a] * corners[a];
-      if (spec.shape && !contains(*spec.shape, std::span<const Real>(x.data(), D)))
-        continue;
-      p.id.push_back(p.size());
-      p.cell.push_back(cell);
-      p.x.push_back(x);
-      p.v.push_back(Vec<D>::Zero());
-      p.L.push_back(Mat<D>::Zero());
-      p.volume0.push_back(volume);
-      p.mass.push_back(density * volume);
+      if (!spec.shape || contains(*spec.shape, std::span<const Real>(x.data(), D)))
+        f(x);
     }
+  }
+
+  /// Rows for the particles of cells, behind those there are.
+  void fill(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density)
+  {
+    Particles<D>& p = seeds_.particles;
+    const auto n = static_cast<Index>(cells.size());
+    std::vector<Index> first(cells.size() + 1, 0);
+    parallel_for(n, [&](Index i) { for_each_place(cells[i], points, spec, [&](const Vec<D>&) { ++first[i + 1]; }); });
+    first[0] = p.size();
+    for (Index i = 0; i < n; ++i)
+      first[i + 1] += first[i];
+    const auto all = static_cast<std::size_t>(first[n]);
+    const auto make_room = [&](auto&... columns) { (columns.resize(all), ...); };
+    make_room(p.id, p.cell, p.x, p.v, p.L, p.F, p.stress, p.volume0, p.mass);
+    parallel_for(n, [&](Index i) {
+      const Index cell = cells[i];
+      const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
+      auto row = static_cast<std::size_t>(first[i]);
+      for_each_place(cell, points, spec, [&](const Vec<D>& x) {
+        p.id[row] = static_cast<std::int64_t>(row);
+        p.cell[row] = cell;
+        p.x[row] = x;
+        p.v.set(row, Vec<D>::Zero());
+        p.L.set(row, Mat<D>::Zero());
+        p.F.set(row, Mat3::Identity());
+        p.stress.set(row, Sym3::Zero());
+        p.volume0.set(row, volume);
+        p.mass.set(row, density * volume);
+        ++row;
+      });
+    });
   }
 
   /// Velocity and its gradient: without the latter, affine schemes would begin with particles that do not turn.

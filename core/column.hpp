@@ -5,8 +5,8 @@
 #include <string_view>
 #include <type_traits>
 #include <utility>
-#include <vector>
 
+#include "core/pages.hpp"
 #include "core/types.hpp"
 
 namespace talus {
@@ -125,9 +125,9 @@ class ParticleColumn {
 
  private:
   template <class From, class F>
-  static auto converted(std::vector<From>& from, F&& f)
+  static auto converted(Rows<From>& from, F&& f)
   {
-    std::vector<decltype(f(from.front()))> to;
+    Rows<decltype(f(from.front()))> to;
     to.reserve(from.size());
     for (const From& row : from)
       to.push_back(f(row));
@@ -135,8 +135,8 @@ class ParticleColumn {
     return to;
   }
 
-  std::vector<Value> full_;
-  std::vector<Row<float>> single_;
+  Rows<Value> full_;
+  Rows<Row<float>> single_;
   bool is_single_ = false;
 };
 

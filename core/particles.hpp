@@ -25,7 +25,7 @@ template <int D>
 struct Particles {
   std::vector<std::int64_t> id;            ///< survives sorting and deletion
   std::vector<Index> cell;                 ///< the cell that holds x
-  std::vector<Vec<D>> x;                   ///< position [m]
+  Rows<Vec<D>> x;                          ///< position [m]
   ParticleColumn<Vec<D>> v;                ///< velocity [m/s]
   ParticleColumn<Mat<D>> L;                ///< velocity gradient [1/s]
   ParticleColumn<Mat3, Rest::identity> F;  ///< deformation gradient, plane strain in 2-D
@@ -34,7 +34,7 @@ struct Particles {
   ParticleColumn<Real> volume;             ///< det F times volume0
 
   ParticleColumn<Mat<D>> C;           ///< affine field, where it is not L [1/s]
-  std::vector<Vec<D>> x0;             ///< where displacement counts from [m]
+  Rows<Vec<D>> x0;                    ///< where displacement counts from [m]
   ParticleColumn<Vec<D>> applied;     ///< force of loads other than gravity [N]
   std::vector<Real> applied_at;       ///< applied . x before the move [J]
   ParticleColumn<Real> volume_ratio;  ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)

@@ -49,7 +49,7 @@ std::vector<FacetNodes<D>> boundary_of(const MeshData<D>& data, const FacetMatch
 template <int D>
 FacetMatch<D> match_of(const MeshData<D>& data)
 {
-  return match_facets<D>(data.cells, static_cast<Index>(data.nodes.size()));
+  return match_facets<D>(data.cells, cells_at_nodes<D>(data.cells, static_cast<Index>(data.nodes.size())));
 }
 
 template <int D>

@@ -22,12 +22,12 @@ struct Batch {
   L law{};
   typename L::Constants constants{};  ///< of `law`: to be renewed when its parameters change
   Index begin{}, end{};
-  std::vector<State> history{};
+  Rows<State> history{};
   Where where{};
   std::string name{};
   std::optional<BulkViscosity> viscosity{};
   bool averages_volume = false;  ///< F-bar through nodes
-  std::vector<State> scratch{};  ///< of permute()
+  Rows<State> scratch{};         ///< of permute()
 
   Index size() const noexcept { return end - begin; }
   /// Cauchy stress [Pa] of particle i at the end of the step; changes its history.

@@ -74,61 +74,6 @@ std::vector<Index> hilbert_order(std::span<const Vec<D>> nodes, std::span<const 
 }
 
 template <int D>
-FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, Index n_nodes)
-{
-  // Facets are thrown into the bucket of their lowest node; the few in a bucket are sorted.
-  struct Claim {
-    std::array<Index, D - 1> rest;
-    Facet facet;
-  };
-  const Index n_cells = static_cast<Index>(cells.size());
-  const auto for_each_claim = [&](auto&& f) {
-    for (Index c = 0; c < n_cells; ++c)
-      for (Index a = 0; a <= D; ++a) {
-        std::array<Index, D> nodes;
-        for (int i = 0; i < D; ++i)
-          nodes[i] = cells[c][i < a ? i : i + 1];
-        std::sort(nodes.begin(), nodes.end());
-        f(nodes, Facet{c, a});
-      }
-  };
-  std::vector<Index> begin(static_cast<std::size_t>(n_nodes) + 1, 0);
-  for_each_claim([&](const auto& nodes, Facet) { ++begin[nodes[0] + 1]; });
-  for (Index n = 0; n < n_nodes; ++n)
-    begin[n + 1] += begin[n];
-  std::vector<Claim> claims(cells.size() * (D + 1));
-  std::vector<Index> next(begin.begin(), begin.end() - 1);
-  for_each_claim([&](const auto& nodes, Facet facet) {
-    Claim& claim = claims[next[nodes[0]]++];
-    std::copy(nodes.begin() + 1, nodes.end(), claim.rest.begin());
-    claim.facet = facet;
-  });
-
-  FacetMatch<D> match;
-  match.neighbours.resize(cells.size());
-  for (auto& row : match.neighbours)
-    row.fill(none);
-  for (Index n = 0; n < n_nodes; ++n) {
-    const auto first = claims.begin() + begin[n], last = claims.begin() + begin[n + 1];
-    std::sort(first, last, [](const Claim& a, const Claim& b) { return std::tie(a.rest, a.facet.cell) < std::tie(b.rest, b.facet.cell); });
-    for (auto claim = first; claim != last;) {
-      const auto end = std::find_if(claim, last, [&](const Claim& other) { return other.rest != claim->rest; });
-      if (end - claim > 2) {
-        match.crowded = {claim[0].facet, claim[1].facet, claim[2].facet};
-        return match;
-      }
-      if (end - claim == 2) {
-        const Facet a = claim[0].facet, b = claim[1].facet;
-        match.neighbours[a.cell][a.local] = b.cell;
-        match.neighbours[b.cell][b.local] = a.cell;
-      }
-      claim = end;
-    }
-  }
-  return match;
-}
-
-template <int D>
 Csr cells_at_nodes(std::span<const std::array<Index, D + 1>> cells, Index n_nodes)
 {
   Csr at;
@@ -147,29 +92,88 @@ Csr cells_at_nodes(std::span<const std::array<Index, D + 1>> cells, Index n_node
 }
 
 template <int D>
+FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
+{
+  // Every facet is looked at from its lowest node, beside the few others of that node.
+  struct Claim {
+    std::array<Index, D - 1> rest;
+    Facet facet;
+  };
+  FacetMatch<D> match;
+  match.neighbours.resize(cells.size());
+  for (auto& row : match.neighbours)
+    row.fill(none);
+  // Enters the neighbours across facets whose lowest node is n; if three cells have one facet, answers them.
+  using Three = std::array<Facet, 3>;
+  const auto match_from = [&](Index n) -> std::optional<Three> {
+    static thread_local std::vector<Claim> claims;
+    claims.clear();
+    for (const Index c : cells_of_node[n])
+      for (Index a = 0; a <= D; ++a) {
+        std::array<Index, D> nodes;
+        for (int i = 0; i < D; ++i)
+          nodes[i] = cells[c][i < a ? i : i + 1];
+        std::sort(nodes.begin(), nodes.end());
+        if (nodes[0] != n)
+          continue;
+        Claim& claim = claims.emplace_back();
+        std::copy(nodes.begin() + 1, nodes.end(), claim.rest.begin());
+        claim.facet = Facet{c, a};
+      }
+    std::sort(claims.begin(), claims.end(),
+              [](const Claim& a, const Claim& b) { return std::tie(a.rest, a.facet.cell) < std::tie(b.rest, b.facet.cell); });
+    for (auto claim = claims.begin(); claim != claims.end();) {
+      const auto end = std::find_if(claim, claims.end(), [&](const Claim& other) { return other.rest != claim->rest; });
+      if (end - claim > 2)
+        return Three{claim[0].facet, claim[1].facet, claim[2].facet};
+      if (end - claim == 2) {
+        const Facet a = claim[0].facet, b = claim[1].facet;
+        match.neighbours[a.cell][a.local] = b.cell;
+        match.neighbours[b.cell][b.local] = a.cell;
+      }
+      claim = end;
+    }
+    return std::nullopt;
+  };
+  const Index n_nodes = cells_of_node.size();
+  const auto first = static_cast<Index>(parallel_min(n_nodes, n_nodes, [&](Index n) { return match_from(n) ? n : n_nodes; }));
+  if (first < n_nodes)
+    match.crowded = match_from(first);
+  return match;
+}
+
+template <int D>
 Csr nodes_around(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
 {
   const Index n_nodes = cells_of_node.size();
-  Csr around;
-  around.begin.reserve(static_cast<std::size_t>(n_nodes) + 1);
-  around.item.reserve(static_cast<std::size_t>(n_nodes) * (D == 2 ? 7 : 15));  // typical size of a ring
-  std::vector<Index> seen_by(n_nodes, none);
-  for (Index n = 0; n < n_nodes; ++n) {
-    const std::size_t first = around.item.size();
+  const auto ring_of = [&](Index n, std::vector<Index>& ring) {
+    ring.clear();
     for (const Index c : cells_of_node[n])
-      for (const Index m : cells[c])
-        if (std::exchange(seen_by[m], n) != n)
-          around.item.push_back(m);
-    std::sort(around.item.begin() + static_cast<std::ptrdiff_t>(first), around.item.end());
-    around.begin.push_back(static_cast<Index>(around.item.size()));
-  }
+      ring.insert(ring.end(), cells[c].begin(), cells[c].end());
+    std::sort(ring.begin(), ring.end());
+    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
+  };
+  static thread_local std::vector<Index> ring;
+  Csr around;
+  around.begin.assign(static_cast<std::size_t>(n_nodes) + 1, 0);
+  parallel_for(n_nodes, [&](Index n) {
+    ring_of(n, ring);
+    around.begin[n + 1] = static_cast<Index>(ring.size());
+  });
+  for (Index n = 0; n < n_nodes; ++n)
+    around.begin[n + 1] += around.begin[n];
+  around.item.resize(static_cast<std::size_t>(around.begin.back()));
+  parallel_for(n_nodes, [&](Index n) {
+    ring_of(n, ring);
+    std::copy(ring.begin(), ring.end(), around.item.begin() + around.begin[n]);
+  });
   return around;
 }
 
 template std::vector<Index> hilbert_order<2>(std::span<const Vec<2>>, std::span<const std::array<Index, 3>>);
 template std::vector<Index> hilbert_order<3>(std::span<const Vec<3>>, std::span<const std::array<Index, 4>>);
-template FacetMatch<2> match_facets<2>(std::span<const std::array<Index, 3>>, Index);
-template FacetMatch<3> match_facets<3>(std::span<const std::array<Index, 4>>, Index);
+template FacetMatch<2> match_facets<2>(std::span<const std::array<Index, 3>>, const Csr&);
+template FacetMatch<3> match_facets<3>(std::span<const std::array<Index, 4>>, const Csr&);
 template Csr cells_at_nodes<2>(std::span<const std::array<Index, 3>>, Index);
 template Csr cells_at_nodes<3>(std::span<const std::array<Index, 4>>, Index);
 template Csr nodes_around<2>(std::span<const std::array<Index, 3>>, const Csr&);

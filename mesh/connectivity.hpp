@@ -12,17 +12,17 @@ namespace talus {
 template <int D>
 std::vector<Index> hilbert_order(std::span<const Vec<D>> nodes, std::span<const std::array<Index, D + 1>> cells);
 
+/// Cells at each node, ascending.
+template <int D>
+Csr cells_at_nodes(std::span<const std::array<Index, D + 1>> cells, Index n_nodes);
+
 template <int D>
 struct FacetMatch {
   std::vector<std::array<Index, D + 1>> neighbours;  ///< cell across the facet opposite each local node, or `none`
   std::optional<std::array<Facet, 3>> crowded;       ///< a facet that more than two cells claim; `neighbours` is then incomplete
 };
 template <int D>
-FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, Index n_nodes);
-
-/// Cells at each node, ascending.
-template <int D>
-Csr cells_at_nodes(std::span<const std::array<Index, D + 1>> cells, Index n_nodes);
+FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node);
 
 /// Nodes that share a cell with each node, itself included, ascending.
 template <int D>

@@ -81,12 +81,12 @@ Mesh<D>::Mesh(MeshData<D> data)
   const std::vector<Index> old_nodes = take_cells(data, old_cells);
   const Renumbered<D> named{cells_, nodes_, old_cells, old_nodes};
 
-  FacetMatch<D> match = match_facets<D>(cells_, n_nodes());
+  cells_of_node_ = cells_at_nodes<D>(cells_, n_nodes());
+  FacetMatch<D> match = match_facets<D>(cells_, cells_of_node_);
   if (match.crowded)
     refuse_crowded_facet(named, *match.crowded);
   check_overlap<D>(named, match.neighbours);
   neighbours_ = std::move(match.neighbours);
-  cells_of_node_ = cells_at_nodes<D>(cells_, n_nodes());
   ring_of_node_ = nodes_around<D>(cells_, cells_of_node_);
 
   find_boundary();

@@ -51,7 +51,7 @@ std::vector<std::vector<Vec<D>>> boundary_normals(const MeshData<D>& data)
 {
   constexpr Real independent = 1e-6;  // sine of the angle between planes that count as two
   std::vector<std::vector<Vec<D>>> normals(data.nodes.size());
-  const FacetMatch<D> match = match_facets<D>(data.cells, static_cast<Index>(data.nodes.size()));
+  const FacetMatch<D> match = match_facets<D>(data.cells, cells_at_nodes<D>(data.cells, static_cast<Index>(data.nodes.size())));
   for (Index c = 0; c < static_cast<Index>(data.cells.size()); ++c)
     for (int a = 0; a <= D; ++a) {
       if (match.neighbours[c][a] != none)

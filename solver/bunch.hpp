@@ -45,13 +45,13 @@ struct BunchOf {
     else
       store(value, column.template rows<S>());
   }
-  template <class Row>
-  [[gnu::always_inline]] auto load(const std::vector<Row>& column) const noexcept
+  template <class Row, class Allocator>
+  [[gnu::always_inline]] auto load(const std::vector<Row, Allocator>& column) const noexcept
   {
     return load(column.data());
   }
-  template <class Row>
-  [[gnu::always_inline]] void store(const In<Lanes, Row>& value, std::vector<Row>& column) const noexcept
+  template <class Row, class Allocator>
+  [[gnu::always_inline]] void store(const In<Lanes, Row>& value, std::vector<Row, Allocator>& column) const noexcept
   {
     store(value, column.data());
   }
@@ -119,7 +119,7 @@ void for_each_bunch(std::span<const Index> rows, F&& f)
 }
 /// f(bunch, x) for the particles of a run, four at a time.
 template <class S, int D, class F>
-void for_each_placed_bunch(std::span<const Index> run, const std::vector<Vec<D>>& places, F&& f)
+void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
 {
   for_each_bunch<S>(run, [&](const BunchOf<S>& bunch) {
     Pack x[D];

@@ -71,7 +71,7 @@ Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
     }
   }
   for (const auto& load : loads.of_place) {
-    const std::vector<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
+    const Rows<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
     for (std::size_t p = 0; p < particles.applied.size(); ++p)
       add(p, ramp * particles.mass[p] * load.acceleration(place[p], time));
   }

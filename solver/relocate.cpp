@@ -19,8 +19,8 @@ constexpr Real inset = 1e-6;
 std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 /// column[i] <- column[order[i]] by way of `spare`, which is kept: room for one column.
-template <class T>
-void permute(std::vector<T>& column, std::span<const Index> order, std::vector<std::byte>& spare)
+template <class T, class Allocator>
+void permute(std::vector<T, Allocator>& column, std::span<const Index> order, std::vector<std::byte>& spare)
 {
   if (column.empty())
     return;
