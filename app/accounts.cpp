@@ -34,9 +34,9 @@ Vec<D> outer_force(const Frame<D>& frame)
 template <int D>
 void Accounts<D>::see(const Frame<D>& frame, Moment moment)
 {
-  const Totals<D> now = totals(frame.particles);
   if (moment == Moment::stage_begins) {
     if (!begun_) {
+      const Totals<D> now = totals(frame.particles);
       kinetic_begin_ = now.kinetic;
       plastic_begin_ = frame.energy.plastic_start;
       momentum_start_ = now.momentum;
@@ -45,7 +45,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
     } else {
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
       before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
-      transfer_before_ += stage_.transfer(kinetic_last_);
+      transfer_before_ += stage_.transfer(kinetic_end_);
       taken_out_before_ += taken_out_;
     }
     begun_ = true;
@@ -57,10 +57,10 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
     loads_impulse_ += impulse;
     loads_impulse_size_ += impulse.norm();
   }
-  if (moment == Moment::stage_done)
-    taken_out_ = kinetic_last_ - now.kinetic;
-  else
-    kinetic_last_ = now.kinetic;
+  if (moment == Moment::stage_done) {
+    taken_out_ = frame.energy.set_to_rest;
+    kinetic_end_ = totals(frame.particles).kinetic + taken_out_;
+  }
   stage_ = frame.energy;
 }
 

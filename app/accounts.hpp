@@ -35,7 +35,7 @@ class Accounts {
  private:
   EnergyLedger before_;  // stages that are over, their kinetic_start and plastic_start unused
   Real kinetic_begin_ = 0, plastic_begin_ = 0, transfer_before_ = 0;
-  Real kinetic_last_ = 0, taken_out_ = 0, taken_out_before_ = 0;
+  Real kinetic_end_ = 0, taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;
   bool begun_ = false, damped_ = false;
   Vec<D> momentum_start_ = Vec<D>::Zero(), loads_impulse_ = Vec<D>::Zero();

@@ -15,6 +15,7 @@ struct EnergyLedger {
   Real nodes{};                           ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
   Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
+  Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
 
   /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles did not get.
   Real transfer(Real kinetic_now) const noexcept { return nodes - (kinetic_now - kinetic_start); }

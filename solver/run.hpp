@@ -132,6 +132,7 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
                     m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "",
                     stage.duration, m.residual, *stage.residual));
   if (stage.residual) {
+    m.energy.set_to_rest = kinetic;
     m.particles.v.assign(m.particles.v.size(), Vec<D>::Zero());
     for (auto* affine : {&m.particles.L, &m.particles.C})
       affine->assign(affine->size(), Mat<D>::Zero());

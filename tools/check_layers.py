@@ -25,7 +25,7 @@ THIRD_PARTY = [
     ("Eigen/*", ["*"]),
     ("fmt/*", ["*"]),
     ("omp.h", ["core/parallel.hpp", "core/parallel.cpp"]),
-    ("experimental/simd", ["core/lanes.hpp"]),
+    ("immintrin.h", ["core/lanes.hpp"]),
     ("yaml-cpp/*", ["io/reader.cpp"]),
     ("gmsh.h*", ["io/gmsh_*.cpp"]),
     ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),

@@ -1,0 +1,73 @@
+"""What single precision costs: every number of two verification runs, one in double and one in single, side by side.
+
+Usage: precision.py DOUBLE/verify.json SINGLE/verify.json [--write-docs]      the table goes to the terminal, or into docs/precision.md
+"""
+import argparse
+import json
+import pathlib
+
+from lab import ROOT
+
+PAGE = ROOT / "docs" / "precision.md"
+BEGIN, END = "<!-- table: begin, written by benchmarks/precision.py -->", "<!-- table: end -->"
+STEPS = (1e-6, 1e-4, 1e-2)  # relative changes that are counted
+NOTHING = 1e-9  # errors and drifts below this are rounding in either precision
+
+
+def numbers(path):
+    """{(case, metric): record} of a verification run."""
+    document = json.loads(pathlib.Path(path).read_text(encoding="utf-8"))
+    return {(record["case"], record["metric"]): record for record in document["results"]}
+
+
+def change(double, single):
+    """Relative change of a number; None where there is no number in either, 1 where there is in one."""
+    a, b = double["value"], single["value"] if single else None
+    if a is None and b is None:
+        return None
+    if a is None or b is None:
+        return 1.0
+    size = max(abs(a), abs(b), abs(double["reference"] or 0) if isinstance(double["reference"], (int, float)) else 0)
+    return 0.0 if size < NOTHING else abs(a - b) / size
+
+
+def rows(double, single):
+    """A row of the table for every case: what changed, by how much, and whether a verdict did."""
+    table = []
+    for case in dict.fromkeys(case for case, _ in double):
+        changes = {metric: change(record, single.get((case, metric))) for (of, metric), record in double.items() if of == case}
+        changes = {metric: value for metric, value in changes.items() if value is not None}
+        turned = [f"{metric} {'fails' if record['pass'] else 'passes'}" for (of, metric), record in double.items()
+                  if of == case and (case, metric) in single and record["pass"] is not None and single[(case, metric)]["pass"] != record["pass"]]
+        if changes:
+            worst = max(changes, key=changes.get)
+            counts = [sum(1 for value in changes.values() if value > step) for step in STEPS]
+            table.append([case, len(changes), *counts, f"{changes[worst]:.1e}", worst, "; ".join(turned) or "-"])
+    return table
+
+
+def markdown(table):
+    """The table, and its sum."""
+    heads = ["case", "numbers", *(f"changed by more than {step:.0e}".replace("e-0", "e-") for step in STEPS), "most", "of", "verdicts that changed"]
+    total = ["**all**", *(sum(row[k] for row in table) for k in range(1, 2 + len(STEPS))), "", "", ""]
+    lines = [heads, ["---"] * len(heads), *table, total]
+    return "\n".join("| " + " | ".join(str(entry) for entry in line) + " |" for line in lines)
+
+
+def main():
+    options = argparse.ArgumentParser(description="What single precision costs.")
+    options.add_argument("double", type=pathlib.Path)
+    options.add_argument("single", type=pathlib.Path)
+    options.add_argument("--write-docs", action="store_true", help="put the table into docs/precision.md")
+    given = options.parse_args()
+    text = markdown(rows(numbers(given.double), numbers(given.single)))
+    if not given.write_docs:
+        print(text)
+        return
+    page = PAGE.read_text(encoding="utf-8")
+    head, rest = page.split(BEGIN)
+    PAGE.write_text(f"{head}{BEGIN}\n{text}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
