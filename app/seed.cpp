@@ -119,7 +119,7 @@ class Seeder {
         p.L.set(row, Mat<D>::Zero());
         p.F.set(row, Mat3::Identity());
         p.stress.set(row, Sym3::Zero());
-        p.volume0.set(row, volume);
+        p.volume0[row] = volume;
         p.mass.set(row, density * volume);
         ++row;
       });

@@ -32,24 +32,23 @@ def change(double, single):
 
 
 def rows(double, single):
-    """A row of the table for every case: what changed, by how much, and whether a verdict did."""
+    """A row of the table for every case: what changed, by how much, and how many verdicts did."""
     table = []
     for case in dict.fromkeys(case for case, _ in double):
         changes = {metric: change(record, single.get((case, metric))) for (of, metric), record in double.items() if of == case}
         changes = {metric: value for metric, value in changes.items() if value is not None}
-        turned = [f"{metric} {'fails' if record['pass'] else 'passes'}" for (of, metric), record in double.items()
-                  if of == case and (case, metric) in single and record["pass"] is not None and single[(case, metric)]["pass"] != record["pass"]]
+        turned = sum(1 for (of, metric), record in double.items() if of == case and record["pass"] and not single.get((case, metric), {}).get("pass"))
         if changes:
             worst = max(changes, key=changes.get)
             counts = [sum(1 for value in changes.values() if value > step) for step in STEPS]
-            table.append([case, len(changes), *counts, f"{changes[worst]:.1e}", worst, "; ".join(turned) or "-"])
+            table.append([case, len(changes), *counts, f"{changes[worst]:.0e}", worst, turned])
     return table
 
 
 def markdown(table):
     """The table, and its sum."""
-    heads = ["case", "numbers", *(f"changed by more than {step:.0e}".replace("e-0", "e-") for step in STEPS), "most", "of", "verdicts that changed"]
-    total = ["**all**", *(sum(row[k] for row in table) for k in range(1, 2 + len(STEPS))), "", "", ""]
+    heads = ["case", "numbers", *(f"changed by more than {step:.0e}".replace("e-0", "e-") for step in STEPS), "most", "of", "judged numbers that fail in single only"]
+    total = ["**all**", *(sum(row[k] for row in table) for k in range(1, 2 + len(STEPS))), "", "", sum(row[-1] for row in table)]
     lines = [heads, ["---"] * len(heads), *table, total]
     return "\n".join("| " + " | ".join(str(entry) for entry in line) + " |" for line in lines)
 

@@ -18,9 +18,9 @@ struct Body {
   Index size() const noexcept { return end - begin; }
 };
 
-/// All particles.  The columns in the second group are empty unless the scene needs them.  Places stay in double whatever the rest is kept
-/// in: a slow particle moves less in a step than a coordinate can tell in single precision.  F is kept as its difference to I then, for the
-/// same reason.
+/// All particles.  The columns in the second group are empty unless the scene needs them.  Places and volumes stay in double whatever the
+/// rest is kept in: a slow particle moves less in a step than a coordinate can tell in single precision, and a stiff volume answers a rounding
+/// with pressure.  F is kept as its difference to I then, for the same reasons.
 template <int D>
 struct Particles {
   std::vector<std::int64_t> id;            ///< survives sorting and deletion
@@ -30,15 +30,16 @@ struct Particles {
   ParticleColumn<Mat<D>> L;                ///< velocity gradient [1/s]
   ParticleColumn<Mat3, Rest::identity> F;  ///< deformation gradient, plane strain in 2-D
   ParticleColumn<Sym3> stress;             ///< Cauchy stress [Pa], tension positive
-  ParticleColumn<Real> mass, volume0;      ///< mass [kg], volume at the start [m^D, unit thickness in 2-D]
-  ParticleColumn<Real> volume;             ///< det F times volume0
+  ParticleColumn<Real> mass;               ///< [kg]
+  Rows<Real> volume0;                      ///< volume at the start [m^D, unit thickness in 2-D]
+  Rows<Real> volume;                       ///< det F times volume0
 
-  ParticleColumn<Mat<D>> C;           ///< affine field, where it is not L [1/s]
-  Rows<Vec<D>> x0;                    ///< where displacement counts from [m]
-  ParticleColumn<Vec<D>> applied;     ///< force of loads other than gravity [N]
-  std::vector<Real> applied_at;       ///< applied . x before the move [J]
-  ParticleColumn<Real> volume_ratio;  ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
-  ParticleColumn<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
+  ParticleColumn<Mat<D>> C;        ///< affine field, where it is not L [1/s]
+  Rows<Vec<D>> x0;                 ///< where displacement counts from [m]
+  ParticleColumn<Vec<D>> applied;  ///< force of loads other than gravity [N]
+  std::vector<Real> applied_at;    ///< applied . x before the move [J]
+  Rows<Real> volume_ratio;         ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
+  ParticleColumn<Real> viscous;    ///< artificial viscous pressure, part of `stress` [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
   const ParticleColumn<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
@@ -75,10 +76,10 @@ struct Particles {
     plain("id", "-", self.id), plain("cell", "-", self.cell), plain("position", "m", self.x), kept("velocity", "m/s", self.v),
         kept("velocity_gradient", "1/s", self.L);
     kept("deformation_gradient", "-", self.F), kept("stress", "Pa", self.stress), kept("mass", "kg", self.mass),
-        kept("volume0", "m^D", self.volume0), kept("volume", "m^D", self.volume);
+        plain("volume0", "m^D", self.volume0), plain("volume", "m^D", self.volume);
     kept("affine", "1/s", self.C), plain("start", "m", self.x0), kept("applied", "N", self.applied),
         plain("applied_at", "J", self.applied_at);
-    kept("volume_ratio", "-", self.volume_ratio), kept("viscous_pressure", "Pa", self.viscous);
+    plain("volume_ratio", "-", self.volume_ratio), kept("viscous_pressure", "Pa", self.viscous);
   }
 };
 

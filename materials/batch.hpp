@@ -5,8 +5,8 @@
 #include <string>
 #include <utility>
 
-#include "core/column.hpp"
 #include "core/error.hpp"
+#include "core/pages.hpp"
 #include "core/parallel.hpp"
 #include "materials/laws.hpp"
 
@@ -185,7 +185,7 @@ inline bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept
 
 /// Energy [J] dissipated so far in a body; `volume0` [m^3] of all particles of the model.  0 for a law without "plastic_work".
 template <class L>
-Real total_plastic_work(const Batch<L>& batch, const ParticleColumn<Real>& volume0)
+Real total_plastic_work(const Batch<L>& batch, const Rows<Real>& volume0)
 {
   Real total = 0;
   for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
@@ -195,7 +195,7 @@ Real total_plastic_work(const Batch<L>& batch, const ParticleColumn<Real>& volum
   });
   return total;
 }
-inline Real total_plastic_work(const AnyBatch& batch, const ParticleColumn<Real>& volume0)
+inline Real total_plastic_work(const AnyBatch& batch, const Rows<Real>& volume0)
 {
   return std::visit([&](const auto& typed) { return total_plastic_work(typed, volume0); }, batch);
 }

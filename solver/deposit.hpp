@@ -141,7 +141,7 @@ template <int D, int N, class S>
 void deposit_force(const Particles<D>& particles, const BunchOf<S>& bunch, int lane, const Real (&slopes)[D][N], int n,
                    CellSums<D, N>& sums) noexcept
 {
-  const Real volume = bunch.of(lane, particles.volume);
+  const Real volume = particles.volume[bunch.p[lane]];
   const Sym3 stress = bunch.of(lane, particles.stress);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {

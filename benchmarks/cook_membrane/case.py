@@ -16,7 +16,7 @@ def lift(run, corner):
 
 def draw(figure, runs):
     """Pressure of the particles of two runs."""
-    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
+    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True, squeeze=False).flat, runs.items()):
         frame = run.last_frame()
         dots = axis.scatter(frame["Points"][:, 0], frame["Points"][:, 1], c=frame["pressure"], s=4, vmin=-0.2, vmax=0.2, cmap="viridis")
         axis.set(title=name, aspect="equal", xlabel="x [m]")

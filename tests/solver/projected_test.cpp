@@ -125,7 +125,7 @@ TEST(Projected, HoldsAFilmOnAWall)
   for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
     m.particles.v.set(p, {0.1 * std::sin(12 * m.particles.x[p][0]), 0});
     m.particles.x[p][1] *= share;
-    m.particles.volume0.set(p, share * m.particles.volume0[p]);
+    m.particles.volume0[p] *= share;
     m.particles.mass.set(p, share * m.particles.mass[p]);
   }
   close_off(m, "y_min", WallKind::roller);
