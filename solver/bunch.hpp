@@ -107,7 +107,9 @@ using Bunch = BunchOf<Real>;
 template <int D, class F>
 decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
 {
-  return particles.precision() == Precision::single ? f(float()) : f(Real());
+  if (particles.precision() == Precision::single)
+    return f(float());
+  return f(Real());
 }
 
 /// f(bunch) for all rows, four at a time.
