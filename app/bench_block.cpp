@@ -135,6 +135,7 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   Setup<D>& setup = block.setup;
   const AnyLaw law = bench_law(setting.law);
   setup.particles = bench_particles<D>(block.mesh, setting.per_cell, std::visit([](const auto& l) { return l.density; }, law));
+  setup.particles.keep_in(block.scene.precision);
   const Index n = setup.particles.size();
   setup.bodies.push_back({"block", 0, n, {}});
   setup.materials.push_back(std::visit([&](const auto& l) { return make_any_batch(l, 0, n, setting.law); }, law));

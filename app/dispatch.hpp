@@ -28,7 +28,6 @@ try {
   options_of(scene, options);
   Model<D, K> m(std::move(mesh), options);
   m.particles = std::move(setup.particles);
-  m.particles.keep_in(scene.precision);
   m.bodies = std::move(setup.bodies);
   m.materials = std::move(setup.materials);
   m.walls = std::move(setup.walls);

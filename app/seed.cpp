@@ -14,7 +14,10 @@ namespace {
 template <int D>
 class Seeder {
  public:
-  Seeder(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints) : scene_(scene), mesh_(mesh), complaints_(complaints) {}
+  Seeder(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints) : scene_(scene), mesh_(mesh), complaints_(complaints)
+  {
+    seeds_.particles.keep_in(scene.precision);  // while they are none: never more memory than the run needs
+  }
 
   void add(const BodySpec& spec)
   {

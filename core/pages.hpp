@@ -3,7 +3,7 @@
 // addresses of in pages of 4 kB.
 #include <sys/mman.h>
 
-#include <cstdlib>
+#include <cstddef>
 #include <new>
 #include <vector>
 
@@ -13,6 +13,9 @@ namespace talus {
 template <class T>
 struct LargePages {
   using value_type = T;
+  static_assert(alignof(T) <= __STDCPP_DEFAULT_NEW_ALIGNMENT__);
+  static constexpr std::size_t page = std::size_t{2} << 20;
+  static constexpr bool fills_some(std::size_t n) noexcept { return n * sizeof(T) >= 4 * page; }
 
   LargePages() = default;
   template <class U>
@@ -20,17 +23,19 @@ struct LargePages {
   {}
   T* allocate(std::size_t n)
   {
-    constexpr std::size_t page = std::size_t{2} << 20, worth = 4 * page;
-    const std::size_t bytes = n * sizeof(T);
-    const bool large = bytes >= worth;
-    void* const memory = large ? std::aligned_alloc(page, (bytes + page - 1) / page * page) : std::malloc(bytes);
-    if (memory == nullptr)
-      throw std::bad_alloc();
-    if (large)
-      madvise(memory, bytes, MADV_HUGEPAGE);  // a wish: nothing depends on the answer
+    if (!fills_some(n))
+      return static_cast<T*>(::operator new(n * sizeof(T)));
+    void* const memory = ::operator new (n * sizeof(T), std::align_val_t{page});
+    madvise(memory, n * sizeof(T), MADV_HUGEPAGE);  // a wish: nothing depends on the answer
     return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t) noexcept { std::free(memory); }
+  void deallocate(T* memory, std::size_t n) noexcept
+  {
+    if (fills_some(n))
+      ::operator delete (memory, std::align_val_t{page});
+    else
+      ::operator delete(memory);
+  }
   friend bool operator==(const LargePages&, const LargePages&) noexcept { return true; }
 };
 

@@ -69,7 +69,7 @@ struct Particles {
   }
 
  private:
-  /// `plain` of what is no number of the particle's motion and of places, `kept` of what the precision concerns.
+  /// plain(name, unit, column) for columns that are always kept alike, kept(...) for those that the precision concerns.
   template <class Self, class Plain, class Kept>
   static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& kept)
   {

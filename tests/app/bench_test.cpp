@@ -75,6 +75,19 @@ TEST_F(Bench, WordsMakeAProduct)
   EXPECT_EQ(read_bench(folder_ / "speed.json").results.size(), 1u + 8u);
 }
 
+TEST_F(Bench, SinglePrecisionStandsBesideDoubleAndTakesLessRoom)
+{
+  const Outcome outcome =
+      talus("bench --particles 1000 --repeats 1 --steps 1 --kernel projected --transfer tpic --precision double,single --json speed.json");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const BenchReport report = read_bench(folder_ / "speed.json");
+  ASSERT_EQ(report.results.size(), 1u + 2u);
+  const BenchResult &twofold = report.results[1], &single = report.results[2];
+  EXPECT_EQ(twofold.setting.precision, "double");
+  EXPECT_EQ(single.setting.precision, "single");
+  EXPECT_EQ(twofold.bytes_held - single.bytes_held, 4 * (3 + 9 + 9 + 6 + 1)) << "v, L, F, stress, mass";
+}
+
 TEST_F(Bench, OptionsStandBesideTheSameBlockWithoutAny)
 {
   const Outcome outcome = talus("bench --options --particles 1000 --repeats 1 --steps 1 --json speed.json");

@@ -57,5 +57,18 @@ TEST(ParticleColumn, StaysInItsPrecisionWhenItIsEmpty)
   EXPECT_EQ(applied[4], Vec<2>(1, 2));
 }
 
+TEST(Rows, LieInWholeLargePagesWhereTheyFillSome)
+{
+  Rows<Real> rows;
+  for (int i = 0; i < 3'000'000; ++i)
+    rows.push_back(i);
+  EXPECT_EQ(reinterpret_cast<std::uintptr_t>(rows.data()) % LargePages<Real>::page, 0u);
+  EXPECT_EQ(rows[0], 0);
+  EXPECT_EQ(rows[2'999'999], 2'999'999);
+  rows.resize(3);
+  rows.shrink_to_fit();
+  EXPECT_EQ(rows[2], 2);
+}
+
 }  // namespace
 }  // namespace talus
