@@ -7,7 +7,7 @@ SCENE       ?= scenes/slope_failure_3d/scene.yaml
 RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build run test check format bench verify docs clean
+.PHONY: help setup build portable run test check format bench verify docs clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
@@ -20,6 +20,9 @@ build: setup  ## compile build/talus and build/talus-render, at full speed
 	@cmake --preset release -Wno-dev >/dev/null
 	@cmake --build build/release --target programs -j $(JOBS)
 	@for program in talus talus-render; do if [ -e build/release/$$program ]; then ln -sfn release/$$program build/$$program; fi; done
+
+portable: setup  ## compile build/portable/talus, which runs on any x86-64 processor and uses what it has (three builds)
+	@tools/build_portable.sh
 
 run: build  ## build, run SCENE into RUN, draw its pictures
 	build/talus run $(SCENE) --out $(RUN)

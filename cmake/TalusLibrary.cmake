@@ -1,5 +1,5 @@
 # talus_library(name [APART] [FOLDER folder] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
-# makes the static library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
+# makes the library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
 # render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library. APART:
 # never some sources at a time (TALUS_UNITY), where there is little to gain.
 function(talus_library name)
@@ -16,7 +16,7 @@ function(talus_library name)
   endforeach()
 
   if(sources)
-    add_library(talus_${name} STATIC ${sources})
+    add_library(talus_${name} ${TALUS_LIBRARY_KIND} ${sources})
     target_link_libraries(talus_${name} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
     talus_use_pch(talus_${name} talus_pch)
     if(TALUS_UNITY AND NOT arg_APART)   # batches small enough to keep two cores busy to the end

@@ -2,8 +2,18 @@
 
 # Never -ffast-math: it removes the NaN checks that diagnose a failing run. These two change no result and let loops vectorise.
 set(TALUS_COMPILE_OPTIONS -fno-math-errno -fno-trapping-math)
-if(TALUS_NATIVE)
+if(TALUS_LEVEL)
+  list(APPEND TALUS_COMPILE_OPTIONS -march=${TALUS_LEVEL})
+elseif(TALUS_NATIVE)
   list(APPEND TALUS_COMPILE_OPTIONS -march=native)
+endif()
+set(TALUS_LIBRARY_KIND STATIC)
+if(TALUS_SHARED)
+  set(TALUS_LIBRARY_KIND SHARED)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
+  set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
+  list(APPEND TALUS_COMPILE_OPTIONS -fno-semantic-interposition)   # inside a library calls are calls of itself
 endif()
 set(TALUS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
 if(TALUS_WERROR)

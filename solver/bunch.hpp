@@ -4,6 +4,7 @@
 
 #include "core/particles.hpp"
 #include "kernels/pack.hpp"
+#include "solver/cell_order.hpp"
 
 namespace talus {
 
@@ -112,12 +113,45 @@ decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
   return f(Real());
 }
 
-/// f(bunch) for all rows, four at a time.
-template <class S = Real, class F>
-void for_each_bunch(std::span<const Index> rows, F&& f)
+/// Asks memory for the rows of a particle in some columns.
+template <class S>
+struct AskFor {
+  template <class... Columns>
+  [[gnu::always_inline]] static void row(std::size_t p, const Columns&... columns) noexcept
+  {
+    (lines(first(columns) + p), ...);
+  }
+
+ private:
+  template <class Value, Rest rest>
+  static const auto* first(const ParticleColumn<Value, rest>& column) noexcept
+  {
+    return column.template rows<S>();
+  }
+  template <class Row, class Allocator>
+  static const Row* first(const std::vector<Row, Allocator>& column) noexcept
+  {
+    return column.data();
+  }
+  /// The end of a row that fills no whole line is asked for with the row after it.
+  template <class Row>
+  static void lines(const Row* row) noexcept
+  {
+    constexpr std::size_t line = 64;
+    for (std::size_t at = 0; at < sizeof(Row); at += line)
+      __builtin_prefetch(reinterpret_cast<const char*>(row) + at);
+  }
+};
+
+/// f(bunch) for all rows, four at a time; ask(p) for each row before its turn.
+template <class S = Real, class F, class Ask = AskForNothing>
+void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
 {
-  for (std::size_t begin = 0; begin < rows.size(); begin += pack_size)
+  RowsAhead ahead(rows, ask);
+  for (std::size_t begin = 0; begin < rows.size(); begin += pack_size) {
+    ahead.until(begin + pack_size);
     f(BunchOf<S>(rows, begin));
+  }
 }
 /// f(bunch, x) for the particles of a run, four at a time.
 template <class S, int D, class F>

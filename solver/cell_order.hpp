@@ -1,6 +1,8 @@
 #pragma once
 // Who is in which cell: particle rows sorted by body, cell and id, and where each block of cells begins.
+#include <algorithm>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/particles.hpp"
@@ -46,15 +48,39 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
 /// Share of the particles whose row does not follow that of the particle before them in the order.
 Real disorder(const CellOrder& order) noexcept;
 
-/// f(run) for the particles of each single cell in `rows`, which are sorted by cell.
-template <class F>
-void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f)
+/// Calls ask(p) once for each of `rows`, well before its turn: memory answers while the rows before are worked on.
+template <class Ask>
+class RowsAhead {
+ public:
+  RowsAhead(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
+  /// The rows before `end` are next.
+  void until(std::size_t end)
+  {
+    for (const std::size_t last = std::min(end + distance, rows_.size()); asked_ < last; ++asked_)
+      ask_(static_cast<std::size_t>(rows_[asked_]));
+  }
+
+ private:
+  static constexpr std::size_t distance = 32;
+  std::span<const Index> rows_;
+  Ask ask_;
+  std::size_t asked_ = 0;
+};
+struct AskForNothing {
+  void operator()(std::size_t) const noexcept {}
+};
+
+/// f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as above.
+template <class F, class Ask = AskForNothing>
+void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f, Ask ask = {})
 {
+  RowsAhead ahead(rows, ask);
   for (std::size_t begin = 0; begin < rows.size();) {
     const Index c = cell[static_cast<std::size_t>(rows[begin])];
     std::size_t end = begin + 1;
     while (end < rows.size() && cell[static_cast<std::size_t>(rows[end])] == c)
       ++end;
+    ahead.until(end);
     f(c, rows.subspan(begin, end - begin));
     begin = end;
   }

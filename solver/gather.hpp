@@ -38,17 +38,22 @@ void move(const BunchOf<S>& bunch, const Pack (&x)[D], const Pack (&v)[D], Real 
   bunch.store(VecOf<D>(vector_of(x) + Lanes(dt) * vector_of(v)), particles.x);
 }
 
-/// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read; then done(body), body by body.
-template <int D, Kernel<D> K, class F, class Done>
-void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typename Through<D, K>::Motion>& motion, F&& f, Done&& done)
+/// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read; ask(p) before, see RowsAhead; then
+/// done(body), body by body.
+template <int D, Kernel<D> K, class Ask, class F, class Done>
+void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typename Through<D, K>::Motion>& motion, Ask&& ask, F&& f,
+                          Done&& done)
 {
   Through<D, K> through(m.kernel);
   for (Index body = 0; body < m.n_bodies(); ++body) {
-    for_each_run(m.order.rows(body, b), m.particles.cell, [&](Index c, std::span<const Index> run) {
-      through.enter(m.mesh, c);
-      through.read(motion);
-      f(c, run, through);
-    });
+    for_each_run(
+        m.order.rows(body, b), m.particles.cell,
+        [&](Index c, std::span<const Index> run) {
+          through.enter(m.mesh, c);
+          through.read(motion);
+          f(c, run, through);
+        },
+        ask);
     done(body);
   }
 }
@@ -59,7 +64,7 @@ void gather(Model<D, K>& m, Real dt, Then&& then)
   const Real pic = m.transfer.pic_share(dt, m.crossing);
   parallel_for_uneven(m.order.blocks, [&](Index b) {
     for_each_reading_run(
-        m, b, m.motion(),
+        m, b, m.motion(), [&](std::size_t p) { AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.L); },
         [&](Index, std::span<const Index> run, auto& through) {
           for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
             through.place(bunch, x);
@@ -81,7 +86,7 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
     const auto rows = m.blocks.rows(b);
     std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
     for_each_reading_run(
-        m, b, m.motion(),
+        m, b, m.motion(), [&](std::size_t p) { AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields()); },
         [&](Index c, std::span<const Index> run, auto& through) {
           through.clear();
           for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
@@ -131,7 +136,7 @@ void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::M
   in_numbers_of(m.particles, [&]<class S>(S) {
     parallel_for_uneven(m.order.blocks, [&](Index b) {
       detail::for_each_reading_run(
-          m, b, remapped,
+          m, b, remapped, [&](std::size_t p) { AskFor<S>::row(p, m.particles.L); },
           [&](Index, std::span<const Index> run, auto& through) {
             for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
               through.place(bunch, x);

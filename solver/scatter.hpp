@@ -24,18 +24,25 @@ void scatter(Model<D, K>& m)
     const auto rows = m.blocks.rows(b);
     Through<D, K> through(m.kernel);
     bool occupied = false;
+    const auto ask = [&](std::size_t p) {
+      AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields(), m.particles.stress, m.particles.mass,
+                     m.particles.volume);
+    };
     for (Index body = 0; body < m.n_bodies(); ++body)
-      for_each_run(m.order.rows(body, b), m.particles.cell, [&](Index c, std::span<const Index> run) {
-        if (!std::exchange(occupied, true))
-          std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
-        through.enter(m.mesh, c);
-        through.clear();
-        for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
-          through.place(bunch, x);
-          through.template deposit<affine, loaded, true>(m.particles, bunch, x, m.particles.affine_fields());
-        });
-        through.template add_to<affine, loaded, true>(rows, m.blocks.slots(c), lightest_of<S>(m.particles, run));
-      });
+      for_each_run(
+          m.order.rows(body, b), m.particles.cell,
+          [&](Index c, std::span<const Index> run) {
+            if (!std::exchange(occupied, true))
+              std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
+            through.enter(m.mesh, c);
+            through.clear();
+            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
+              through.place(bunch, x);
+              through.template deposit<affine, loaded, true>(m.particles, bunch, x, m.particles.affine_fields());
+            });
+            through.template add_to<affine, loaded, true>(rows, m.blocks.slots(c), lightest_of<S>(m.particles, run));
+          },
+          ask);
     m.blocks.occupied[static_cast<std::size_t>(b)] = occupied ? 1 : 0;
   });
 }

@@ -151,6 +151,27 @@ TEST(Slaves, AreFoundByTheParticlesAroundAndNotByThoseOfAHeavyBodyElsewhere)
   strain_apart<Umls<2>>();
 }
 
+TEST(CellOrder, AsksForEachRowOnceAndBeforeItsTurn)
+{
+  std::vector<Index> rows(500), cell(500);
+  for (Index i = 0; i < 500; ++i) {
+    rows[static_cast<std::size_t>(i)] = 499 - i;
+    cell[static_cast<std::size_t>(499 - i)] = i < 100 ? 0 : i / 7;  // a run longer than what is asked for ahead, then short ones
+  }
+  std::vector<int> asked(500, 0);
+  std::size_t done = 0;
+  const auto work = [&](Index, std::span<const Index> run) {
+    for (const Index row : run)
+      EXPECT_EQ(asked[static_cast<std::size_t>(row)], 1);
+    done += run.size();
+    const std::size_t ahead = std::min(rows.size(), done + 16) - 1;
+    EXPECT_EQ(asked[static_cast<std::size_t>(rows[ahead])], 1) << "not asked for when " << done << " were done";
+  };
+  for_each_run(rows, cell, work, [&](std::size_t p) { ++asked[p]; });
+  EXPECT_EQ(done, rows.size());
+  EXPECT_EQ(std::count(asked.begin(), asked.end(), 1), 500);
+}
+
 TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
 {
   const std::vector<Index> cell{3, 1, 3, 0, 2, 2, 200, 2};

@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# One program for every x86-64 processor: its libraries are built for three of them, and the loader takes the best that the processor at hand can
+# run (glibc-hwcaps, glibc 2.33 and later). build/portable/talus and build/portable/lib are all of it; where the folder stands does not matter.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+jobs=${JOBS:-$(nproc)}
+build() {  # preset -> build/<preset>
+  cmake --preset "$1" -Wno-dev >/dev/null
+  cmake --build "build/$1" --target programs -j "$jobs"
+}
+
+build portable
+for level in v3 v4; do
+  build "portable-$level"
+  mkdir -p "build/portable/lib/glibc-hwcaps/x86-64-$level"
+  cp "build/portable-$level"/lib/*.so "build/portable/lib/glibc-hwcaps/x86-64-$level/"
+done
+
+# Which libraries are taken here, and that the plainest run as well.
+loader=$(find /lib64 /lib -maxdepth 1 -name 'ld-linux-x86-64.so.2' -print -quit 2>/dev/null)
+flags() { grep -o 'march=[a-z0-9-]*' | head -n 1; }
+echo "build/portable/talus takes the libraries for $(build/portable/talus info | flags)"
+echo "kept to the oldest it takes those for $("$loader" --glibc-hwcaps-mask none build/portable/talus info | flags)"
