@@ -21,7 +21,7 @@ build: setup  ## compile build/talus and build/talus-render, at full speed
 	@cmake --build build/release --target programs -j $(JOBS)
 	@for program in talus talus-render; do if [ -e build/release/$$program ]; then ln -sfn release/$$program build/$$program; fi; done
 
-portable: setup  ## compile build/portable/talus, which runs on any x86-64 processor and uses what it has (three builds)
+portable: setup  ## compile build/portable/talus, which runs on any x86-64 processor and uses what it has (two builds)
 	@tools/build_portable.sh
 
 run: build  ## build, run SCENE into RUN, draw its pictures

@@ -13,6 +13,21 @@ struct EnergyNow {
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
 
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("kinetic_start", &EnergyNow::kinetic_start),
+                      kept("kinetic", &EnergyNow::kinetic),
+                      kept("strain", &EnergyNow::strain),
+                      kept("plastic", &EnergyNow::plastic),
+                      kept("friction", &EnergyNow::friction),
+                      kept("damping", &EnergyNow::damping),
+                      kept("gravity", &EnergyNow::gravity),
+                      kept("loads", &EnergyNow::loads),
+                      kept("walls", &EnergyNow::walls),
+                      kept("transfer", &EnergyNow::transfer),
+                      kept("defect", &EnergyNow::defect)};
+  }
+
   Real dissipated() const noexcept { return plastic + friction + damping; }
   Real largest_term() const noexcept;
 };
@@ -31,6 +46,23 @@ class Accounts {
   Real momentum_scale(const Frame<D>& frame) const;
   /// Damping takes momentum and nobody counts it.
   bool momentum_closes() const noexcept { return !damped_; }
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("before", &Accounts::before_),
+                      kept("kinetic_begin", &Accounts::kinetic_begin_),
+                      kept("plastic_begin", &Accounts::plastic_begin_),
+                      kept("transfer_before", &Accounts::transfer_before_),
+                      kept("kinetic_end", &Accounts::kinetic_end_),
+                      kept("taken_out", &Accounts::taken_out_),
+                      kept("taken_out_before", &Accounts::taken_out_before_),
+                      kept("stage", &Accounts::stage_),
+                      kept("begun", &Accounts::begun_),
+                      kept("damped", &Accounts::damped_),
+                      kept("momentum_start", &Accounts::momentum_start_),
+                      kept("loads_impulse", &Accounts::loads_impulse_),
+                      kept("momentum_at_start", &Accounts::momentum_at_start_),
+                      kept("loads_impulse_size", &Accounts::loads_impulse_size_)};
+  }
 
  private:
   EnergyLedger before_;  // stages that are over, their kinetic_start and plastic_start unused

@@ -12,7 +12,7 @@ namespace talus {
 
 namespace {
 
-constexpr int usage_error = 2;
+constexpr int usage_error = 2, results_differ = 1;
 constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
 constexpr int most_steps = 10'000'000;
 
@@ -29,6 +29,7 @@ class CommandLine {
     add_mesh();
     add_drive();
     add_render();
+    add_diff();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
     add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
     add_bench();
@@ -42,7 +43,7 @@ class CommandLine {
   {
     try {
       app_.parse(argc, argv);
-      return 0;
+      return status_;
     } catch (const CLI::ParseError& e) {
       return app_.exit(e) == 0 ? 0 : usage_error;
     }
@@ -52,11 +53,14 @@ class CommandLine {
   void add_run()
   {
     CLI::App* run = app_.add_subcommand("run", "run a scene");
-    run->add_option("scene", run_.scene, "scene file (.yaml)")->required();
-    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>");
+    CLI::Option_group* what = run->add_option_group("what");
+    CLI::Option* scene = what->add_option("scene", run_.scene, "scene file (.yaml)");
+    what->add_option("--resume", run_.resume, "go on with a run that was stopped: its folder, or one of its checkpoints");
+    what->require_option(1);
+    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with");
     run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
-    run->add_option("--set", run_.set, set_help);
-    run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs");
+    run->add_option("--set", run_.set, set_help)->needs(scene);
+    run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");
     run->callback([this] { run_scene(run_); });
   }
@@ -110,6 +114,21 @@ class CommandLine {
     render->add_option("--view", render_.view, "3-D: direction from the scene to the camera")->expected(3);
     render->add_option("--out", render_.out, "a .png or a folder; default DIR/pictures");
     render->callback([this] { render_results(render_); });
+  }
+
+  void add_diff()
+  {
+    CLI::App* diff = app_.add_subcommand("diff", "compare the results of two runs, field by field");
+    diff->add_option("a", diff_.a, "results of a run")->required();
+    diff->add_option("b", diff_.b, "results of another run")->required();
+    const auto tolerance = [&](const char* name, Real& value, const char* help) {
+      return diff->add_option(name, value, help)->check(CLI::NonNegativeNumber);
+    };
+    tolerance("--relative", diff_.relative, "allowed difference over the largest value of the field in both runs; default 0");
+    tolerance("--absolute", diff_.absolute, "allowed difference, in the unit of each field, besides that; default 0");
+    diff->add_option("--field", diff_.fields, "compare only these fields")->delimiter(',');
+    diff->add_flag("--last", diff_.last, "compare only the last time that both runs have");
+    diff->callback([this] { status_ = same_results(diff_) ? 0 : results_differ; });
   }
 
   void add_suite(const std::string& name, const std::string& help, SuiteOptions& options)
@@ -167,9 +186,11 @@ class CommandLine {
   DriveOptions drive_;
   MeshOptions mesh_;
   RenderOptions render_;
+  DiffOptions diff_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
   bool schema_ = false;
+  int status_ = 0;
 };
 
 }  // namespace

@@ -13,11 +13,12 @@ namespace talus {
 struct RunOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> out;
+  std::optional<std::filesystem::path> resume;  ///< a checkpoint, or the folder of a run, instead of the scene
   std::optional<int> threads;
   std::vector<std::string> set;
   bool quick = false, quiet = false;
 };
-/// Runs a scene and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError.
+/// Runs a scene, or goes on with one, and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError; Stopped by a signal.
 void run_scene(const RunOptions& options);
 
 /// Does everything but run, writes nothing, says what a run would cost.
@@ -54,6 +55,16 @@ struct RenderOptions {
 };
 /// Draws the results in a folder; what is not asked for is as the scene says.
 void render_results(const RenderOptions& options);
+
+struct DiffOptions {
+  std::filesystem::path a, b;       ///< folders of two runs
+  Real relative = 0, absolute = 0;  ///< values differ where |a - b| > absolute + relative * largest value of their field
+  std::vector<std::string> fields;  ///< empty: all
+  bool last = false;                ///< only the last time that both have
+};
+/// Compares the results in two folders and prints a table; whether they are the same.  Error for what cannot be read, and for words that
+/// mean nothing: a status of 1 says that results differ.
+bool same_results(const DiffOptions& options);
 
 struct SuiteOptions {
   std::string suite;  ///< verify or tradeoff

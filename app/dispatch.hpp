@@ -53,10 +53,20 @@ void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D
   const auto limits = setup.limits;
   with_kernel<D>(scene.kernel, [&]<class K>() {
     auto m = build<D, K>(scene, std::move(mesh), std::move(setup));
-    for (std::size_t s = 0; s < stages.size(); ++s)
-      audience.stage_done(run_stage(m, stages[s], limits, [&](const Model<D, K>& model, Moment moment) {
-        audience.watch(frame_of(model, stages[s], static_cast<Index>(s)), moment);
-      }));
+    const auto stage_at_hand = [&](const Model<D, K>& model) -> const Stage& {
+      return stages[static_cast<std::size_t>(model.stage.number)];
+    };
+    const auto watch = [&](const Model<D, K>& model, Moment moment) { audience.watch(frame_of(model, stage_at_hand(model)), moment); };
+    Index number = 0;
+    if (audience.take_over) {
+      audience.take_over(state_of(m));
+      adopt_state(m);
+      audience.resumed(frame_of(m, stage_at_hand(m)));
+      audience.stage_done(finish_stage(m, stage_at_hand(m), limits, watch));
+      number = m.stage.number + 1;
+    }
+    for (; number < static_cast<Index>(stages.size()); ++number)
+      audience.stage_done(run_stage(m, stages[static_cast<std::size_t>(number)], limits, watch, number));
   });
 }
 

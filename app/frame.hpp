@@ -21,14 +21,14 @@ struct Frame {
   const EnergyLedger& energy;  ///< since the beginning of the stage
   const MassLedger& mass;
   const Timings& timings;
-  Real residual;
+  Real residual, crossing;
 };
 
 template <int D, Kernel<D> K>
-Frame<D> frame_of(const Model<D, K>& m, const Stage& stage, Index stage_number)
+Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
-  return {m.mesh,  m.particles, m.bodies,   m.materials,  m.nodes,  m.walls, m.loads,   m.row_of_id,
-          m.clock, m.stage,     stage.name, stage_number, m.energy, m.mass,  m.timings, m.residual};
+  return {m.mesh,  m.particles, m.bodies,       m.materials, m.nodes, m.walls,   m.loads,    m.row_of_id, m.clock,
+          m.stage, stage.name,  m.stage.number, m.energy,    m.mass,  m.timings, m.residual, m.crossing};
 }
 
 /// Energy the laws have dissipated so far [J].

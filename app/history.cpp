@@ -94,11 +94,17 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 
 template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start)
-    : spec_(std::move(spec)), impulse_(start.walls.walls().size(), Vec<D>::Zero()), file_(file, columns(spec_, start))
+    : spec_(std::move(spec)), file_(file, columns(spec_, start))
 {
+  state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
   for (const PointSpec& point : spec_.points)
-    followed_.push_back(nearest_particle(point, start.bodies, start.particles));
+    state_.followed.push_back(nearest_particle(point, start.bodies, start.particles));
 }
+
+template <int D>
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state)
+    : spec_(std::move(spec)), state_(std::move(state)), file_(HistoryFile::resume(file, columns(spec_, now), now.clock.time))
+{}
 
 template <int D>
 void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts)
@@ -113,18 +119,18 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   const EnergyNow e = accounts.energy(frame);
   row.insert(row.end(),
              {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer, e.defect, frame.residual});
-  const Real elapsed = clock.time - time_;
-  for (std::size_t w = 0; w < impulse_.size(); ++w) {
+  const Real elapsed = clock.time - state_.time;
+  for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
     const Vec<D>& impulse = frame.walls.walls()[w].impulse;
-    put<D>(elapsed > 0 ? Vec<D>((impulse - impulse_[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
-    impulse_[w] = impulse;
+    put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
+    state_.impulse[w] = impulse;
   }
-  for (const std::int64_t id : followed_)
+  for (const std::int64_t id : state_.followed)
     add_point(frame, id, row);
   for (const FrontSpec& spec : spec_.fronts)
     row.push_back(front(spec, frame.bodies, frame.particles));
   file_.append(row);
-  time_ = clock.time;
+  state_.time = clock.time;
 }
 
 template <int D>

@@ -14,6 +14,19 @@ std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bo
 template <int D>
 Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles);
 
+/// What a row owes to the rows before.
+template <int D>
+struct HistoryState {
+  std::vector<std::int64_t> followed;  ///< id of the particle of each point
+  std::vector<Vec<D>> impulse;         ///< of each wall at the row before [N s]
+  Real time = 0;                       ///< of the row before [s]
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("followed", &HistoryState::followed), kept("impulse", &HistoryState::impulse),
+                      kept("time", &HistoryState::time)};
+  }
+};
+
 /// Columns: time, step, dt, stage; mass, momentum, angular momentum, centre of mass; the terms of EnergyNow; the residual; for each
 /// wall `reaction_<wall>_x` ..., its mean force on the bodies since the row before; for each point its position, displacement (u),
 /// velocity (v) and stress (s); each front.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
@@ -22,6 +35,9 @@ template <int D>
 class HistoryWriter {
  public:
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start);
+  /// Goes on in a file that is there, behind the time of `now`.
+  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
+  const HistoryState<D>& state() const noexcept { return state_; }
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
 
  private:
@@ -29,9 +45,7 @@ class HistoryWriter {
   static void add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
-  std::vector<std::int64_t> followed_;
-  std::vector<Vec<D>> impulse_;  // of each wall at the row before
-  Real time_ = 0;
+  HistoryState<D> state_;
   HistoryFile file_;
 };
 

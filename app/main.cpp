@@ -8,7 +8,7 @@
 
 namespace {
 
-constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3;
+constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3, run_stopped = 4;
 
 int fail(int code, const char* what)
 {
@@ -25,6 +25,8 @@ int main(int argc, char** argv)
     return talus::cli(argc, argv);
   } catch (const talus::SceneErrors& e) {
     return fail(scene_wrong, e.what());
+  } catch (const talus::Stopped& e) {
+    return fail(run_stopped, e.what());
   } catch (const talus::RunError& e) {
     return fail(run_failed, fmt::format("error: {}", e.what()).c_str());
   } catch (const talus::EnvironmentError& e) {

@@ -66,6 +66,7 @@ void Recorder<D>::open(const Frame<D>& frame)
     bodies_.push_back(summary_of(frame, b));
   if (outputs_.history) {
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame);
+    history_state_ = history_->state();
     files_.push_back("history.csv");
   }
   if (outputs_.particles)
@@ -75,8 +76,23 @@ void Recorder<D>::open(const Frame<D>& frame)
 }
 
 template <int D>
+void Recorder<D>::resume(const Frame<D>& frame)
+{
+  if (outputs_.history)
+    history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
+  particle_series_.resume(frame.clock.time);
+  mesh_series_.resume(frame.clock.time);
+  for (int n = particle_files_; std::filesystem::remove(particle_file(n)); ++n) {
+  }
+  for (int n = mesh_files_; std::filesystem::remove(mesh_file(n)); ++n) {
+  }
+}
+
+template <int D>
 void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
 {
+  if (moment == Moment::step_begins)
+    return;
   accounts_.see(frame, moment);
   const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
   if (first)
@@ -115,6 +131,7 @@ void Recorder<D>::write(const Frame<D>& frame, bool last)
     write_mesh_file(frame);
   if (history_ && (history_times_.due(time) || (last && history_time_ != time))) {
     history_->append(frame, accounts_);
+    history_state_ = history_->state();
     history_time_ = time;
   }
 }
@@ -130,7 +147,7 @@ void Recorder<D>::write_particles_file(const Frame<D>& frame)
   ids.reserve(rows.size());
   for (const Index row : rows)
     ids.push_back(frame.particles.id[static_cast<std::size_t>(row)]);
-  const auto file = folder_ / fmt::format("particles_{:04}.vtp", particle_files_++);
+  const auto file = particle_file(particle_files_++);
   write_particles(file, frame.clock.time, positions(frame.particles, rows), ids, columns);
   particle_series_.append(frame.clock.time, file);
   particle_time_ = frame.clock.time;
@@ -144,7 +161,7 @@ void Recorder<D>::write_mesh_file(const Frame<D>& frame)
   std::vector<Column> columns;
   for (const std::string& name : outputs_.mesh->fields_wanted)
     columns.push_back(node_column(frame, name));
-  const auto file = folder_ / fmt::format("mesh_{:04}.vtu", mesh_files_++);
+  const auto file = mesh_file(mesh_files_++);
   write_mesh<D>(file, frame.clock.time, frame.mesh, columns, {});
   mesh_series_.append(frame.clock.time, file);
   mesh_time_ = frame.clock.time;

@@ -16,6 +16,7 @@ class Schedule {
   explicit Schedule(Real every) : every_(every) {}
   /// True once for each of these times that has come.
   bool due(Real time);
+  static constexpr auto fields() { return std::tuple{kept("next", &Schedule::next_)}; }
 
  private:
   Real every_;
@@ -32,6 +33,18 @@ struct LastSeen {
   Vec<D> momentum_start = Vec<D>::Zero(), momentum = Vec<D>::Zero(), impulse = Vec<D>::Zero();
   Real momentum_scale{};
   bool momentum_closes = false;
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("clock", &LastSeen::clock),
+                      kept("timings", &LastSeen::timings),
+                      kept("mass", &LastSeen::mass),
+                      kept("energy", &LastSeen::energy),
+                      kept("momentum_start", &LastSeen::momentum_start),
+                      kept("momentum", &LastSeen::momentum),
+                      kept("impulse", &LastSeen::impulse),
+                      kept("momentum_scale", &LastSeen::momentum_scale),
+                      kept("momentum_closes", &LastSeen::momentum_closes)};
+  }
 };
 
 template <int D>
@@ -41,6 +54,9 @@ class Recorder {
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet);
 
   void watch(const Frame<D>& frame, Moment moment);
+  /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
+  /// the frame is dropped.
+  void resume(const Frame<D>& frame);
   void stage_done(const StageResult& result) { stages_.push_back(result); }
 
   const LastSeen<D>& last_seen() const noexcept { return last_; }
@@ -50,12 +66,36 @@ class Recorder {
   Real output_seconds() const noexcept { return output_seconds_; }
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("accounts", &Recorder::accounts_),
+                      kept("particle_times", &Recorder::particle_times_),
+                      kept("mesh_times", &Recorder::mesh_times_),
+                      kept("history_times", &Recorder::history_times_),
+                      kept("particle_files", &Recorder::particle_files_),
+                      kept("mesh_files", &Recorder::mesh_files_),
+                      kept("particle_time", &Recorder::particle_time_),
+                      kept("mesh_time", &Recorder::mesh_time_),
+                      kept("history_time", &Recorder::history_time_),
+                      kept("history_state", &Recorder::history_state_),
+                      kept("stage_start", &Recorder::stage_start_),
+                      kept("done_before", &Recorder::done_before_),
+                      kept("last", &Recorder::last_),
+                      kept("stages", &Recorder::stages_),
+                      kept("files", &Recorder::files_),
+                      kept("last_output", &Recorder::last_output_),
+                      kept("bodies", &Recorder::bodies_),
+                      kept("output_seconds", &Recorder::output_seconds_),
+                      kept("bytes_per_particle", &Recorder::bytes_per_particle_)};
+  }
 
  private:
   void open(const Frame<D>& frame);
   void write(const Frame<D>& frame, bool last);
   void write_particles_file(const Frame<D>& frame);
   void write_mesh_file(const Frame<D>& frame);
+  std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
+  std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
 
   std::filesystem::path folder_;
   const OutputSpec& outputs_;
@@ -64,6 +104,7 @@ class Recorder {
   Progress progress_;
   Schedule particle_times_, mesh_times_, history_times_;
   std::optional<HistoryWriter<D>> history_;
+  HistoryState<D> history_state_;  // of history_, as of its last row
   PvdSeries particle_series_, mesh_series_;
   int particle_files_ = 0, mesh_files_ = 0;
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // of the last ones written

@@ -48,6 +48,7 @@ try {
     if (is_result(entry.path()))
       fs::remove(entry.path());
   fs::remove_all(folder / "pictures");
+  fs::remove_all(folder / "checkpoints");
 } catch (const fs::filesystem_error& e) {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));
 }

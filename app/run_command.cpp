@@ -1,11 +1,14 @@
 // talus run
 #include <fmt/format.h>
 
+#include "app/checkpoints.hpp"
 #include "app/commands.hpp"
 #include "app/quick.hpp"
 #include "app/results.hpp"
+#include "app/signals.hpp"
 #include "app/summary.hpp"
 #include "core/parallel.hpp"
+#include "core/version.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/gmsh_write.hpp"
 #include "io/reader.hpp"
@@ -21,27 +24,65 @@ namespace fs = std::filesystem;
 template <int D>
 class Run {
  public:
-  Run(Scene scene, fs::path folder, const RunOptions& options) : scene_(std::move(scene)), folder_(std::move(folder)), options_(options) {}
+  /// `from`: what to go on from, if anything.
+  Run(Scene scene, fs::path folder, bool quick, const RunOptions& options, const CheckpointList* from)
+      : scene_(std::move(scene)), folder_(std::move(folder)), quick_(quick), options_(options), from_(from)
+  {}
 
   void operator()()
   {
     auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
     watch_.lap(mesh_seconds_);
     auto setup = set_up(scene_, mesh);
-    if (options_.quick)
+    if (quick_)
       shorten(first_step(mesh, setup), setup.stages, scene_.outputs);
+    const RunIdentity identity = identity_of(mesh);
+    if (from_)
+      compare(from_->identity(), identity);
     prepare(mesh, setup);
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet);
+    Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity);
+    Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
+                           recorder.watch(frame, moment);
+                           if (moment == Moment::step_begins)
+                             checkpoints.see(frame, recorder);
+                         },
+                         [&](const StageResult& result) { recorder.stage_done(result); }};
+    if (from_) {
+      audience.take_over = [&](const State<D>& state) { from_->take_over(state, recorder); };
+      audience.resumed = [&](const Frame<D>& frame) {
+        recorder.resume(frame);
+        if (!options_.quiet)
+          fmt::print("going on after step {}, t = {:.6g} s\n", frame.clock.step, frame.clock.time);
+      };
+    }
     watch_.lap(build_seconds_);
+    const auto with_last_good = [&](const char* what) {
+      std::string message = what;
+      if (!recorder.last_output().empty())
+        message += "; last good output " + recorder.last_output();
+      if (!checkpoints.last().empty())
+        message += "; last checkpoint " + checkpoints.last().string();
+      return message;
+    };
     try {
-      simulate(scene_, std::move(mesh), std::move(setup),
-               {[&](const Frame<D>& frame, Moment moment) { recorder.watch(frame, moment); },
-                [&](const StageResult& result) { recorder.stage_done(result); }});
+      const StopRequests requests;
+      simulate(scene_, std::move(mesh), std::move(setup), audience);
+    } catch (const Stopped& e) {
+      const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), folder_.string());
+      finish(recorder, RunStatus::stopped, message);
+      throw Stopped(message);
     } catch (const RunError& e) {
-      const std::string message =
-          fmt::format("{}{}", e.what(), recorder.last_output().empty() ? "" : fmt::format("; last good output {}", recorder.last_output()));
+      const std::string message = with_last_good(e.what());
       finish(recorder, RunStatus::failed, message);
       throw RunError(message);
+    } catch (const EnvironmentError& e) {
+      const std::string message = with_last_good(e.what());
+      try {
+        finish(recorder, RunStatus::failed, message);
+      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
+      }
+      throw EnvironmentError(message);
     }
     finish(recorder, RunStatus::done, "");
     if (!options_.quiet)
@@ -49,11 +90,29 @@ class Run {
   }
 
  private:
+  RunIdentity identity_of(const Mesh<D>& mesh) const
+  {
+    const Version v = version();
+    return {std::string(v.number), std::string(v.commit), fs::absolute(scene_.file).lexically_normal().string(), scene_.text, scene_.overrides, quick_, digest(mesh)};
+  }
+
+  /// EnvironmentError: the mesh is not that of the checkpoint.
+  static void compare(const RunIdentity& then, const RunIdentity& now)
+  {
+    if (then.mesh != now.mesh)
+      throw EnvironmentError(
+          fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
+    if (then.commit != now.commit)
+      fmt::print(stderr, "warning: the checkpoint was made by commit {}, this program is {}: results may differ in the last digits\n",
+                 then.commit, now.commit);
+  }
+
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".
   void prepare(const Mesh<D>& mesh, const Setup<D>& setup)
   {
     stages_ = setup.stages;
-    prepare_results(folder_);
+    if (std::error_code not_there; !from_ || !fs::equivalent(folder_, from_->folder(), not_there))
+      prepare_results(folder_);
     summary_ = begin_summary(scene_, mesh, setup);
     write_summary(folder_ / "summary.json", summary_);
     write_whole(folder_ / "scene.yaml", scene_.text);
@@ -75,14 +134,16 @@ class Run {
     summary_.message = message;
     summary_.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
     summary_.wall_total = mesh_seconds_ + build_seconds_ + steps;
-    complete(recorder, options_.quick, summary_);
+    complete(recorder, quick_, summary_);
     summary_.files.insert(summary_.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
     write_summary(folder_ / "summary.json", summary_);
   }
 
   Scene scene_;
   fs::path folder_;
+  bool quick_;
   const RunOptions& options_;
+  const CheckpointList* from_;
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
   std::vector<Stage> stages_;
@@ -93,17 +154,23 @@ class Run {
 
 void run_scene(const RunOptions& options)
 {
-  Scene scene = read_scene(options.scene, options.set);
+  std::optional<CheckpointList> from;
+  if (options.resume)
+    from.emplace(*options.resume);
+  Scene scene = from ? read_scene_text(from->identity().scene_file, from->identity().scene_text, from->identity().set)
+                     : read_scene(options.scene, options.set);
   const Index wanted = options.threads.value_or(scene.threads);
   if (wanted > 0)
     set_threads(wanted);
-  if (options.quick)
+  const bool quick = from ? from->identity().quick : options.quick;
+  if (quick)
     coarsen(scene);
-  const fs::path folder = options.out.value_or(default_results(options.scene));
+  const fs::path folder = options.out.value_or(from ? from->folder() : default_results(options.scene));
+  const CheckpointList* const resumed = from ? &*from : nullptr;
   if (scene.dimension == 2)
-    Run<2>(std::move(scene), folder, options)();
+    Run<2>(std::move(scene), folder, quick, options, resumed)();
   else
-    Run<3>(std::move(scene), folder, options)();
+    Run<3>(std::move(scene), folder, quick, options, resumed)();
 }
 
 }  // namespace talus

@@ -2,8 +2,8 @@
 // The kernel's name becomes a type here, once: builds the model and runs its stages.
 #include <functional>
 
-#include "app/frame.hpp"
 #include "app/setup.hpp"
+#include "app/state.hpp"
 
 namespace talus {
 
@@ -12,6 +12,10 @@ template <int D>
 struct Audience {
   std::function<void(const Frame<D>&, Moment)> watch;
   std::function<void(const StageResult&)> stage_done;
+  /// If set: puts the state of an earlier run in the place of that at the start.
+  std::function<void(const State<D>&)> take_over = {};
+  /// Then told what it looks like.
+  std::function<void(const Frame<D>&)> resumed = {};
 };
 
 /// What a model costs before it has made a step.
@@ -34,7 +38,7 @@ Real total_duration(const Setup<D>& setup)
 template <int D>
 Real first_step(const Mesh<D>& mesh, const Setup<D>& setup);
 
-/// Runs all stages.  SceneErrors: the kernel refuses the mesh.  RunError: a stage failed; the state before is what the audience saw.
+/// Runs all stages, or those that are left.  SceneErrors: the kernel refuses the mesh.  RunError: a stage failed; the state before is what the audience saw.
 template <int D>
 void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience);
 

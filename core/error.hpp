@@ -1,5 +1,5 @@
 #pragma once
-// Three kinds of failure, one hierarchy: the input is wrong, the run failed, the environment is wrong.
+// Kinds of failure, one hierarchy: the input is wrong, the run failed or was stopped, the environment is wrong.
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -41,6 +41,12 @@ class SceneErrors : public Error {
 
 /// The simulation failed: names step, time, particle, place.  Exit code 1.
 class RunError : public Error {
+ public:
+  using Error::Error;
+};
+
+/// Somebody asked the run to stop, and its state has been kept.  Exit code 4.
+class Stopped : public Error {
  public:
   using Error::Error;
 };

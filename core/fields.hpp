@@ -98,6 +98,14 @@ struct History {
   std::string_view unit, meaning;
 };
 
+/// What a step leaves to the next one: checkpoint.  Value is a number, bool, enum, text, vector of space, struct with fields(), or a
+/// std::vector of any of these.
+template <class Owner, class Value>
+struct Kept {
+  std::string_view key;
+  Value Owner::*member;
+};
+
 template <class Owner, class Value>
 constexpr auto required(std::string_view key, Value Owner::*member, Range range, std::string_view unit, std::string_view meaning)
 {
@@ -142,6 +150,12 @@ template <class Owner, class Value>
 constexpr auto history(std::string_view key, Value Owner::*member, std::string_view unit, std::string_view meaning)
 {
   return History<Owner, Value>{key, member, unit, meaning};
+}
+
+template <class Owner, class Value>
+constexpr auto kept(std::string_view key, Value Owner::*member)
+{
+  return Kept<Owner, Value>{key, member};
 }
 
 /// f(field) for every field of T, in order of declaration.

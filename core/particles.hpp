@@ -6,6 +6,7 @@
 
 #include "core/column.hpp"
 #include "core/error.hpp"
+#include "core/fields.hpp"
 #include "core/tensor.hpp"
 
 namespace talus {
@@ -16,6 +17,7 @@ struct Body {
   Index begin, end;
   Where where;  ///< the scene line that made it
   Index size() const noexcept { return end - begin; }
+  static constexpr auto fields() { return std::tuple{kept("begin", &Body::begin), kept("end", &Body::end)}; }
 };
 
 /// All particles.  The columns in the second group are empty unless the scene needs them.  Places and volumes stay in double whatever the

@@ -230,12 +230,12 @@ void apply_override(Document& document, const std::string& text)
   }
 }
 
-Document read_document(const std::filesystem::path& file, std::span<const std::string> overrides)
+Document read_document(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides)
 {
   Document document;
   Source& source = document.sources.emplace_back();
   source.name = file.string();
-  source.text = read_text(file);
+  source.text = std::move(text);
   source.lines = lines_of(source.text);
   try {
     document.root = parse(source, document.problems);
@@ -247,8 +247,8 @@ Document read_document(const std::filesystem::path& file, std::span<const std::s
     document.problems.add({&source}, "", "the file is empty");
     document.problems.throw_if_any();
   }
-  for (const std::string& text : overrides)
-    apply_override(document, text);
+  for (const std::string& override_text : overrides)
+    apply_override(document, override_text);
   return document;
 }
 
@@ -268,7 +268,12 @@ void add_findings(Document& document, const std::vector<Finding>& findings)
 
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides)
 {
-  Document document = read_document(file, overrides);
+  return read_scene_text(file, read_text(file), overrides);
+}
+
+Scene read_scene_text(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides)
+{
+  Document document = read_document(file, std::move(text), overrides);
   Scene scene;
   FieldReader(document.problems).read(document.root, "", {}, scene);
   add_findings(document, broken_rules(scene));
@@ -276,12 +281,13 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
   settle_accuracy(scene);
   scene.file = file.string();
   scene.text = std::move(document.sources.front().text);
+  scene.overrides.assign(overrides.begin(), overrides.end());
   return scene;
 }
 
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides)
 {
-  Document document = read_document(file, overrides);
+  Document document = read_document(file, read_text(file), overrides);
   PointTest test;
   FieldReader(document.problems).read(document.root, "", {}, test);
   document.problems.throw_if_any();

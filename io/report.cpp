@@ -79,7 +79,7 @@ std::string to_json(const RunSummary& s)
 {
   Json json;
   json["title"] = s.title;
-  json["status"] = s.status == RunStatus::done ? "done" : "failed";
+  json["status"] = words(s.status)[static_cast<std::size_t>(s.status)];
   if (!s.message.empty())
     json["message"] = s.message;
   json["program"] = program(s);

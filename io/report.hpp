@@ -1,16 +1,19 @@
 #pragma once
 // summary.json: what was run, with what, how it went, what it cost, and how well the balances close.
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "core/types.hpp"
+#include "core/fields.hpp"
 
 namespace talus {
 
-enum class RunStatus : std::uint8_t { done, failed };
+enum class RunStatus : std::uint8_t { done, failed, stopped };
+constexpr std::array<std::string_view, 3> words(RunStatus) { return {"done", "failed", "stopped"}; }
 
 /// A named number with its unit: work terms, qualities, wall seconds.
 struct NamedValue {
@@ -23,6 +26,11 @@ struct BodySummary {
   std::string name, material, law;
   std::int64_t particles{};
   Real mass{};  ///< kg at the start
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("name", &BodySummary::name), kept("material", &BodySummary::material), kept("law", &BodySummary::law),
+                      kept("particles", &BodySummary::particles), kept("mass", &BodySummary::mass)};
+  }
 };
 
 struct StageSummary {

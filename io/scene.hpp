@@ -71,8 +71,9 @@ enum class Accuracy : std::uint8_t { draft, standard, fine };
 constexpr std::array<std::string_view, 3> words(Accuracy) { return {"draft", "standard", "fine"}; }
 
 struct Scene {
-  std::string file;  ///< path as given, for messages; directory of relative paths
-  std::string text;  ///< the file, for the echo in the summary
+  std::string file;                    ///< path as given, for messages; directory of relative paths
+  std::string text;                    ///< the file, for the echo in the summary
+  std::vector<std::string> overrides;  ///< of --set
   std::string title;
   Index dimension{};
   Accuracy accuracy = Accuracy::standard;

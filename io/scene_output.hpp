@@ -84,6 +84,21 @@ struct HistoryOutputSpec {
   }
 };
 
+/// When the state of the run is kept, to go on from.
+struct CheckpointSpec {
+  std::optional<Real> every;
+  std::optional<Index> steps;
+  Real wall_time = 900;
+  Index keep = 2;
+  static constexpr auto fields()
+  {
+    return std::tuple{optional("every", &CheckpointSpec::every, positive, "s", "simulated time between checkpoints; default never"),
+                      optional("steps", &CheckpointSpec::steps, positive, "-", "steps between checkpoints; default never"),
+                      optional("wall_time", &CheckpointSpec::wall_time, positive, "s", "time on the clock between checkpoints"),
+                      optional("keep", &CheckpointSpec::keep, at_least(1), "-", "so many are kept, the last ones")};
+  }
+};
+
 /// What `talus render` draws unless told otherwise.
 struct PictureSpec {
   std::string field = "displacement";
@@ -105,13 +120,16 @@ struct OutputSpec {
   std::optional<ParticleOutputSpec> particles;
   std::optional<MeshOutputSpec> mesh;
   std::optional<HistoryOutputSpec> history;
+  CheckpointSpec checkpoint;
   PictureSpec picture;
   static constexpr auto fields()
   {
-    return std::tuple{group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"),
-                      group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"),
-                      group("history", &OutputSpec::history, "history.csv"),
-                      optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};
+    return std::tuple{
+        group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"),
+        group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"), group("history", &OutputSpec::history, "history.csv"),
+        optional("checkpoint", &OutputSpec::checkpoint, any, "-",
+                 "the state of the run, from which talus run --resume goes on; one more is written when the run is told to stop"),
+        optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};
   }
 };
 

@@ -30,6 +30,28 @@ template <int D>
 void write_mesh(const std::filesystem::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
                 std::span<const Column> cell_columns);
 
+/// One field as a file holds it, item after item; single precision is widened without loss.
+struct StoredField {
+  std::string name;
+  int components = 1;
+  std::vector<Real> values;  ///< components * number of items
+  std::string unit = {};     ///< empty for none
+};
+
+struct StoredParticles {
+  std::vector<std::int64_t> ids;
+  std::vector<StoredField> fields;  ///< first "position" [m], 3 numbers per particle, then in the order of the file
+};
+/// What write_particles has written.  EnvironmentError naming the file: it is not there, it is damaged, or its particles have no ids.
+StoredParticles read_particles(const std::filesystem::path& file);
+
+struct StoredMeshFields {
+  std::vector<StoredField> nodes;  ///< first "position" [m], 3 numbers per node
+  std::vector<StoredField> cells;
+};
+/// What write_mesh has written, without the corners of the cells.  Errors as above.
+StoredMeshFields read_mesh_fields(const std::filesystem::path& file);
+
 /// The list of the files of a run with their times.  Rewritten as a whole by every append, so it is valid after a kill.
 class PvdSeries {
  public:

@@ -16,6 +16,19 @@ struct EnergyLedger {
   Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("gravity", &EnergyLedger::gravity),
+                      kept("loads", &EnergyLedger::loads),
+                      kept("walls", &EnergyLedger::walls),
+                      kept("friction", &EnergyLedger::friction),
+                      kept("damping", &EnergyLedger::damping),
+                      kept("nodes", &EnergyLedger::nodes),
+                      kept("internal", &EnergyLedger::internal),
+                      kept("kinetic_start", &EnergyLedger::kinetic_start),
+                      kept("plastic_start", &EnergyLedger::plastic_start),
+                      kept("set_to_rest", &EnergyLedger::set_to_rest)};
+  }
 
   /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles did not get.
   Real transfer(Real kinetic_now) const noexcept { return nodes - (kinetic_now - kinetic_start); }
@@ -32,6 +45,12 @@ struct MassLedger {
   Index deleted_count{};
   std::int64_t held_count{};  ///< times a particle was set back onto a closed wall
   Real held_most{};           ///< farthest such set-back [m]
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("start", &MassLedger::start), kept("deleted", &MassLedger::deleted),
+                      kept("deleted_count", &MassLedger::deleted_count), kept("held_count", &MassLedger::held_count),
+                      kept("held_most", &MassLedger::held_most)};
+  }
 };
 
 /// Totals over the particles at one time.

@@ -1,5 +1,6 @@
 #pragma once
 // Everything a run is made of, by value.
+#include "core/fields.hpp"
 #include "solver/conduct_heat.hpp"
 #include "solver/integrate.hpp"
 #include "solver/ledger.hpp"
@@ -16,21 +17,42 @@ struct Clock {
   std::int64_t step = 0;  ///< steps done
   Real time = 0;          ///< [s]
   Real dt = 0;            ///< of the last step [s]
+  static constexpr auto fields() { return std::tuple{kept("step", &Clock::step), kept("time", &Clock::time), kept("dt", &Clock::dt)}; }
 };
 
-/// What a stage sets for every step it makes.
+/// What a stage sets for every step it makes, and how far it is.
 struct StageState {
-  Real damping = 0;                    ///< local, share of the unbalanced force
-  Real ramp_start = 0, ramp_time = 0;  ///< gravity and loads grow from 0 to 1 over [start, start + time] [s]
-  bool elastic = false;                ///< yielding suspended
-  bool seeks_rest = false;             ///< ends at rest, or is damped
-  Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - ramp_start) / ramp_time, Real{0}, Real{1}) : Real{1}; }
+  Index number = 0;               ///< of the stage
+  std::int64_t first_step = 0;    ///< steps done when it began
+  int balanced = 0;               ///< steps in balance, one after the other, up to now
+  Real damping = 0;               ///< local, share of the unbalanced force
+  Real begin = 0, ramp_time = 0;  ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
+  bool elastic = false;           ///< yielding suspended
+  bool seeks_rest = false;        ///< ends at rest, or is damped
+  Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
+                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
+                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
+                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest)};
+  }
 };
 
 /// Time spent per phase of the step [s], and the work counted.
 struct Timings {
   Real locate{}, scatter{}, nodes{}, gather{}, stress{}, output{};
   Real particle_steps{};
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("locate", &Timings::locate),
+                      kept("scatter", &Timings::scatter),
+                      kept("nodes", &Timings::nodes),
+                      kept("gather", &Timings::gather),
+                      kept("stress", &Timings::stress),
+                      kept("output", &Timings::output),
+                      kept("particle_steps", &Timings::particle_steps)};
+  }
 };
 
 /// The way of a kernel's particles to the nodes and back; what they deposit is its `Sum`, what they read its `Motion`.

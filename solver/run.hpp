@@ -35,10 +35,22 @@ struct StageResult {
   Real residual{};  ///< at its end
   EnergyLedger energy;
   Real kinetic_end{}, plastic_end{};  ///< [J]
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("name", &StageResult::name),
+                      kept("start", &StageResult::start),
+                      kept("end", &StageResult::end),
+                      kept("steps", &StageResult::steps),
+                      kept("residual", &StageResult::residual),
+                      kept("energy", &StageResult::energy),
+                      kept("kinetic_end", &StageResult::kinetic_end),
+                      kept("plastic_end", &StageResult::plastic_end)};
+  }
 };
 
-/// What the loop tells whoever watches; the watcher may look at the model and not touch it.
-enum class Moment : std::uint8_t { stage_begins, step_done, stage_done };
+/// What the loop tells whoever watches; the watcher may look at the model and not touch it.  Before a step all is told of the one before:
+/// what is kept of the model then is all that the steps to come depend on.
+enum class Moment : std::uint8_t { stage_begins, step_begins, step_done, stage_done };
 
 /// Throws RunError naming step, time, particle, body, scene line and place if the state is not sound.
 template <int D, Kernel<D> K>
@@ -87,45 +99,58 @@ void stop_if_unwell(const Model<D, K>& m)
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, what));
 }
 
-/// Runs one stage.  `watch(model, moment)` is called at its beginning, after each step and at its end.
-template <int D, Kernel<D> K, class Watch>
-StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limits, Watch&& watch)
+/// Sets the model up for the stage of that number.
+template <int D, Kernel<D> K>
+void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
 {
-  constexpr int steps_in_balance = 20;  // an oscillation passes through balance; this many steps in a row do not
-  const Real begin = m.clock.time, end = begin + stage.duration;
-  m.stage = {.damping = stage.damping,
-             .ramp_start = begin,
+  m.stage = {.number = number,
+             .first_step = m.clock.step,
+             .damping = stage.damping,
+             .begin = m.clock.time,
              .ramp_time = stage.ramp,
              .elastic = stage.elastic,
              .seeks_rest = stage.residual || stage.damping > 0};
   if (stage.k0)
-    set_k0_stress(m.mesh, m.loads.gravity(begin, 1), *stage.k0, m.bodies, m.materials, m.particles);
+    set_k0_stress(m.mesh, m.loads.gravity(m.clock.time, 1), *stage.k0, m.bodies, m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m)};
   m.crossing = shortest_crossing(m.mesh, m.materials, m.particles);
-  const std::int64_t first_step = m.clock.step;
-  watch(m, Moment::stage_begins);
+}
 
-  int balanced = 0;
-  while (m.clock.time < end * (1 - 1e-14) && balanced < steps_in_balance) {
-    const Real wanted = std::min(limits.cfl * m.crossing, limits.longest);
-    if (!(wanted >= limits.shortest)) {
-      const Index row = slowest_particle(m.mesh, m.materials, m.particles);
-      throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step,
-                                 m.clock.time, row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted,
-                                 limits.shortest));
-    }
-    const Real left = end - m.clock.time;
+/// The longest step that is stable.  RunError naming the particle that needs one below the shortest allowed.
+template <int D, Kernel<D> K>
+Real wanted_step(const Model<D, K>& m, const StepLimits& limits)
+{
+  const Real wanted = std::min(limits.cfl * m.crossing, limits.longest);
+  if (!(wanted >= limits.shortest)) {
+    const Index row = slowest_particle(m.mesh, m.materials, m.particles);
+    throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step,
+                               m.clock.time, row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted,
+                               limits.shortest));
+  }
+  return wanted;
+}
+
+/// Runs the stage that has begun to its end.  `watch(model, moment)` is called before and after each step and at the end.
+template <int D, Kernel<D> K, class Watch>
+StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limits, Watch&& watch)
+{
+  constexpr int steps_in_balance = 20;  // an oscillation passes through balance; this many steps in a row do not
+  const Real begin = m.stage.begin, end = begin + stage.duration;
+  while (m.clock.time < end * (1 - 1e-14) && m.stage.balanced < steps_in_balance) {
+    watch(m, Moment::step_begins);
+    const Real wanted = wanted_step(m, limits), left = end - m.clock.time;
     const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
     advance(m, dt);
     stop_if_unwell(m);
-    watch(m, Moment::step_done);
     const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
                       totals(m.particles).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
-    balanced = calm ? balanced + 1 : 0;
+    m.stage.balanced = calm ? m.stage.balanced + 1 : 0;
+    watch(m, Moment::step_done);
   }
   const Real kinetic = totals(m.particles).kinetic;
-  const StageResult result{stage.name, begin, m.clock.time, m.clock.step - first_step, m.residual, m.energy, kinetic, plastic_work(m)};
-  if (stage.residual && balanced < steps_in_balance)
+  const StageResult result{stage.name, begin,    m.clock.time, m.clock.step - m.stage.first_step,
+                           m.residual, m.energy, kinetic,      plastic_work(m)};
+  if (stage.residual && m.stage.balanced < steps_in_balance)
     throw RunError(
         fmt::format("step {}, t = {:.6g} s: stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, "
                     "asked {:.3g}; give it more duration or damping",
@@ -141,6 +166,15 @@ StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limi
     m.particles.x0 = m.particles.x;
   watch(m, Moment::stage_done);
   return result;
+}
+
+/// Begins a stage and runs it; `watch` is called once it has begun as well.
+template <int D, Kernel<D> K, class Watch>
+StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limits, Watch&& watch, Index number = 0)
+{
+  begin_stage(m, stage, number);
+  watch(m, Moment::stage_begins);
+  return finish_stage(m, stage, limits, watch);
 }
 
 }  // namespace talus

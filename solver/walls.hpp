@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/fields.hpp"
 #include "core/table.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/nodes.hpp"
@@ -27,6 +28,7 @@ struct Wall {
   Table table;
   Where where;
   Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the last reset [N s]
+  static constexpr auto fields() { return std::tuple{kept("impulse", &Wall::impulse)}; }
 };
 
 /// What walls did to the energy of the bodies in a step [J].
@@ -74,6 +76,7 @@ class Walls {
   }
   /// Facets of rollers and friction walls, and facets whose nodes are all held or moved: no particle passes them.
   std::vector<Facet> closed_facets(const Mesh<D>& mesh) const;
+  static constexpr auto fields() { return std::tuple{kept("wall", &Walls::walls_)}; }
 
  private:
   struct Plane {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# One program for every x86-64 processor: its libraries are built for three of them, and the loader takes the best that the processor at hand can
+# One program for every x86-64 processor: its libraries are built for two kinds of them, and the loader takes the best that the processor at hand can
 # run (glibc-hwcaps, glibc 2.33 and later). build/portable/talus and build/portable/lib are all of it; where the folder stands does not matter.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -11,11 +11,9 @@ build() {  # preset -> build/<preset>
 }
 
 build portable
-for level in v3 v4; do
-  build "portable-$level"
-  mkdir -p "build/portable/lib/glibc-hwcaps/x86-64-$level"
-  cp "build/portable-$level"/lib/*.so "build/portable/lib/glibc-hwcaps/x86-64-$level/"
-done
+build portable-v3
+mkdir -p build/portable/lib/glibc-hwcaps/x86-64-v3
+cp build/portable-v3/lib/*.so build/portable/lib/glibc-hwcaps/x86-64-v3/
 
 # Which libraries are taken here, and that the plainest run as well.
 loader=$(find /lib64 /lib -maxdepth 1 -name 'ld-linux-x86-64.so.2' -print -quit 2>/dev/null)

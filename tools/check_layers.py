@@ -30,6 +30,7 @@ THIRD_PARTY = [
     ("gmsh.h*", ["io/gmsh_*.cpp"]),
     ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),
     ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp"]),
+    ("hdf5*", ["io/array_file.cpp"]),
     ("CLI/*", ["app/cli.cpp"]),
     ("muParser*", ["app/expression.cpp"]),
     ("gtest/*", ["tests/*"]),

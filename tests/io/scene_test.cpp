@@ -228,6 +228,18 @@ TEST(Scene, KeepsDefaultsOfWhatIsNotGiven)
   EXPECT_FALSE(s.outputs.particles || s.outputs.mesh || s.outputs.history);
 }
 
+TEST(Scene, ReadsWhenItsStateIsKept)
+{
+  const CheckpointSpec asked = scene("solid.yaml").outputs.checkpoint, usual = scene("plane.yaml").outputs.checkpoint;
+  EXPECT_EQ(asked.every, 2);
+  EXPECT_EQ(asked.steps, 500);
+  EXPECT_EQ(asked.wall_time, 60);
+  EXPECT_EQ(asked.keep, 3);
+  EXPECT_FALSE(usual.every || usual.steps);
+  EXPECT_EQ(usual.wall_time, 900);
+  EXPECT_EQ(usual.keep, 2);
+}
+
 TEST(Scene, KnowsWhereEverythingWasAskedFor)
 {
   const Scene s = scene("plane.yaml");

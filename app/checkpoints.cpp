@@ -1,0 +1,191 @@
+#include "app/checkpoints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "app/signals.hpp"
+#include "io/kept.hpp"
+#include "io/whole_file.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of what is kept and how.  A change of what is kept makes it another.
+constexpr std::int64_t format = 1;
+constexpr auto folder_name = "checkpoints";
+constexpr auto prefix = "step_", suffix = ".h5";
+
+bool is_checkpoint(const fs::path& file)
+{
+  const std::string name = file.filename().string();
+  return name.starts_with(prefix) && name.ends_with(suffix);
+}
+
+/// Those in a folder, the newest first: numbers have the same length up to a billion steps, and longer ones are newer.
+std::vector<fs::path> checkpoints_in(const fs::path& folder)
+{
+  std::vector<fs::path> files;
+  std::error_code none_there;
+  for (const auto& entry : fs::directory_iterator(folder, none_there))
+    if (is_checkpoint(entry.path()))
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
+    const std::string x = a.filename().string(), y = b.filename().string();
+    return std::pair(x.size(), x) > std::pair(y.size(), y);
+  });
+  return files;
+}
+
+/// FNV-1a, a word at a time.
+void digest_words(std::span<const std::byte> bytes, std::uint64_t& sum)
+{
+  for (std::size_t at = 0; at < bytes.size(); at += 4) {
+    std::uint32_t word = 0;
+    std::memcpy(&word, bytes.data() + at, std::min<std::size_t>(4, bytes.size() - at));
+    sum = (sum ^ word) * 0x100000001b3;
+  }
+}
+
+void keep_laws(ArrayWriter& file, const std::vector<AnyBatch>& materials)
+{
+  for (std::size_t b = 0; b < materials.size(); ++b) {
+    keep(file, detail::below("laws/name", b), std::string(law_name(materials[b])));
+    keep(file, detail::below("laws/history", b), materials[b]);
+  }
+}
+
+void recall_laws(const ArrayReader& file, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials)
+{
+  for (std::size_t b = 0; b < materials.size(); ++b) {
+    if (const std::string name = file.text(detail::below("laws/name", b)); name != law_name(materials[b]))
+      throw EnvironmentError(
+          fmt::format("the law of body \"{}\" is {} there and {} in the scene", bodies[b].name, name, law_name(materials[b])));
+    std::visit([&](auto& batch) { batch.begin = bodies[b].begin, batch.end = bodies[b].end; }, materials[b]);
+    recall(file, detail::below("laws/history", b), materials[b]);
+  }
+}
+
+}  // namespace
+
+template <int D>
+std::int64_t digest(const Mesh<D>& mesh)
+{
+  std::uint64_t sum = 0xcbf29ce484222325;
+  digest_words(std::as_bytes(mesh.nodes()), sum);
+  digest_words(std::as_bytes(mesh.cells()), sum);
+  std::int64_t number = 0;
+  std::memcpy(&number, &sum, sizeof(sum));
+  return number;
+}
+
+template <int D>
+Checkpoints<D>::Checkpoints(fs::path folder, const CheckpointSpec& spec, RunIdentity identity)
+    : folder_(std::move(folder)), spec_(spec), identity_(std::move(identity))
+{}
+
+template <int D>
+bool Checkpoints<D>::due(const Clock& clock) const
+{
+  const auto passed = [](Real from, Real to, Real every) { return std::floor(to / every) > std::floor(from / every); };
+  return (spec_.steps && clock.step / *spec_.steps > at_->step / *spec_.steps) ||
+         (spec_.every && passed(at_->time, clock.time, *spec_.every)) ||
+         std::chrono::duration<Real>(Watch::now() - when_).count() >= spec_.wall_time;
+}
+
+template <int D>
+void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
+{
+  if (!at_)
+    at_ = frame.clock;
+  const std::string signal = StopRequests::received();
+  if (signal.empty() && !due(frame.clock))
+    return;
+  write(frame, recorder);
+  if (!signal.empty())
+    throw Stopped(fmt::format("stopped by {} before step {}, t = {:.6g} s; checkpoint {}", signal, frame.clock.step + 1, frame.clock.time,
+                              last_.string()));
+}
+
+template <int D>
+void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
+{
+  const fs::path file = folder_ / folder_name / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
+  write_whole(file, [&](const fs::path& temporary) {
+    ArrayWriter arrays(temporary);
+    keep(arrays, "format", format);
+    keep(arrays, "run", identity_);
+    for_each_part(frame, [&](const std::string& name, const auto& part) { keep(arrays, name, part); });
+    keep_laws(arrays, frame.materials);
+    keep(arrays, "recorder", recorder);
+    arrays.close();
+  });
+  last_ = file;
+  at_ = frame.clock;
+  when_ = Watch::now();
+  const auto all = checkpoints_in(folder_ / folder_name);
+  for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
+    fs::remove(all[i]);
+}
+
+CheckpointList::CheckpointList(const fs::path& at)
+{
+  if (!fs::exists(at))
+    throw EnvironmentError(fmt::format("{} is not there", at.string()));
+  files_ = fs::is_directory(at) ? checkpoints_in(at / folder_name) : std::vector{at};
+  if (files_.empty())
+    throw EnvironmentError(fmt::format("{} has no checkpoints: the run is over, or was stopped before one was due", at.string()));
+  std::string reasons;
+  for (const fs::path& file : files_) {
+    try {
+      const ArrayReader arrays(file);
+      std::int64_t written_in = 0;
+      recall(arrays, "format", written_in);
+      recall(arrays, "run/version", identity_.version);
+      if (written_in != format)
+        throw EnvironmentError(fmt::format("{} was written by version {} in format {}; this program knows format {}", file.string(),
+                                           identity_.version, written_in, format));
+      recall(arrays, "run", identity_);
+      return;
+    } catch (const EnvironmentError& e) {
+      reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
+    }
+  }
+  throw EnvironmentError(reasons);
+}
+
+fs::path CheckpointList::folder() const { return fs::absolute(files_.front()).parent_path().parent_path(); }
+
+template <int D>
+void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder) const
+{
+  std::string reasons;
+  for (const fs::path& file : files_) {
+    try {
+      const ArrayReader arrays(file);
+      for_each_part(state, [&](const std::string& name, auto& part) { recall(arrays, name, part); });
+      recall_laws(arrays, state.bodies, state.materials);
+      recall(arrays, "recorder", recorder);
+      if (!reasons.empty())
+        fmt::print(stderr, "warning: {}; going on from {}\n", reasons, file.string());
+      return;
+    } catch (const EnvironmentError& e) {
+      reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
+    }
+  }
+  throw EnvironmentError(reasons);
+}
+
+template std::int64_t digest<2>(const Mesh<2>&);
+template std::int64_t digest<3>(const Mesh<3>&);
+template class Checkpoints<2>;
+template class Checkpoints<3>;
+template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&) const;
+template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&) const;
+
+}  // namespace talus

@@ -1,0 +1,83 @@
+#pragma once
+// Checkpoints: the state of a run in a file, when it is due and when somebody asks the run to stop; and the way back.
+#include <chrono>
+
+#include "app/recorder.hpp"
+#include "app/state.hpp"
+#include "io/array_file.hpp"
+
+namespace talus {
+
+/// Which run a checkpoint belongs to.
+struct RunIdentity {
+  std::string version, commit;   ///< of the program
+  std::string scene_file;        ///< absolute path
+  std::string scene_text;        ///< as it was read
+  std::vector<std::string> set;  ///< what --set changed
+  bool quick = false;
+  std::int64_t mesh = 0;  ///< digest of nodes and cells
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        kept("version", &RunIdentity::version),  kept("commit", &RunIdentity::commit), kept("scene_file", &RunIdentity::scene_file),
+        kept("scene", &RunIdentity::scene_text), kept("set", &RunIdentity::set),       kept("quick", &RunIdentity::quick),
+        kept("mesh", &RunIdentity::mesh)};
+  }
+};
+
+/// A number that two meshes share only if their nodes and cells are the same, to the last bit.
+template <int D>
+std::int64_t digest(const Mesh<D>& mesh);
+
+template <int D>
+class Checkpoints {
+ public:
+  /// They go to folder/checkpoints.
+  Checkpoints(std::filesystem::path folder, const CheckpointSpec& spec, RunIdentity identity);
+
+  /// Before each step: writes one if it is due.  Stopped after writing one because of a signal.  EnvironmentError: it could not be written;
+  /// older ones are left as they are.
+  void see(const Frame<D>& frame, const Recorder<D>& recorder);
+  /// The last one written, empty if there is none.
+  const std::filesystem::path& last() const noexcept { return last_; }
+
+ private:
+  using Watch = std::chrono::steady_clock;
+  bool due(const Clock& clock) const;
+  void write(const Frame<D>& frame, const Recorder<D>& recorder);
+
+  std::filesystem::path folder_;
+  CheckpointSpec spec_;
+  RunIdentity identity_;
+  std::filesystem::path last_;
+  std::optional<Clock> at_;  // of the last one, or of the first look
+  Watch::time_point when_ = Watch::now();
+};
+
+/// Checkpoints to go on from, the newest first.
+class CheckpointList {
+ public:
+  /// A checkpoint, or the folder of a run.  EnvironmentError: there is none that can be read, or they are of another format.
+  explicit CheckpointList(const std::filesystem::path& at);
+
+  const RunIdentity& identity() const noexcept { return identity_; }
+  /// Folder of the run.
+  std::filesystem::path folder() const;
+  /// Puts the newest state that is whole in the place of what is there.  One that is damaged is named on standard error, and the one before
+  /// it is taken.  EnvironmentError: none is whole.
+  template <int D>
+  void take_over(const State<D>& state, Recorder<D>& recorder) const;
+
+ private:
+  std::vector<std::filesystem::path> files_;
+  RunIdentity identity_;
+};
+
+extern template std::int64_t digest<2>(const Mesh<2>&);
+extern template std::int64_t digest<3>(const Mesh<3>&);
+extern template class Checkpoints<2>;
+extern template class Checkpoints<3>;
+extern template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&) const;
+extern template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&) const;
+
+}  // namespace talus

@@ -1,0 +1,48 @@
+// POSIX signals.  A handler may do next to nothing: it notes the number.
+#include "app/signals.hpp"
+
+#include <array>
+#include <csignal>
+
+namespace talus {
+
+namespace {
+
+constexpr std::array<int, 3> requests{SIGTERM, SIGINT, SIGUSR1};
+volatile std::sig_atomic_t noted = 0;
+
+extern "C" void note(int number)
+{
+  if (number == SIGINT && noted == SIGINT) {
+    std::signal(SIGINT, SIG_DFL);
+    std::raise(SIGINT);
+  }
+  noted = number;
+}
+
+}  // namespace
+
+StopRequests::StopRequests()
+{
+  noted = 0;
+  for (const int number : requests)
+    std::signal(number, note);
+}
+
+StopRequests::~StopRequests()
+{
+  for (const int number : requests)
+    std::signal(number, SIG_DFL);
+}
+
+std::string StopRequests::received()
+{
+  switch (noted) {
+    case 0: return "";
+    case SIGTERM: return "SIGTERM";
+    case SIGINT: return "SIGINT";
+    default: return "SIGUSR1";
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,342 @@
+// A run that was stopped and goes on ends with the same bits as one that was not: every law, kernel, transfer, boundary and stage.
+#include <algorithm>
+#include <cstring>
+#include <set>
+
+#include "core/error.hpp"
+#include "io/array_file.hpp"
+#include "tests/app/program.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Two bodies that fall, bounce and slide; every line may be replaced.
+struct Parts {
+  std::string dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}}\n";
+  std::string more = "";  ///< kernel, transfer, precision
+  std::string law = "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3";
+  std::string bodies = "";  ///< replaces both
+  std::string boundaries =
+      "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: x_min}, {type: fixed, on: x_max}, {type: fixed, on: "
+      "y_max}]\n";
+  std::string time = "time: {end: 0.06}\n";
+  std::string loads = "loads: [{type: gravity, acceleration: [0, -9.81]}]\n";
+  std::string outputs = "";
+
+  std::string text() const
+  {
+    const std::string usual =
+        "bodies:\n"
+        "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
+        "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [1, "
+        "-4]}\n";
+    return "title: Restart\n" + dimension + more + "materials: [{name: stuff, density: 2000, " + law + "}]\n" +
+           (bodies.empty() ? usual : bodies) + loads + boundaries + time +
+           "outputs:\n  checkpoint: {steps: 5, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
+           (outputs.empty() ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}]" : outputs) + "}\n";
+  }
+};
+
+struct Case {
+  std::string name;
+  Parts parts;
+  friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
+};
+
+const std::string metal =
+    "law: johnson_cook, youngs_modulus: 1.0e7, poisson_ratio: 0.3, yield_stress: 5.0e3, hardening_coefficient: 2.0e4, hardening_exponent: "
+    "0.3, "
+    "rate_coefficient: 0.02, thermal_exponent: 1, room_temperature: 293, melting_temperature: 330, specific_heat: 0.5";
+const std::string solid = "dimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [2, 2, 1], cells: [4, 4, 2]}}\n";
+
+std::vector<Case> cases()
+{
+  std::vector<Case> all;
+  const auto law = [&](const std::string& name, const std::string& text) { all.push_back({"law_" + name, {.law = text}}); };
+  law("linear_elastic", "law: linear_elastic, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("neo_hookean", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
+  law("corotated", "law: corotated, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("hencky", "law: hencky, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("linear_first_piola", "law: linear_first_piola, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("drucker_prager",
+      "law: drucker_prager, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, match: plane_strain, "
+      "dilation_angle: 8, "
+      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
+  law("mohr_coulomb",
+      "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, dilation_angle: 8, "
+      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
+  law("modified_cam_clay",
+      "law: modified_cam_clay, shear_modulus: 4.0e5, compression_index: 0.2, swelling_index: 0.05, critical_state_slope: 1.1, "
+      "preconsolidation_pressure: 1.0e4, reference_pressure: 5.0e4");
+  law("mu_i",
+      "law: mu_i, youngs_modulus: 1.0e6, poisson_ratio: 0.3, static_friction: 0.38, limiting_friction: 0.64, inertial_number: 0.28, "
+      "grain_diameter: "
+      "5.0e-3, grain_density: 2500");
+  law("newtonian", "law: newtonian, bulk_modulus: 1.0e6, viscosity: 1");
+  law("herschel_bulkley",
+      "law: herschel_bulkley, bulk_modulus: 1.0e6, yield_stress: 50, consistency: 4, regularisation: 1, flow_index: 1.5");
+  law("von_mises", "law: von_mises, youngs_modulus: 1.0e6, poisson_ratio: 0.3, yield_stress: 3.0e3");
+  law("johnson_cook", metal);
+  law("johnson_cook_of_all", metal + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
+  law("johnson_cook_heat", metal + ", conductivity: 300, initial_temperature: 300");
+
+  for (const std::string kernel : {"projected", "umls", "linear", "umls_projected"})
+    for (const std::string scheme : {"tpic", "apic", "flip", "aflip", "pic"})
+      all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
+  all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
+  all.push_back({"single", {.more = "precision: single\n"}});
+  all.push_back({"single_soil", {.more = "precision: single\n", .law = all[5].parts.law}});
+  all.push_back(
+      {"averaged_volume",
+       {.bodies =
+            "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [1, "
+            "-3], f_bar: true}\n"}});
+  all.push_back(
+      {"averaged_metal",
+       {.law = metal,
+        .bodies =
+            "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [1, "
+            "-9], f_bar: true}\n"}});
+  all.push_back(
+      {"tractions",
+       {.bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
+        .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81], table: [[0, 0], [0.03, 1], [1, 2]]}\n"
+                 "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n"}});
+  all.push_back(
+      {"moving_wall",
+       {.boundaries =
+            "boundaries: [{type: velocity, on: x_min, velocity: [2, 0], table: [[0, 0], [0.02, 1], [1, 0]]}, {type: fixed, on: y_min}, "
+            "{type: fixed, on: x_max}, {type: fixed, on: y_max}]\n"}});
+  all.push_back(
+      {"deletion",
+       {.more = "on_exit: delete\n",
+        .bodies =
+            "bodies:\n"
+            "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [-9, 0]}\n"
+            "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [9, "
+            "0]}\n",
+        .boundaries = "boundaries: [{type: roller, on: y_min}]\n"}});
+  all.push_back(
+      {"stages",
+       {.law = all[5].parts.law,
+        .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
+        .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
+        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
+                "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
+  all.push_back({"solid",
+                 {.dimension = solid,
+                  .law = all[5].parts.law,
+                  .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
+                            "particles_per_cell: 4, velocity: "
+                            "[2, -2, 1]}\n",
+                  .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
+                  .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
+                  .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"}});
+  all.push_back({"solid_umls",
+                 {.dimension = solid,
+                  .more = "kernel: umls\ntransfer: {scheme: apic}\n",
+                  .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
+                            "particles_per_cell: 4, velocity: "
+                            "[2, -2, 1]}\n",
+                  .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
+                  .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
+                  .outputs = ", fronts: [{name: toe, direction: +x}]"}});
+  return all;
+}
+
+/// f(path) for all that a file holds, but clocks on the wall and places on the disk.
+template <class F>
+void for_each_entry(const ArrayReader& file, const std::string& group, F&& f)
+{
+  static const std::set<std::string> of_the_day{"timings", "output_seconds", "last_output", "scene_file"};
+  for (const std::string& name : file.names(group)) {
+    const std::string path = group.empty() ? name : group + "/" + name;
+    if (of_the_day.contains(name))
+      continue;
+    bool is_group = true;
+    try {
+      is_group = !file.names(path).empty();
+    } catch (const EnvironmentError&) {
+      is_group = false;
+    }
+    if (is_group)
+      for_each_entry(file, path, f);
+    else
+      f(path);
+  }
+}
+
+template <class T>
+bool same_values(const ArrayReader& a, const ArrayReader& b, const std::string& path, bool& known)
+{
+  for (const int columns : {1, 2, 3, 4, 6, 9}) {
+    std::vector<T> x;
+    try {
+      x = a.read<T>(path, columns);
+    } catch (const EnvironmentError&) {
+      continue;
+    }
+    known = true;
+    const auto y = b.read<T>(path, columns);
+    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(T)) == 0;
+  }
+  return true;
+}
+
+void expect_same_state(const fs::path& one, const fs::path& other)
+{
+  const ArrayReader a(one), b(other);
+  int compared = 0;
+  for_each_entry(a, "", [&](const std::string& path) {
+    bool known = false;
+    const bool same = same_values<double>(a, b, path, known) && same_values<float>(a, b, path, known) &&
+                      same_values<std::int32_t>(a, b, path, known) && same_values<std::int64_t>(a, b, path, known) &&
+                      same_values<std::uint8_t>(a, b, path, known);
+    EXPECT_TRUE(same) << path << " of " << one << " and " << other;
+    if (!known) {
+      EXPECT_EQ(a.text(path), b.text(path)) << path;
+    }
+    ++compared;
+  });
+  EXPECT_GT(compared, 60);
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, const std::string& extension)
+{
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().extension() == extension)
+      files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+class Restart : public Program, public testing::WithParamInterface<Case> {
+ protected:
+  void run(const std::string& words) const
+  {
+    const Outcome outcome = talus("run --quiet " + words);
+    ASSERT_EQ(outcome.code, 0) << words << "\n" << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+  }
+};
+
+TEST_P(Restart, GivesTheSameBitsThreeTimesInAChain)
+{
+  write("scene.yaml", GetParam().parts.text());
+  run("scene.yaml --out whole --threads 2");
+  const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
+  ASSERT_GE(kept.size(), 4u) << "too few steps to stop at";
+  const std::string last = kept.back().filename().string();
+
+  // Each link goes on from a checkpoint that the link before wrote.
+  std::string before = "whole";
+  for (std::size_t link = 1; link <= 3; ++link) {
+    const std::string at = kept[link * (kept.size() - 1) / 4].filename().string(), next = "link" + std::to_string(link);
+    run("--resume " + before + "/checkpoints/" + at + " --out " + next + (link % 2 == 0 ? " --threads 2" : " --threads 1"));
+    before = next;
+  }
+  expect_same_state(kept.back(), folder_ / (before + "/checkpoints/" + last));
+  const auto particles = files_in(folder_ / "whole", ".vtp");
+  EXPECT_TRUE(read_whole(particles.back()) == read_whole(folder_ / before / particles.back().filename())) << "other particles at the end";
+
+  // In its own folder a run goes on with its files as if nothing had been.
+  fs::copy(folder_ / "whole", folder_ / "again", fs::copy_options::recursive);
+  const auto middle = kept[kept.size() / 2].filename().string();
+  for (const auto& file : files_in(folder_ / "again/checkpoints", ".h5"))
+    if (file.filename() > middle)
+      fs::remove(file);
+  run("--resume again");
+  for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
+    if (const fs::path name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
+      EXPECT_TRUE(read_whole(entry.path()) == read_whole(folder_ / "again" / name)) << name;
+    }
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "whole"), {}), std::distance(fs::directory_iterator(folder_ / "again"), {}));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Restart, testing::ValuesIn(cases()), [](const auto& of) { return of.param.name; });
+
+using Checkpoint = Program;
+
+/// A run that would take minutes.
+std::string long_scene(const std::string& checkpoint = "")
+{
+  Parts parts;
+  parts.time = "time: {end: 1000}\n";
+  parts.boundaries =
+      "boundaries: [{type: roller, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}, {type: roller, on: y_max}]\n";
+  return parts.text() + checkpoint;
+}
+
+TEST_F(Checkpoint, IsWrittenWhenTheRunIsToldToStop)
+{
+  write("scene.yaml", long_scene());
+  for (const std::string signal : {"TERM", "INT", "USR1"}) {
+    const Outcome outcome = talus(
+        "run scene.yaml --quiet --out out --threads 1 & child=$!; for i in $(seq 200); do [ -e out/history.csv ] && break; "
+        "sleep 0.05; done; sleep 0.2; kill -" +
+        signal + " $child; wait $child");
+    EXPECT_EQ(outcome.code, 4) << outcome.err;
+    EXPECT_NE(outcome.err.find("stopped by SIG" + signal + " before step"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("go on with: talus run --resume out"), std::string::npos) << outcome.err;
+    EXPECT_NE(read("out/summary.json").find("\"status\": \"stopped\""), std::string::npos);
+    EXPECT_FALSE(files_in(folder_ / "out/checkpoints", ".h5").empty());
+  }
+}
+
+TEST_F(Checkpoint, TheLastAreKeptAndADamagedOneGivesWayToTheOneBefore)
+{
+  Parts parts;
+  std::string scene = parts.text();
+  const std::string many = "checkpoint: {steps: 5, keep: 1000}";
+  scene.replace(scene.find(many), many.size(), "checkpoint: {steps: 5, keep: 3}");
+  write("scene.yaml", scene);
+  ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
+  const auto kept = files_in(folder_ / "out/checkpoints", ".h5");
+  ASSERT_EQ(kept.size(), 3u);
+  fs::resize_file(kept.back(), fs::file_size(kept.back()) / 2);
+  const Outcome outcome = talus("run --resume out --quiet");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("going on from "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(kept[1].filename().string()), std::string::npos) << outcome.err;
+  for (const auto& file : files_in(folder_ / "out/checkpoints", ".h5"))
+    fs::resize_file(file, 100);
+  const Outcome nothing_left = talus("run --resume out --quiet");
+  EXPECT_EQ(nothing_left.code, 3);
+  EXPECT_NE(nothing_left.err.find(kept[0].filename().string()), std::string::npos) << nothing_left.err;
+}
+
+TEST_F(Checkpoint, OfAnotherMeshIsRefused)
+{
+  Parts parts;
+  parts.dimension = "dimension: 2\nmesh: {file: box.msh}\n";
+  write("grid.yaml", Parts{}.text());
+  ASSERT_EQ(talus("mesh grid.yaml --out box.msh").code, 0);
+  write("scene.yaml", parts.text());
+  ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
+  write("finer.yaml", Parts{.dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [7, 7]}}\n"}.text());
+  ASSERT_EQ(talus("mesh finer.yaml --out box.msh").code, 0);
+  const Outcome outcome = talus("run --resume out --quiet");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_NE(outcome.err.find("is not the one that the checkpoint was made with"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Checkpoint, NothingToGoOnFromIsSaid)
+{
+  EXPECT_NE(talus("run --resume nowhere").err.find("nowhere is not there"), std::string::npos);
+  fs::create_directory(folder_ / "empty");
+  const Outcome outcome = talus("run --resume empty");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_NE(outcome.err.find("empty has no checkpoints"), std::string::npos) << outcome.err;
+  write("text.h5", "not a checkpoint");
+  EXPECT_EQ(talus("run --resume text.h5").code, 3);
+  EXPECT_EQ(talus("run").code, 2);
+  EXPECT_EQ(talus("run scene.yaml --resume out").code, 2);
+  EXPECT_EQ(talus("run --resume out --set time.end=2").code, 2);
+}
+
+}  // namespace
+}  // namespace talus
