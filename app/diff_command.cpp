@@ -176,7 +176,7 @@ CommonTimes common_times(const std::array<std::vector<Real>, 2>& times, const Ru
     common.both = {pairs.both.back()};
   for (const std::size_t r : {0, 1})
     if (const auto& alone = r == 0 ? pairs.only_a : pairs.only_b; !last && !alone.empty())
-      common.one_sided.push_back(fmt::format("only in {}: {} time{}, the first t = {:.6g} s", folders[r].string(), alone.size(),
+      common.one_sided.push_back(fmt::format("only in {}: {} time{}, the first t = {} s", folders[r].string(), alone.size(),
                                              alone.size() == 1 ? "" : "s", times[r][alone.front()]));
   return common;
 }
@@ -386,6 +386,9 @@ void print_origins(const RunFolders& folders)
                                      {"commit", &RunOrigin::commit},
                                      {"compiler", &RunOrigin::compiler},
                                      {"flags", &RunOrigin::build},
+                                     {"kernel", &RunOrigin::kernel},
+                                     {"transfer", &RunOrigin::transfer},
+                                     {"precision", &RunOrigin::precision},
                                      {"threads", &RunOrigin::threads}}) {
     if (a.*member == b.*member)
       same.emplace_back(name);

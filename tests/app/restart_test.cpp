@@ -82,9 +82,11 @@ std::vector<Case> cases()
   law("johnson_cook_of_all", metal + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
   law("johnson_cook_heat", metal + ", conductivity: 300, initial_temperature: 300");
 
-  for (const std::string kernel : {"projected", "umls", "linear", "umls_projected"})
-    for (const std::string scheme : {"tpic", "apic", "flip", "aflip", "pic"})
+  for (const std::string kernel : {"umls", "linear", "umls_projected"})
+    for (const std::string scheme : {"apic", "aflip"})
       all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
+  for (const std::string scheme : {"pic", "flip", "apic", "tpic"})
+    all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
   all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
   all.push_back({"single", {.more = "precision: single\n"}});
   all.push_back({"single_soil", {.more = "precision: single\n", .law = all[5].parts.law}});
@@ -221,34 +223,29 @@ class Restart : public Program, public testing::WithParamInterface<Case> {
     ASSERT_EQ(outcome.code, 0) << words << "\n" << outcome.err;
     EXPECT_EQ(outcome.err, "");
   }
+  /// As if the run had been killed before it could write a later one.
+  void forget_checkpoints_after(const fs::path& checkpoint) const
+  {
+    for (const auto& file : files_in(folder_ / "again/checkpoints", ".h5"))
+      if (file.filename() > checkpoint.filename())
+        fs::remove(file);
+  }
 };
 
+/// Each link of the chain goes on from a checkpoint that the link before wrote, and goes on with its files.
 TEST_P(Restart, GivesTheSameBitsThreeTimesInAChain)
 {
   write("scene.yaml", GetParam().parts.text());
   run("scene.yaml --out whole --threads 2");
   const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
-  ASSERT_GE(kept.size(), 4u) << "too few steps to stop at";
-  const std::string last = kept.back().filename().string();
-
-  // Each link goes on from a checkpoint that the link before wrote.
-  std::string before = "whole";
-  for (std::size_t link = 1; link <= 3; ++link) {
-    const std::string at = kept[link * (kept.size() - 1) / 4].filename().string(), next = "link" + std::to_string(link);
-    run("--resume " + before + "/checkpoints/" + at + " --out " + next + (link % 2 == 0 ? " --threads 2" : " --threads 1"));
-    before = next;
-  }
-  expect_same_state(kept.back(), folder_ / (before + "/checkpoints/" + last));
-  const auto particles = files_in(folder_ / "whole", ".vtp");
-  EXPECT_TRUE(read_whole(particles.back()) == read_whole(folder_ / before / particles.back().filename())) << "other particles at the end";
-
-  // In its own folder a run goes on with its files as if nothing had been.
+  ASSERT_GE(kept.size(), 4U) << "too few steps to stop at";
   fs::copy(folder_ / "whole", folder_ / "again", fs::copy_options::recursive);
-  const auto middle = kept[kept.size() / 2].filename().string();
-  for (const auto& file : files_in(folder_ / "again/checkpoints", ".h5"))
-    if (file.filename() > middle)
-      fs::remove(file);
-  run("--resume again");
+  for (std::size_t link = 1; link <= 3; ++link) {
+    forget_checkpoints_after(kept[link * (kept.size() - 1) / 4]);
+    run("--resume again --threads 1");
+    ASSERT_EQ(files_in(folder_ / "again/checkpoints", ".h5").size(), kept.size());
+  }
+  expect_same_state(kept.back(), folder_ / "again/checkpoints" / kept.back().filename());
   for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
     if (const fs::path name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
       EXPECT_TRUE(read_whole(entry.path()) == read_whole(folder_ / "again" / name)) << name;
@@ -307,6 +304,21 @@ TEST_F(Checkpoint, TheLastAreKeptAndADamagedOneGivesWayToTheOneBefore)
   const Outcome nothing_left = talus("run --resume out --quiet");
   EXPECT_EQ(nothing_left.code, 3);
   EXPECT_NE(nothing_left.err.find(kept[0].filename().string()), std::string::npos) << nothing_left.err;
+}
+
+TEST_F(Checkpoint, GoesOnInAFolderOfItsOwn)
+{
+  write("scene.yaml", Parts{}.text());
+  ASSERT_EQ(talus("run scene.yaml --quiet --out whole").code, 0);
+  const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
+  const std::string middle = kept.at(kept.size() / 2).filename().string();
+  ASSERT_EQ(talus("run --quiet --out rest --resume whole/checkpoints/" + middle).code, 0);
+  expect_same_state(kept.back(), folder_ / "rest/checkpoints" / kept.back().filename());
+  const HistoryTable whole = history("whole"), rest = history("rest");
+  EXPECT_LT(rest.rows(), whole.rows());
+  for (const char* column : {"time", "kinetic", "reaction_y_min_y", "top_x"})
+    EXPECT_EQ(last(rest, column), last(whole, column)) << column;
+  EXPECT_EQ(files_in(folder_ / "whole/checkpoints", ".h5"), kept) << "the run it came from was touched";
 }
 
 TEST_F(Checkpoint, OfAnotherMeshIsRefused)
