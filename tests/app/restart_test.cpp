@@ -21,7 +21,7 @@ struct Parts {
   std::string boundaries =
       "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: x_min}, {type: fixed, on: x_max}, {type: fixed, on: "
       "y_max}]\n";
-  std::string time = "time: {end: 0.06}\n";
+  std::string time = "time: {end: 0.042, max_step: 1.4e-3}\n";
   std::string loads = "loads: [{type: gravity, acceleration: [0, -9.81]}]\n";
   std::string outputs = "";
 
@@ -34,7 +34,7 @@ struct Parts {
         "-4]}\n";
     return "title: Restart\n" + dimension + more + "materials: [{name: stuff, density: 2000, " + law + "}]\n" +
            (bodies.empty() ? usual : bodies) + loads + boundaries + time +
-           "outputs:\n  checkpoint: {steps: 5, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
+           "outputs:\n  checkpoint: {steps: 4, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
            (outputs.empty() ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}]" : outputs) + "}\n";
   }
 };
@@ -76,7 +76,7 @@ std::vector<Case> cases()
       "5.0e-3, grain_density: 2500");
   law("newtonian", "law: newtonian, bulk_modulus: 1.0e6, viscosity: 1");
   law("herschel_bulkley",
-      "law: herschel_bulkley, bulk_modulus: 1.0e6, yield_stress: 50, consistency: 4, regularisation: 1, flow_index: 1.5");
+      "law: herschel_bulkley, bulk_modulus: 1.0e6, yield_stress: 50, consistency: 4, regularisation: 1, flow_index: 0.8");
   law("von_mises", "law: von_mises, youngs_modulus: 1.0e6, poisson_ratio: 0.3, yield_stress: 3.0e3");
   law("johnson_cook", metal);
   law("johnson_cook_of_all", metal + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
@@ -85,7 +85,7 @@ std::vector<Case> cases()
   for (const std::string kernel : {"umls", "linear", "umls_projected"})
     for (const std::string scheme : {"apic", "aflip"})
       all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
-  for (const std::string scheme : {"pic", "flip", "apic", "tpic"})
+  for (const std::string scheme : {"flip", "tpic"})
     all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
   all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
   all.push_back({"single", {.more = "precision: single\n"}});
@@ -287,8 +287,8 @@ TEST_F(Checkpoint, TheLastAreKeptAndADamagedOneGivesWayToTheOneBefore)
 {
   Parts parts;
   std::string scene = parts.text();
-  const std::string many = "checkpoint: {steps: 5, keep: 1000}";
-  scene.replace(scene.find(many), many.size(), "checkpoint: {steps: 5, keep: 3}");
+  const std::string many = "checkpoint: {steps: 4, keep: 1000}";
+  scene.replace(scene.find(many), many.size(), "checkpoint: {steps: 4, keep: 3}");
   write("scene.yaml", scene);
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   const auto kept = files_in(folder_ / "out/checkpoints", ".h5");
