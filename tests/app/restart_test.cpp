@@ -103,7 +103,7 @@ std::vector<Case> cases()
             "-9], f_bar: true}\n"}});
   all.push_back(
       {"tractions",
-       {.bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
+       {.bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 2]}, particles_per_cell: 3}\n",
         .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81], table: [[0, 0], [0.03, 1], [1, 2]]}\n"
                  "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n"}});
   all.push_back(
@@ -271,13 +271,14 @@ TEST_F(Checkpoint, IsWrittenWhenTheRunIsToldToStop)
 {
   write("scene.yaml", long_scene());
   for (const std::string signal : {"TERM", "INT", "USR1"}) {
-    const Outcome outcome = talus(
-        "run scene.yaml --quiet --out out --threads 1 & child=$!; for i in $(seq 200); do [ -e out/history.csv ] && break; "
-        "sleep 0.05; done; sleep 0.2; kill -" +
-        signal + " $child; wait $child");
-    EXPECT_EQ(outcome.code, 4) << outcome.err;
-    EXPECT_NE(outcome.err.find("stopped by SIG" + signal + " before step"), std::string::npos) << outcome.err;
-    EXPECT_NE(outcome.err.find("go on with: talus run --resume out"), std::string::npos) << outcome.err;
+    const Outcome outcome = talus("info >info.txt; '" TALUS_BINARY
+                                  "' run scene.yaml --quiet --out out --threads 1 2>said.txt & child=$!; "
+                                  "for i in $(seq 200); do [ -e out/history.csv ] && break; sleep 0.05; done; sleep 0.2; kill -" +
+                                  signal + " $child; wait $child");
+    EXPECT_EQ(outcome.code, 4);
+    const std::string said = read("said.txt");
+    EXPECT_NE(said.find("stopped by SIG" + signal + " before step"), std::string::npos) << said;
+    EXPECT_NE(said.find("go on with: talus run --resume out"), std::string::npos) << said;
     EXPECT_NE(read("out/summary.json").find("\"status\": \"stopped\""), std::string::npos);
     EXPECT_FALSE(files_in(folder_ / "out/checkpoints", ".h5").empty());
   }
