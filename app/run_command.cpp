@@ -93,7 +93,9 @@ class Run {
   RunIdentity identity_of(const Mesh<D>& mesh) const
   {
     const Version v = version();
-    return {std::string(v.number), std::string(v.commit), fs::absolute(scene_.file).lexically_normal().string(), scene_.text, scene_.overrides, quick_, digest(mesh)};
+    return {std::string(v.number), std::string(v.commit), fs::absolute(scene_.file).lexically_normal().string(),
+            scene_.text,           scene_.overrides,      quick_,
+            digest(mesh)};
   }
 
   /// EnvironmentError: the mesh is not that of the checkpoint.
