@@ -265,14 +265,14 @@ H5FD_class_t Disk::driver() noexcept
   return driver;
 }
 
-struct Shape {
+struct Extents {
   hsize_t rows = 0;
   hsize_t columns = 1;
-  friend bool operator==(const Shape&, const Shape&) = default;
+  friend bool operator==(const Extents&, const Extents&) = default;
 };
 
 /// Of the values and of all that says what they mean.
-std::uint64_t digest_of(const std::string& path, const std::string& type, const Shape& shape, const std::string& unit,
+std::uint64_t digest_of(const std::string& path, const std::string& type, const Extents& shape, const std::string& unit,
                         std::span<const std::byte> values)
 {
   const std::string meaning = fmt::format("{}\n{}\n{} x {}\n{}", path, type, shape.rows, shape.columns, unit);
@@ -296,7 +296,7 @@ bool write_attribute(const Handle& array, const char* name, hid_t type, const vo
 }
 
 /// How arrays lie in the file: chunks with checksums.
-Handle array_layout(const Shape& shape, int rank, std::size_t value_bytes)
+Handle array_layout(const Extents& shape, int rank, std::size_t value_bytes)
 {
   Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(layout.id(), false);  // the same values, the same bytes
@@ -359,7 +359,7 @@ struct ArrayWriter::Opened {
         refuse_write(group);
   }
 
-  void put(const std::string& path, hid_t type, const Shape& shape, std::span<const std::byte> values, const std::string& unit) const
+  void put(const std::string& path, hid_t type, const Extents& shape, std::span<const std::byte> values, const std::string& unit) const
   {
     if (!file.is_open())
       throw std::invalid_argument(fmt::format("{} is closed: {} cannot be written", name.string(), path));
@@ -456,7 +456,7 @@ struct ArrayReader::Opened {
   }
 
   /// Nothing is compressed, so an array bigger than its file is not there: checked before anything is allocated.
-  Shape shape_of(const Handle& array, std::size_t value_bytes, const std::string& path) const
+  Extents shape_of(const Handle& array, std::size_t value_bytes, const std::string& path) const
   {
     const Handle space(H5Dget_space(array.id()), H5Sclose);
     const int rank = H5Sget_simple_extent_ndims(space.id());
@@ -503,19 +503,19 @@ struct ArrayReader::Opened {
   }
 
   /// Reads what has been opened and checked so far; as many values as `shape` says.
-  void get(const Handle& array, hid_t type, const Shape& shape, std::span<std::byte> to, const std::string& path) const
+  void get(const Handle& array, hid_t type, const Extents& shape, std::span<std::byte> to, const std::string& path) const
   {
     if (!to.empty() && H5Dread(array.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to.data()) < 0)
       refuse_damaged(name, path);
     check_digest(array, digest_of(path, type_word(type), shape, unit_of(array, path), to), path);
   }
 
-  Shape check_array(const Handle& array, hid_t wanted, hsize_t columns, const std::string& path) const
+  Extents check_array(const Handle& array, hid_t wanted, hsize_t columns, const std::string& path) const
   {
     const Handle type = type_of(array, path);
     if (H5Tequal(type.id(), wanted) <= 0)
       refuse(name, path, fmt::format("holds {}, not {}", type_word(type.id()), type_word(wanted)));
-    const Shape shape = shape_of(array, H5Tget_size(type.id()), path);
+    const Extents shape = shape_of(array, H5Tget_size(type.id()), path);
     if (shape.columns != columns)
       refuse(name, path, fmt::format("has {} columns, not {}", shape.columns, columns));
     return shape;
@@ -574,7 +574,7 @@ template <class T>
 std::vector<T> ArrayReader::read(const std::string& path, int columns) const
 {
   const Handle array = opened_->open(path);
-  const Shape shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
+  const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   std::vector<T> values(shape.rows * shape.columns);
   opened_->get(array, type_id<T>(), shape, std::as_writable_bytes(std::span(values)), path);
   return values;
@@ -584,7 +584,7 @@ template <class T>
 void ArrayReader::read_into(const std::string& path, std::span<T> to, int columns) const
 {
   const Handle array = opened_->open(path);
-  const Shape shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
+  const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   if (shape.rows * shape.columns != to.size())
     refuse(opened_->name, path, fmt::format("has {} rows, not {}", shape.rows, to.size() / shape.columns));
   opened_->get(array, type_id<T>(), shape, std::as_writable_bytes(to), path);
@@ -608,7 +608,7 @@ std::string ArrayReader::text(const std::string& path) const
   const std::size_t size = H5Tget_size(type.id());
   if (H5Tget_class(type.id()) != H5T_STRING)
     refuse(opened_->name, path, fmt::format("holds {}, not text", type_word(type.id())));
-  const Shape shape = opened_->shape_of(array, size, path);
+  const Extents shape = opened_->shape_of(array, size, path);
   if (H5Tequal(type.id(), text_type(size).id()) <= 0 || shape.columns != 1 || shape.rows > 1)
     refuse(opened_->name, path, "is not one text of a known size");
   std::string text(shape.rows * size, '\0');
