@@ -36,6 +36,16 @@ bool is_result(const fs::path& file)
 
 }  // namespace
 
+void remove_leftovers(const fs::path& folder)
+{
+  for (const fs::path& place : {folder, folder / "checkpoints"}) {
+    std::error_code not_there;
+    for (const auto& entry : fs::directory_iterator(place, not_there))
+      if (const fs::path file = entry.path(); file.extension() == ".tmp" && (is_result(file.stem()) || file.stem().extension() == ".h5"))
+        fs::remove(file);
+  }
+}
+
 void prepare_results(const fs::path& folder)
 try {
   fs::create_directories(folder);
@@ -47,6 +57,7 @@ try {
   for (const auto& entry : fs::directory_iterator(folder))
     if (is_result(entry.path()))
       fs::remove(entry.path());
+  remove_leftovers(folder);
   fs::remove_all(folder / "pictures");
   fs::remove_all(folder / "checkpoints");
 } catch (const fs::filesystem_error& e) {

@@ -9,6 +9,9 @@ namespace talus {
 /// EnvironmentError: it cannot be written, or holds something else, which is left alone.
 void prepare_results(const std::filesystem::path& folder);
 
+/// Removes what a run that was killed had not finished writing.
+void remove_leftovers(const std::filesystem::path& folder);
+
 /// runs/<name>: name of the scene's folder, or of the file if that is not called scene.yaml.
 std::filesystem::path default_results(const std::filesystem::path& scene);
 

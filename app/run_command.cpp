@@ -115,6 +115,8 @@ class Run {
     stages_ = setup.stages;
     if (std::error_code not_there; !from_ || !fs::equivalent(folder_, from_->folder(), not_there))
       prepare_results(folder_);
+    else
+      remove_leftovers(folder_);
     summary_ = begin_summary(scene_, mesh, setup);
     write_summary(folder_ / "summary.json", summary_);
     write_whole(folder_ / "scene.yaml", scene_.text);

@@ -1,6 +1,7 @@
 // A run that was stopped and goes on ends with the same bits as one that was not: every law, kernel, transfer, boundary and stage.
 #include <algorithm>
 #include <cstring>
+#include <random>
 #include <set>
 
 #include "core/error.hpp"
@@ -320,6 +321,41 @@ TEST_F(Checkpoint, GoesOnInAFolderOfItsOwn)
   for (const char* column : {"time", "kinetic", "reaction_y_min_y", "top_x"})
     EXPECT_EQ(last(rest, column), last(whole, column)) << column;
   EXPECT_EQ(files_in(folder_ / "whole/checkpoints", ".h5"), kept) << "the run it came from was touched";
+}
+
+/// Killed without warning, at any moment: in a step, while a checkpoint or an output is written, while it reads one.
+TEST_F(Checkpoint, KilledAnywhereARunGoesOnNightly)
+{
+  Parts parts;
+  parts.time = "time: {end: 0.42, max_step: 1.4e-3}\n";
+  write("scene.yaml", parts.text());
+  ASSERT_EQ(talus("run scene.yaml --quiet --out whole --threads 1").code, 0);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<Real> delay(0.05, 0.8);  // [s]; the run takes about one
+  int kills = 0, runs = 0;
+  while (kills < 200) {
+    const bool can_go_on = exists("killed/checkpoints") && !files_in(folder_ / "killed/checkpoints", ".h5").empty();
+    const std::string what = can_go_on ? "--resume killed" : "scene.yaml --out killed";
+    const Outcome outcome = talus("info >info.txt; timeout --signal=KILL " + std::to_string(delay(random)) + " '" TALUS_BINARY "' run " +
+                                  what + " --quiet --threads 1");
+    if (outcome.code != 0) {
+      ASSERT_EQ(outcome.code, 137) << outcome.err;
+      ++kills;
+      continue;
+    }
+    ++runs;
+    for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
+      if (const fs::path name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
+        ASSERT_TRUE(read_whole(entry.path()) == read_whole(folder_ / "killed" / name)) << name << " after " << kills << " kills";
+      }
+    const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
+    expect_same_state(kept.back(), folder_ / "killed/checkpoints" / kept.back().filename());
+    EXPECT_TRUE(files_in(folder_ / "killed", ".tmp").empty() && files_in(folder_ / "killed/checkpoints", ".tmp").empty());
+    fs::remove_all(folder_ / "killed");
+  }
+  EXPECT_GT(runs, 0);
+  RecordProperty("runs", runs);
+  std::printf("%d kills, %d runs to the end\n", kills, runs);
 }
 
 TEST_F(Checkpoint, OfAnotherMeshIsRefused)
