@@ -34,6 +34,15 @@ bool is_result(const fs::path& file)
   return numbered("particles_", ".vtp") || numbered("mesh_", ".vtu");
 }
 
+/// What a run that is killed now leaves behind of the summary it is writing.
+bool is_empty_but_for_leftovers(const fs::path& folder)
+{
+  for (const auto& entry : fs::directory_iterator(folder))
+    if (entry.path().filename() != "summary.json.tmp")
+      return false;
+  return true;
+}
+
 }  // namespace
 
 void remove_leftovers(const fs::path& folder)
@@ -49,17 +58,18 @@ void remove_leftovers(const fs::path& folder)
 void prepare_results(const fs::path& folder)
 try {
   fs::create_directories(folder);
-  if (!fs::is_empty(folder) && !fs::exists(folder / "summary.json"))
+  if (!is_empty_but_for_leftovers(folder) && !fs::exists(folder / "summary.json"))
     throw EnvironmentError(fmt::format(
         "{} is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out", folder.string()));
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
     throw EnvironmentError(fmt::format("{} cannot be written", folder.string()));
   for (const auto& entry : fs::directory_iterator(folder))
-    if (is_result(entry.path()))
+    if (is_result(entry.path()) && entry.path().filename() != "summary.json")
       fs::remove(entry.path());
   remove_leftovers(folder);
   fs::remove_all(folder / "pictures");
   fs::remove_all(folder / "checkpoints");
+  fs::remove(folder / "summary.json");  // the last: it says whose the rest is
 } catch (const fs::filesystem_error& e) {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));
 }
