@@ -16,7 +16,7 @@ mkdir -p build/portable/lib/glibc-hwcaps/x86-64-v3
 cp build/portable-v3/lib/*.so build/portable/lib/glibc-hwcaps/x86-64-v3/
 
 # Which libraries are taken here, and that the plainest run as well.
-loader=$(find /lib64 /lib -maxdepth 1 -name 'ld-linux-x86-64.so.2' -print -quit 2>/dev/null)
+loader=/lib64/ld-linux-x86-64.so.2
 flags() { grep -o 'march=[a-z0-9-]*' | head -n 1; }
 echo "build/portable/talus takes the libraries for $(build/portable/talus info | flags)"
 echo "kept to the oldest it takes those for $("$loader" --glibc-hwcaps-mask none build/portable/talus info | flags)"
