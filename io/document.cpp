@@ -30,6 +30,11 @@ const Node* Node::find(std::string_view key) const noexcept
   return at == keys.end() ? nullptr : &items[static_cast<std::size_t>(at - keys.begin())];
 }
 
+std::string::const_iterator first_control(const std::string& text)
+{
+  return std::find_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+}
+
 std::string path_to(const std::string& parent, std::string_view key)
 {
   return parent.empty() ? std::string(key) : fmt::format("{}.{}", parent, key);
@@ -38,8 +43,8 @@ std::string path_to(const std::string& parent, std::string_view key)
 std::string path_to(const std::string& parent, std::size_t i, const Node& entry)
 {
   const Node* name = entry.find("name");
-  return name != nullptr && name->kind == Node::Kind::scalar ? fmt::format("{}[{}] \"{}\"", parent, i, name->text)
-                                                             : fmt::format("{}[{}]", parent, i);
+  const bool shown = name != nullptr && name->kind == Node::Kind::scalar && first_control(name->text) == name->text.end();
+  return shown ? fmt::format("{}[{}] \"{}\"", parent, i, name->text) : fmt::format("{}[{}]", parent, i);
 }
 
 bool is_within(std::string_view path, std::string_view outer)

@@ -49,6 +49,10 @@ struct Node {
   const Node* find(std::string_view key) const noexcept;
 };
 
+/// The first character of a text that does not print, such as a line end: it would stand in messages, tables and names of columns, where
+/// nobody sees it.
+std::string::const_iterator first_control(const std::string& text);
+
 /// `parent.key`, or `key` at the top.
 std::string path_to(const std::string& parent, std::string_view key);
 /// `parent[i]`, followed by the name in quotes if the entry has one: `materials[1] "clay"`.

@@ -126,6 +126,9 @@ Complaint read_scalar(const Node& node, const Asked&, std::string& value)
 {
   if (node.text.empty())
     return "this text is empty";
+  if (const auto control = first_control(node.text); control != node.text.end())
+    return *control == '\n' ? std::string("this text has more than one line")
+                            : fmt::format("this text holds a character that does not print, {:#04x}", static_cast<unsigned char>(*control));
   value = node.text;
   return std::nullopt;
 }
