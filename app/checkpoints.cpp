@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 
 #include "app/signals.hpp"
 #include "io/kept.hpp"
@@ -42,16 +41,6 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder)
   return files;
 }
 
-/// FNV-1a, a word at a time.
-void digest_words(std::span<const std::byte> bytes, std::uint64_t& sum)
-{
-  for (std::size_t at = 0; at < bytes.size(); at += 4) {
-    std::uint32_t word = 0;
-    std::memcpy(&word, bytes.data() + at, std::min<std::size_t>(4, bytes.size() - at));
-    sum = (sum ^ word) * 0x100000001b3;
-  }
-}
-
 void keep_laws(ArrayWriter& file, const std::vector<AnyBatch>& materials)
 {
   for (std::size_t b = 0; b < materials.size(); ++b) {
@@ -72,17 +61,6 @@ void recall_laws(const ArrayReader& file, const std::vector<Body>& bodies, std::
 }
 
 }  // namespace
-
-template <int D>
-std::int64_t digest(const Mesh<D>& mesh)
-{
-  std::uint64_t sum = 0xcbf29ce484222325;
-  digest_words(std::as_bytes(mesh.nodes()), sum);
-  digest_words(std::as_bytes(mesh.cells()), sum);
-  std::int64_t number = 0;
-  std::memcpy(&number, &sum, sizeof(sum));
-  return number;
-}
 
 template <int D>
 Checkpoints<D>::Checkpoints(fs::path folder, const CheckpointSpec& spec, RunIdentity identity)
@@ -181,8 +159,6 @@ void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder) con
   throw EnvironmentError(reasons);
 }
 
-template std::int64_t digest<2>(const Mesh<2>&);
-template std::int64_t digest<3>(const Mesh<3>&);
 template class Checkpoints<2>;
 template class Checkpoints<3>;
 template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&) const;

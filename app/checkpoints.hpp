@@ -15,7 +15,7 @@ struct RunIdentity {
   std::string scene_text;        ///< as it was read
   std::vector<std::string> set;  ///< what --set changed
   bool quick = false;
-  std::int64_t mesh = 0;  ///< digest of nodes and cells
+  std::int64_t mesh = 0;  ///< its digest
   static constexpr auto fields()
   {
     return std::tuple{
@@ -24,10 +24,6 @@ struct RunIdentity {
         kept("mesh", &RunIdentity::mesh)};
   }
 };
-
-/// A number that two meshes share only if their nodes and cells are the same, to the last bit.
-template <int D>
-std::int64_t digest(const Mesh<D>& mesh);
 
 template <int D>
 class Checkpoints {
@@ -73,8 +69,6 @@ class CheckpointList {
   RunIdentity identity_;
 };
 
-extern template std::int64_t digest<2>(const Mesh<2>&);
-extern template std::int64_t digest<3>(const Mesh<3>&);
 extern template class Checkpoints<2>;
 extern template class Checkpoints<3>;
 extern template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&) const;

@@ -13,6 +13,7 @@
 #include "io/gmsh_write.hpp"
 #include "io/reader.hpp"
 #include "io/whole_file.hpp"
+#include "mesh/digest.hpp"
 
 namespace talus {
 
@@ -93,9 +94,13 @@ class Run {
   RunIdentity identity_of(const Mesh<D>& mesh) const
   {
     const Version v = version();
-    return {std::string(v.number), std::string(v.commit), fs::absolute(scene_.file).lexically_normal().string(),
-            scene_.text,           scene_.overrides,      quick_,
-            digest(mesh)};
+    return {std::string(v.number),
+            std::string(v.commit),
+            fs::absolute(scene_.file).lexically_normal().string(),
+            scene_.text,
+            scene_.overrides,
+            quick_,
+            static_cast<std::int64_t>(digest(mesh))};
   }
 
   /// EnvironmentError: the mesh is not that of the checkpoint.

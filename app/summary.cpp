@@ -5,6 +5,7 @@
 
 #include "core/parallel.hpp"
 #include "core/version.hpp"
+#include "mesh/digest.hpp"
 #include "mesh/quality.hpp"
 
 namespace talus {
@@ -114,6 +115,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.title = scene.title;
   s.scene_file = scene.file;
   s.scene_text = scene.text;
+  s.overrides = scene.overrides;
   const Version v = version();
   s.version = v.number, s.commit = v.commit, s.compiler = v.compiler;
   s.build = fmt::format("{}: {}", v.build_type, v.flags);
@@ -127,6 +129,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
   s.mesh_cells = mesh.n_cells();
+  s.mesh_digest = fmt::format("{:016x}", digest(mesh));
   s.mesh_quality = named(quality(mesh));
   s.warnings = setup.warnings;
   return s;

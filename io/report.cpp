@@ -87,7 +87,7 @@ std::string to_json(const RunSummary& s)
   json["kernel"] = s.kernel;
   json["transfer"] = s.transfer;
   json["precision"] = s.precision;
-  json["mesh"] = {{"nodes", s.mesh_nodes}, {"cells", s.mesh_cells}, {"quality", to_object(s.mesh_quality)}};
+  json["mesh"] = {{"nodes", s.mesh_nodes}, {"cells", s.mesh_cells}, {"digest", s.mesh_digest}, {"quality", to_object(s.mesh_quality)}};
   json["bodies"] = to_list(s.bodies);
   json["stages"] = to_list(s.stages);
   json["steps"] = s.steps;
@@ -96,7 +96,7 @@ std::string to_json(const RunSummary& s)
   json["balances"] = balances(s);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
-  json["scene"] = {{"file", s.scene_file}, {"text", s.scene_text}};
+  json["scene"] = {{"file", s.scene_file}, {"text", s.scene_text}, {"set", s.overrides}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';  // replace: a scene may hold bytes that are not UTF-8
 }
 

@@ -63,7 +63,8 @@ struct MassAudit {
 struct RunSummary {
   std::string title;
   std::string scene_file;
-  std::string scene_text;  ///< echo, byte for byte
+  std::string scene_text;              ///< echo, byte for byte
+  std::vector<std::string> overrides;  ///< what --set changed of it
   std::string version, commit, compiler, build;
   RunStatus status = RunStatus::done;
   std::string message;  ///< why it failed
@@ -73,6 +74,7 @@ struct RunSummary {
   int threads{};
 
   std::int64_t mesh_nodes{}, mesh_cells{};
+  std::string mesh_digest;  ///< of nodes and cells: runs with the same have the same mesh
   std::vector<NamedValue> mesh_quality;
   std::vector<BodySummary> bodies;
   std::vector<StageSummary> stages;

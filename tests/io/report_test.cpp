@@ -22,6 +22,8 @@ RunSummary example()
   RunSummary s;
   s.title = "Slope \"A\"";
   s.scene_file = "slope.yaml";
+  s.overrides = {"time.end=2"};
+  s.mesh_digest = "0123456789abcdef";
   s.scene_text = "title: Slope \"A\"  # \xc3\xa9\ndimension: 3\n";
   s.version = "1.2.3";
   s.commit = "0123456789ab";
@@ -52,6 +54,8 @@ TEST(Report, EveryPartReadsBack)
   EXPECT_EQ(read["status"], "done");
   EXPECT_FALSE(read.contains("message"));
   EXPECT_EQ(read["scene"]["text"], s.scene_text);
+  EXPECT_EQ(read["scene"]["set"], json::array({"time.end=2"}));
+  EXPECT_EQ(read["mesh"]["digest"], "0123456789abcdef");
   EXPECT_EQ(read["program"]["commit"], s.commit);
   EXPECT_EQ(read["mesh"]["quality"]["worst"].get<Real>(), 0.1 + 0.2);
   EXPECT_EQ(read["bodies"][0]["particles"].get<std::int64_t>(), 5'000'000'000);

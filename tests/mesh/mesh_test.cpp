@@ -7,6 +7,7 @@
 #include <numeric>
 #include <random>
 
+#include "mesh/digest.hpp"
 #include "mesh/generate.hpp"
 #include "mesh/simplex.hpp"
 
@@ -70,6 +71,17 @@ MeshData<D> sample()
     return plane(6);
   else
     return solid(3);
+}
+
+TEST(MeshDigest, NoticesTheLastBit)
+{
+  const MeshData<2> data = plane(3);
+  const auto before = digest(Mesh<2>(data));
+  EXPECT_EQ(digest(Mesh<2>(data)), before);
+  auto moved = data;
+  moved.nodes[4][1] = std::nextafter(moved.nodes[4][1], 9);
+  EXPECT_NE(digest(Mesh<2>(moved)), before);
+  EXPECT_NE(digest(Mesh<2>(plane(4))), before);
 }
 
 TYPED_TEST(MeshOf, VolumesArePositiveAndSumToTheBox)

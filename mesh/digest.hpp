@@ -1,0 +1,16 @@
+#pragma once
+// Whether two meshes are the same.
+#include <cstdint>
+
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// Of nodes and cells, to the last bit and in their order: other meshes have another number but once in 2^64.
+template <int D>
+std::uint64_t digest(const Mesh<D>& mesh);
+
+extern template std::uint64_t digest<2>(const Mesh<2>&);
+extern template std::uint64_t digest<3>(const Mesh<3>&);
+
+}  // namespace talus
