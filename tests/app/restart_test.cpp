@@ -272,16 +272,15 @@ TEST_F(Checkpoint, IsWrittenWhenTheRunIsToldToStop)
 {
   write("scene.yaml", long_scene());
   for (const std::string signal : {"TERM", "INT", "USR1"}) {
-    const Outcome outcome = talus("info >info.txt; '" TALUS_BINARY
-                                  "' run scene.yaml --quiet --out out --threads 1 2>said.txt & child=$!; "
-                                  "for i in $(seq 200); do [ -e out/history.csv ] && break; sleep 0.05; done; sleep 0.2; kill -" +
-                                  signal + " $child; wait $child");
+    const Outcome outcome = talus("info >info.txt; '" TALUS_BINARY "' run scene.yaml --quiet --out " + signal +
+                                  " --threads 1 2>said.txt & child=$!; for i in $(seq 600); do [ -e " + signal +
+                                  "/history.csv ] && break; sleep 0.05; done; sleep 0.2; kill -" + signal + " $child; wait $child");
     EXPECT_EQ(outcome.code, 4);
     const std::string said = read("said.txt");
     EXPECT_NE(said.find("stopped by SIG" + signal + " before step"), std::string::npos) << said;
-    EXPECT_NE(said.find("go on with: talus run --resume out"), std::string::npos) << said;
-    EXPECT_NE(read("out/summary.json").find("\"status\": \"stopped\""), std::string::npos);
-    EXPECT_FALSE(files_in(folder_ / "out/checkpoints", ".h5").empty());
+    EXPECT_NE(said.find("go on with: talus run --resume " + signal), std::string::npos) << said;
+    EXPECT_NE(read(signal + "/summary.json").find("\"status\": \"stopped\""), std::string::npos);
+    EXPECT_FALSE(files_in(folder_ / signal / "checkpoints", ".h5").empty());
   }
 }
 
