@@ -50,6 +50,14 @@ function(talus_tool_tests)
   endforeach()
 endfunction()
 
+# What a run writes, read by others.
+function(talus_read_back_test)
+  if(TARGET talus)
+    add_test(NAME read_back COMMAND ${TALUS_PYTHON} ${PROJECT_SOURCE_DIR}/tests/app/read_back.py $<TARGET_FILE:talus>)
+    set_tests_properties(read_back PROPERTIES LABELS unit TIMEOUT 120)
+  endif()
+endfunction()
+
 # Every shipped scene is checked, and run once, coarse and short.
 function(talus_scene_tests)
   file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/*/scene.yaml)
