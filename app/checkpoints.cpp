@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <tuple>
 
 #include "app/signals.hpp"
 #include "io/kept.hpp"
@@ -58,6 +59,41 @@ void recall_laws(const ArrayReader& file, const std::vector<Body>& bodies, std::
     std::visit([&](auto& batch) { batch.begin = bodies[b].begin, batch.end = bodies[b].end; }, materials[b]);
     recall(file, detail::below("laws/history", b), materials[b]);
   }
+}
+
+/// Sizes that set-up has decided and no state of the same scene changes.
+template <int D>
+std::vector<std::size_t> fixed_sizes(const State<D>& state)
+{
+  std::vector<std::size_t> sizes{state.bodies.size(), state.walls.walls().size()};
+  state.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { sizes.push_back(column.empty() ? 0 : 1); });
+  return sizes;
+}
+
+/// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
+template <int D>
+void check_fit(const State<D>& state, const std::vector<std::size_t>& sizes, const StateLimits& limits)
+{
+  const auto& [particles, bodies] = std::tie(state.particles, state.bodies);
+  const auto must = [](bool holds, const char* what) {
+    if (!holds)
+      throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
+  };
+  must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
+  must(fixed_sizes(state) == sizes || particles.size() == 0, "bodies, walls or columns");
+  Index end = 0;
+  for (const Body& body : bodies) {
+    must(body.begin == end && body.end >= end, "bodies");
+    end = body.end;
+  }
+  must(end == particles.size() && end <= limits.particles, "bodies");
+  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
+    must(column.empty() || column.size() == particles.id.size(), "columns");
+  });
+  const auto within = [](const auto& column, auto limit) {
+    return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
+  };
+  must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
 }
 
 }  // namespace
@@ -140,13 +176,19 @@ CheckpointList::CheckpointList(const fs::path& at)
 fs::path CheckpointList::folder() const { return fs::absolute(files_.front()).parent_path().parent_path(); }
 
 template <int D>
-void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder) const
+void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
 {
+  const auto sizes = fixed_sizes(state);
   std::string reasons;
   for (const fs::path& file : files_) {
     try {
       const ArrayReader arrays(file);
       for_each_part(state, [&](const std::string& name, auto& part) { recall(arrays, name, part); });
+      try {
+        check_fit(state, sizes, limits);
+      } catch (const EnvironmentError& e) {
+        throw EnvironmentError(fmt::format("{}: {}", file.string(), e.what()));
+      }
       recall_laws(arrays, state.bodies, state.materials);
       recall(arrays, "recorder", recorder);
       if (!reasons.empty())
@@ -161,7 +203,7 @@ void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder) con
 
 template class Checkpoints<2>;
 template class Checkpoints<3>;
-template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&) const;
-template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&) const;
+template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
+template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
 
 }  // namespace talus

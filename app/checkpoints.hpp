@@ -50,6 +50,11 @@ class Checkpoints {
   Watch::time_point when_ = Watch::now();
 };
 
+/// What a state must fit to be one of this scene.
+struct StateLimits {
+  Index cells, stages, particles;  ///< particles: at the start
+};
+
 /// Checkpoints to go on from, the newest first.
 class CheckpointList {
  public:
@@ -60,9 +65,9 @@ class CheckpointList {
   /// Folder of the run.
   std::filesystem::path folder() const;
   /// Puts the newest state that is whole in the place of what is there.  One that is damaged is named on standard error, and the one before
-  /// it is taken.  EnvironmentError: none is whole.
+  /// it is taken.  EnvironmentError: none is whole and fits.
   template <int D>
-  void take_over(const State<D>& state, Recorder<D>& recorder) const;
+  void take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
 
  private:
   std::vector<std::filesystem::path> files_;
@@ -71,7 +76,7 @@ class CheckpointList {
 
 extern template class Checkpoints<2>;
 extern template class Checkpoints<3>;
-extern template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&) const;
-extern template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&) const;
+extern template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
+extern template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
 
 }  // namespace talus

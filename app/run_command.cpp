@@ -49,8 +49,9 @@ class Run {
                              checkpoints.see(frame, recorder);
                          },
                          [&](const StageResult& result) { recorder.stage_done(result); }};
+    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.particles.size()};
     if (from_) {
-      audience.take_over = [&](const State<D>& state) { from_->take_over(state, recorder); };
+      audience.take_over = [&](const State<D>& state) { from_->take_over(state, recorder, limits); };
       audience.resumed = [&](const Frame<D>& frame) {
         recorder.resume(frame);
         if (!options_.quiet)

@@ -149,14 +149,14 @@ std::vector<Case> cases()
   return all;
 }
 
-/// f(path) for all that a file holds, but clocks on the wall and places on the disk.
+/// f(path) for all that a file holds; unless `really_all`, clocks on the wall and places on the disk left out.
 template <class F>
-void for_each_entry(const ArrayReader& file, const std::string& group, F&& f)
+void for_each_entry(const ArrayReader& file, const std::string& group, F&& f, bool really_all = false)
 {
   static const std::set<std::string> of_the_day{"timings", "output_seconds", "last_output", "scene_file"};
   for (const std::string& name : file.names(group)) {
     const std::string path = group.empty() ? name : group + "/" + name;
-    if (of_the_day.contains(name))
+    if (!really_all && of_the_day.contains(name))
       continue;
     bool is_group = true;
     try {
@@ -165,7 +165,7 @@ void for_each_entry(const ArrayReader& file, const std::string& group, F&& f)
       is_group = false;
     }
     if (is_group)
-      for_each_entry(file, path, f);
+      for_each_entry(file, path, f, really_all);
     else
       f(path);
   }
@@ -204,6 +204,38 @@ void expect_same_state(const fs::path& one, const fs::path& other)
     ++compared;
   });
   EXPECT_GT(compared, 60);
+}
+
+template <class T, class Change>
+bool copied(const ArrayReader& from, ArrayWriter& to, const std::string& path, Change&& change)
+{
+  for (const int columns : {1, 2, 3, 4, 6, 9})
+    try {
+      auto values = from.read<T>(path, columns);
+      change(path, values);
+      to.write<T>(path, values, columns, from.unit(path));
+      return true;
+    } catch (const EnvironmentError&) {
+    }
+  return false;
+}
+
+/// The file anew, with what change(path, values) does to its numbers.
+template <class Change>
+void forge(const fs::path& file, Change&& change)
+{
+  fs::rename(file, file.string() + ".old");
+  const ArrayReader from(file.string() + ".old");
+  ArrayWriter to(file);
+  std::vector<std::string> paths;
+  for_each_entry(
+      from, "", [&](const std::string& path) { paths.push_back(path); }, true);
+  for (const std::string& path : paths)
+    if (!(copied<double>(from, to, path, change) || copied<float>(from, to, path, change) || copied<std::int32_t>(from, to, path, change) ||
+          copied<std::int64_t>(from, to, path, change) || copied<std::uint8_t>(from, to, path, change)))
+      to.write(path, from.text(path));
+  to.close();
+  fs::remove(file.string() + ".old");
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, const std::string& extension)
@@ -355,6 +387,39 @@ TEST_F(Checkpoint, KilledAnywhereARunGoesOnNightly)
   EXPECT_GT(runs, 0);
   RecordProperty("runs", runs);
   std::printf("%d kills, %d runs to the end\n", kills, runs);
+}
+
+TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
+{
+  write("scene.yaml", Parts{}.text());
+  ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
+  const auto kept = files_in(folder_ / "out/checkpoints", ".h5");
+  const fs::path file = folder_ / "forged.h5";
+  const auto refused_with = [&](const std::string& at, std::int64_t value) {
+    fs::copy_file(kept[1], file, fs::copy_options::overwrite_existing);
+    bool forged = false;
+    forge(file, [&](const std::string& path, auto& values) {
+      if (path == at) {
+        values.at(0) = static_cast<std::decay_t<decltype(values[0])>>(value);
+        forged = true;
+      }
+    });
+    EXPECT_TRUE(forged || value == 0) << at;
+    return talus("run --quiet --out forged --resume forged.h5");
+  };
+  EXPECT_EQ(refused_with("nothing", 0).code, 0) << "a copy is as good";
+  for (const auto& [at, value] : std::vector<std::pair<std::string, std::int64_t>>{{"stage/number", 1},
+                                                                                   {"stage/number", -1},
+                                                                                   {"bodies/count", 1},
+                                                                                   {"bodies/0/end", 7},
+                                                                                   {"walls/wall/count", 2},
+                                                                                   {"particles/cell", 72},
+                                                                                   {"particles/cell", -1},
+                                                                                   {"particles/id", 100000}}) {
+    const Outcome outcome = refused_with(at, value);
+    EXPECT_EQ(outcome.code, 3) << at << outcome.err;
+    EXPECT_NE(outcome.err.find("do not fit the scene"), std::string::npos) << at << " " << outcome.err;
+  }
 }
 
 TEST_F(Checkpoint, OfAnotherMeshIsRefused)
