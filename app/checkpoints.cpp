@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <tuple>
 
 #include "app/signals.hpp"
 #include "io/kept.hpp"
@@ -74,7 +73,7 @@ std::vector<std::size_t> fixed_sizes(const State<D>& state)
 template <int D>
 void check_fit(const State<D>& state, const std::vector<std::size_t>& sizes, const StateLimits& limits)
 {
-  const auto& [particles, bodies] = std::tie(state.particles, state.bodies);
+  const Particles<D>& particles = state.particles;
   const auto must = [](bool holds, const char* what) {
     if (!holds)
       throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
@@ -82,7 +81,7 @@ void check_fit(const State<D>& state, const std::vector<std::size_t>& sizes, con
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
   must(fixed_sizes(state) == sizes || particles.size() == 0, "bodies, walls or columns");
   Index end = 0;
-  for (const Body& body : bodies) {
+  for (const Body& body : state.bodies) {
     must(body.begin == end && body.end >= end, "bodies");
     end = body.end;
   }
