@@ -40,9 +40,10 @@ void Progress::step(Real done, Real time, std::int64_t steps, Real particle_step
   last_ = now;
   drawn_ = true;
   const Real elapsed = std::chrono::duration<Real>(now - start_).count();
-  const std::string left = share > 0 ? duration(elapsed * (1 - share) / share) : "?";
+  const Real share_now = share - done_before_ / total_;  // what was done since this began
+  const std::string left = share_now > 0 ? duration(elapsed * (1 - share) / share_now) : "?";
   const std::string numbers = fmt::format("{:3.0f} %  t = {:.5g} s  step {}  {:.3g} M particle-steps/s  {} left", 100 * share, time, steps,
-                                          particle_steps / elapsed / 1e6, left);
+                                          (particle_steps - particle_steps_before_) / elapsed / 1e6, left);
   if (!terminal_)
     return fmt::print(stderr, "{}\n", numbers);
   const auto full = static_cast<std::size_t>(share * bar_width);
