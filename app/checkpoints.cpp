@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "app/results.hpp"
 #include "app/signals.hpp"
 #include "io/kept.hpp"
 #include "io/whole_file.hpp"
@@ -17,7 +18,6 @@ namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
 constexpr std::int64_t format = 1;
-constexpr auto folder_name = "checkpoints";
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file)
@@ -44,19 +44,19 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder)
 void keep_laws(ArrayWriter& file, const std::vector<AnyBatch>& materials)
 {
   for (std::size_t b = 0; b < materials.size(); ++b) {
-    keep(file, detail::below("laws/name", b), std::string(law_name(materials[b])));
-    keep(file, detail::below("laws/history", b), materials[b]);
+    keep(file, below("laws/name", b), std::string(law_name(materials[b])));
+    keep(file, below("laws/history", b), materials[b]);
   }
 }
 
 void recall_laws(const ArrayReader& file, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials)
 {
   for (std::size_t b = 0; b < materials.size(); ++b) {
-    if (const std::string name = file.text(detail::below("laws/name", b)); name != law_name(materials[b]))
+    if (const std::string name = file.text(below("laws/name", b)); name != law_name(materials[b]))
       throw EnvironmentError(
           fmt::format("the law of body \"{}\" is {} there and {} in the scene", bodies[b].name, name, law_name(materials[b])));
     std::visit([&](auto& batch) { batch.begin = bodies[b].begin, batch.end = bodies[b].end; }, materials[b]);
-    recall(file, detail::below("laws/history", b), materials[b]);
+    recall(file, below("laws/history", b), materials[b]);
   }
 }
 
@@ -128,7 +128,7 @@ void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
 template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
-  const fs::path file = folder_ / folder_name / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
+  const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
   write_whole(file, [&](const fs::path& temporary) {
     ArrayWriter arrays(temporary);
     keep(arrays, "format", format);
@@ -141,16 +141,17 @@ void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
   last_ = file;
   at_ = frame.clock;
   when_ = Watch::now();
-  const auto all = checkpoints_in(folder_ / folder_name);
+  const auto all = checkpoints_in(folder_ / checkpoint_folder);
+  std::error_code stays;  // one too many is no reason to end a run
   for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
-    fs::remove(all[i]);
+    fs::remove(all[i], stays);
 }
 
 CheckpointList::CheckpointList(const fs::path& at)
 {
   if (!fs::exists(at))
     throw EnvironmentError(fmt::format("{} is not there", at.string()));
-  files_ = fs::is_directory(at) ? checkpoints_in(at / folder_name) : std::vector{at};
+  files_ = fs::is_directory(at) ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
   if (files_.empty())
     throw EnvironmentError(fmt::format("{} has no checkpoints: the run is over, or was stopped before one was due", at.string()));
   std::string reasons;

@@ -47,7 +47,7 @@ bool is_empty_but_for_leftovers(const fs::path& folder)
 
 void remove_leftovers(const fs::path& folder)
 {
-  for (const fs::path& place : {folder, folder / "checkpoints"}) {
+  for (const fs::path& place : {folder, folder / checkpoint_folder}) {
     std::error_code not_there;
     for (const auto& entry : fs::directory_iterator(place, not_there))
       if (const fs::path file = entry.path(); file.extension() == ".tmp" && (is_result(file.stem()) || file.stem().extension() == ".h5"))
@@ -68,7 +68,7 @@ try {
       fs::remove(entry.path());
   remove_leftovers(folder);
   fs::remove_all(folder / "pictures");
-  fs::remove_all(folder / "checkpoints");
+  fs::remove_all(folder / checkpoint_folder);
   fs::remove(folder / "summary.json");  // the last: it says whose the rest is
 } catch (const fs::filesystem_error& e) {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));

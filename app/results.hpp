@@ -5,6 +5,9 @@
 
 namespace talus {
 
+/// In the folder of a run.
+inline constexpr auto checkpoint_folder = "checkpoints";
+
 /// Makes `folder`, or clears it if it holds the results of an earlier run (it has a summary.json).
 /// EnvironmentError: it cannot be written, or holds something else, which is left alone.
 void prepare_results(const std::filesystem::path& folder);

@@ -158,6 +158,12 @@ constexpr auto kept(std::string_view key, Value Owner::*member)
   return Kept<Owner, Value>{key, member};
 }
 
+template <class T>
+concept HasFields = requires
+{
+  T::fields();
+};
+
 /// f(field) for every field of T, in order of declaration.
 template <class T, class F>
 constexpr void for_each_field(F&& f)

@@ -14,11 +14,6 @@
 namespace talus {
 
 template <class T>
-concept HasFields = requires
-{
-  T::fields();
-};
-template <class T>
 concept HasCheck = requires(const T& object, std::vector<std::string>& problems)
 {
   object.check(problems);

@@ -1,18 +1,14 @@
 #pragma once
 // What is kept of a run, to the last bit: structs by their fields(), particles by their columns, laws by their histories.
-#include <optional>
+#include <string>
 #include <type_traits>
+#include <vector>
 
 #include "io/array_file.hpp"
 #include "materials/batch.hpp"
 
 namespace talus {
 
-template <class T>
-concept HasFields = requires
-{
-  T::fields();
-};
 template <class T>
 inline constexpr bool is_vector = false;
 template <class T, class Allocator>
@@ -33,23 +29,25 @@ struct RowOf<Eigen::Matrix<N, R, C, options>> {
   using Number = N;
   static constexpr int columns = R * C;
 };
+}  // namespace detail
+
+/// Paths in the file.
 inline std::string below(const std::string& path, std::string_view key) { return path + "/" + std::string(key); }
 inline std::string below(const std::string& path, std::size_t i) { return path + "/" + std::to_string(i); }
-}  // namespace detail
 
 /// Writes a value below `path`.  EnvironmentError.
 template <class T>
 void keep(ArrayWriter& file, const std::string& path, const T& value)
 {
   if constexpr (HasFields<T>) {
-    for_each_field<T>([&](const auto& field) { keep(file, detail::below(path, field.key), value.*field.member); });
+    for_each_field<T>([&](const auto& field) { keep(file, below(path, field.key), value.*field.member); });
   } else if constexpr (std::is_same_v<T, std::string>) {
     file.write(path, std::string_view(value));
   } else if constexpr (is_vector<T>) {
     const auto count = static_cast<std::int64_t>(value.size());
-    file.write(detail::below(path, "count"), std::span(&count, 1));
+    file.write(below(path, "count"), std::span(&count, 1));
     for (std::size_t i = 0; i < value.size(); ++i)
-      keep(file, detail::below(path, i), value[i]);
+      keep(file, below(path, i), value[i]);
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     const auto stored = static_cast<detail::Stored<T>>(value);
     file.write(path, std::span(&stored, 1));
@@ -62,15 +60,15 @@ template <class T>
 void recall(const ArrayReader& file, const std::string& path, T& value)
 {
   if constexpr (HasFields<T>) {
-    for_each_field<T>([&](const auto& field) { recall(file, detail::below(path, field.key), value.*field.member); });
+    for_each_field<T>([&](const auto& field) { recall(file, below(path, field.key), value.*field.member); });
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = file.text(path);
   } else if constexpr (is_vector<T>) {
     std::int64_t count = 0;
-    recall(file, detail::below(path, "count"), count);
+    recall(file, below(path, "count"), count);
     value.resize(static_cast<std::size_t>(count));
     for (std::size_t i = 0; i < value.size(); ++i)
-      recall(file, detail::below(path, i), value[i]);
+      recall(file, below(path, i), value[i]);
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     detail::Stored<T> stored{};
     file.read_into(path, std::span(&stored, 1));
@@ -87,7 +85,7 @@ void keep(ArrayWriter& file, const std::string& path, const Particles<D>& partic
   particles.for_each_column([&](std::string_view name, std::string_view unit, const auto& rows) {
     using Row = detail::RowOf<std::decay_t<decltype(rows[0])>>;
     const auto* const first = reinterpret_cast<const typename Row::Number*>(rows.data());
-    file.write(detail::below(path, name), std::span(first, rows.size() * Row::columns), Row::columns, std::string(unit));
+    file.write(below(path, name), std::span(first, rows.size() * Row::columns), Row::columns, std::string(unit));
   });
 }
 template <int D>
@@ -95,7 +93,7 @@ void recall(const ArrayReader& file, const std::string& path, Particles<D>& part
 {
   particles.for_each_column([&](std::string_view name, std::string_view, auto& rows) {
     using Row = detail::RowOf<std::decay_t<decltype(rows[0])>>;
-    const std::string at = detail::below(path, name);
+    const std::string at = below(path, name);
     rows.resize(file.rows(at));
     auto* const first = reinterpret_cast<typename Row::Number*>(rows.data());
     file.read_into(at, std::span(first, rows.size() * Row::columns), Row::columns);
@@ -112,7 +110,7 @@ inline void keep(ArrayWriter& file, const std::string& path, const AnyBatch& bat
       for (int c = 0; c < columns; ++c)
         values[static_cast<std::size_t>(i * columns + c)] = column.component(i, c);
     });
-    file.write<Real>(detail::below(path, key), values, columns, std::string(unit));
+    file.write<Real>(below(path, key), values, columns, std::string(unit));
   });
 }
 /// Of a batch whose range is right already.
@@ -122,7 +120,7 @@ inline void recall(const ArrayReader& file, const std::string& path, AnyBatch& b
   for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
     constexpr int columns = std::decay_t<decltype(column)>::components;
     std::vector<Real> values(static_cast<std::size_t>(column.size() * columns));
-    file.read_into<Real>(detail::below(path, key), values, columns);
+    file.read_into<Real>(below(path, key), values, columns);
     parallel_for(column.size(), [&](Index i) {
       for (int c = 0; c < columns; ++c)
         column.component(i, c) = values[static_cast<std::size_t>(i * columns + c)];

@@ -128,24 +128,19 @@ std::vector<Case> cases()
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
         .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
                 "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
-  all.push_back({"solid",
-                 {.dimension = solid,
-                  .law = all[5].parts.law,
-                  .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
-                            "particles_per_cell: 4, velocity: "
-                            "[2, -2, 1]}\n",
-                  .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
-                  .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
-                  .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"}});
-  all.push_back({"solid_umls",
-                 {.dimension = solid,
-                  .more = "kernel: umls\ntransfer: {scheme: apic}\n",
-                  .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
-                            "particles_per_cell: 4, velocity: "
-                            "[2, -2, 1]}\n",
-                  .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
-                  .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
-                  .outputs = ", fronts: [{name: toe, direction: +x}]"}});
+  Parts in_3d{.dimension = solid,
+              .law = all[5].parts.law,
+              .bodies =
+                  "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
+                  "particles_per_cell: 4, velocity: "
+                  "[2, -2, 1]}\n",
+              .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
+              .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
+              .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"};
+  all.push_back({"solid", in_3d});
+  in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
+  in_3d.law = Parts{}.law;
+  all.push_back({"solid_umls", in_3d});
   return all;
 }
 
