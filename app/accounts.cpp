@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/parallel.hpp"
+
 namespace talus {
 
 Real EnergyNow::largest_term() const noexcept
@@ -14,34 +16,40 @@ Real EnergyNow::largest_term() const noexcept
 
 namespace {
 
-/// Force of gravity and of all tractions in the last step [N].
+Real share(Real part, Real whole) { return whole > 0 ? part / whole : 0; }
+
+/// Momentum of the particles; the moduli are those of each.
 template <int D>
-Vec<D> outer_force(const Frame<D>& frame)
+Push<D> momentum_of(const Particles<D>& particles)
 {
-  const Real time = frame.clock.time, ramp = frame.stage.ramp(time);
-  Vec<D> force = (frame.mass.start - frame.mass.deleted) * frame.loads.gravity(time, ramp);
-  for (std::size_t p = 0; p < frame.particles.applied.size(); ++p)
-    force += frame.particles.applied[p];
-  for (const auto& load : frame.loads.on_mesh)
-    for (std::size_t k = 0; k < load.node.size(); ++k)
-      if (frame.nodes.sum[static_cast<std::size_t>(load.node[k])].mass > 0)
-        force += ramp * load.table(time) * (load.measure[k] * load.traction - load.pressure * load.area[k]);
-  return force;
+  return parallel_sum<Push<D>>(particles.size(), [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
+    return Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+  });
 }
 
 }  // namespace
+
+template <int D>
+Real MomentumNow<D>::linear_defect() const noexcept
+{
+  return share((end.linear - start.linear - given.linear).norm(), start.size + given.size);
+}
+
+template <int D>
+Real MomentumNow<D>::angular_defect() const noexcept
+{
+  return share((end.angular - start.angular - given.angular).norm(), start.turn + given.turn);
+}
 
 template <int D>
 void Accounts<D>::see(const Frame<D>& frame, Moment moment)
 {
   if (moment == Moment::stage_begins) {
     if (!begun_) {
-      const Totals<D> now = totals(frame.particles);
-      kinetic_begin_ = now.kinetic;
+      kinetic_begin_ = totals(frame.particles).kinetic;
       plastic_begin_ = frame.energy.plastic_start;
-      momentum_start_ = now.momentum;
-      for (std::size_t p = 0; p < frame.particles.id.size(); ++p)
-        momentum_at_start_ += frame.particles.mass[p] * frame.particles.v[p].norm();
+      start_ = momentum_of(frame.particles);
     } else {
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
       before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
@@ -50,12 +58,6 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
     }
     begun_ = true;
     taken_out_ = 0;
-    damped_ = damped_ || frame.stage.damping > 0;
-  }
-  if (moment == Moment::step_done && !damped_) {
-    const Vec<D> impulse = frame.clock.dt * outer_force(frame);
-    loads_impulse_ += impulse;
-    loads_impulse_size_ += impulse.norm();
   }
   if (moment == Moment::stage_done) {
     taken_out_ = frame.energy.set_to_rest;
@@ -85,23 +87,17 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
 }
 
 template <int D>
-Vec<D> Accounts<D>::impulse(const Frame<D>& frame) const
+MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
 {
-  Vec<D> total = loads_impulse_;
+  const MomentumLedger<D>& given = frame.momentum;
+  MomentumNow<D> now{start_, momentum_of(frame.particles), given.loads + given.damping + given.rest + -1 * frame.mass.carried_away};
   for (const Wall<D>& wall : frame.walls.walls())
-    total += wall.impulse;
-  return total;
+    now.given += Push<D>{wall.impulse, wall.angular, wall.impulse.norm(), wall.angular.norm()};
+  return now;
 }
 
-template <int D>
-Real Accounts<D>::momentum_scale(const Frame<D>& frame) const
-{
-  Real scale = momentum_at_start_ + loads_impulse_size_;
-  for (const Wall<D>& wall : frame.walls.walls())
-    scale += wall.impulse.norm();
-  return scale;
-}
-
+template struct MomentumNow<2>;
+template struct MomentumNow<3>;
 template class Accounts<2>;
 template class Accounts<3>;
 

@@ -32,6 +32,21 @@ struct EnergyNow {
   Real largest_term() const noexcept;
 };
 
+/// Momentum and its moment about the origin since the start of the run [kg m/s], [kg m^2/s].
+template <int D>
+struct MomentumNow {
+  Push<D> start, end, given;  ///< given: by loads, walls, damping, and taken by what left; their moduli added up
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("start", &MomentumNow::start), kept("end", &MomentumNow::end), kept("given", &MomentumNow::given)};
+  }
+
+  /// What cannot be explained, over all momentum there was and was given.
+  Real linear_defect() const noexcept;
+  /// The affine parts of the particles' velocities do not count, so transfers keep it only roughly.
+  Real angular_defect() const noexcept;
+};
+
 /// Told of every moment of a run.
 template <int D>
 class Accounts {
@@ -39,13 +54,7 @@ class Accounts {
   void see(const Frame<D>& frame, Moment moment);
 
   EnergyNow energy(const Frame<D>& frame) const;
-  Vec<D> momentum_start() const noexcept { return momentum_start_; }
-  /// Momentum that gravity, loads and walls gave [kg m/s].
-  Vec<D> impulse(const Frame<D>& frame) const;
-  /// What a momentum error is small against: sum of m|v| at the start plus the moduli of all impulses [kg m/s].
-  Real momentum_scale(const Frame<D>& frame) const;
-  /// Damping takes momentum and nobody counts it.
-  bool momentum_closes() const noexcept { return !damped_; }
+  MomentumNow<D> momentum(const Frame<D>& frame) const;
   static constexpr auto fields()
   {
     return std::tuple{kept("before", &Accounts::before_),
@@ -57,11 +66,7 @@ class Accounts {
                       kept("taken_out_before", &Accounts::taken_out_before_),
                       kept("stage", &Accounts::stage_),
                       kept("begun", &Accounts::begun_),
-                      kept("damped", &Accounts::damped_),
-                      kept("momentum_start", &Accounts::momentum_start_),
-                      kept("loads_impulse", &Accounts::loads_impulse_),
-                      kept("momentum_at_start", &Accounts::momentum_at_start_),
-                      kept("loads_impulse_size", &Accounts::loads_impulse_size_)};
+                      kept("start", &Accounts::start_)};
   }
 
  private:
@@ -69,11 +74,12 @@ class Accounts {
   Real kinetic_begin_ = 0, plastic_begin_ = 0, transfer_before_ = 0;
   Real kinetic_end_ = 0, taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;
-  bool begun_ = false, damped_ = false;
-  Vec<D> momentum_start_ = Vec<D>::Zero(), loads_impulse_ = Vec<D>::Zero();
-  Real momentum_at_start_ = 0, loads_impulse_size_ = 0;
+  bool begun_ = false;
+  Push<D> start_;  // momentum at the start of the run
 };
 
+extern template struct MomentumNow<2>;
+extern template struct MomentumNow<3>;
 extern template class Accounts<2>;
 extern template class Accounts<3>;
 

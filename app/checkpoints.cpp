@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 1;
+constexpr std::int64_t format = 2;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file)
@@ -98,8 +98,8 @@ void check_fit(const State<D>& state, const std::vector<std::size_t>& sizes, con
 }  // namespace
 
 template <int D>
-Checkpoints<D>::Checkpoints(fs::path folder, const CheckpointSpec& spec, RunIdentity identity)
-    : folder_(std::move(folder)), spec_(spec), identity_(std::move(identity))
+Checkpoints<D>::Checkpoints(fs::path folder, const CheckpointSpec& spec, RunIdentity identity, std::optional<std::int64_t> until)
+    : folder_(std::move(folder)), spec_(spec), identity_(std::move(identity)), until_(until)
 {}
 
 template <int D>
@@ -116,12 +116,16 @@ void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
 {
   if (!at_)
     at_ = frame.clock;
-  const std::string signal = StopRequests::received();
-  if (signal.empty() && !due(frame.clock))
+  std::string reason = StopRequests::received();
+  if (!reason.empty())
+    reason = "by " + reason;
+  else if (until_ && frame.clock.step >= *until_)
+    reason = "as asked";
+  if (reason.empty() && !due(frame.clock))
     return;
   write(frame, recorder);
-  if (!signal.empty())
-    throw Stopped(fmt::format("stopped by {} before step {}, t = {:.6g} s; checkpoint {}", signal, frame.clock.step + 1, frame.clock.time,
+  if (!reason.empty())
+    throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, frame.clock.step + 1, frame.clock.time,
                               last_.string()));
 }
 

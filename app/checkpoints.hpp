@@ -29,22 +29,26 @@ template <int D>
 class Checkpoints {
  public:
   /// They go to folder/checkpoints.
-  Checkpoints(std::filesystem::path folder, const CheckpointSpec& spec, RunIdentity identity);
+  Checkpoints(std::filesystem::path folder, const CheckpointSpec& spec, RunIdentity identity,
+              std::optional<std::int64_t> until = std::nullopt);
 
-  /// Before each step: writes one if it is due.  Stopped after writing one because of a signal.  EnvironmentError: it could not be written;
-  /// older ones are left as they are.
+  /// Before each step: writes one if it is due.  Stopped after writing one because of a signal, or where steps are done `until` which the
+  /// run was to go.  EnvironmentError: it could not be written; older ones are left as they are.
   void see(const Frame<D>& frame, const Recorder<D>& recorder);
-  /// The last one written, empty if there is none.
+  /// Writes one now.  EnvironmentError.
+  void write(const Frame<D>& frame, const Recorder<D>& recorder);
+  /// The last one written, empty if there is none, and the steps done then.
   const std::filesystem::path& last() const noexcept { return last_; }
+  std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
 
  private:
   using Watch = std::chrono::steady_clock;
   bool due(const Clock& clock) const;
-  void write(const Frame<D>& frame, const Recorder<D>& recorder);
 
   std::filesystem::path folder_;
   CheckpointSpec spec_;
   RunIdentity identity_;
+  std::optional<std::int64_t> until_;
   std::filesystem::path last_;
   std::optional<Clock> at_;  // of the last one, or of the first look
   Watch::time_point when_ = Watch::now();

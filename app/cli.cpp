@@ -59,7 +59,9 @@ class CommandLine {
     what->require_option(1);
     run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with");
     run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
-    run->add_option("--set", run_.set, set_help)->needs(scene);
+    run->add_option("--set", run_.set, set_help);
+    run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
+        ->check(CLI::NonNegativeNumber);
     run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");
     run->callback([this] { run_scene(run_); });

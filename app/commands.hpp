@@ -14,11 +14,13 @@ struct RunOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> out;
   std::optional<std::filesystem::path> resume;  ///< a checkpoint, or the folder of a run, instead of the scene
+  std::optional<std::int64_t> until;            ///< stop before the step after this one, with a checkpoint
   std::optional<int> threads;
   std::vector<std::string> set;
   bool quick = false, quiet = false;
 };
-/// Runs a scene, or goes on with one, and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError; Stopped by a signal.
+/// Runs a scene, or goes on with one, and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError; Stopped by a signal or
+/// where it was to stop.
 void run_scene(const RunOptions& options);
 
 /// Does everything but run, writes nothing, says what a run would cost.

@@ -34,6 +34,7 @@ try {
   m.loads = std::move(setup.loads);
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
+  m.guards = setup.guards;
   make_ready(m, scene.outputs.history && !scene.outputs.history->points.empty());
   return m;
 } catch (const std::invalid_argument& e) {

@@ -19,7 +19,10 @@ struct Frame {
   std::string_view stage_name;
   Index stage_number;
   const EnergyLedger& energy;  ///< since the beginning of the stage
-  const MassLedger& mass;
+  const MassLedger<D>& mass;
+  const MomentumLedger<D>& momentum;
+  const Watched& watched;
+  const Guards& guards;
   const Timings& timings;
   Real residual, crossing;
 };
@@ -27,8 +30,8 @@ struct Frame {
 template <int D, Kernel<D> K>
 Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
-  return {m.mesh,  m.particles, m.bodies,       m.materials, m.nodes, m.walls,   m.loads,    m.row_of_id, m.clock,
-          m.stage, stage.name,  m.stage.number, m.energy,    m.mass,  m.timings, m.residual, m.crossing};
+  return {m.mesh,     m.particles,    m.bodies, m.materials, m.nodes,    m.walls,   m.loads,  m.row_of_id, m.clock,    m.stage,
+          stage.name, m.stage.number, m.energy, m.mass,      m.momentum, m.watched, m.guards, m.timings,   m.residual, m.crossing};
 }
 
 /// Energy the laws have dissipated so far [J].

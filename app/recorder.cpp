@@ -92,7 +92,7 @@ void Recorder<D>::resume(const Frame<D>& frame)
 template <int D>
 void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
 {
-  if (moment == Moment::step_begins)
+  if (moment == Moment::step_begins || moment == Moment::given_up)
     return;
   accounts_.see(frame, moment);
   const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
@@ -108,18 +108,37 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
     write(frame, moment == Moment::stage_done);
   watch.lap(output_seconds_);
 
+  warn(frame);
   last_.clock = frame.clock;
   last_.timings = frame.timings;
   last_.mass = frame.mass;
+  last_.watched = frame.watched;
+  last_.guards = frame.guards;
   if (moment != Moment::stage_done)
     return;
   done_before_ += stage_list_[static_cast<std::size_t>(frame.stage_number)].duration;
+  last_.mass_there = totals(frame.particles).mass;
   last_.energy = accounts_.energy(frame);
-  last_.momentum_start = accounts_.momentum_start();
-  last_.momentum = totals(frame.particles).momentum;
-  last_.impulse = accounts_.impulse(frame);
-  last_.momentum_scale = accounts_.momentum_scale(frame);
-  last_.momentum_closes = accounts_.momentum_closes() && frame.mass.deleted_count == 0;
+  last_.momentum = accounts_.momentum(frame);
+}
+
+/// Of what the guards see and let pass, the first time.
+template <int D>
+void Recorder<D>::warn(const Frame<D>& frame) const
+{
+  const Watched &now = frame.watched, &before = last_.watched;
+  const auto say = [&](const std::string& what) {
+    fmt::print(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
+  };
+  if (frame.mass.failed_count > last_.mass.failed_count)
+    say(fmt::format("{} particle{} failed and {} deleted: {}", frame.mass.failed_count - last_.mass.failed_count,
+                    frame.mass.failed_count - last_.mass.failed_count == 1 ? "" : "s",
+                    frame.mass.failed_count - last_.mass.failed_count == 1 ? "was" : "were", now.failure));
+  if (now.speeding > 0 && before.speeding == 0)
+    say(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, frame.guards.speed));
+  if (now.gaining > 0 && before.gaining == 0)
+    say(fmt::format("the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
+                    now.gain, frame.guards.gain));
 }
 
 template <int D>

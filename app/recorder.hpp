@@ -28,22 +28,17 @@ template <int D>
 struct LastSeen {
   Clock clock;
   Timings timings;
-  MassLedger mass;
+  MassLedger<D> mass;
+  Real mass_there{};  ///< of the particles [kg]
+  Watched watched;
+  Guards guards;
   EnergyNow energy;
-  Vec<D> momentum_start = Vec<D>::Zero(), momentum = Vec<D>::Zero(), impulse = Vec<D>::Zero();
-  Real momentum_scale{};
-  bool momentum_closes = false;
+  MomentumNow<D> momentum;
   static constexpr auto fields()
   {
-    return std::tuple{kept("clock", &LastSeen::clock),
-                      kept("timings", &LastSeen::timings),
-                      kept("mass", &LastSeen::mass),
-                      kept("energy", &LastSeen::energy),
-                      kept("momentum_start", &LastSeen::momentum_start),
-                      kept("momentum", &LastSeen::momentum),
-                      kept("impulse", &LastSeen::impulse),
-                      kept("momentum_scale", &LastSeen::momentum_scale),
-                      kept("momentum_closes", &LastSeen::momentum_closes)};
+    return std::tuple{kept("clock", &LastSeen::clock),           kept("timings", &LastSeen::timings), kept("mass", &LastSeen::mass),
+                      kept("mass_there", &LastSeen::mass_there), kept("watched", &LastSeen::watched), kept("energy", &LastSeen::energy),
+                      kept("momentum", &LastSeen::momentum)};
   }
 };
 
@@ -91,6 +86,7 @@ class Recorder {
 
  private:
   void open(const Frame<D>& frame);
+  void warn(const Frame<D>& frame) const;
   void write(const Frame<D>& frame, bool last);
   void write_particles_file(const Frame<D>& frame);
   void write_mesh_file(const Frame<D>& frame);

@@ -42,11 +42,13 @@ class Run {
       compare(from_->identity(), identity);
     prepare(mesh, setup);
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet);
-    Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity);
+    Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
                            recorder.watch(frame, moment);
                            if (moment == Moment::step_begins)
                              checkpoints.see(frame, recorder);
+                           if (moment == Moment::given_up)
+                             checkpoints.write(frame, recorder);
                          },
                          [&](const StageResult& result) { recorder.stage_done(result); }};
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.particles.size()};
@@ -75,7 +77,10 @@ class Run {
       finish(recorder, RunStatus::stopped, message);
       throw Stopped(message);
     } catch (const RunError& e) {
-      const std::string message = with_last_good(e.what());
+      const std::int64_t sound = recorder.last_seen().clock.step;
+      std::string message = with_last_good(e.what());
+      if (checkpoints.last_step() != sound)
+        message += fmt::format("; the state before it: {} --until {}", command(checkpoints), sound);
       finish(recorder, RunStatus::failed, message);
       throw RunError(message);
     } catch (const EnvironmentError& e) {
@@ -102,6 +107,19 @@ class Run {
             scene_.overrides,
             quick_,
             static_cast<std::int64_t>(digest(mesh))};
+  }
+
+  /// That gets to where the run is now.
+  std::string command(const Checkpoints<D>& checkpoints) const
+  {
+    if (!checkpoints.last().empty())
+      return fmt::format("talus run --resume {}", folder_.string());
+    if (from_)
+      return fmt::format("talus run --resume {} --out {}", from_->folder().string(), folder_.string());
+    std::string words = fmt::format("talus run {} --out {}{}", options_.scene.string(), folder_.string(), quick_ ? " --quick" : "");
+    for (const std::string& change : options_.set)
+      words += fmt::format(" --set '{}'", change);
+    return words;
   }
 
   /// EnvironmentError: the mesh is not that of the checkpoint.
@@ -162,13 +180,32 @@ class Run {
 
 }  // namespace
 
+namespace {
+
+/// Of a run that goes on, with what is changed on the way.  SceneErrors: that cannot be changed any more.
+Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes)
+{
+  static constexpr std::array<std::string_view, 5> free{"time.", "stages[", "watch.", "outputs.checkpoint.", "on_exit="};
+  std::vector<Problem> problems;
+  for (const std::string& change : changes)
+    if (std::none_of(free.begin(), free.end(), [&](std::string_view key) { return change.starts_with(key); }))
+      problems.push_back({Where{"--set " + change, 0, 0, ""},
+                          "a run that goes on can change only what stands in time, stages, watch and outputs.checkpoint, and on_exit", ""});
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+  std::vector<std::string> set = run.set;
+  set.insert(set.end(), changes.begin(), changes.end());
+  return read_scene_text(run.scene_file, run.scene_text, set);
+}
+
+}  // namespace
+
 void run_scene(const RunOptions& options)
 {
   std::optional<CheckpointList> from;
   if (options.resume)
     from.emplace(*options.resume);
-  Scene scene = from ? read_scene_text(from->identity().scene_file, from->identity().scene_text, from->identity().set)
-                     : read_scene(options.scene, options.set);
+  Scene scene = from ? read_again(from->identity(), options.set) : read_scene(options.scene, options.set);
   const Index wanted = options.threads.value_or(scene.threads);
   if (wanted > 0)
     set_threads(wanted);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "app/expression.hpp"
+#include "app/guards.hpp"
 #include "app/seed.hpp"
 #include "io/scene_rules.hpp"
 
@@ -87,7 +88,7 @@ class WallBuilder {
   void on_nodes(const Spec& spec, Wall<D> wall)
   {
     if (const auto nodes = mesh_.node_set(spec.on))
-      walls_.add(std::move(wall), *nodes);
+      walls_.add(std::move(wall), mesh_, *nodes);
     else
       complaints_.unknown_group(spec.where, "on", "node, facet or cell", spec.on, mesh_.node_set_names());
   }
@@ -308,6 +309,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
   if (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start))
     setup.particles.x0 = setup.particles.x;
+  setup.guards = guards_of(scene, mesh, setup);
   return setup;
 }
 

@@ -18,6 +18,7 @@ struct Setup {
   Exits exits;
   std::vector<Stage> stages;
   StepLimits limits;
+  Guards guards;
   std::vector<std::string> warnings;
 };
 

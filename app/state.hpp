@@ -14,7 +14,9 @@ struct State {
   Clock& clock;
   StageState& stage;
   EnergyLedger& energy;
-  MassLedger& mass;
+  MassLedger<D>& mass;
+  MomentumLedger<D>& momentum;
+  Watched& watched;
   Timings& timings;
   Real &residual, &crossing;
 };
@@ -22,14 +24,16 @@ struct State {
 template <int D, Kernel<D> K>
 State<D> state_of(Model<D, K>& m)
 {
-  return {m.particles, m.bodies, m.materials, m.walls, m.clock, m.stage, m.energy, m.mass, m.timings, m.residual, m.crossing};
+  return {m.particles, m.bodies,   m.materials, m.walls,   m.clock,    m.stage,   m.energy,
+          m.mass,      m.momentum, m.watched,   m.timings, m.residual, m.crossing};
 }
 
 /// f(name, part) for each; S is a State or a Frame.
 template <class S, class F>
 void for_each_part(const S& state, F&& f)
 {
-  f("clock", state.clock), f("stage", state.stage), f("energy", state.energy), f("mass", state.mass), f("timings", state.timings);
+  f("clock", state.clock), f("stage", state.stage), f("energy", state.energy), f("mass", state.mass);
+  f("momentum", state.momentum), f("watched", state.watched), f("timings", state.timings);
   f("residual", state.residual), f("crossing", state.crossing), f("walls", state.walls), f("bodies", state.bodies);
   f("particles", state.particles);
 }

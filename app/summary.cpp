@@ -71,6 +71,18 @@ std::vector<NamedValue> named(const MeshQuality<D>& q)
           {"gradation", q.gradation, ""}};
 }
 
+/// What the method keeps to round-off, and what only as well as the time step and the mesh allow.
+constexpr Real exactly = 1e-9, roughly = 1e-2;
+
+Closure closure_of(const EnergyNow& e) { return {share(e.defect, e.largest_term()), roughly, "largest term"}; }
+
+template <int D>
+MassAudit audit(const MassLedger<D>& mass, Real there)
+{
+  const Real end = mass.start - mass.deleted;
+  return {mass.start, there, mass.deleted, mass.deleted_count, {share(there - end, mass.start), exactly, "mass at the start"}};
+}
+
 template <int D>
 EnergyAudit audit(const Recorder<D>& recorder)
 {
@@ -89,21 +101,44 @@ EnergyAudit audit(const Recorder<D>& recorder)
     if (balance.dissipated() > 0)
       audit.terms.push_back({prefix + "energy_defect / dissipated", share(balance.defect, balance.dissipated()), ""});
   }
-  audit.closure_relative = share(total.defect, total.largest_term());
-  audit.relative_to = "largest term";
+  audit.closure = closure_of(total);
   return audit;
 }
 
-template <int D>
-std::vector<Real> numbers(const Vec<D>& v)
+template <class Vector>
+std::vector<Real> numbers(const Vector& v)
 {
   return {v.begin(), v.end()};
 }
+/// In 2-D only one component is not zero for good.
+template <int D>
+std::vector<Real> turning(const Vec3& v)
+{
+  return D == 2 ? std::vector{v[2]} : numbers(v);
+}
 
 template <int D>
-Real momentum_closure(const LastSeen<D>& last)
+MomentumAudit audit(const MomentumNow<D>& now)
 {
-  return share((last.momentum - last.momentum_start - last.impulse).norm(), last.momentum_scale);
+  return {numbers(now.start.linear),
+          numbers(now.end.linear),
+          numbers(now.given.linear),
+          {now.linear_defect(), exactly, "momenta at the start and impulses"}};
+}
+template <int D>
+MomentumAudit angular_audit(const MomentumNow<D>& now)
+{
+  return {turning<D>(now.start.angular),
+          turning<D>(now.end.angular),
+          turning<D>(now.given.angular),
+          {now.angular_defect(), roughly, "their moments"}};
+}
+
+std::string in_words(std::string_view what, const Closure& closure)
+{
+  return closure.closes() ? fmt::format("{} closes to {:.2g}", what, closure.relative)
+                          : fmt::format("{} DOES NOT CLOSE: {:.2g} of its {} is not accounted for, allowed {:.2g}", what, closure.relative,
+                                        closure.relative_to, closure.limit);
 }
 
 }  // namespace
@@ -164,11 +199,22 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   s.peak_memory_bytes = peak_memory();
   if (!recorder.stages().empty()) {
     s.energy = audit(recorder);
-    if (last.momentum_closes)
-      s.momentum = MomentumAudit{numbers<D>(last.momentum_start), numbers<D>(last.momentum), numbers<D>(last.impulse),
-                                 momentum_closure(last), "momenta at the start and impulses"};
+    s.momentum = audit(last.momentum);
+    s.angular_momentum = angular_audit(last.momentum);
   }
-  s.mass = MassAudit{last.mass.start, last.mass.start - last.mass.deleted, last.mass.deleted, last.mass.deleted_count};
+  s.mass = audit(last.mass, last.mass_there);
+  s.watch = WatchSummary{last.watched.fastest, last.guards.speed,     last.watched.gain,
+                         last.guards.gain,     last.watched.speeding, last.watched.gaining};
+  if (last.watched.speeding > 0)
+    s.warnings.push_back(fmt::format("particles moved at up to {:.4g} m/s, beyond watch.speed = {:.4g} m/s, in {} steps",
+                                     last.watched.fastest, last.guards.speed, last.watched.speeding));
+  if (last.watched.gaining > 0)
+    s.warnings.push_back(
+        fmt::format("the energy grew by what nothing did work for, up to {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
+                    last.watched.gain, last.guards.gain));
+  if (last.mass.failed_count > 0)
+    s.warnings.push_back(fmt::format("{} particles of {:.3g} kg failed and were deleted; the last: {}", last.mass.failed_count,
+                                     last.mass.failed, last.watched.failure));
   if (last.mass.held_count > 0)
     s.warnings.push_back(
         fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count, last.mass.held_most));
@@ -203,9 +249,10 @@ std::string table(const Recorder<D>& recorder)
   text += fmt::format("mass {:.6g} kg", last.mass.start);
   if (last.mass.deleted_count > 0)
     text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh", last.mass.deleted, last.mass.deleted_count);
-  if (last.momentum_closes)
-    text += fmt::format("; momentum closes to {:.2g}", momentum_closure(last));
-  return text + '\n';
+  return text + fmt::format("\naudit: {}; {}; {}; {}\n", in_words("mass", audit(last.mass, last.mass_there).closure),
+                            in_words("momentum", audit(last.momentum).closure),
+                            in_words("angular momentum", angular_audit(last.momentum).closure),
+                            in_words("energy", closure_of(last.energy)));
 }
 
 template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, const Setup<2>&);

@@ -53,24 +53,42 @@ Json cost(const RunSummary& s)
           {"peak_memory [B]", s.peak_memory_bytes}};
 }
 
+/// `object` with how well its balance closes.
+Json closed(Json object, const Closure& closure)
+{
+  object["closure"] = closure.relative;
+  object["relative_to"] = closure.relative_to;
+  object["closes"] = closure.closes();
+  return object;
+}
+
+Json balance(const MomentumAudit& audit, const std::string& unit)
+{
+  return closed({{"start " + unit, audit.start}, {"end " + unit, audit.end}, {"impulse " + unit, audit.impulse}}, audit.closure);
+}
+
 Json balances(const RunSummary& s)
 {
   Json object = Json::object();
   if (s.energy)
-    object["energy"] = {
-        {"terms", to_object(s.energy->terms)}, {"closure", s.energy->closure_relative}, {"relative_to", s.energy->relative_to}};
+    object["energy"] = closed({{"terms", to_object(s.energy->terms)}}, s.energy->closure);
   if (s.momentum)
-    object["momentum"] = {{"start [kg m/s]", s.momentum->start},
-                          {"end [kg m/s]", s.momentum->end},
-                          {"impulse [kg m/s]", s.momentum->impulse},
-                          {"closure", s.momentum->closure_relative},
-                          {"relative_to", s.momentum->relative_to}};
+    object["momentum"] = balance(*s.momentum, "[kg m/s]");
+  if (s.angular_momentum)
+    object["angular_momentum"] = balance(*s.angular_momentum, "[kg m^2/s]");
   if (s.mass)
-    object["mass"] = {{"start [kg]", s.mass->start},
-                      {"end [kg]", s.mass->end},
-                      {"removed [kg]", s.mass->removed},
-                      {"particles_removed", s.mass->particles_removed}};
+    object["mass"] = closed({{"start [kg]", s.mass->start},
+                             {"end [kg]", s.mass->end},
+                             {"removed [kg]", s.mass->removed},
+                             {"particles_removed", s.mass->particles_removed}},
+                            s.mass->closure);
   return object;
+}
+
+Json to_object(const WatchSummary& watch)
+{
+  return {{"fastest [m/s]", watch.fastest}, {"speed_limit [m/s]", watch.speed_limit}, {"steps_beyond", watch.speeding},
+          {"energy_gain", watch.gain},      {"energy_gain_limit", watch.gain_limit},  {"looks_beyond", watch.gaining}};
 }
 
 }  // namespace
@@ -94,6 +112,8 @@ std::string to_json(const RunSummary& s)
   json["simulated_time [s]"] = s.simulated_time;
   json["cost"] = cost(s);
   json["balances"] = balances(s);
+  if (s.watch)
+    json["watch"] = to_object(*s.watch);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
   json["scene"] = {{"file", s.scene_file}, {"text", s.scene_text}, {"set", s.overrides}};

@@ -41,22 +41,36 @@ struct StageSummary {
   std::string result;            ///< "reached", "not converged", ...
 };
 
-/// Terms are signed as they enter the sum; closure is |sum that should vanish| over the named scale, a pure number.
-struct EnergyAudit {
-  std::vector<NamedValue> terms;  ///< J: kinetic energy, work of gravity, of loads, of walls, of stress, damping, transfer
-  Real closure_relative{};
-  std::string relative_to;  ///< the scale, in words
+/// How well a balance closes: |sum that should vanish| over the named scale.
+struct Closure {
+  Real relative{}, limit{};                                   ///< it closes up to the limit
+  std::string relative_to;                                    ///< the scale, in words
+  bool closes() const noexcept { return relative <= limit; }  // not for NaN
 };
 
+/// Terms are signed as they enter the sum.
+struct EnergyAudit {
+  std::vector<NamedValue> terms;  ///< J: kinetic energy, work of gravity, of loads, of walls, of stress, damping, transfer
+  Closure closure;
+};
+
+/// Of momentum or of its moment about the origin.
 struct MomentumAudit {
-  std::vector<Real> start, end, impulse;  ///< kg m/s, one number per dimension; impulse of everything outside the bodies
-  Real closure_relative{};
-  std::string relative_to;
+  std::vector<Real> start, end, impulse;  ///< kg m/s or kg m^2/s, a number per component; impulse of everything outside the bodies
+  Closure closure;
 };
 
 struct MassAudit {
   Real start{}, end{}, removed{};  ///< kg
   std::int64_t particles_removed{};
+  Closure closure;
+};
+
+/// What the guards saw.
+struct WatchSummary {
+  Real fastest{}, speed_limit{};       ///< m/s
+  Real gain{}, gain_limit{};           ///< energy that nothing did work for, over the largest term
+  std::int64_t speeding{}, gaining{};  ///< steps and looks beyond the limits
 };
 
 /// Everything summary.json holds.  Optional parts that are empty are left out of the file.
@@ -88,8 +102,9 @@ struct RunSummary {
   std::int64_t peak_memory_bytes{};  ///< resident set
 
   std::optional<EnergyAudit> energy;
-  std::optional<MomentumAudit> momentum;
+  std::optional<MomentumAudit> momentum, angular_momentum;
   std::optional<MassAudit> mass;
+  std::optional<WatchSummary> watch;
 
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< written by the run, relative to its folder

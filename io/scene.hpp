@@ -17,6 +17,7 @@
 #include "io/scene_mesh.hpp"
 #include "io/scene_output.hpp"
 #include "io/scene_stages.hpp"
+#include "io/scene_watch.hpp"
 #include "kernels/projected_options.hpp"
 #include "kernels/umls_options.hpp"
 
@@ -91,6 +92,7 @@ struct Scene {
   std::vector<StageSpec> stages;
   OutputSpec outputs;
   OnExit on_exit = OnExit::stop;
+  WatchSpec watch;
   Index threads = 0;
   Where where;
   static constexpr auto fields()
@@ -119,6 +121,7 @@ struct Scene {
         optional("outputs", &Scene::outputs, any, "-", "what is written"),
         optional_choice("on_exit", &Scene::on_exit,
                         "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
+        optional("watch", &Scene::watch, any, "-", "what no sound run does, and what becomes of one that does"),
         optional("threads", &Scene::threads, non_negative, "-", "threads to use; 0 means all, --threads wins")};
   }
 };

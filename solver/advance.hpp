@@ -56,14 +56,14 @@ void advance(Model<D, K>& m, Real dt)
     index_rows(m);
   if (m.health.worst())
     return;
-  const Real on_particles = apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
+  const Push<D> on_particles = apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
   watch.lap(m.timings.locate);
 
   scatter(m);  //  3
   watch.lap(m.timings.scatter);
 
   sum_on_nodes(m);  //  4
-  const Real on_mesh = apply(m.loads, time + dt, ramp, std::span(m.nodes.sum));
+  const Push<D> on_mesh = apply(m.loads, time + dt, ramp, m.mesh, std::span(m.nodes.sum));
   m.slaves.lump(m.mesh, m.nodes);                                //  5
   integrate(gravity, dt, m.nodes);                               //  6
   const WallWork wall_work = m.walls.apply(time + dt, m.nodes);  //  7
@@ -182,21 +182,25 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
   }
   m.energy.internal += total.work;
   m.crossing = total.crossing;
+  m.watched.speed = total.speed;
   m.timings.stress += total.seconds / threads();
   m.timings.gather -= total.seconds / threads();
 }
 
-/// Work terms and residual of the step, for the audit.
+/// Work, impulses and residual of the step, for the audit.
 template <int D, Kernel<D> K>
-void record(Model<D, K>& m, const Vec<D>& gravity, Real tractions, const WallWork& wall_work, Real dt)
+void record(Model<D, K>& m, const Vec<D>& gravity, const Push<D>& tractions, const WallWork& wall_work, Real dt)
 {
-  const NodeWork work = node_work(gravity, m.stage.damping, dt, m.nodes);
+  const NodeWork<D> work = node_work(gravity, m.stage.damping, dt, m.mesh, m.nodes);
+  m.mass.on_nodes = work.mass;
+  m.momentum.loads += work.pulled + dt * tractions;
+  m.momentum.damping += work.damped;
   m.energy.gravity += work.gravity;
   m.energy.damping += work.damping;
   m.energy.walls += wall_work.other;
   m.energy.friction += wall_work.friction;
   m.energy.nodes += work.kinetic_after - work.kinetic_before;
-  m.residual = unbalanced(gravity, m.stage.seeks_rest, dt, m.nodes, tractions);
+  m.residual = unbalanced(gravity, m.stage.seeks_rest, dt, m.nodes, tractions.size);
 }
 
 }  // namespace talus

@@ -6,12 +6,16 @@
 
 namespace talus {
 
-/// Work done on the nodes in a step [J]: force times the mean of old and new velocity.
+/// What a step did to the nodes: work [J], force times the mean of old and new velocity, and impulses [N s].
+template <int D>
 struct NodeWork {
   Real kinetic_before{}, kinetic_after{}, gravity{}, damping{};
+  Real mass{};  ///< [kg]
+  Push<D> pulled, damped;
   NodeWork& operator+=(const NodeWork& other) noexcept
   {
     kinetic_before += other.kinetic_before, kinetic_after += other.kinetic_after, gravity += other.gravity, damping += other.damping;
+    mass += other.mass, pulled += other.pulled, damped += other.damped;
     return *this;
   }
 };
@@ -93,22 +97,28 @@ void damp(Real damping, Real dt, Nodes<D>& nodes)
   });
 }
 
-/// Work of gravity and damping and the kinetic energies, once the walls have spoken.
+/// What gravity and damping did and the kinetic energies, once the walls have spoken.
 template <int D>
-NodeWork node_work(const Vec<D>& gravity, Real damping, Real dt, const Nodes<D>& nodes)
+NodeWork<D> node_work(const Vec<D>& gravity, Real damping, Real dt, const Mesh<D>& mesh, const Nodes<D>& nodes)
 {
-  return parallel_sum<NodeWork>(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+  return parallel_sum<NodeWork<D>>(static_cast<Index>(nodes.sum.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
-    NodeWork work;
+    NodeWork<D> work;
     if (!nodes.active[i])
       return work;
     const NodeSum<D>& sum = nodes.sum[i];
     const Vec<D> v_old = sum.momentum / sum.mass, v = nodes.motion[i].v, v_mid = 0.5 * (v_old + v);
     work.kinetic_before = 0.5 * sum.mass * v_old.squaredNorm();
     work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
-    work.gravity = dt * sum.mass * gravity.dot(v_mid);
-    if (damping > 0 && !nodes.bound[i])
-      work.damping = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping).dot(v_mid);
+    work.mass = sum.mass;
+    const Vec<D> weight = dt * sum.mass * gravity;
+    work.gravity = weight.dot(v_mid);
+    work.pulled = Push<D>::at(mesh.node(n), weight);
+    if (damping > 0 && !nodes.bound[i]) {
+      const Vec<D> brake = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
+      work.damping = brake.dot(v_mid);
+      work.damped = Push<D>::at(mesh.node(n), brake);
+    }
     return work;
   });
 }

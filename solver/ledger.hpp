@@ -39,16 +39,77 @@ struct EnergyLedger {
   }
 };
 
+/// x cross f, in 2-D with the plane's only component last.
+template <int D>
+Vec3 moment(const Vec<D>& x, const Vec<D>& f) noexcept
+{
+  if constexpr (D == 2)
+    return {0, 0, x[0] * f[1] - x[1] * f[0]};
+  else
+    return x.cross(f);
+}
+
+/// Forces [N] or impulses [N s], their moment about the origin, and the sums of the moduli of both.
+template <int D>
+struct Push {
+  Vec<D> linear = Vec<D>::Zero();
+  Vec3 angular = Vec3::Zero();
+  Real size{}, turn{};
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("linear", &Push::linear), kept("angular", &Push::angular), kept("size", &Push::size), kept("turn", &Push::turn)};
+  }
+
+  static Push at(const Vec<D>& x, const Vec<D>& f) noexcept
+  {
+    const Vec3 about = moment<D>(x, f);
+    return {f, about, f.norm(), about.norm()};
+  }
+  Push& operator+=(const Push& other) noexcept
+  {
+    linear += other.linear, angular += other.angular, size += other.size, turn += other.turn;
+    return *this;
+  }
+  friend Push operator+(Push a, const Push& b) noexcept { return a += b; }
+  friend Push operator*(Real s, const Push& a) noexcept
+  {
+    return {s * a.linear, s * a.angular, std::abs(s) * a.size, std::abs(s) * a.turn};
+  }
+};
+
+/// What gave momentum to the bodies since the start of the run, but for walls, which keep their own [N s].
+template <int D>
+struct MomentumLedger {
+  Push<D> loads;  ///< gravity, tractions, forces of place
+  Push<D> damping;
+  Push<D> rest;  ///< of the motion that is taken out at the end of stages that seek rest
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping),
+                      kept("rest", &MomentumLedger::rest)};
+  }
+};
+
+template <int D>
 struct MassLedger {
-  Real start{};    ///< [kg]
-  Real deleted{};  ///< left the mesh [kg]
-  Index deleted_count{};
+  Real start{};     ///< [kg]
+  Real on_nodes{};  ///< what the nodes carried in the last step [kg]
+  Real deleted{};   ///< left the mesh, or failed [kg]
+  Real failed{};    ///< of it what failed [kg]
+  Index deleted_count{}, failed_count{};
+  Push<D> carried_away;       ///< momentum of what was deleted
   std::int64_t held_count{};  ///< times a particle was set back onto a closed wall
   Real held_most{};           ///< farthest such set-back [m]
   static constexpr auto fields()
   {
-    return std::tuple{kept("start", &MassLedger::start), kept("deleted", &MassLedger::deleted),
-                      kept("deleted_count", &MassLedger::deleted_count), kept("held_count", &MassLedger::held_count),
+    return std::tuple{kept("start", &MassLedger::start),
+                      kept("on_nodes", &MassLedger::on_nodes),
+                      kept("deleted", &MassLedger::deleted),
+                      kept("failed", &MassLedger::failed),
+                      kept("deleted_count", &MassLedger::deleted_count),
+                      kept("failed_count", &MassLedger::failed_count),
+                      kept("carried_away", &MassLedger::carried_away),
+                      kept("held_count", &MassLedger::held_count),
                       kept("held_most", &MassLedger::held_most)};
   }
 };

@@ -53,9 +53,8 @@ MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> face
 }
 
 template <int D>
-Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
+Push<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
 {
-  Real size = 0;
   particles.applied.assign(particles.applied.size(), Vec<D>::Zero());
   const auto add = [&](std::size_t p, const Vec<D>& force) { particles.applied.set(p, particles.applied[p] + force); };
   for (const auto& load : loads.on_particles) {
@@ -75,9 +74,13 @@ Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
     for (std::size_t p = 0; p < particles.applied.size(); ++p)
       add(p, ramp * particles.mass[p] * load.acceleration(place[p], time));
   }
-  for (std::size_t p = 0; p < particles.applied.size(); ++p)
-    particles.applied_at[p] = particles.applied[p].dot(particles.x[p]), size += particles.applied[p].norm();
-  return size;
+  Push<D> total;
+  for (std::size_t p = 0; p < particles.applied.size(); ++p) {
+    const Vec<D> x = particles.x[p], force = particles.applied[p];
+    particles.applied_at[p] = force.dot(x);
+    total += Push<D>::at(x, force);
+  }
+  return total;
 }
 
 namespace {
@@ -96,16 +99,16 @@ void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
 }  // namespace
 
 template <int D>
-Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept
+Push<D> apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, std::span<NodeSum<D>> sum) noexcept
 {
-  Real size = 0;
+  Push<D> total;
   for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
     if (sum[node].mass <= 0)
       return;
     sum[node].force += force;
-    size += force.norm();
+    total += Push<D>::at(mesh.node(static_cast<Index>(node)), force);
   });
-  return size;
+  return total;
 }
 
 template <int D>
@@ -121,13 +124,13 @@ Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& 
 
 template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<const Facet>, const Particles<2>&);
 template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
-template Real apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, Particles<2>&) noexcept;
-template Real apply<2>(const Loads<2>&, Real, Real, std::span<NodeSum<2>>) noexcept;
+template Push<2> apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, Particles<2>&) noexcept;
+template Push<2> apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, std::span<NodeSum<2>>) noexcept;
 template Real work<2>(const Loads<2>&, Real, Real, Real, const Nodes<2>&) noexcept;
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
-template Real apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, Particles<3>&) noexcept;
-template Real apply<3>(const Loads<3>&, Real, Real, std::span<NodeSum<3>>) noexcept;
+template Push<3> apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, Particles<3>&) noexcept;
+template Push<3> apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, std::span<NodeSum<3>>) noexcept;
 template Real work<3>(const Loads<3>&, Real, Real, Real, const Nodes<3>&) noexcept;
 
 }  // namespace talus

@@ -8,6 +8,7 @@
 #include "core/particles.hpp"
 #include "core/table.hpp"
 #include "mesh/mesh.hpp"
+#include "solver/ledger.hpp"
 #include "solver/nodes.hpp"
 
 namespace talus {
@@ -69,17 +70,17 @@ template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
 
 /// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `row_of_id` finds a particle, or
-/// `none` for one that was deleted.  Returns the sum of the sizes of the forces [N].
+/// `none` for one that was deleted.  Returns the sum of the forces.
 template <int D>
-Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
+Push<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
 
 /// Work [J] of mesh tractions over a step, from the nodes' mean velocity.
 template <int D>
 Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& nodes) noexcept;
 
-/// Adds mesh tractions to the force of nodes that have mass.  Returns the sum of the sizes of the forces [N].
+/// Adds mesh tractions to the force of nodes that have mass.  Returns their sum.
 template <int D>
-Real apply(const Loads<D>& loads, Real time, Real ramp, std::span<NodeSum<D>> sum) noexcept;
+Push<D> apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, std::span<NodeSum<D>> sum) noexcept;
 
 /// Work [J] of the forces on particles since apply(): force times displacement.
 template <int D>

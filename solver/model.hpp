@@ -60,6 +60,31 @@ template <int D, Kernel<D> K>
 using Through = std::conditional_t<HasOwnValues<K, D>, ThroughBoth<D, K>,
                                    std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>>;
 
+/// What no state may pass; see guards.hpp.
+struct Guards {
+  Real speed = std::numeric_limits<Real>::infinity();  ///< of any particle [m/s]
+  Real gain = std::numeric_limits<Real>::infinity();   ///< energy that nothing worked for, over the largest term
+  Real mass = 1e-9;                                    ///< between particles and nodes, over all of it
+  Real least_energy = 0;                               ///< smaller gains are round-off [J]
+  Real failed = 0;                                     ///< mass of particles that may fail and be deleted, over all of it
+  bool speed_stops = true, gain_stops = true;          ///< otherwise it is only counted
+};
+
+/// What the guards have seen since the start of the run.
+struct Watched {
+  Real speed{};                        ///< of the fastest particle in the last step [m/s]
+  Real fastest{};                      ///< the same, in any step
+  Real gain{}, mass{};                 ///< largest, as in Guards
+  std::int64_t speeding{}, gaining{};  ///< steps, and looks at the sums, beyond the limit
+  std::string failure;                 ///< of particles that were deleted for it, the last one
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("speed", &Watched::speed),    kept("fastest", &Watched::fastest),   kept("gain", &Watched::gain),
+                      kept("mass", &Watched::mass),      kept("speeding", &Watched::speeding), kept("gaining", &Watched::gaining),
+                      kept("failure", &Watched::failure)};
+  }
+};
+
 template <int D, Kernel<D> K>
 struct Model {
   Mesh<D> mesh;
@@ -89,9 +114,12 @@ struct Model {
   Clock clock;
   StageState stage;
   EnergyLedger energy;
-  MassLedger mass;
+  MassLedger<D> mass;
+  MomentumLedger<D> momentum;
   Real residual = 0;  ///< of the last step: unbalanced nodal force over loads
   Real crossing = 0;  ///< shortest time in which a wave crosses the cell of a particle [s]; the stable step is a share of it
+  Guards guards;
+  Watched watched;
   Health health;
   Timings timings;
 

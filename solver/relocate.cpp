@@ -85,11 +85,38 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
   }
 }
 
+template <int D>
+void mark_deleted(Particles<D>& particles, std::size_t p, MassLedger<D>& mass)
+{
+  mass.deleted += particles.mass[p];
+  ++mass.deleted_count;
+  if (particles.x[p].allFinite() && particles.v[p].allFinite())
+    mass.carried_away += Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+  particles.cell[p] = none;
+}
+
 }  // namespace
 
 template <int D>
+void remove_failed(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order,
+                   MassLedger<D>& mass)
+{
+  for (Index row = 0; row < particles.size(); ++row) {  // in order of rows, as below
+    const std::size_t p = z(row);
+    const bool sound = particles.x[p].allFinite() && particles.v[p].allFinite() && particles.stress[p].allFinite();
+    if (sound && particles.F[p].determinant() > 0)
+      continue;
+    mass.failed += particles.mass[p];
+    ++mass.failed_count;
+    mark_deleted(particles, p, mass);
+  }
+  drop_lost(bodies, materials, particles);
+  order.row.clear();
+}
+
+template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger& mass, Health& health)
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger<D>& mass, Health& health)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
@@ -141,9 +168,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
         mass.held_most = std::max(mass.held_most, distance);
         moved = true;
       } else if (exits.policy == OnExitPolicy::remove) {
-        mass.deleted += particles.mass[p];
-        ++mass.deleted_count;
-        particles.cell[p] = none;
+        mark_deleted(particles, p, mass);
         deleted = true;
       } else {
         health.report(particles.id[p], Trouble::lost);
@@ -168,8 +193,10 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
 }
 
 template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
-                          CellOrder&, MassLedger&, Health&);
+                          CellOrder&, MassLedger<2>&, Health&);
 template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
-                          CellOrder&, MassLedger&, Health&);
+                          CellOrder&, MassLedger<3>&, Health&);
+template void remove_failed<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger<2>&);
+template void remove_failed<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger<3>&);
 
 }  // namespace talus

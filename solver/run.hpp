@@ -2,9 +2,9 @@
 // Stages, the loop over steps, and what stops it.
 #include <fmt/format.h>
 
+#include "solver/guards.hpp"
 #include "solver/initial_stress.hpp"
 #include "solver/instances.hpp"
-#include "solver/stable_step.hpp"
 
 namespace talus {
 
@@ -49,52 +49,49 @@ struct StageResult {
 };
 
 /// What the loop tells whoever watches; the watcher may look at the model and not touch it.  Before a step all is told of the one before:
-/// what is kept of the model then is all that the steps to come depend on.
-enum class Moment : std::uint8_t { stage_begins, step_begins, step_done, stage_done };
+/// what is kept of the model then is all that the steps to come depend on.  So it is where the run gives up, unless a step itself failed.
+enum class Moment : std::uint8_t { stage_begins, step_begins, step_done, stage_done, given_up };
 
-/// Throws RunError naming step, time, particle, body, scene line and place if the state is not sound.
+/// The worst that particles report of themselves, in words.
 template <int D, Kernel<D> K>
-void stop_if_unwell(const Model<D, K>& m);
-
-/// A particle in words: `particle 3311 of "dam" (scenes/dam.yaml:31) at (4.2, 0.1)`.
-template <int D>
-std::string describe(const Particles<D>& particles, const std::vector<Body>& bodies, Index row)
+std::string describe(const Model<D, K>& m, const Health::Finding& finding)
 {
-  const auto p = static_cast<std::size_t>(row);
-  std::string body, place;
-  for (const Body& b : bodies)
-    if (b.begin <= row && row < b.end)
-      body = fmt::format(" of \"{}\"{}", b.name, b.where.line > 0 ? fmt::format(" ({})", to_string(b.where)) : "");
-  for (int d = 0; d < D; ++d)
-    place += fmt::format("{}{:.6g}", d == 0 ? "" : ", ", particles.x[p][d]);
-  return fmt::format("particle {}{} at ({})", particles.id[p], body, place);
+  Index row = 0;
+  while (m.particles.id[static_cast<std::size_t>(row)] != finding.id)
+    ++row;
+  const std::string who = describe(m.particles, m.bodies, row);
+  const Real J = m.particles.F[static_cast<std::size_t>(row)].determinant();
+  switch (finding.trouble) {
+    case Trouble::lost:
+      return fmt::format("{} is outside the mesh; extend the mesh, close its boundary with a wall, or set on_exit: delete", who);
+    case Trouble::inverted:
+      return fmt::format("{} turned inside out, det F = {:.4g}; refine the mesh there, take more particles per cell or a smaller time.cfl",
+                         who, J);
+    case Trouble::no_answer: return fmt::format("the law of {} returned no finite stress, det F = {:.4g}", who, J);
+    case Trouble::not_finite: break;
+  }
+  return fmt::format("{} has a position, velocity or deformation that is not finite; the step may be too long (time.cfl)", who);
 }
 
+/// RunError naming step, time, particle, body, scene line and place if the state is not sound, unless the scene would rather do without
+/// the particles that failed in the step that is done.
 template <int D, Kernel<D> K>
-void stop_if_unwell(const Model<D, K>& m)
+void stop_if_unwell(Model<D, K>& m, bool step_is_done)
 {
   const auto finding = m.health.worst();
   if (!finding)
     return;
-  Index row = 0;
-  while (m.particles.id[static_cast<std::size_t>(row)] != finding->id)
-    ++row;
-  const auto p = static_cast<std::size_t>(row);
-  const std::string who = describe(m.particles, m.bodies, row);
-  const Real J = m.particles.F[p].determinant();
-  std::string what;
-  switch (finding->trouble) {
-    case Trouble::lost:
-      what = fmt::format("{} is outside the mesh; extend the mesh, close its boundary with a wall, or set on_exit: delete", who);
-      break;
-    case Trouble::inverted:
-      what = fmt::format("{} turned inside out, det F = {:.4g}; refine the mesh there, take more particles per cell or a smaller time.cfl",
-                         who, J);
-      break;
-    case Trouble::no_answer: what = fmt::format("the law of {} returned no finite stress, det F = {:.4g}", who, J); break;
-    case Trouble::not_finite:
-      what = fmt::format("{} has a position, velocity or deformation that is not finite; the step may be too long (time.cfl)", who);
-      break;
+  std::string what = describe(m, *finding);
+  const bool may_go = step_is_done && m.guards.failed > 0;
+  if (may_go) {
+    remove_failed(m.bodies, m.materials, m.particles, m.order, m.mass);
+    index_rows(m);
+    m.health.clear();
+    m.watched.failure = what;
+    if (m.mass.failed <= m.guards.failed * m.mass.start)
+      return;
+    what += fmt::format("; {} particles have failed and were deleted, {:.3g} of the mass, beyond watch.failed_mass = {:.3g}",
+                        m.mass.failed_count, m.mass.failed / m.mass.start, m.guards.failed);
   }
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, what));
 }
@@ -116,18 +113,31 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
   m.crossing = shortest_crossing(m.mesh, m.materials, m.particles);
 }
 
-/// The longest step that is stable.  RunError naming the particle that needs one below the shortest allowed.
+/// The longest step that is stable [s].
 template <int D, Kernel<D> K>
 Real wanted_step(const Model<D, K>& m, const StepLimits& limits)
 {
-  const Real wanted = std::min(limits.cfl * m.crossing, limits.longest);
-  if (!(wanted >= limits.shortest)) {
+  return std::min(limits.cfl * m.crossing, limits.longest);
+}
+
+/// Why the run cannot take its next step, if so.
+template <int D, Kernel<D> K>
+std::optional<std::string> obstacle(Model<D, K>& m, const StepLimits& limits)
+{
+  if (const Real wanted = wanted_step(m, limits); !(wanted >= limits.shortest)) {
     const Index row = slowest_particle(m.mesh, m.materials, m.particles);
-    throw RunError(fmt::format("step {}, t = {:.6g} s: {} needs a step of {:.3g} s, below time.min_step = {:.3g} s", m.clock.step,
-                               m.clock.time, row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted,
-                               limits.shortest));
+    return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s",
+                       row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted, limits.shortest);
   }
-  return wanted;
+  return fault(m);
+}
+
+/// RunError naming step and time; before it the state, which is whole, is shown.
+template <int D, Kernel<D> K, class Watch>
+[[noreturn]] void give_up(const Model<D, K>& m, Watch&& watch, const std::string& why)
+{
+  watch(m, Moment::given_up);
+  throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, why));
 }
 
 /// Runs the stage that has begun to its end.  `watch(model, moment)` is called before and after each step and at the end.
@@ -138,26 +148,30 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   const Real begin = m.stage.begin, end = begin + stage.duration;
   while (m.clock.time < end * (1 - 1e-14) && m.stage.balanced < steps_in_balance) {
     watch(m, Moment::step_begins);
+    if (const auto why = obstacle(m, limits))
+      give_up(m, watch, *why);
     const Real wanted = wanted_step(m, limits), left = end - m.clock.time;
     const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
+    const std::int64_t step = m.clock.step;
     advance(m, dt);
-    stop_if_unwell(m);
+    stop_if_unwell(m, m.clock.step > step);
     const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
                       totals(m.particles).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
     m.stage.balanced = calm ? m.stage.balanced + 1 : 0;
     watch(m, Moment::step_done);
   }
-  const Real kinetic = totals(m.particles).kinetic;
+  const Totals<D> now = totals(m.particles);
   const StageResult result{stage.name, begin,    m.clock.time, m.clock.step - m.stage.first_step,
-                           m.residual, m.energy, kinetic,      plastic_work(m)};
+                           m.residual, m.energy, now.kinetic,  plastic_work(m)};
   if (stage.residual && m.stage.balanced < steps_in_balance)
-    throw RunError(
-        fmt::format("step {}, t = {:.6g} s: stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, "
-                    "asked {:.3g}; give it more duration or damping",
-                    m.clock.step, m.clock.time, stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "",
-                    stage.duration, m.residual, *stage.residual));
+    give_up(m, watch,
+            fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it "
+                        "more duration or damping",
+                        stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration, m.residual,
+                        *stage.residual));
   if (stage.residual) {
-    m.energy.set_to_rest = kinetic;
+    m.energy.set_to_rest = now.kinetic;
+    m.momentum.rest += Push<D>{-now.momentum, -now.angular, now.momentum.norm(), now.angular.norm()};
     m.particles.v.assign(m.particles.v.size(), Vec<D>::Zero());
     for (auto* affine : {&m.particles.L, &m.particles.C})
       affine->assign(affine->size(), Mat<D>::Zero());

@@ -16,12 +16,12 @@ Mat3Of<Lanes> scaled_in_plane(Mat3Of<Lanes> a, const Lanes& s) noexcept
 
 /// StressSums, one particle per lane.
 struct StressLanes {
-  Lanes work = 0, crossing = std::numeric_limits<Real>::infinity();
+  Lanes work = 0, crossing = std::numeric_limits<Real>::infinity(), speed = 0;
   StressSums total() const noexcept
   {
     StressSums sums{sum(work.of)};
     for (int lane = 0; lane < pack_size; ++lane)
-      sums.crossing = std::min(sums.crossing, crossing[lane]);
+      sums.crossing = std::min(sums.crossing, crossing[lane]), sums.speed = std::max(sums.speed, speed[lane]);
     return sums;
   }
 };
@@ -81,18 +81,20 @@ template <int D, class L, class S>
   Mat3Of<Lanes> after = batch.update(i, bunch.count, {told_F, told_L, told_stress, dt, q, elastic});
   after.diagonal().array() -= q;
   const Sym3Of<Lanes> stress = pack(after);
-  if (const Lanes sum_of_entries = stress.sum(); !everywhere(isfinite(sum_of_entries)))
+  const auto answered = isfinite(Lanes(stress.sum()));
+  if (!everywhere(answered))
     for (int lane = 0; lane < bunch.count; ++lane)
-      if (good[lane] && !std::isfinite(sum_of_entries[lane]))
+      if (good[lane] && !answered[lane])
         health.report(particles.id[bunch.p[lane]], Trouble::no_answer);
   bunch.store(stress, particles.stress);
 
   const Lanes work = 0.5 * dt * (volume_before * stress_power<D>(stored, rate) + volume * stress_power<D>(stress, rate));
   const Lanes speed = sqrt(Lanes(bunch.load(particles.v).squaredNorm()));
   const Lanes crossing = crossing_time<D>(batch, h, speed, wave_speed, shrinking);
-  const auto there = Lanes(Pack{0, 1, 2, 3}) < static_cast<Real>(bunch.count);
-  sums.work += where(there, work, 0);
-  sums.crossing = min(sums.crossing, crossing);  // lanes that repeat a particle change nothing
+  const auto sound = good && answered, counts = sound && Lanes(Pack{0, 1, 2, 3}) < static_cast<Real>(bunch.count);
+  sums.work += where(counts, work, 0);  // lanes that repeat a particle change no extreme
+  sums.crossing = where(sound, min(sums.crossing, crossing), sums.crossing);
+  sums.speed = where(sound, max(sums.speed, speed), sums.speed);
 }
 
 }  // namespace

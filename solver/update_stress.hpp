@@ -12,11 +12,13 @@ namespace talus {
 struct StressSums {
   Real work = 0;                                          ///< stress power times dt [J], trapezoidal in the Kirchhoff stress
   Real crossing = std::numeric_limits<Real>::infinity();  ///< shortest altitude of a particle's cell / (wave speed + |v|) [s]
+  Real speed = 0;                                         ///< of the fastest particle [m/s]
   Real seconds = 0;                                       ///< of a processor
   StressSums& operator+=(const StressSums& other) noexcept
   {
     work += other.work;
     crossing = std::min(crossing, other.crossing);
+    speed = std::max(speed, other.speed);
     seconds += other.seconds;
     return *this;
   }

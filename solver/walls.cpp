@@ -14,26 +14,26 @@ constexpr int sweeps = 20;
 }  // namespace
 
 template <int D>
-typename Walls<D>::NodeRule& Walls<D>::rule(Index node)
+typename Walls<D>::NodeRule& Walls<D>::rule(const Mesh<D>& mesh, Index node)
 {
   if (static_cast<std::size_t>(node) >= rule_of_node_.size())
     rule_of_node_.resize(static_cast<std::size_t>(node) + 1, none);
   Index& at = rule_of_node_[static_cast<std::size_t>(node)];
   if (at == none) {
     at = static_cast<Index>(rules_.size());
-    rules_.push_back({.node = node, .rollers = {}, .frictions = {}});
+    rules_.push_back({.node = node, .place = mesh.node(node), .rollers = {}, .frictions = {}});
   }
   return rules_[static_cast<std::size_t>(at)];
 }
 
 template <int D>
-void Walls<D>::add(Wall<D> wall, std::span<const Index> nodes)
+void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nodes)
 {
   const auto number = static_cast<Index>(walls_.size());
   const bool fixed = wall.kind == WallKind::fixed;
   walls_.push_back(std::move(wall));
   for (const Index n : nodes) {
-    Index& whole = rule(n).whole;
+    Index& whole = rule(mesh, n).whole;
     if (whole == none || (fixed && walls_[static_cast<std::size_t>(whole)].kind != WallKind::fixed))
       whole = number;
   }
@@ -49,7 +49,7 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> fac
   for (const Facet facet : facets) {
     const Vec<D> area = mesh.area_vector(facet);
     for (const Index n : mesh.nodes_of(facet)) {
-      auto& planes = roller ? rule(n).rollers : rule(n).frictions;
+      auto& planes = roller ? rule(mesh, n).rollers : rule(mesh, n).frictions;
       // until settle(), a plane's normal is the sum of the area vectors it stands for
       const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) {
         return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm();
@@ -91,7 +91,9 @@ WallWork Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
   const auto push = [&](Index wall, const Vec<D>& by) {
-    walls_[static_cast<std::size_t>(wall)].impulse += mass * by;
+    Wall<D>& pushed = walls_[static_cast<std::size_t>(wall)];
+    pushed.impulse += mass * by;
+    pushed.angular += mass * moment<D>(rule.place, by);
     v += by;
   };
   rubs = false;
@@ -190,7 +192,7 @@ template <int D>
 void Walls<D>::reset_impulses() noexcept
 {
   for (Wall<D>& wall : walls_)
-    wall.impulse.setZero();
+    wall.impulse.setZero(), wall.angular.setZero();
 }
 
 template <int D>

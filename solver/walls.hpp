@@ -7,6 +7,7 @@
 #include "core/fields.hpp"
 #include "core/table.hpp"
 #include "mesh/mesh.hpp"
+#include "solver/ledger.hpp"
 #include "solver/nodes.hpp"
 
 namespace talus {
@@ -28,7 +29,8 @@ struct Wall {
   Table table;
   Where where;
   Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the last reset [N s]
-  static constexpr auto fields() { return std::tuple{kept("impulse", &Wall::impulse)}; }
+  Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
+  static constexpr auto fields() { return std::tuple{kept("impulse", &Wall::impulse), kept("angular", &Wall::angular)}; }
 };
 
 /// What walls did to the energy of the bodies in a step [J].
@@ -48,7 +50,7 @@ template <int D>
 class Walls {
  public:
   /// Conditions on all components of the nodes given.
-  void add(Wall<D> wall, std::span<const Index> nodes);
+  void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nodes);
   /// Conditions with a normal: facets of one group.  Facets that meet in a node under less than 30 degrees share their mean
   /// normal (a smooth surface); sharper ones stay separate planes (an edge).
   void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets);
@@ -85,12 +87,13 @@ class Walls {
   };
   struct NodeRule {
     Index node;
+    Vec<D> place;
     Index whole = none;          ///< wall that sets all components
     std::vector<Plane> rollers;  ///< normals made orthonormal
     std::vector<Plane> frictions;
     bool rubs = false;  ///< the last apply() found it pressed against a friction wall
   };
-  NodeRule& rule(Index node);
+  NodeRule& rule(const Mesh<D>& mesh, Index node);
   const NodeRule& rule_of(Index node) const noexcept  ///< of a node that is bound
   {
     return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];

@@ -24,7 +24,7 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
   const Mesh<3> mesh(box<3>(Vec3::Zero(), Vec3::Ones(), {2, 2, 2}));
   Walls<3> walls;
   for (const auto& [face, w] : faces)
-    w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, *mesh.node_set(face))
+    w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, mesh, *mesh.node_set(face))
                                                               : walls.add(w, mesh, *mesh.facet_set(face));
   walls.settle();
   Nodes<3> nodes;

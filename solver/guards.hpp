@@ -1,0 +1,85 @@
+#pragma once
+// Watches a run for what no sound one does: particles faster than anything could make them, energy that nothing worked for, mass that
+// nodes and particles do not agree on.  What a single particle can say of itself is in core/health.hpp.
+#include <fmt/format.h>
+
+#include "solver/model.hpp"
+#include "solver/stable_step.hpp"
+
+namespace talus {
+
+/// Who, in words: `particle 3311 of "dam" (scenes/dam.yaml:31) at (4.2, 0.1)`.
+template <int D>
+std::string describe(const Particles<D>& particles, const std::vector<Body>& bodies, Index row)
+{
+  const auto p = static_cast<std::size_t>(row);
+  std::string body, place;
+  for (const Body& b : bodies)
+    if (b.begin <= row && row < b.end)
+      body = fmt::format(" of \"{}\"{}", b.name, b.where.line > 0 ? fmt::format(" ({})", to_string(b.where)) : "");
+  for (int d = 0; d < D; ++d)
+    place += fmt::format("{}{:.6g}", d == 0 ? "" : ", ", particles.x[p][d]);
+  return fmt::format("particle {}{} at ({})", particles.id[p], body, place);
+}
+
+template <int D>
+Index fastest_particle(const Particles<D>& particles)
+{
+  Index fastest = none;
+  Real most = -1;
+  for (Index row = 0; row < particles.size(); ++row)
+    if (const Real speed = particles.v[static_cast<std::size_t>(row)].squaredNorm(); speed > most)
+      most = speed, fastest = row;
+  return fastest;
+}
+
+/// Kinetic and strain energy and what the laws dissipated, beyond all that was there or was put in, over the largest of the terms.
+template <int D, Kernel<D> K>
+Real energy_gain(const Model<D, K>& m, Real kinetic)
+{
+  const EnergyLedger& e = m.energy;
+  const Real put_in = e.gravity + e.loads + e.walls + e.friction + e.damping;
+  Real largest = m.guards.least_energy;
+  for (const Real term : {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.damping})
+    largest = std::max(largest, std::abs(term));
+  return largest > 0 ? (kinetic - e.kinetic_start + e.internal - put_in) / largest : 0;
+}
+
+/// Looks at the state between two steps and notes what it sees.  In words what no policy of the scene lets pass, nothing if all is well.
+/// Sums over all particles are looked at every so many steps: what goes wrong grows over tens of them.
+template <int D, Kernel<D> K>
+std::optional<std::string> fault(Model<D, K>& m)
+{
+  constexpr int steps_between_sums = 10;
+  const Guards& limit = m.guards;
+  Watched& seen = m.watched;
+  seen.fastest = std::max(seen.fastest, seen.speed);
+  if (seen.speed > limit.speed) {
+    ++seen.speeding;
+    if (limit.speed_stops)
+      return fmt::format("{} moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s",
+                         describe(m.particles, m.bodies, fastest_particle(m.particles)), seen.speed, limit.speed);
+  }
+  if (m.clock.step % steps_between_sums != 0 || m.clock.step == m.stage.first_step)
+    return std::nullopt;
+
+  const Totals<D> now = totals(m.particles);
+  const Real there = m.mass.start - m.mass.deleted;
+  const Real lost = std::max(std::abs(now.mass - there), std::abs(m.mass.on_nodes - there)) / m.mass.start;
+  seen.mass = std::max(seen.mass, lost);
+  if (lost > limit.mass)
+    return fmt::format("the mass does not add up: {:.10g} kg should be there, particles have {:.10g} kg, nodes carried {:.10g} kg", there,
+                       now.mass, m.mass.on_nodes);
+  const Real gain = energy_gain(m, now.kinetic);
+  seen.gain = std::max(seen.gain, gain);
+  if (gain > limit.gain) {
+    ++seen.gaining;
+    if (limit.gain_stops)
+      return fmt::format(
+          "the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}; the fastest is {}",
+          gain, limit.gain, describe(m.particles, m.bodies, fastest_particle(m.particles)));
+  }
+  return std::nullopt;
+}
+
+}  // namespace talus

@@ -1,0 +1,113 @@
+// What no sound run does is seen, told, and answered as the guards say.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::testing {
+namespace {
+
+using ::testing::HasSubstr;
+using M = Model<2, Projected<2>>;
+
+M flying_block()
+{
+  M m(unit_box<2>(8, 0.1));
+  add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>& x) { return (x.array() > 0.3).all() && (x.array() < 0.7).all(); });
+  make_ready(m, false);
+  set_velocity<2>(m, Mat<2>::Zero(), Vec<2>(1, 0.5));
+  return m;
+}
+
+/// Message of a stage that is stopped, empty if it is not; counts how often the state was shown before.
+std::string stopped(M& m, int* shown = nullptr)
+{
+  try {
+    finish_stage(m, test_stage(0.02), {}, [&](const M&, Moment moment) {
+      if (shown && moment == Moment::given_up)
+        ++*shown;
+    });
+  } catch (const RunError& e) {
+    return e.what();
+  }
+  return {};
+}
+
+TEST(Guards, ASoundRunPasses)
+{
+  M m = flying_block();
+  m.guards.speed = 3, m.guards.gain = 0.01;
+  begin_stage(m, test_stage(0.02), 0);
+  EXPECT_EQ(stopped(m), "");
+  EXPECT_NEAR(m.watched.fastest, std::sqrt(1.25), 1e-6);
+  EXPECT_LT(m.watched.mass, 1e-12);
+  EXPECT_LT(m.watched.gain, 1e-6);
+}
+
+TEST(Guards, MassThatIsNotThereIsMissed)
+{
+  M m = flying_block();
+  m.mass.start *= 1 + 1e-6;
+  begin_stage(m, test_stage(0.02), 0);
+  int shown = 0;
+  EXPECT_THAT(stopped(m, &shown), HasSubstr("the mass does not add up"));
+  EXPECT_EQ(shown, 1) << "before the run gives up its state can be kept";
+}
+
+TEST(Guards, EnergyFromNowhereIsSeen)
+{
+  const auto with_a_push = [](Real gain, bool stops) {
+    M m = flying_block();
+    m.guards.gain = gain, m.guards.gain_stops = stops;
+    begin_stage(m, test_stage(0.02), 0);
+    for (std::size_t p = 0; p < m.particles.id.size(); ++p)
+      m.particles.v.set(p, 1.2 * m.particles.v[p]);
+    const std::string message = stopped(m);
+    return std::pair{message, m.watched};
+  };
+  constexpr Real gained = 0.44 / 1.44;
+  EXPECT_THAT(with_a_push(0.9 * gained, true).first, HasSubstr("energy grows by what nothing did work for, 0.306 of its largest term"));
+  EXPECT_EQ(with_a_push(1.1 * gained, true).first, "");
+  const auto [message, seen] = with_a_push(0.9 * gained, false);
+  EXPECT_EQ(message, "");
+  EXPECT_GT(seen.gaining, 1);
+  EXPECT_NEAR(seen.gain, gained, 1e-3);
+}
+
+/// One particle is turned inside out before the first step.
+M with_a_failed_particle(Real allowed)
+{
+  M m = flying_block();
+  Mat3 F = Mat3::Identity();
+  F(0, 0) = -1;
+  m.guards.failed = allowed;
+  begin_stage(m, test_stage(0.02), 0);
+  m.particles.F.set(5, F);
+  return m;
+}
+
+TEST(Guards, AFailedParticleStopsTheRunUnlessItMayGo)
+{
+  M m = with_a_failed_particle(0);
+  const std::string message = stopped(m);
+  EXPECT_THAT(message, HasSubstr("particle 5"));
+  EXPECT_THAT(message, HasSubstr("turned inside out"));
+
+  M without = with_a_failed_particle(0.1);
+  const Index before = without.particles.size();
+  EXPECT_EQ(stopped(without), "");
+  EXPECT_EQ(without.particles.size(), before - 1);
+  EXPECT_EQ(without.mass.failed_count, 1);
+  EXPECT_NEAR(totals(without.particles).mass + without.mass.failed, without.mass.start, 1e-12 * without.mass.start);
+  EXPECT_THAT(without.watched.failure, HasSubstr("particle 5"));
+  EXPECT_TRUE(std::isfinite(without.energy.internal));
+}
+
+TEST(Guards, NoMoreMayFailThanIsAllowed)
+{
+  M m = with_a_failed_particle(1e-6);
+  EXPECT_THAT(stopped(m), HasSubstr("beyond watch.failed_mass = 1e-06"));
+}
+
+}  // namespace
+}  // namespace talus::testing
