@@ -46,7 +46,7 @@ Vec3 moment(const Vec<D>& x, const Vec<D>& f) noexcept
   if constexpr (D == 2)
     return {0, 0, x[0] * f[1] - x[1] * f[0]};
   else
-    return x.cross(f);
+    return {x[1] * f[2] - x[2] * f[1], x[2] * f[0] - x[0] * f[2], x[0] * f[1] - x[1] * f[0]};
 }
 
 /// Forces [N] or impulses [N s], their moment about the origin, and the sums of the moduli of both.
