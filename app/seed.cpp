@@ -337,10 +337,10 @@ class Seeder {
       return;
     stress_of_law(true);
     if (fit.apart > worth_a_word * fit.largest)
-      warnings.push_back(
-          fmt::format("{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest: law \"{}\" finds it from the "
-                      "deformation, with the constants of this scene",
-                      to_string(body.where), body.name, 100 * fit.apart / fit.largest, law_name(material)));
+      warnings.push_back(fmt::format(
+          "{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest there: law \"{}\" makes another "
+          "of the same state, with the constants of this scene",
+          to_string(body.where), body.name, 100 * fit.apart / fit.largest, law_name(material)));
   }
 
   const Scene& scene_;
