@@ -69,7 +69,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
                  if (moment == Moment::step_done)
                    laps.step_done(frame.timings.particle_steps, phases_of(frame.timings));
                },
-               [](const StageResult&) {}});
+               [](const Frame<D>&, const StageResult&) {}});
   laps.fill(result);
   return result;
 }

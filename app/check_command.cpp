@@ -20,6 +20,8 @@ void check(const Scene& scene)
   std::string bodies;
   for (const Body& body : setup.bodies)
     bodies += fmt::format("  body \"{}\": {} particles\n", body.name, body.size());
+  if (setup.origin)
+    bodies += describe(*setup.origin);
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));
   for (const std::string& warning : warnings)
     fmt::print(stderr, "warning: {}\n", warning);

@@ -69,26 +69,36 @@ std::vector<std::size_t> fixed_sizes(const State<D>& state)
   return sizes;
 }
 
+void must(bool holds, const char* what)
+{
+  if (!holds)
+    throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
+}
+
+/// Bodies one after the other, and as many rows in each column.
+template <int D>
+void check_rows(const Particles<D>& particles, const std::vector<Body>& bodies)
+{
+  Index end = 0;
+  for (const Body& body : bodies) {
+    must(body.begin == end && body.end >= end, "bodies");
+    end = body.end;
+  }
+  must(end == particles.size(), "bodies");
+  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
+    must(column.empty() || column.size() == particles.id.size(), "columns");
+  });
+}
+
 /// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
 template <int D>
 void check_fit(const State<D>& state, const std::vector<std::size_t>& sizes, const StateLimits& limits)
 {
   const Particles<D>& particles = state.particles;
-  const auto must = [](bool holds, const char* what) {
-    if (!holds)
-      throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
-  };
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
   must(fixed_sizes(state) == sizes || particles.size() == 0, "bodies, walls or columns");
-  Index end = 0;
-  for (const Body& body : state.bodies) {
-    must(body.begin == end && body.end >= end, "bodies");
-    end = body.end;
-  }
-  must(end == particles.size() && end <= limits.particles, "bodies");
-  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
-    must(column.empty() || column.size() == particles.id.size(), "columns");
-  });
+  must(particles.size() <= limits.particles, "bodies");
+  check_rows(particles, state.bodies);
   const auto within = [](const auto& column, auto limit) {
     return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
   };
@@ -130,6 +140,13 @@ void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
 }
 
 template <int D>
+void Checkpoints<D>::see_end_of_stage(const Frame<D>& frame, const Recorder<D>& recorder, Index n_stages)
+{
+  if (spec_.at_end && frame.stage_number + 1 == n_stages)
+    write(frame, recorder);
+}
+
+template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
@@ -157,7 +174,9 @@ CheckpointList::CheckpointList(const fs::path& at)
     throw EnvironmentError(fmt::format("{} is not there", at.string()));
   files_ = fs::is_directory(at) ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
   if (files_.empty())
-    throw EnvironmentError(fmt::format("{} has no checkpoints: the run is over, or was stopped before one was due", at.string()));
+    throw EnvironmentError(fmt::format(
+        "{} has no checkpoints: the run is over, or was stopped before one was due; with outputs.checkpoint.at_end it leaves one",
+        at.string()));
   std::string reasons;
   for (const fs::path& file : files_) {
     try {
@@ -179,25 +198,14 @@ CheckpointList::CheckpointList(const fs::path& at)
 
 fs::path CheckpointList::folder() const { return fs::absolute(files_.front()).parent_path().parent_path(); }
 
-template <int D>
-void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
+template <class F>
+CheckpointList::Read CheckpointList::newest(F&& f) const
 {
-  const auto sizes = fixed_sizes(state);
   std::string reasons;
   for (const fs::path& file : files_) {
     try {
-      const ArrayReader arrays(file);
-      for_each_part(state, [&](const std::string& name, auto& part) { recall(arrays, name, part); });
-      try {
-        check_fit(state, sizes, limits);
-      } catch (const EnvironmentError& e) {
-        throw EnvironmentError(fmt::format("{}: {}", file.string(), e.what()));
-      }
-      recall_laws(arrays, state.bodies, state.materials);
-      recall(arrays, "recorder", recorder);
-      if (!reasons.empty())
-        fmt::print(stderr, "warning: {}; going on from {}\n", reasons, file.string());
-      return;
+      f(ArrayReader(file), file);
+      return {file, reasons};
     } catch (const EnvironmentError& e) {
       reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
     }
@@ -205,9 +213,54 @@ void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, con
   throw EnvironmentError(reasons);
 }
 
+namespace {
+
+/// Names the file in what check() throws.
+template <class Check>
+void check_in(const fs::path& file, Check&& check)
+try {
+  check();
+} catch (const EnvironmentError& e) {
+  throw EnvironmentError(fmt::format("{}: {}", file.string(), e.what()));
+}
+
+}  // namespace
+
+template <int D>
+void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
+{
+  const auto sizes = fixed_sizes(state);
+  const auto [from, reasons] = newest([&](const ArrayReader& arrays, const fs::path& file) {
+    for_each_part(state, [&](const std::string& name, auto& part) { recall(arrays, name, part); });
+    check_in(file, [&] { check_fit(state, sizes, limits); });
+    recall_laws(arrays, state.bodies, state.materials);
+    recall(arrays, "recorder", recorder);
+  });
+  if (!reasons.empty())
+    fmt::print(stderr, "warning: {}; going on from {}\n", reasons, from.string());
+}
+
+template <int D>
+CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
+{
+  const std::size_t n_bodies = kept.bodies.size();
+  return newest([&](const ArrayReader& arrays, const fs::path& file) {
+    recall(arrays, "clock", kept.clock);
+    recall(arrays, "bodies", kept.bodies);
+    recall(arrays, "particles", kept.particles);
+    check_in(file, [&] {
+      must(kept.bodies.size() == n_bodies, "bodies");
+      check_rows(kept.particles, kept.bodies);
+    });
+    recall_laws(arrays, kept.bodies, kept.materials);
+  });
+}
+
 template class Checkpoints<2>;
 template class Checkpoints<3>;
 template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
 template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
+template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 
 }  // namespace talus

@@ -16,12 +16,13 @@ struct RunIdentity {
   std::vector<std::string> set;  ///< what --set changed
   bool quick = false;
   std::int64_t mesh = 0;  ///< its digest
+  std::string initial;    ///< checkpoint of another run that it began with, if it did
   static constexpr auto fields()
   {
     return std::tuple{
-        kept("version", &RunIdentity::version),  kept("commit", &RunIdentity::commit), kept("scene_file", &RunIdentity::scene_file),
-        kept("scene", &RunIdentity::scene_text), kept("set", &RunIdentity::set),       kept("quick", &RunIdentity::quick),
-        kept("mesh", &RunIdentity::mesh)};
+        kept("version", &RunIdentity::version),  kept("commit", &RunIdentity::commit),  kept("scene_file", &RunIdentity::scene_file),
+        kept("scene", &RunIdentity::scene_text), kept("set", &RunIdentity::set),        kept("quick", &RunIdentity::quick),
+        kept("mesh", &RunIdentity::mesh),        kept("initial", &RunIdentity::initial)};
   }
 };
 
@@ -35,6 +36,8 @@ class Checkpoints {
   /// Before each step: writes one if it is due.  Stopped after writing one because of a signal, or where steps are done `until` which the
   /// run was to go.  EnvironmentError: it could not be written; older ones are left as they are.
   void see(const Frame<D>& frame, const Recorder<D>& recorder);
+  /// After a stage, the recorder knowing its result: writes one at the end of the run if the scene wants it.
+  void see_end_of_stage(const Frame<D>& frame, const Recorder<D>& recorder, Index n_stages);
   /// Writes one now.  EnvironmentError.
   void write(const Frame<D>& frame, const Recorder<D>& recorder);
   /// The last one written, empty if there is none, and the steps done then.
@@ -59,6 +62,15 @@ struct StateLimits {
   Index cells, stages, particles;  ///< particles: at the start
 };
 
+/// The bodies of a run, read by themselves.
+template <int D>
+struct KeptBodies {
+  Particles<D> particles;
+  std::vector<Body> bodies;
+  std::vector<AnyBatch> materials;
+  Clock clock;
+};
+
 /// Checkpoints to go on from, the newest first.
 class CheckpointList {
  public:
@@ -72,8 +84,21 @@ class CheckpointList {
   /// it is taken.  EnvironmentError: none is whole and fits.
   template <int D>
   void take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
+  /// Which file was read, and why newer ones were not.
+  struct Read {
+    std::filesystem::path file;
+    std::string reasons;
+  };
+  /// The bodies of the newest state that is whole.  Their number, their laws and the precision of the particles must be there already.
+  /// EnvironmentError: none is whole, or they are others.
+  template <int D>
+  Read read(KeptBodies<D>& kept) const;
 
  private:
+  /// f(arrays, file) for the newest one for which it throws no EnvironmentError.
+  template <class F>
+  Read newest(F&& f) const;
+
   std::vector<std::filesystem::path> files_;
   RunIdentity identity_;
 };
@@ -82,5 +107,7 @@ extern template class Checkpoints<2>;
 extern template class Checkpoints<3>;
 extern template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
 extern template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+extern template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
+extern template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 
 }  // namespace talus

@@ -58,16 +58,18 @@ void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D
       return stages[static_cast<std::size_t>(model.stage.number)];
     };
     const auto watch = [&](const Model<D, K>& model, Moment moment) { audience.watch(frame_of(model, stage_at_hand(model)), moment); };
+    const auto stage_done = [&](const StageResult& result) { audience.stage_done(frame_of(m, stage_at_hand(m)), result); };
     Index number = 0;
     if (audience.take_over) {
       audience.take_over(state_of(m));
       adopt_state(m);
       audience.resumed(frame_of(m, stage_at_hand(m)));
-      audience.stage_done(finish_stage(m, stage_at_hand(m), limits, watch));
+      if (!m.stage.done)
+        stage_done(finish_stage(m, stage_at_hand(m), limits, watch));
       number = m.stage.number + 1;
     }
     for (; number < static_cast<Index>(stages.size()); ++number)
-      audience.stage_done(run_stage(m, stages[static_cast<std::size_t>(number)], limits, watch, number));
+      stage_done(run_stage(m, stages[static_cast<std::size_t>(number)], limits, watch, number));
   });
 }
 

@@ -11,7 +11,8 @@ void coarsen(Scene& scene)
   scale_cells(scene.mesh, 2);
   const Index fewest = scene.dimension == 2 ? 3 : 4;
   for (BodySpec& body : scene.bodies)
-    body.particles_per_cell = std::min(body.particles_per_cell.value_or(fewest), fewest);
+    if (body.fills())
+      body.particles_per_cell = std::min(body.particles_per_cell.value_or(fewest), fewest);
 }
 
 void shorten(Real dt, std::vector<Stage>& stages, OutputSpec& outputs)

@@ -17,8 +17,8 @@ namespace {
 /// Files that a run writes, and the pictures drawn of them.
 bool is_result(const fs::path& file)
 {
-  static constexpr std::array<std::string_view, 7> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd",
-                                                         "mesh.msh",     "mesh.vtu",    "scene.yaml"};
+  static constexpr std::array<std::string_view, 8> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd",
+                                                         "mesh.msh",     "mesh.vtu",    "scene.yaml",    initial_file};
   const std::string name = file.filename().string();
   for (const std::string_view known : names)
     if (name == known)

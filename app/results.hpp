@@ -7,6 +7,8 @@ namespace talus {
 
 /// In the folder of a run.
 inline constexpr auto checkpoint_folder = "checkpoints";
+/// There too: the state of another run that this one began with, to go on without that run.
+inline constexpr auto initial_file = "initial.h5";
 
 /// Makes `folder`, or clears it if it holds the results of an earlier run (it has a summary.json).
 /// EnvironmentError: it cannot be written, or holds something else, which is left alone.

@@ -37,10 +37,17 @@ class Run {
     auto setup = set_up(scene_, mesh);
     if (quick_)
       shorten(first_step(mesh, setup), setup.stages, scene_.outputs);
-    const RunIdentity identity = identity_of(mesh);
+    const std::optional<fs::path> initial = setup.origin ? std::optional(setup.origin->file) : std::nullopt;
+    if (initial && !from_)
+      check_initial(*initial);
+    if (initial && from_)
+      setup.origin->file = from_->identity().initial;  // what was read is the copy
+    const RunIdentity identity = identity_of(mesh, setup);
     if (from_)
       compare(from_->identity(), identity);
     prepare(mesh, setup);
+    if (const fs::path copy = folder_ / initial_file; initial && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial))
+      write_whole(copy, [&](const fs::path& temporary) { fs::copy_file(*initial, temporary); });
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet);
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
@@ -50,14 +57,18 @@ class Run {
                            if (moment == Moment::given_up)
                              checkpoints.write(frame, recorder);
                          },
-                         [&](const StageResult& result) { recorder.stage_done(result); }};
+                         [&](const Frame<D>& frame, const StageResult& result) {
+                           recorder.stage_done(result);
+                           checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
+                         }};
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.particles.size()};
     if (from_) {
       audience.take_over = [&](const State<D>& state) { from_->take_over(state, recorder, limits); };
       audience.resumed = [&](const Frame<D>& frame) {
         recorder.resume(frame);
         if (!options_.quiet)
-          fmt::print("going on after step {}, t = {:.6g} s\n", frame.clock.step, frame.clock.time);
+          fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
+                     frame.clock.step, frame.clock.time);
       };
     }
     watch_.lap(build_seconds_);
@@ -97,7 +108,9 @@ class Run {
   }
 
  private:
-  RunIdentity identity_of(const Mesh<D>& mesh) const
+  bool is_over(const Frame<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
+
+  RunIdentity identity_of(const Mesh<D>& mesh, const Setup<D>& setup) const
   {
     const Version v = version();
     return {std::string(v.number),
@@ -106,7 +119,8 @@ class Run {
             scene_.text,
             scene_.overrides,
             quick_,
-            static_cast<std::int64_t>(digest(mesh))};
+            static_cast<std::int64_t>(digest(mesh)),
+            setup.origin ? setup.origin->file : ""};
   }
 
   /// That gets to where the run is now.
@@ -133,6 +147,16 @@ class Run {
                  then.commit, now.commit);
   }
 
+  /// SceneErrors: what a new run begins with is among the results that it clears.
+  void check_initial(const fs::path& initial) const
+  {
+    const fs::path from = fs::weakly_canonical(initial).parent_path();
+    if (from == fs::weakly_canonical(folder_) || from == fs::weakly_canonical(folder_ / checkpoint_folder))
+      throw SceneErrors(scene_.initial->where,
+                        fmt::format("{} is among the results in {}, which this run replaces: choose another folder with --out",
+                                    initial.string(), folder_.string()));
+  }
+
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".
   void prepare(const Mesh<D>& mesh, const Setup<D>& setup)
   {
@@ -151,6 +175,8 @@ class Run {
     if (!options_.quiet)
       fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {} thread{}\n", scene_.title, setup.particles.size(),
                  mesh.n_cells(), mesh.n_nodes(), scene_.kernel, summary_.transfer, threads(), threads() == 1 ? "" : "s");
+    if (!options_.quiet && setup.origin)
+      fmt::print("{}", describe(*setup.origin));
     std::fflush(stdout);
   }
 
@@ -164,6 +190,8 @@ class Run {
     summary_.wall_total = mesh_seconds_ + build_seconds_ + steps;
     complete(recorder, quick_, summary_);
     summary_.files.insert(summary_.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
+    if (summary_.origin)
+      summary_.files.emplace_back(initial_file);
     write_summary(folder_ / "summary.json", summary_);
   }
 
@@ -209,6 +237,12 @@ void run_scene(const RunOptions& options)
   const Index wanted = options.threads.value_or(scene.threads);
   if (wanted > 0)
     set_threads(wanted);
+  if (from && scene.initial) {
+    const fs::path copy = from->folder() / initial_file;
+    if (!fs::exists(copy))
+      throw EnvironmentError(fmt::format("{} is not there: the state that the run began with, which it needs to go on", copy.string()));
+    scene.initial->from = copy.string();
+  }
   const bool quick = from ? from->identity().quick : options.quick;
   if (quick)
     coarsen(scene);

@@ -1,14 +1,43 @@
 #include "app/seed.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <utility>
 
 #include "app/expression.hpp"
+#include "app/setup.hpp"
 #include "core/parallel.hpp"
+#include "mesh/locate.hpp"
 #include "mesh/quadrature.hpp"
 
 namespace talus {
 
 namespace {
+
+Real density_of(const MaterialSpec& material)
+{
+  return std::visit([](const auto& law) { return law.density; }, material.law);
+}
+
+AnyBatch batch_of(const MaterialSpec& material, const BodySpec& body, Index begin, Index end)
+{
+  AnyBatch batch =
+      std::visit([&](const auto& law) { return make_any_batch(law, begin, end, material.name, material.where); }, material.law);
+  std::visit(
+      [&]<class L>(Batch<L>& typed) {
+        typed.viscosity = material.bulk_viscosity;
+        typed.averages_volume = body.f_bar.value_or(is_isochoric<L>());
+      },
+      batch);
+  return batch;
+}
+
+template <int D>
+void make_room(std::size_t n, Particles<D>& p)
+{
+  const auto resize = [n](auto&... columns) { (columns.resize(n), ...); };
+  resize(p.id, p.cell, p.x, p.v, p.L, p.F, p.stress, p.mass, p.volume0, p.volume);
+}
 
 /// Fills one body after the other.
 template <int D>
@@ -29,24 +58,56 @@ class Seeder {
     if (!points || !cells || material == nullptr)
       return;
     const Index begin = seeds_.particles.size();
-    const Real density = std::visit([](const auto& law) { return law.density; }, material->law);
-    fill(*cells, *points, spec, density);
+    fill(*cells, *points, spec, density_of(*material));
     const Index end = seeds_.particles.size();
     if (begin == end)
       complaints_.add(spec.where, "",
                       fmt::format("the body has no particles: {}",
                                   spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
-    AnyBatch batch =
-        std::visit([&](const auto& law) { return make_any_batch(law, begin, end, material->name, material->where); }, material->law);
-    std::visit(
-        [&]<class L>(Batch<L>& typed) {
-          typed.viscosity = material->bulk_viscosity;
-          typed.averages_volume = spec.f_bar.value_or(is_isochoric<L>());
-        },
-        batch);
-    seeds_.materials.push_back(std::move(batch));
+    seeds_.materials.push_back(batch_of(*material, spec, begin, end));
     set_velocity(spec, begin, end);
+  }
+
+  /// The body begins as the one of that number there.
+  void add(const BodySpec& spec, InitialState<D>& initial, Index from)
+  {
+    const MaterialSpec* material = material_of(spec);
+    if (material == nullptr)
+      return;
+    const Body& source = initial.there.bodies[static_cast<std::size_t>(from)];
+    const AnyBatch& law_there = initial.there.materials[static_cast<std::size_t>(from)];
+    const std::vector<Index> rows = rows_by_id(initial.there.particles, source);
+    const Index begin = seeds_.particles.size(), end = begin + source.size();
+    if (begin == end)
+      complaints_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
+    const Body body{spec.name, begin, end, spec.where};
+    AnyBatch batch = batch_of(*material, spec, begin, end);
+    copy(initial.there.particles, rows, density_of(*material) / density(law_there), begin);
+    find_cells(body, source);
+    if (law_name(batch) == law_name(law_there)) {
+      std::vector<Index> of_body(rows);
+      for (Index& row : of_body)
+        row -= source.begin;
+      carry_history(law_there, of_body, batch);
+    } else if (!can_start_from_stress(batch)) {
+      complaints_.add(spec.where, "material",
+                      fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
+                                  law_name(law_there), law_name(batch), or_list(laws_that_start_from_stress())));
+    }
+    taken_.push_back({seeds_.bodies.size(), std::string(law_name(law_there)), rows});
+    initial.origin.bodies.push_back({spec.name, source.name, source.size()});
+    seeds_.bodies.push_back(body);
+    seeds_.materials.push_back(std::move(batch));
+  }
+
+  /// What concerns all bodies together, once they are all there.
+  void settle(const InitialState<D>& initial, std::vector<std::string>& warnings)
+  {
+    carry_columns(initial.there.particles);
+    for (const Taken& taken : taken_)
+      settle_stress(taken, warnings);
+    seeds_.origin = initial.origin;
   }
 
   Seeds<D> take() { return std::move(seeds_); }
@@ -108,8 +169,7 @@ class Seeder {
     for (Index i = 0; i < n; ++i)
       first[i + 1] += first[i];
     const auto all = static_cast<std::size_t>(first[n]);
-    const auto make_room = [&](auto&... columns) { (columns.resize(all), ...); };
-    make_room(p.id, p.cell, p.x, p.v, p.L, p.F, p.stress, p.volume0, p.mass);
+    make_room(all, p);
     parallel_for(n, [&](Index i) {
       const Index cell = cells[i];
       const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
@@ -122,7 +182,7 @@ class Seeder {
         p.L.set(row, Mat<D>::Zero());
         p.F.set(row, Mat3::Identity());
         p.stress.set(row, Sym3::Zero());
-        p.volume0[row] = volume;
+        p.volume0[row] = p.volume[row] = volume;
         p.mass.set(row, density * volume);
         ++row;
       });
@@ -160,28 +220,150 @@ class Seeder {
       }
   }
 
+  static std::vector<Index> rows_by_id(const Particles<D>& particles, const Body& body)
+  {
+    std::vector<Index> rows(static_cast<std::size_t>(body.size()));
+    std::iota(rows.begin(), rows.end(), body.begin);
+    std::sort(rows.begin(), rows.end(),
+              [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
+    return rows;
+  }
+
+  /// f(row of this scene, row there)
+  template <class F>
+  static void for_each_pair(Index begin, const std::vector<Index>& rows, F&& f)
+  {
+    parallel_for(static_cast<Index>(rows.size()),
+                 [&](Index i) { f(static_cast<std::size_t>(begin + i), static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])); });
+  }
+
+  /// Rows behind those there are; masses change as the density of the material does.
+  void copy(const Particles<D>& from, const std::vector<Index>& rows, Real heavier, Index begin)
+  {
+    Particles<D>& p = seeds_.particles;
+    make_room(static_cast<std::size_t>(begin) + rows.size(), p);
+    const bool moves = scene_.initial->velocity == Carried::keep;
+    for_each_pair(begin, rows, [&](std::size_t row, std::size_t there) {
+      p.id[row] = static_cast<std::int64_t>(row);
+      p.x[row] = from.x[there];
+      p.v.set(row, moves ? Vec<D>(from.v[there]) : Vec<D>(Vec<D>::Zero()));
+      p.L.set(row, moves ? Mat<D>(from.L[there]) : Mat<D>(Mat<D>::Zero()));
+      p.F.set(row, from.F[there]);
+      p.stress.set(row, from.stress[there]);
+      p.mass.set(row, heavier * from.mass[there]);
+      p.volume0[row] = from.volume0[there];
+      p.volume[row] = from.volume[there];
+    });
+  }
+
+  void find_cells(const Body& body, const Body& source)
+  {
+    Particles<D>& p = seeds_.particles;
+    const Locator<D> locator(mesh_);
+    parallel_for(body.size(), [&](Index i) {
+      const auto row = static_cast<std::size_t>(body.begin + i);
+      p.cell[row] = locator(mesh_, p.x[row], none).value_or(none);
+    });
+    const auto first = p.cell.begin() + body.begin, last = p.cell.begin() + body.end;
+    const auto outside = std::find(first, last, none);
+    if (outside == last)
+      return;
+    const Vec<D>& x = p.x[static_cast<std::size_t>(outside - p.cell.begin())];
+    complaints_.add(scene_.initial->where, "from",
+                    fmt::format("{} of the {} particles of body \"{}\" there lie outside the mesh of this scene, the first at ({:.6g})",
+                                std::count(outside, last, none), body.size(), source.name, fmt::join(x.begin(), x.end(), ", ")));
+    std::replace(outside, last, none, Index{0});  // the scene is refused, but looked at to its end
+  }
+
+  /// Columns that a scene may have or not, where both have them; in other bodies they are as at rest.
+  void carry_columns(const Particles<D>& from)
+  {
+    Particles<D>& p = seeds_.particles;
+    const auto n = p.id.size();
+    const auto for_each_taken = [&](auto&& f) {
+      for (const Taken& taken : taken_)
+        for_each_pair(seeds_.bodies[taken.body].begin, taken.rows, [&](std::size_t row, std::size_t there) { f(taken, row, there); });
+    };
+    if (transfer_of(scene_.transfer).own_affine_field() && !from.C.empty()) {
+      p.C = p.L;
+      if (scene_.initial->velocity == Carried::keep)
+        for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.C.set(row, from.C[there]); });
+    }
+    if (scene_.initial->displacement == Carried::keep && from.x0.empty()) {
+      complaints_.add(scene_.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
+    } else if (scene_.initial->displacement == Carried::keep) {
+      p.x0 = p.x;
+      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0[row] = from.x0[there]; });
+    }
+    if (!from.volume_ratio.empty() && std::any_of(seeds_.materials.begin(), seeds_.materials.end(), averages_volume)) {
+      p.volume_ratio.assign(n, 1);
+      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
+    }
+    if (from.viscous.empty())
+      return;
+    if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
+      p.viscous.assign(n, 0);
+    for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+      if (has_bulk_viscosity(seeds_.materials[taken.body]))
+        p.viscous.set(row, from.viscous[there]);
+      else
+        p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
+    });
+  }
+
+  /// One law of a body there.
+  struct Taken {
+    std::size_t body;  ///< here
+    std::string law;   ///< there
+    std::vector<Index> rows;
+  };
+
+  /// The body keeps its stress if its law can start from one; the elastic strain that belongs to it is found anew where the law makes another
+  /// of the one there, because its constants have changed.  Any other law has the stress that it makes of the deformation.
+  void settle_stress(const Taken& taken, std::vector<std::string>& warnings)
+  {
+    constexpr Real round_off = 1e-6;  // stresses in single precision
+    constexpr Real worth_a_word = 0.01;
+    const Body& body = seeds_.bodies[taken.body];
+    AnyBatch& material = seeds_.materials[taken.body];
+    const auto stress_of_law = [&](bool take_over) { return fit_stress(body, material, take_over, seeds_.particles); };
+    const auto fits = [&](const StressFit& fit) { return fit.apart <= round_off * fit.largest; };
+    if (law_name(material) == taken.law && fits(stress_of_law(false)))
+      return;
+    if (can_start_from_stress(material))
+      start_from_stress(body, material, seeds_.particles);
+    const StressFit fit = stress_of_law(false);
+    if (fits(fit))
+      return;
+    stress_of_law(true);
+    if (fit.apart > worth_a_word * fit.largest)
+      warnings.push_back(fmt::format(
+          "{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest there: law \"{}\" makes another "
+          "of the same state, with the constants of this scene",
+          to_string(body.where), body.name, 100 * fit.apart / fit.largest, law_name(material)));
+  }
+
   const Scene& scene_;
   const Mesh<D>& mesh_;
   Complaints& complaints_;
   Seeds<D> seeds_;
+  std::vector<Taken> taken_;
 };
 
 /// Cells that hold particles of two bodies: material there is counted twice, unless the shapes only touch.
 template <int D>
 void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, std::vector<std::string>& warnings)
 {
-  std::vector<Index> owner(static_cast<std::size_t>(n_cells), none);
+  std::vector<Index> owner(static_cast<std::size_t>(n_cells), none), counted(owner);
   for (std::size_t b = 0; b < seeds.bodies.size(); ++b) {
     std::vector<Index> shared(seeds.bodies.size(), 0);
-    Index last = none;
     for (Index row = seeds.bodies[b].begin; row < seeds.bodies[b].end; ++row) {
-      const Index cell = seeds.particles.cell[static_cast<std::size_t>(row)];
-      Index& holds = owner[static_cast<std::size_t>(cell)];
-      if (holds != none && holds != static_cast<Index>(b) && cell != last)
-        ++shared[static_cast<std::size_t>(holds)];
+      const auto cell = static_cast<std::size_t>(seeds.particles.cell[static_cast<std::size_t>(row)]);
+      const Index body = static_cast<Index>(b), holds = owner[cell];
       if (holds == none)
-        holds = static_cast<Index>(b);
-      last = cell;
+        owner[cell] = body;
+      else if (holds != body && std::exchange(counted[cell], body) != body)
+        ++shared[static_cast<std::size_t>(holds)];
     }
     for (std::size_t other = 0; other < b; ++other)
       if (shared[other] > 0)
@@ -196,8 +378,14 @@ template <int D>
 Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, std::vector<std::string>& warnings)
 {
   Seeder<D> seeder(scene, mesh, complaints);
-  for (const BodySpec& body : scene.bodies)
-    seeder.add(body);
+  auto initial = find_initial_state<D>(scene, complaints, warnings);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (initial && initial->source[b] != none)
+      seeder.add(scene.bodies[b], *initial, initial->source[b]);
+    else if (scene.bodies[b].fills())  // if not, somebody has complained
+      seeder.add(scene.bodies[b]);
+  if (initial)
+    seeder.settle(*initial, warnings);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (!scene.bodies[i].region.empty() && scene.bodies[i].region == scene.bodies[j].region)

@@ -1,6 +1,6 @@
 #pragma once
 // Bodies of a scene -> particles.
-#include "app/complaints.hpp"
+#include "app/initial.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/run.hpp"
 
@@ -12,11 +12,13 @@ struct Seeds {
   Particles<D> particles;
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
+  std::optional<OriginSummary> origin;
 };
 
 /// Each cell of a body holds particles at symmetric points of equal weight; a shape keeps those whose centre it contains.
-/// Complains about unknown groups, numbers of particles that no point set has, formulas and bodies without particles; warns of
-/// cells that two bodies share.
+/// Other bodies take the particles of another run, in the order of their ids there, and what they remember.
+/// Complains about unknown groups, numbers of particles that no point set has, formulas and bodies without particles, particles outside the
+/// mesh, laws that cannot go on from what there is; warns of cells that two bodies share and of stress that changes.
 template <int D>
 Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, std::vector<std::string>& warnings);
 

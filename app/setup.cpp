@@ -177,15 +177,6 @@ class LoadBuilder {
   Setup<D>& setup_;
 };
 
-bool can_start_from_stress(const AnyBatch& material)
-{
-  return std::visit(
-      []<class L>(const Batch<L>& batch) {
-        return requires(typename L::State & state) { batch.law.prestress(Mat3(), state); };
-      },
-      material);
-}
-
 Stage stage_of(const std::string& name, Real duration, Real damping, const Where& where)
 {
   Stage stage;
@@ -240,6 +231,14 @@ Transfer transfer_of(const TransferSpec& spec)
   return transfer;
 }
 
+std::string describe(const OriginSummary& origin)
+{
+  std::string text = fmt::format("  from {}, step {}, t = {:.6g} s of \"{}\":\n", origin.file, origin.step, origin.time, origin.title);
+  for (const auto& [body, from, particles] : origin.bodies)
+    text += fmt::format("    body \"{}\": the {} particles of \"{}\"\n", body, particles, from);
+  return text;
+}
+
 std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::path(scene.file).parent_path(); }
 
 std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
@@ -290,6 +289,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   setup.particles = std::move(seeds.particles);
   setup.bodies = std::move(seeds.bodies);
   setup.materials = std::move(seeds.materials);
+  setup.origin = std::move(seeds.origin);
   const Filled<D> has_particles(mesh, setup.particles);
   WallBuilder<D> walls(mesh, has_particles, complaints, setup.walls);
   for (const BoundarySpec& boundary : scene.boundaries)
@@ -307,7 +307,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
   setup.limits.shortest = scene.time.min_step;
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
-  if (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start))
+  if (setup.particles.x0.empty() &&
+      (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
     setup.particles.x0 = setup.particles.x;
   setup.guards = guards_of(scene, mesh, setup);
   return setup;

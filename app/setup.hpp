@@ -2,6 +2,7 @@
 // Scene + Mesh -> everything a model is made of that does not depend on the kernel.
 #include <filesystem>
 
+#include "io/report.hpp"
 #include "io/scene.hpp"
 #include "solver/run.hpp"
 
@@ -20,15 +21,19 @@ struct Setup {
   StepLimits limits;
   Guards guards;
   std::vector<std::string> warnings;
+  std::optional<OriginSummary> origin;  ///< of bodies that come from another run
 };
 
 /// Throws SceneErrors with everything that is wrong: groups the mesh does not have, bodies without particles, loads on nothing.
-/// Particles stand in the order of body, cell and id; ids are 0, 1, 2, ... in that order.
+/// Particles stand in the order of body and id, ids being 0, 1, 2, ...; those of a body that was filled are in the order of cells as well.
 template <int D>
 Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh);
 
 /// The scheme of a scene, with the defaults that go with it.
 Transfer transfer_of(const TransferSpec& spec);
+
+/// A line for each body that comes from another run, and where that is.
+std::string describe(const OriginSummary& origin);
 
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);

@@ -11,7 +11,7 @@ namespace talus {
 template <int D>
 struct Audience {
   std::function<void(const Frame<D>&, Moment)> watch;
-  std::function<void(const StageResult&)> stage_done;
+  std::function<void(const Frame<D>&, const StageResult&)> stage_done;
   /// If set: puts the state of an earlier run in the place of that at the start.
   std::function<void(const State<D>&)> take_over = {};
   /// Then told what it looks like.

@@ -167,6 +167,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.mesh_digest = fmt::format("{:016x}", digest(mesh));
   s.mesh_quality = named(quality(mesh));
   s.warnings = setup.warnings;
+  s.origin = setup.origin;
   return s;
 }
 

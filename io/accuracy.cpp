@@ -42,7 +42,8 @@ void settle_accuracy(Scene& scene)
   scale_cells(scene.mesh, preset.cells);
   scene.time.cfl = scene.time.cfl.value_or(preset.cfl);
   for (BodySpec& body : scene.bodies)
-    body.particles_per_cell = body.particles_per_cell.value_or(scene.dimension == 2 ? preset.particles_2d : preset.particles_3d);
+    if (body.fills())
+      body.particles_per_cell = body.particles_per_cell.value_or(scene.dimension == 2 ? preset.particles_2d : preset.particles_3d);
 }
 
 }  // namespace talus

@@ -24,6 +24,8 @@ Json to_object(const BodySummary& body)
   return {{"name", body.name}, {"material", body.material}, {"law", body.law}, {"particles", body.particles}, {"mass [kg]", body.mass}};
 }
 
+Json to_object(const OriginSummary::Taken& taken) { return {{"body", taken.body}, {"from", taken.from}, {"particles", taken.particles}}; }
+
 Json to_object(const StageSummary& stage)
 {
   Json object = {{"kind", stage.kind}, {"result", stage.result}, {"steps", stage.steps}, {"duration [s]", stage.duration}};
@@ -39,6 +41,18 @@ Json to_list(const std::vector<Item>& items)
   for (const Item& item : items)
     list.push_back(to_object(item));
   return list;
+}
+
+Json to_object(const OriginSummary& origin)
+{
+  return {{"file", origin.file},
+          {"step", origin.step},
+          {"time [s]", origin.time},
+          {"bodies", to_list(origin.bodies)},
+          {"title", origin.title},
+          {"scene", origin.scene_file},
+          {"mesh_digest", origin.mesh_digest},
+          {"program", {{"version", origin.version}, {"commit", origin.commit}}}};
 }
 
 Json program(const RunSummary& s) { return {{"version", s.version}, {"commit", s.commit}, {"compiler", s.compiler}, {"build", s.build}}; }
@@ -107,6 +121,8 @@ std::string to_json(const RunSummary& s)
   json["precision"] = s.precision;
   json["mesh"] = {{"nodes", s.mesh_nodes}, {"cells", s.mesh_cells}, {"digest", s.mesh_digest}, {"quality", to_object(s.mesh_quality)}};
   json["bodies"] = to_list(s.bodies);
+  if (s.origin)
+    json["initial"] = to_object(*s.origin);
   json["stages"] = to_list(s.stages);
   json["steps"] = s.steps;
   json["simulated_time [s]"] = s.simulated_time;

@@ -73,6 +73,19 @@ struct WatchSummary {
   std::int64_t speeding{}, gaining{};  ///< steps and looks beyond the limits
 };
 
+/// Where bodies came from that a run did not fill itself.
+struct OriginSummary {
+  std::string file;                                             ///< checkpoint
+  std::string title, scene_file, version, commit, mesh_digest;  ///< of the run that wrote it
+  std::int64_t step{};
+  Real time{};  ///< s
+  struct Taken {
+    std::string body, from;
+    std::int64_t particles;
+  };
+  std::vector<Taken> bodies;
+};
+
 /// Everything summary.json holds.  Optional parts that are empty are left out of the file.
 struct RunSummary {
   std::string title;
@@ -91,6 +104,7 @@ struct RunSummary {
   std::string mesh_digest;  ///< of nodes and cells: runs with the same have the same mesh
   std::vector<NamedValue> mesh_quality;
   std::vector<BodySummary> bodies;
+  std::optional<OriginSummary> origin;
   std::vector<StageSummary> stages;
 
   std::int64_t steps{};

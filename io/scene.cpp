@@ -54,11 +54,6 @@ void TransferSpec::check(std::vector<std::string>& problems) const
     problems.push_back("give pic_damping_time or pic_damping_crossings, not both");
 }
 
-void BodySpec::check(std::vector<std::string>& problems) const
-{
-  exactly_one("region or shape", !region.empty() + shape.has_value(), problems);
-}
-
 void TractionSpec::check(std::vector<std::string>& problems) const
 {
   exactly_one("traction or pressure", !traction.empty() + pressure.has_value(), problems);

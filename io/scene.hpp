@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "io/scene_bodies.hpp"
+#include "io/scene_initial.hpp"
 #include "io/scene_loads.hpp"
 #include "io/scene_mesh.hpp"
 #include "io/scene_output.hpp"
@@ -87,6 +88,7 @@ struct Scene {
   TransferSpec transfer;
   std::vector<MaterialSpec> materials;
   std::vector<BodySpec> bodies;
+  std::optional<InitialSpec> initial;
   std::vector<LoadSpec> loads;
   std::vector<BoundarySpec> boundaries;
   std::vector<StageSpec> stages;
@@ -115,6 +117,7 @@ struct Scene {
         optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
         required_list("materials", &Scene::materials, "constitutive laws with their constants"),
         required_list("bodies", &Scene::bodies, "what is made of particles"),
+        group("initial", &Scene::initial, "bodies that begin as another run left them"),
         optional_list("loads", &Scene::loads, "forces"),
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
         optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),

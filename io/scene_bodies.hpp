@@ -30,12 +30,12 @@ struct MaterialSpec {
   }
 };
 
-/// A body fills either a cell group or a shape.
+/// A body fills a cell group or a shape, or takes its particles from another run (scene_rules.cpp).
 struct BodySpec {
   std::string name, material;
   std::string region;
   std::optional<Shape> shape;
-  std::optional<Index> particles_per_cell;  ///< has a value in every scene that was read
+  std::optional<Index> particles_per_cell;  ///< has a value in every body of a scene that was read, if it fills anything
   std::optional<bool> f_bar;
   std::vector<std::string> velocity;
   Where where;
@@ -55,7 +55,7 @@ struct BodySpec {
         optional("velocity", &BodySpec::velocity, any, "m/s",
                  "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
   }
-  void check(std::vector<std::string>& problems) const;
+  bool fills() const noexcept { return !region.empty() || shape.has_value(); }
 };
 
 }  // namespace talus

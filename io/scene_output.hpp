@@ -90,12 +90,15 @@ struct CheckpointSpec {
   std::optional<Index> steps;
   Real wall_time = 900;
   Index keep = 2;
+  bool at_end = false;
   static constexpr auto fields()
   {
     return std::tuple{optional("every", &CheckpointSpec::every, positive, "s", "simulated time between checkpoints; default never"),
                       optional("steps", &CheckpointSpec::steps, positive, "-", "steps between checkpoints; default never"),
                       optional("wall_time", &CheckpointSpec::wall_time, positive, "s", "time on the clock between checkpoints"),
-                      optional("keep", &CheckpointSpec::keep, at_least(1), "-", "so many are kept, the last ones")};
+                      optional("keep", &CheckpointSpec::keep, at_least(1), "-", "so many are kept, the last ones"),
+                      optional("at_end", &CheckpointSpec::at_end, any, "-",
+                               "one more at the end of the run, for other scenes to begin with: see initial")};
   }
 };
 

@@ -146,7 +146,56 @@ class Rules {
       fits(path + ".velocity", body.velocity);
       if (body.shape)
         fits(path + ".shape", *body.shape);
+      source_of_particles(path, body);
     }
+    if (scene_.initial)
+      initial(*scene_.initial);
+  }
+
+  /// A body is filled or taken from another run, and what it says is used.  Without a list only that run can tell which are taken.
+  void source_of_particles(const std::string& path, const BodySpec& body)
+  {
+    const auto& list = scene_.initial ? scene_.initial->bodies : std::vector<TakenSpec>{};
+    const auto known = names(scene_.bodies);
+    const bool listed = std::any_of(list.begin(), list.end(), [&](const TakenSpec& taken) { return taken.body == body.name; });
+    const bool misspelt = std::any_of(
+        list.begin(), list.end(), [&](const TakenSpec& taken) { return std::find(known.begin(), known.end(), taken.body) == known.end(); });
+    if (!body.region.empty() && body.shape)
+      return add(path, "only one of region or shape may be given");
+    if (misspelt && !listed && !body.fills())
+      return;  // it may be the one that is meant
+    if (!listed && !body.fills() && (!scene_.initial || !list.empty()))
+      return add(path, fmt::format("one of region or shape is needed{}", list.empty() ? "" : ": initial.bodies does not name this body"));
+    if (body.fills() && !listed)
+      return;
+    const auto unused = [&](bool given, std::string_view key) {
+      if (given)
+        add(fmt::format("{}.{}", path, key), fmt::format("the particles of this body come from initial.from: leave {} out", key));
+    };
+    unused(!body.region.empty(), "region");
+    unused(body.shape.has_value(), "shape");
+    unused(body.particles_per_cell.has_value(), "particles_per_cell");
+    unused(!body.velocity.empty(), "velocity");
+  }
+
+  void initial(const InitialSpec& initial)
+  {
+    const auto known = names(scene_.bodies);
+    const auto source = [](const TakenSpec& taken) { return taken.from.empty() ? taken.body : taken.from; };
+    for (auto taken = initial.bodies.begin(); taken != initial.bodies.end(); ++taken) {
+      const std::string path = fmt::format("initial.bodies[{}]", taken - initial.bodies.begin());
+      known_word(path + ".body", "body", taken->body, known);
+      for (auto earlier = initial.bodies.begin(); earlier != taken; ++earlier) {
+        const auto at = earlier - initial.bodies.begin();
+        if (!taken->body.empty() && earlier->body == taken->body)
+          add(path + ".body", fmt::format("\"{}\" takes its particles by initial.bodies[{}] already", taken->body, at));
+        else if (!taken->body.empty() && source(*earlier) == source(*taken))
+          add(path, fmt::format("\"{}\" is taken by initial.bodies[{}] already", source(*taken), at));
+      }
+    }
+    if (const auto* stage = scene_.stages.empty() ? nullptr : std::get_if<GeostaticSpec>(&scene_.stages.front());
+        stage != nullptr && stage->initial_stress)
+      add("stages[0].initial_stress", "the stress comes from initial.from: leave this out");
   }
 
   void loads_and_boundaries()

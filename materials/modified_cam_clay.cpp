@@ -121,7 +121,7 @@ void ModifiedCamClay::prestress(const Mat3& stress, State& state) const noexcept
   const Real p = std::max(-stress.trace() / 3, Real{0}), q = von_mises(stress);
   state.elastic_left = elastic_left_of(dev(stress), shear_modulus, -swelling_index * std::log1p(p / reference_pressure));
   const Real needed = p > 0 ? p + std::pow(q / critical_state_slope, 2) / p : 0;
-  if (needed > preconsolidation_pressure)
+  if (needed > constants().preconsolidation_at(state.plastic_volume))
     state.plastic_volume = -(compression_index - swelling_index) * std::log(needed / preconsolidation_pressure);
 }
 

@@ -2,9 +2,17 @@
 
 #include <fmt/format.h>
 
-#include "core/parallel.hpp"
-
 namespace talus {
+
+namespace {
+
+template <class L>
+constexpr bool starts_from_stress = requires(const L& law, typename L::State& state)
+{
+  law.prestress(Mat3(), state);
+};
+
+}  // namespace
 
 template <int D>
 Real mass_above(const Mesh<D>& mesh, std::span<const Real> density, Vec<D> x, Index c, const Vec<D>& up) noexcept
@@ -57,6 +65,64 @@ void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const st
     }
 }
 
+bool can_start_from_stress(const AnyBatch& material)
+{
+  return std::visit([]<class L>(const Batch<L>&) { return starts_from_stress<L>; }, material);
+}
+
+std::vector<std::string> laws_that_start_from_stress()
+{
+  std::vector<std::string> names;
+  for_each_type(Laws{}, [&]<class L>() {
+    if (starts_from_stress<L>)
+      names.emplace_back(L::name);
+  });
+  return names;
+}
+
+template <int D>
+void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& particles)
+{
+  parallel_for(body.size(), [&](Index i) {
+    const auto p = static_cast<std::size_t>(body.begin + i);
+    Mat3 stress = unpack(Sym3(particles.stress[p]));
+    if (!particles.viscous.empty())
+      stress.diagonal().array() += particles.viscous[p];
+    prestress(material, i, stress);
+    particles.F.set(p, Mat3::Identity());
+    particles.volume0[p] = particles.volume[p];
+    if (!particles.volume_ratio.empty())
+      particles.volume_ratio[p] = 1;
+  });
+}
+
+template <int D>
+StressFit fit_stress(const Body& body, const AnyBatch& material, bool take_over, Particles<D>& particles)
+{
+  const auto fit_one = [&]<class L>(const Batch<L>& batch, Index i) {
+    const auto p = static_cast<std::size_t>(body.begin + i);
+    const Sym3 before = particles.stress[p];
+    Mat3 F = particles.F[p], L_there = Mat3::Zero(), stress = unpack(before);
+    if (batch.averages_volume && !particles.volume_ratio.empty())
+      F.topLeftCorner<D, D>() *= particles.volume_ratio[p];
+    L_there.topLeftCorner<D, D>() = particles.L[p];
+    const Real q = particles.viscous.empty() ? 0 : particles.viscous[p];
+    stress.diagonal().array() += q;
+    auto history = batch.history[static_cast<std::size_t>(i)];
+    Mat3 answer = batch.law.update(Increment{F, L_there, stress, 0, q, true}, history, batch.constants);
+    answer.diagonal().array() -= q;
+    if (const Sym3 after = pack(answer); take_over && after.allFinite())
+      particles.stress.set(p, after);
+    return StressFit{unpack(before).norm(), (answer - unpack(before)).norm()};
+  };
+  return std::visit([&](const auto& batch) { return parallel_sum<StressFit>(body.size(), [&](Index i) { return fit_one(batch, i); }); },
+                    material);
+}
+
+template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
+template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
+template StressFit fit_stress<2>(const Body&, const AnyBatch&, bool, Particles<2>&);
+template StressFit fit_stress<3>(const Body&, const AnyBatch&, bool, Particles<3>&);
 template Real mass_above<2>(const Mesh<2>&, std::span<const Real>, Vec<2>, Index, const Vec<2>&) noexcept;
 template Real mass_above<3>(const Mesh<3>&, std::span<const Real>, Vec<3>, Index, const Vec<3>&) noexcept;
 template void set_k0_stress<2>(const Mesh<2>&, const Vec<2>&, Real, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);

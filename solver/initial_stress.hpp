@@ -1,5 +1,9 @@
 #pragma once
-// Stress at the start of a geostatic stage.
+// Stress at the start: of a geostatic stage, and of bodies that come from another run.
+#include <algorithm>
+#include <string>
+#include <vector>
+
 #include "core/particles.hpp"
 #include "materials/batch.hpp"
 #include "mesh/mesh.hpp"
@@ -12,6 +16,29 @@ namespace talus {
 template <int D>
 void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
                    Particles<D>& particles);
+
+bool can_start_from_stress(const AnyBatch& material);
+/// Names of the laws that can.
+std::vector<std::string> laws_that_start_from_stress();
+
+/// The body keeps its stress and forgets the deformation that led to it: F = I, and its history is that of the stress.  For laws that can
+/// start from a stress.
+template <int D>
+void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& particles);
+
+/// How the stress of a body compares to what its law makes of deformation and history as they are, nothing moving on.
+struct StressFit {
+  Real largest = 0;  ///< stress, by its Frobenius norm [Pa]
+  Real apart = 0;    ///< largest difference, by the same norm [Pa]
+  StressFit& operator+=(const StressFit& other) noexcept
+  {
+    largest = std::max(largest, other.largest), apart = std::max(apart, other.apart);
+    return *this;
+  }
+};
+/// `take_over`: the stress becomes that of the law, less the viscous pressure; otherwise nothing changes.
+template <int D>
+StressFit fit_stress(const Body& body, const AnyBatch& material, bool take_over, Particles<D>& particles);
 
 /// Mass per area [kg/m^(D-1)] met on the way from x in cell c along the unit vector `up` to the boundary of the mesh, for the mean
 /// density of each cell [kg/m^D].

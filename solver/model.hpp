@@ -29,13 +29,14 @@ struct StageState {
   Real begin = 0, ramp_time = 0;  ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
   bool elastic = false;           ///< yielding suspended
   bool seeks_rest = false;        ///< ends at rest, or is damped
+  bool done = false;              ///< it has ended
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
-                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
-                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
-                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest)};
+    return std::tuple{
+        kept("number", &StageState::number),   kept("first_step", &StageState::first_step), kept("balanced", &StageState::balanced),
+        kept("damping", &StageState::damping), kept("begin", &StageState::begin),           kept("ramp_time", &StageState::ramp_time),
+        kept("elastic", &StageState::elastic), kept("seeks_rest", &StageState::seeks_rest), kept("done", &StageState::done)};
   }
 };
 
@@ -174,14 +175,16 @@ void index_rows(Model<D, K>& m)
     m.row_of_id[static_cast<std::size_t>(m.particles.id[static_cast<std::size_t>(p)])] = p;
 }
 
-/// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.
+/// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  Columns that follow from
+/// others at rest are kept where they are there: of particles that come from another run.
 /// `by_id`: single particles will be looked up by id.
 template <int D, Kernel<D> K>
 void make_ready(Model<D, K>& m, bool by_id)
 {
   const auto n = m.particles.id.size();
-  m.particles.volume = m.particles.volume0;
-  if (m.transfer.own_affine_field())
+  if (m.particles.volume.empty())
+    m.particles.volume = m.particles.volume0;
+  if (m.transfer.own_affine_field() && m.particles.C.empty())
     m.particles.C = m.particles.L;
   if (m.loads.any_on_particles())
     m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
@@ -189,11 +192,11 @@ void make_ready(Model<D, K>& m, bool by_id)
   if (any_material(conducts_heat))
     m.heat.emplace(m.mesh);
   if (any_material(averages_volume)) {
-    m.particles.volume_ratio.assign(n, 1);
+    m.particles.volume_ratio.resize(n, 1);
     m.averaged.resize(n);
     m.stars.emplace(m.mesh);
   }
-  if (any_material(has_bulk_viscosity))
+  if (any_material(has_bulk_viscosity) && m.particles.viscous.empty())
     m.particles.viscous.assign(n, 0);
   if (m.transfer.musl)
     m.remapped.resize(m.nodes.sum.size());

@@ -178,6 +178,7 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   }
   if (stage.reset_displacement && !m.particles.x0.empty())
     m.particles.x0 = m.particles.x;
+  m.stage.done = true;
   watch(m, Moment::stage_done);
   return result;
 }

@@ -58,6 +58,22 @@ TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
   EXPECT_FALSE(scene("plane.yaml").projected.has_value());
 }
 
+TEST(Scene, ReadsWhatBeginsAsAnotherRunLeftIt)
+{
+  const Scene s = scene("solid.yaml");
+  ASSERT_TRUE(s.initial.has_value());
+  EXPECT_EQ(s.initial->from, "../bolted");
+  ASSERT_EQ(s.initial->bodies.size(), 1U);
+  EXPECT_EQ(s.initial->bodies[0].body, "nut");
+  EXPECT_EQ(s.initial->bodies[0].from, "bolt");
+  EXPECT_EQ(s.initial->velocity, Carried::zero);
+  EXPECT_EQ(s.initial->displacement, Carried::keep);
+  EXPECT_TRUE(s.outputs.checkpoint.at_end);
+  EXPECT_FALSE(s.bodies.at(2).fills());
+  EXPECT_FALSE(s.bodies.at(2).particles_per_cell.has_value()) << "there are no cells to fill";
+  EXPECT_FALSE(scene("plane.yaml").initial.has_value());
+}
+
 TEST(Scene, ReadsInlineGeometry)
 {
   const MeshSpec mesh = scene("plane.yaml").mesh;

@@ -401,6 +401,24 @@ TYPED_TEST(LawContract, StartsFromAStressIfItSaysSo)
   }
 }
 
+/// What the state is when nothing moves on is known from deformation, its rate and history alone.
+TYPED_TEST(LawContract, TellsItsStressAgainInNoTime)
+{
+  Dice dice(11);
+  for (const bool elastic : {false, true})
+    for (int path = 0; path < 20; ++path) {
+      auto point = this->point();
+      Mat3 rate = Mat3::Zero();
+      for (const Mat3& f : random_steps(dice)) {
+        point.step(f, elastic);
+        rate = (f - Mat3::Identity()) / 1e-3;
+        auto state = point.state;
+        const Mat3 again = point.law.update(Increment{point.F, rate, point.stress, 0, 0, true}, state, point.constants);
+        ASSERT_LE((again - point.stress).norm(), 100 * rounding);
+      }
+    }
+}
+
 TYPED_TEST(LawContract, EveryFieldIsDocumentedWithUnitAndRange)
 {
   std::vector<std::string_view> keys;

@@ -310,6 +310,13 @@ TEST(ModifiedCamClay, PrestressInsideTheEllipseKeepsThePreconsolidationAndOutsid
   EXPECT_EQ(pulled.stress.norm(), 0);
 }
 
+TEST(ModifiedCamClay, PrestressKeepsThePreconsolidationThatThereWas)
+{
+  auto hardened = consolidated(clay(), 3e5);
+  hardened.prestress(-2e5 * Mat3::Identity());
+  EXPECT_NEAR(preconsolidation(hardened), 3e5, machine * 3e5);
+}
+
 TEST(ModifiedCamClay, WaveSpeedOfTheHistoryBoundsThatOfTheStress)
 {
   Dice dice(3);

@@ -1,0 +1,26 @@
+#pragma once
+// Bodies of a scene that begin as another run left them: where that run is, and which of its bodies become which.
+#include "app/checkpoints.hpp"
+#include "app/complaints.hpp"
+
+namespace talus {
+
+template <int D>
+struct InitialState {
+  KeptBodies<D> there;
+  std::vector<Index> source;  ///< of each body of the scene: the number of the one there, or none
+  OriginSummary origin;
+};
+
+/// Nothing if the scene takes none, or if something is wrong with what it takes.  Complains about a run that is not there or cannot be read,
+/// another dimension, and bodies that are not there or are filled besides; warns of what may not be meant.
+template <int D>
+std::optional<InitialState<D>> find_initial_state(const Scene& scene, Complaints& complaints, std::vector<std::string>& warnings);
+
+/// What two laws both remember: rows of one history become the history of the other.
+void carry_history(const AnyBatch& from, std::span<const Index> rows, AnyBatch& to);
+
+extern template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, Complaints&, std::vector<std::string>&);
+extern template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, Complaints&, std::vector<std::string>&);
+
+}  // namespace talus
