@@ -3,15 +3,16 @@ SHELL       := /bin/bash
 .SHELLFLAGS := -euo pipefail -c
 MAKEFLAGS   += --no-print-directory
 JOBS        ?= $(shell nproc)
+MINUTES     ?= 60
 SCENE       ?= scenes/slope_failure_3d/scene.yaml
 RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build portable run test check format bench verify docs clean
+.PHONY: help setup build portable run test fuzz check format bench verify docs clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
-	@echo "  variables: JOBS=$(JOBS)  SCENE=$(SCENE)  RUN=$(RUN)"
+	@echo "  variables: JOBS=$(JOBS)  SCENE=$(SCENE)  RUN=$(RUN)  MINUTES=$(MINUTES)"
 
 setup:  ## install the Debian packages that are missing (tools/debian-packages.txt)
 	@tools/install_packages.sh
@@ -33,6 +34,9 @@ test: setup  ## compile with all warnings and asserts, run every test but the ni
 	@cmake --preset dev -Wno-dev >/dev/null
 	@cmake --build build/dev -j $(JOBS)
 	@ctest --test-dir build/dev --output-on-failure --label-exclude nightly -j $(JOBS)
+
+fuzz: setup  ## damaged scenes, meshes and checkpoints into what reads them, MINUTES for each
+	@tools/fuzz.sh long $(MINUTES)
 
 check:  ## format, layers, text, spelling, shell scripts, cppcheck, clang-tidy
 	@tools/ci.sh lint

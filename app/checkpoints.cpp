@@ -170,9 +170,10 @@ void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 
 CheckpointList::CheckpointList(const fs::path& at)
 {
-  if (!fs::exists(at))
+  std::error_code unreadable;
+  if (!fs::exists(at, unreadable))
     throw EnvironmentError(fmt::format("{} is not there", at.string()));
-  files_ = fs::is_directory(at) ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
+  files_ = fs::is_directory(at, unreadable) ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
   if (files_.empty())
     throw EnvironmentError(fmt::format(
         "{} has no checkpoints: the run is over, or was stopped before one was due; with outputs.checkpoint.at_end it leaves one",

@@ -1,10 +1,12 @@
 #include "app/complaints.hpp"
 
+#include "io/document.hpp"
+
 namespace talus {
 
 namespace {
 
-/// Line `number` (from one) of a text, without its end.
+/// Line `number` (from one) of a text, as messages show it.
 std::string line_of(std::string_view text, int number)
 {
   for (; number > 1; --number) {
@@ -13,7 +15,7 @@ std::string line_of(std::string_view text, int number)
       return {};
     text.remove_prefix(end + 1);
   }
-  return std::string(text.substr(0, text.find('\n')));
+  return shown_line(text.substr(0, text.find('\n')));
 }
 
 }  // namespace

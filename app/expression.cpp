@@ -18,9 +18,38 @@ struct Formula::Machine {
   Real time = 0;
 };
 
+namespace {
+
+/// muParser would store into x, y, z or t.
+bool assigns(std::string_view text)
+{
+  for (std::size_t at = text.find('='); at != text.npos; at = text.find('=', at + 1)) {
+    const char before = at == 0 ? ' ' : text[at - 1], after = at + 1 == text.size() ? ' ' : text[at + 1];
+    if (after == '=')
+      ++at;
+    else if (before != '<' && before != '>' && before != '!')
+      return true;
+  }
+  return false;
+}
+
+[[noreturn]] void refuse(const std::string& text, const std::string& why)
+{
+  constexpr std::size_t longest_quote = 200;
+  throw std::invalid_argument(fmt::format("{} is no formula of x, y, z and t: {}",
+                                          text.size() <= longest_quote ? fmt::format("\"{}\"", text) : "this long text", why));
+}
+
+}  // namespace
+
 Formula::Formula(const std::string& text) : machine_(std::make_shared<Machine>())
 {
   mu::Parser& parser = machine_->parser;
+  constexpr std::size_t most_characters = 1000;
+  if (text.size() > most_characters)
+    refuse(text, fmt::format("it has more than {} characters", most_characters));
+  if (assigns(text))
+    refuse(text, "it cannot assign; == compares");
   try {
     parser.DefineConst("pi", std::numbers::pi);
     parser.DefineVar("x", &machine_->place[0]);
@@ -30,8 +59,10 @@ Formula::Formula(const std::string& text) : machine_(std::make_shared<Machine>()
     parser.SetExpr(text);
     parser.Eval();  // what is wrong with the text shows now
   } catch (const mu::ParserError& e) {
-    throw std::invalid_argument(fmt::format("\"{}\" is no formula of x, y, z and t: {}", text, e.GetMsg()));
+    refuse(text, e.GetMsg());
   }
+  if (parser.GetNumResults() > 1)
+    refuse(text, fmt::format("it has {} values; decimals are written with a point", parser.GetNumResults()));
 }
 
 Real Formula::operator()(const Vec3& place, Real time) const

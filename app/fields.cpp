@@ -73,6 +73,15 @@ Column history_column(const Frame<D>& frame, std::span<const Index> rows, std::s
 
 }  // namespace
 
+std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
+{
+  std::vector<std::string> fields = outputs.particles->fields_wanted;
+  for (const std::string& name : {outputs.picture.field.substr(0, outputs.picture.field.find(':')), std::string("body")})
+    if (std::find(fields.begin(), fields.end(), name) == fields.end())
+      fields.push_back(name);
+  return fields;
+}
+
 template <int D>
 Column particle_column(const Frame<D>& frame, std::span<const Index> rows, std::string_view name)
 {

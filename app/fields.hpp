@@ -1,9 +1,13 @@
 #pragma once
 // Fields of particles and nodes by the names a scene gives them.
 #include "app/frame.hpp"
+#include "io/scene_output.hpp"
 #include "io/vtk.hpp"
 
 namespace talus {
+
+/// What particle files hold: the fields asked for, the one that pictures show, and the body.
+std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
 
 /// A field of all particles in the order of `rows`.  Names: those of io/scene_rules.hpp, `body` (its number), and every history
 /// variable, which is 0 for bodies whose law does not have it.

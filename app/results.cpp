@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 
@@ -55,8 +56,26 @@ void remove_leftovers(const fs::path& folder)
   }
 }
 
+namespace {
+
+/// Whole folders that go when their run is started again.
+constexpr std::array<std::string_view, 2> folders_of_results{"pictures", checkpoint_folder};
+
+/// EnvironmentError: the folder lies in one of those.
+void check_place(const fs::path& folder)
+{
+  for (fs::path inner = fs::weakly_canonical(folder); inner != inner.parent_path(); inner = inner.parent_path())
+    if (std::find(folders_of_results.begin(), folders_of_results.end(), inner.filename()) != folders_of_results.end() &&
+        fs::exists(inner.parent_path() / "summary.json"))
+      throw EnvironmentError(fmt::format("{} lies in {}, which is removed when the run there is repeated: choose another folder with --out",
+                                         folder.string(), inner.string()));
+}
+
+}  // namespace
+
 void prepare_results(const fs::path& folder)
 try {
+  check_place(folder);
   fs::create_directories(folder);
   if (!is_empty_but_for_leftovers(folder) && !fs::exists(folder / "summary.json"))
     throw EnvironmentError(fmt::format(
@@ -67,8 +86,8 @@ try {
     if (is_result(entry.path()) && entry.path().filename() != "summary.json")
       fs::remove(entry.path());
   remove_leftovers(folder);
-  fs::remove_all(folder / "pictures");
-  fs::remove_all(folder / checkpoint_folder);
+  for (const std::string_view name : folders_of_results)
+    fs::remove_all(folder / name);
   fs::remove(folder / "summary.json");  // the last: it says whose the rest is
 } catch (const fs::filesystem_error& e) {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));

@@ -1,12 +1,14 @@
 #include "app/seed.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "app/expression.hpp"
 #include "app/setup.hpp"
 #include "core/parallel.hpp"
+#include "io/memory.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/quadrature.hpp"
 
@@ -58,7 +60,10 @@ class Seeder {
     if (!points || !cells || material == nullptr)
       return;
     const Index begin = seeds_.particles.size();
-    fill(*cells, *points, spec, density_of(*material));
+    const std::vector<std::int64_t> first = count(*cells, *points, spec);
+    if (const std::string why = too_many_particles(first.back(), material->law); !why.empty())
+      return complaints_.add(spec.where, "particles_per_cell", why);
+    fill(*cells, *points, spec, density_of(*material), first);
     const Index end = seeds_.particles.size();
     if (begin == end)
       complaints_.add(spec.where, "",
@@ -158,19 +163,39 @@ class Seeder {
     }
   }
 
-  /// Rows for the particles of cells, behind those there are.
-  void fill(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density)
+  /// Row of the first particle of each cell, behind those there are, and of what comes then.
+  std::vector<std::int64_t> count(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points,
+                                  const BodySpec& spec) const
+  {
+    std::vector<std::int64_t> first(cells.size() + 1, 0);
+    parallel_for(static_cast<Index>(cells.size()),
+                 [&](Index i) { for_each_place(cells[i], points, spec, [&](const Vec<D>&) { ++first[i + 1]; }); });
+    first[0] = seeds_.particles.size();
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    return first;
+  }
+
+  /// Why there cannot be so many, with those of bodies before; empty if they can.
+  std::string too_many_particles(std::int64_t all, const AnyLaw& law) const
+  {
+    if (all > std::numeric_limits<Index>::max())
+      return fmt::format("{} particles are more than can be numbered", all);
+    Particles<D> one;
+    one.keep_in(scene_.precision);
+    make_room(1, one);
+    std::size_t bytes = std::visit([]<class L>(const L&) { return sizeof(typename L::State); }, law);
+    one.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+    return too_many(static_cast<Real>(all - seeds_.particles.size()), "particles", static_cast<Real>(bytes));
+  }
+
+  /// Rows for the particles of cells.
+  void fill(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density,
+            const std::vector<std::int64_t>& first)
   {
     Particles<D>& p = seeds_.particles;
-    const auto n = static_cast<Index>(cells.size());
-    std::vector<Index> first(cells.size() + 1, 0);
-    parallel_for(n, [&](Index i) { for_each_place(cells[i], points, spec, [&](const Vec<D>&) { ++first[i + 1]; }); });
-    first[0] = p.size();
-    for (Index i = 0; i < n; ++i)
-      first[i + 1] += first[i];
-    const auto all = static_cast<std::size_t>(first[n]);
+    const auto all = static_cast<std::size_t>(first.back());
     make_room(all, p);
-    parallel_for(n, [&](Index i) {
+    parallel_for(static_cast<Index>(cells.size()), [&](Index i) {
       const Index cell = cells[i];
       const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
       auto row = static_cast<std::size_t>(first[i]);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "app/expression.hpp"
+#include "app/fields.hpp"
 #include "app/guards.hpp"
 #include "app/seed.hpp"
 #include "io/scene_rules.hpp"
@@ -240,15 +241,6 @@ std::string describe(const OriginSummary& origin)
 }
 
 std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::path(scene.file).parent_path(); }
-
-std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
-{
-  std::vector<std::string> fields = outputs.particles->fields_wanted;
-  for (const std::string& name : {outputs.picture.field.substr(0, outputs.picture.field.find(':')), std::string("body")})
-    if (std::find(fields.begin(), fields.end(), name) == fields.end())
-      fields.push_back(name);
-  return fields;
-}
 
 namespace {
 

@@ -38,9 +38,6 @@ std::string describe(const OriginSummary& origin);
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);
 
-/// What particle files hold: the fields asked for, the one that pictures show, and the body.
-std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
-
 extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&);
 extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&);
 

@@ -1,17 +1,21 @@
-# talus_tests(folder): tests/<folder>/*_test.cpp -> talus_<folder>_tests, linked with that folder's library only, so that the linker
-# tests the layers too. A test whose name contains "Nightly" gets the label nightly, any other the label unit.
+# talus_tests(folder [LIBRARY name] [SOURCES more...]): tests/<folder>/*_test.cpp -> talus_<folder>_tests, linked with that folder's library
+# only, so that the linker tests the layers too. A test whose name contains "Nightly" gets the label nightly, any other the label unit.
 function(talus_tests folder)
+  cmake_parse_arguments(arg "" "LIBRARY" "SOURCES" ${ARGN})
+  if(NOT arg_LIBRARY)
+    set(arg_LIBRARY ${folder})
+  endif()
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${folder}/*_test.cpp)
   if(NOT sources)
     return()
   endif()
   set(target talus_${folder}_tests)
-  add_executable(${target} ${sources})
-  target_link_libraries(${target} PRIVATE talus_${folder} GTest::gtest GTest::gmock GTest::gtest_main)
+  add_executable(${target} ${sources} ${arg_SOURCES})
+  target_link_libraries(${target} PRIVATE talus_${arg_LIBRARY} GTest::gtest GTest::gmock GTest::gtest_main)
   target_compile_options(${target} PRIVATE ${TALUS_TEST_OPTIONS})
   target_compile_definitions(${target} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # A test may see the third-party headers that the folder under test sees, as tools/check_layers.py allows.
-  set(seen $<TARGET_PROPERTY:talus_${folder},INCLUDE_DIRECTORIES>)
+  set(seen $<TARGET_PROPERTY:talus_${arg_LIBRARY},INCLUDE_DIRECTORIES>)
   target_include_directories(${target} SYSTEM PRIVATE $<FILTER:${seen},EXCLUDE,^${PROJECT_SOURCE_DIR}>)
   talus_use_pch(${target} talus_tests_pch)
   if(folder STREQUAL app)

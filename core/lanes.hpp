@@ -31,13 +31,12 @@ using LoosePack = Real __attribute__((vector_size(sizeof(Pack)), aligned(sizeof(
 /// Rows to columns of four by four numbers.
 inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 {
-  using Places = std::int64_t __attribute__((vector_size(sizeof(Pack))));
-  const Pack ab_even = __builtin_shuffle(a, b, Places{0, 4, 2, 6}), ab_odd = __builtin_shuffle(a, b, Places{1, 5, 3, 7});
-  const Pack cd_even = __builtin_shuffle(c, d, Places{0, 4, 2, 6}), cd_odd = __builtin_shuffle(c, d, Places{1, 5, 3, 7});
-  a = __builtin_shuffle(ab_even, cd_even, Places{0, 1, 4, 5});
-  b = __builtin_shuffle(ab_odd, cd_odd, Places{0, 1, 4, 5});
-  c = __builtin_shuffle(ab_even, cd_even, Places{2, 3, 6, 7});
-  d = __builtin_shuffle(ab_odd, cd_odd, Places{2, 3, 6, 7});
+  const Pack ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Pack cd_even = __builtin_shufflevector(c, d, 0, 4, 2, 6), cd_odd = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  a = __builtin_shufflevector(ab_even, cd_even, 0, 1, 4, 5);
+  b = __builtin_shufflevector(ab_odd, cd_odd, 0, 1, 4, 5);
+  c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
+  d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
 /// Four numbers at any address, kept in double or in single precision.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }

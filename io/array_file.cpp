@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "io/whole_file.hpp"
 
 namespace talus {
 
@@ -527,6 +528,8 @@ ArrayReader::ArrayReader(const fs::path& file)
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // errors are thrown, not printed
   const std::string_view mark = "\x89HDF\r\n\x1a\n";
   std::string begin(mark.size(), '\0');
+  if (const auto why = not_ordinary(file))
+    throw EnvironmentError(fmt::format("cannot read {}: it {}", file.string(), *why));
   std::ifstream stream(file, std::ios::binary);
   if (!stream)
     throw EnvironmentError(fmt::format("cannot read {}: {}", file.string(), std::strerror(errno)));

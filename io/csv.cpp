@@ -104,7 +104,7 @@ HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns) : Histor
 HistoryFile HistoryFile::resume(fs::path file, std::vector<CsvColumn> columns, Real time)
 {
   std::string rows;
-  if (fs::exists(file)) {
+  if (std::error_code unreadable; fs::exists(file, unreadable)) {
     const HistoryTable old = read_history(file);
     if (old.columns != columns)
       throw EnvironmentError(fmt::format("{} has other columns than this run: move it away to go on", file.string()));

@@ -35,6 +35,13 @@ std::string::const_iterator first_control(const std::string& text)
   return std::find_if(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
 }
 
+std::string shown_line(std::string_view line)
+{
+  std::string shown(line.size() <= longest_shown_line ? line : "");
+  std::replace(shown.begin(), shown.end(), '\t', ' ');  // or the caret would stand elsewhere
+  return shown;
+}
+
 std::string path_to(const std::string& parent, std::string_view key)
 {
   return parent.empty() ? std::string(key) : fmt::format("{}.{}", parent, key);
@@ -71,11 +78,8 @@ void Problems::add(const Place& place, std::string path, std::string message)
     message = "more errors follow; these are enough for now";
   std::string source_line;
   const auto line = static_cast<std::size_t>(place.line);
-  if (place.source != nullptr && line > 0 && line <= place.source->lines.size() &&
-      place.source->lines[line - 1].size() <= longest_shown_line) {
-    source_line = place.source->lines[line - 1];
-    std::replace(source_line.begin(), source_line.end(), '\t', ' ');  // or the caret would stand elsewhere
-  }
+  if (place.source != nullptr && line > 0 && line <= place.source->lines.size())
+    source_line = shown_line(place.source->lines[line - 1]);
   list_.push_back({to_where(place, std::move(path)), std::move(message), std::move(source_line)});
 }
 

@@ -53,6 +53,9 @@ struct Node {
 /// nobody sees it.
 std::string::const_iterator first_control(const std::string& text);
 
+/// A line of a file as messages show it: nothing if it is too long to help.
+std::string shown_line(std::string_view line);
+
 /// `parent.key`, or `key` at the top.
 std::string path_to(const std::string& parent, std::string_view key);
 /// `parent[i]`, followed by the name in quotes if the entry has one: `materials[1] "clay"`.
@@ -79,6 +82,8 @@ struct Document {
 
 /// The whole text of a file; throws SceneErrors unless it is a text in UTF-8, without tabs in the indentation, of at most 4 MB.
 std::string read_text(const std::filesystem::path& file);
+/// The same of bytes that were in `file`, however many.
+std::string plain_text(const std::filesystem::path& file, const std::string& bytes);
 std::vector<std::string_view> lines_of(std::string_view text);
 
 /// The place in words of the error messages, with the path of keys to the value.

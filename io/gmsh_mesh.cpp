@@ -33,8 +33,7 @@ MeshData<D> make_grid(const GridSpec& grid, const MeshSpec& spec)
   Real total = D == 2 ? 2 : 6;
   for (const Index n : cells)
     total *= n;
-  if (total > most_cells)
-    throw SceneErrors(spec.where, fmt::format("grid.cells asks for {:.3g} cells, more than {:.3g}", total, most_cells));
+  check_cells<D>(total, "grid.cells", spec);
   constexpr std::uint64_t seed = 1;
   MeshData<D> data = box<D>(low, high, cells);
   return grid.jitter > 0 ? jittered<D>(std::move(data), grid.jitter, seed) : data;

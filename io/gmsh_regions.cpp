@@ -8,6 +8,7 @@
 #include <set>
 
 #include "io/gmsh_session.hpp"
+#include "io/whole_file.hpp"
 
 namespace talus {
 
@@ -200,8 +201,8 @@ std::vector<Named> imported_solids(int dimension)
 template <int D>
 MeshData<D> mesh_geometry(const MeshSpec& spec, const std::filesystem::path& file)
 {
-  if (!std::filesystem::is_regular_file(file))
-    throw SceneErrors(spec.where, fmt::format("geometry \"{}\" does not exist or is no file", file.string()));
+  if (const auto why = not_ordinary(file))
+    throw SceneErrors(spec.where, fmt::format("geometry \"{}\" {}", file.string(), *why));
   const std::string kind = file.extension().string();
   const std::set<std::string> imported{".step", ".stp", ".brep", ".iges", ".igs"};
   if (kind != ".geo" && !imported.contains(kind))
@@ -216,7 +217,7 @@ MeshData<D> mesh_geometry(const MeshSpec& spec, const std::filesystem::path& fil
         session.fail(fmt::format("\"{}\" holds no {}", file.string(), D == 3 ? "solids" : "surfaces"));
       share_faces(D, parts);
     }
-    session.set_sizes(spec, D, kind == ".geo");
+    session.set_sizes<D>(spec, kind == ".geo");
     session.generate(D);
     return session.take<D>();
   });
@@ -239,7 +240,7 @@ MeshData<D> mesh_regions(const MeshSpec& spec)
     for (const RegionSpec& region : spec.regions)
       if (region.name == hidden)
         throw SceneErrors(region.where, fmt::format("nothing is left of region \"{}\": earlier regions cover it", hidden));
-    session.set_sizes(spec, D, false);
+    session.set_sizes<D>(spec, false);
     session.generate(D);
     return session.take<D>();
   });

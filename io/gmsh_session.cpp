@@ -8,13 +8,30 @@
 #include <map>
 
 #include "core/parallel.hpp"
+#include "io/memory.hpp"
 #include "io/msh_assembler.hpp"
 
 namespace talus {
 
 namespace {
 constexpr int delaunay = 1, hxt = 10;  // numbers of Mesh.Algorithm3D
+
+/// What a Mesh and the MeshData it is made of hold of each cell [B]: its nodes three times, its neighbours, volume, altitude, gradients.
+template <int D>
+constexpr Real bytes_of_cell = 4 * (D + 1) * sizeof(Index) + (2 + D * (D + 1)) * sizeof(Real);
 }  // namespace
+
+template <int D>
+void check_cells(Real cells, const std::string& key, const MeshSpec& spec)
+{
+  if (!(cells <= most_cells))
+    throw SceneErrors(spec.where, fmt::format("{} asks for {:.3g} cells, more than {:.3g}", key, cells, most_cells));
+  if (const std::string why = too_many(cells, "cells", bytes_of_cell<D>); !why.empty())
+    throw SceneErrors(spec.where, fmt::format("{} {}", key, why));
+}
+
+template void check_cells<2>(Real, const std::string&, const MeshSpec&);
+template void check_cells<3>(Real, const std::string&, const MeshSpec&);
 
 GmshSession::GmshSession(Where asked_by) : asked_by_(std::move(asked_by)), threads_(threads())
 {
@@ -70,7 +87,8 @@ void GmshSession::check(const std::string& doing) const
     fail(doing + " failed");
 }
 
-void GmshSession::set_sizes(const MeshSpec& spec, int dimension, bool points_count)
+template <int D>
+void GmshSession::set_sizes(const MeshSpec& spec, bool points_count)
 {
   if (!spec.size) {
     if (!spec.refine.empty() || !points_count)
@@ -79,20 +97,23 @@ void GmshSession::set_sizes(const MeshSpec& spec, int dimension, bool points_cou
   }
   Vec3 low, high;
   gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
-  // About 2.3 triangles fill a square, 7 tetrahedra a cube of their edge length.
-  Real cells = dimension == 2 ? 2.3 : 7;
-  for (int d = 0; d < dimension; ++d)
+  constexpr Real cells_of_cube = D == 2 ? 2.3 : 7;  // so many triangles fill a square, tetrahedra a cube of their edge length
+  Real cells = cells_of_cube;
+  for (int d = 0; d < D; ++d)
     cells *= (high[d] - low[d]) / *spec.size;
-  if (!(cells < most_cells))
-    throw SceneErrors(spec.where, fmt::format("size {} m would make about {:.2g} cells, more than {:.2g}", *spec.size, cells, most_cells));
+  check_cells<D>(cells, fmt::format("size {} m", *spec.size), spec);
   gmsh::option::setNumber("Mesh.MeshSizeMax", *spec.size);
   gmsh::option::setNumber("Mesh.MeshSizeFromPoints", points_count ? 1 : 0);
   gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", points_count ? 1 : 0);
   std::vector<double> fields;
   for (const auto& [within, size] : spec.refine) {
-    const auto n = static_cast<std::size_t>(dimension);
+    const auto n = static_cast<std::size_t>(D);
     if (within.low.size() != n || within.high.size() != n)
       throw SceneErrors(spec.where, fmt::format("a box of refine needs {} numbers for low and for high", n));
+    Real finer = cells_of_cube;
+    for (int d = 0; d < D; ++d)
+      finer *= std::max(Real{0}, std::min(high[d], within.high[d]) - std::max(low[d], within.low[d])) / size;
+    check_cells<D>(finer, fmt::format("size {} m in a box of refine", size), spec);
     const int field = gmsh::model::mesh::field::add("Box");
     const auto set = [&](const std::string& option, Real value) { gmsh::model::mesh::field::setNumber(field, option, value); };
     constexpr Real everywhere = 1e22;
@@ -112,6 +133,9 @@ void GmshSession::set_sizes(const MeshSpec& spec, int dimension, bool points_cou
   gmsh::model::mesh::field::setNumbers(smallest, "FieldsList", fields);
   gmsh::model::mesh::field::setAsBackgroundMesh(smallest);
 }
+
+template void GmshSession::set_sizes<2>(const MeshSpec&, bool);
+template void GmshSession::set_sizes<3>(const MeshSpec&, bool);
 
 void GmshSession::generate(int dimension)
 {

@@ -14,6 +14,13 @@ namespace talus {
 /// Meshes with more cells than this are taken for a slip of the pen: 10^8 tetrahedra need about 100 GB.
 inline constexpr Real most_cells = 1e8;
 
+/// Throws SceneErrors if so many cells, which `key` asks for, are more than that or than the memory there is holds.
+template <int D>
+void check_cells(Real cells, const std::string& key, const MeshSpec& spec);
+
+extern template void check_cells<2>(Real, const std::string&, const MeshSpec&);
+extern template void check_cells<3>(Real, const std::string&, const MeshSpec&);
+
 class GmshSession {
  public:
   explicit GmshSession(Where asked_by);
@@ -43,7 +50,8 @@ class GmshSession {
 
   /// Edge lengths: `spec.size` everywhere, less in the boxes of `spec.refine`.  `points_count`: sizes given at the points of the
   /// geometry hold where they are smaller.
-  void set_sizes(const MeshSpec& spec, int dimension, bool points_count);
+  template <int D>
+  void set_sizes(const MeshSpec& spec, bool points_count);
   /// Meshes the current model: Frontal-Delaunay in 2-D, Delaunay in 3-D (HXT where Delaunay fails).
   void generate(int dimension);
   /// The cells and physical groups of the current model.
@@ -56,6 +64,8 @@ class GmshSession {
   int threads_;  ///< those of the program: gmsh sets the number for everybody
 };
 
+extern template void GmshSession::set_sizes<2>(const MeshSpec&, bool);
+extern template void GmshSession::set_sizes<3>(const MeshSpec&, bool);
 extern template MeshData<2> GmshSession::take<2>();
 extern template MeshData<3> GmshSession::take<3>();
 

@@ -66,9 +66,13 @@ void recall(const ArrayReader& file, const std::string& path, T& value)
   } else if constexpr (is_vector<T>) {
     std::int64_t count = 0;
     recall(file, below(path, "count"), count);
-    value.resize(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < value.size(); ++i)
+    const auto n = static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i < n; ++i) {  // one by one: nothing is allocated on the word of a file
+      if (i == value.size())
+        value.emplace_back();
       recall(file, below(path, i), value[i]);
+    }
+    value.resize(n);
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     detail::Stored<T> stored{};
     file.read_into(path, std::span(&stored, 1));

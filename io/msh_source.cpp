@@ -9,6 +9,9 @@
 #include <fstream>
 #include <limits>
 
+#include "io/memory.hpp"
+#include "io/whole_file.hpp"
+
 namespace talus {
 
 namespace {
@@ -22,13 +25,13 @@ bool printable(std::string_view text)
 
 std::string read_file(const std::filesystem::path& file, const Where& asked_by)
 {
-  const auto refuse = [&](const char* why) { throw SceneErrors(asked_by, fmt::format("mesh file \"{}\" {}", file.string(), why)); };
-  std::error_code ignored;
-  const auto status = std::filesystem::status(file, ignored);
-  if (!std::filesystem::exists(status))
-    refuse("does not exist");
-  if (std::filesystem::is_directory(status))
-    refuse("is a folder");
+  const auto refuse = [&](const std::string& why) { throw SceneErrors(asked_by, fmt::format("mesh file \"{}\" {}", file.string(), why)); };
+  if (const auto why = not_ordinary(file))
+    refuse(*why);
+  std::error_code unknown;
+  if (const auto size = std::filesystem::file_size(file, unknown); !unknown)
+    if (const std::string many = too_many(static_cast<Real>(size), "bytes", 1); !many.empty())
+      refuse(many);
   std::ifstream stream(file, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(stream), {}};
   if (!stream)

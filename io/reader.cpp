@@ -271,9 +271,9 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
   return read_scene_text(file, read_text(file), overrides);
 }
 
-Scene read_scene_text(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides)
+Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides)
 {
-  Document document = read_document(file, std::move(text), overrides);
+  Document document = read_document(file, plain_text(file, text), overrides);
   Scene scene;
   FieldReader(document.problems).read(document.root, "", {}, scene);
   add_findings(document, broken_rules(scene));

@@ -16,7 +16,7 @@ namespace talus {
 /// aliases, merge keys or tags, one document, decimal numbers, `true` and `false`.
 Scene read_scene(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 /// The same of a text that was in `file`.
-Scene read_scene_text(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides = {});
+Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides = {});
 
 /// The file of `talus drive`, read in the same way.
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});

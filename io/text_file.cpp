@@ -106,9 +106,11 @@ std::vector<std::string_view> lines_of(std::string_view text)
   return lines;
 }
 
-std::string read_text(const std::filesystem::path& file)
+std::string read_text(const std::filesystem::path& file) { return plain_text(file, read_bytes(file)); }
+
+std::string plain_text(const std::filesystem::path& file, const std::string& bytes)
 {
-  std::string text = with_plain_ends(read_bytes(file));
+  std::string text = with_plain_ends(bytes);
   const Source source{file.string(), {}, lines_of(text)}, unprintable{file.string(), {}, {}};
   Problems problems;
   for (std::size_t i = 0; i < source.lines.size(); ++i)

@@ -345,7 +345,7 @@ void PvdSeries::drop_from(Real time)
 void PvdSeries::resume(Real time)
 {
   entries_.clear();
-  if (!fs::exists(file_))
+  if (std::error_code unreadable; !fs::exists(file_, unreadable))
     return;
   for (const auto& [t, path] : read_pvd(file_))
     if (t <= time)

@@ -104,8 +104,25 @@ void write_whole(const fs::path& file, std::string_view text)
   write_whole(file, [&](const fs::path& temporary) { write_text(temporary, text, file); });
 }
 
+std::optional<std::string> not_ordinary(const fs::path& file)
+{
+  std::error_code failed;
+  const fs::file_status status = fs::status(file, failed);
+  if (status.type() == fs::file_type::not_found)
+    return "does not exist";
+  if (failed)
+    return fmt::format("cannot be read: {}", failed.message());
+  if (fs::is_directory(status))
+    return "is a folder";
+  if (!fs::is_regular_file(status))
+    return "is not an ordinary file";
+  return std::nullopt;
+}
+
 std::string read_whole(const fs::path& file)
 {
+  if (std::error_code unknown; fs::is_other(fs::status(file, unknown)))
+    throw EnvironmentError(fmt::format("cannot read {}: it is not an ordinary file", file.string()));
   const Descriptor opened(file, O_RDONLY);
   if (!opened.is_open())
     fail(file, "read", errno);

@@ -2,6 +2,7 @@
 // Files that are there as a whole or not at all: written beside their place, flushed to the disk, then renamed.
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,7 +16,11 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
 /// The same for a text.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
-/// All bytes of a file; EnvironmentError names the file if it cannot be read.
+/// Why no bytes come out of a file, such as "is a folder"; nothing for an ordinary file.  A pipe would keep its reader waiting, a device
+/// has no end.
+std::optional<std::string> not_ordinary(const std::filesystem::path& file);
+
+/// All bytes of an ordinary file; EnvironmentError names the file if it cannot be read.
 std::string read_whole(const std::filesystem::path& file);
 
 }  // namespace talus

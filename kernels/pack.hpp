@@ -14,10 +14,9 @@ inline Pack smaller(const Pack& a, Real b) noexcept { return a < broadcast(b) ? 
 /// {sum of a, sum of b, sum of c, sum of d}
 inline Pack sums(const Pack& a, const Pack& b, const Pack& c, const Pack& d) noexcept
 {
-  using Places = std::int64_t __attribute__((vector_size(sizeof(Pack))));
-  const Pack ab = __builtin_shuffle(a, b, Places{0, 4, 2, 6}) + __builtin_shuffle(a, b, Places{1, 5, 3, 7});
-  const Pack cd = __builtin_shuffle(c, d, Places{0, 4, 2, 6}) + __builtin_shuffle(c, d, Places{1, 5, 3, 7});
-  return __builtin_shuffle(ab, cd, Places{0, 1, 4, 5}) + __builtin_shuffle(ab, cd, Places{2, 3, 6, 7});
+  const Pack ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Pack cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  return __builtin_shufflevector(ab, cd, 0, 1, 4, 5) + __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
 }
 
 static_assert(pack_size == 4);

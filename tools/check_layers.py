@@ -18,7 +18,7 @@ BELOW = {  # folder -> folders it may include, besides itself
     "app": ["core", "mesh", "kernels", "materials", "solver", "io"],
 }
 BELOW_TESTS = {**{folder: [folder, *below] for folder, below in BELOW.items()},
-               "speed": ["core", "mesh", "kernels", "materials", "solver"]}
+               "fuzz": [*BELOW], "speed": ["core", "mesh", "kernels", "materials", "solver"]}
 
 # header pattern, files that may include it; tests/io/report_test.cpp may include what io/report.cpp may. The first match decides.
 THIRD_PARTY = [

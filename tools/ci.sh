@@ -8,7 +8,7 @@ python=/usr/bin/python3
 [ -x "$python" ] || python=python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
-all_stages=(setup "${lint_stages[@]}" dev docs verify test)
+all_stages=(setup "${lint_stages[@]}" dev docs verify fuzz test)
 
 cxx_files() { git ls-files -- '*.hpp' '*.cpp'; }
 
@@ -34,14 +34,14 @@ stage_cppcheck() {
 
 # Ten sources in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
-# where gcc keeps it, after everything of clang's; clang 14 does not know gcc's name of the shuffle.
+# where gcc keeps it, after everything of clang's.
 stage_tidy() {
   cmake --preset lint -Wno-dev >/dev/null
   cmake --build build/lint --target talus_version_header >/dev/null
   sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/lint/compile_commands.json | grep -vE '/tests/|talus_([a-z]+_tests|speed)\.dir' \
     | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
       --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option \
-      --extra-arg='-D__builtin_shuffle(a,...)=(a)' 2> >(grep -vE '(warnings?|errors?) generated' >&2)
+      2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
 
 stage_dev() {
@@ -69,6 +69,9 @@ stage_verify() {
   cmake --build build/release --target talus -j "$jobs"
   tools/verify.sh --program "$PWD/build/release/talus" --level quick --jobs "$jobs" --regression --out build/verify
 }
+
+# Two minutes of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
+stage_fuzz() { tools/fuzz.sh quick; }
 
 stage_test() { make test JOBS="$jobs"; }
 

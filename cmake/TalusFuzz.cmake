@@ -1,0 +1,30 @@
+# talus_fuzz_<entry> of tests/fuzz/<entry>_entry.cpp, with libFuzzer of clang (preset fuzz, tools/fuzz.sh). Only the sources that read are
+# compiled: with the sanitizers each costs several times what it does without.
+# Of laws only the checks of their parameters run.
+talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
+target_compile_options(talus_fuzz_materials PRIVATE -O0 -fno-sanitize=all)
+talus_library(fuzz_io FOLDER io
+              ONLY accuracy array_file csv document field_reader gmsh_mesh gmsh_read gmsh_regions gmsh_session memory mesh_groups msh_ reader scalars scene
+                   shape text_file vtk whole_file
+              EXCLUDE scene_json
+              LINKS talus_mesh talus_fuzz_materials
+              PRIVATE yaml-cpp Gmsh::Gmsh VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)
+talus_library(fuzz_solver FOLDER solver ONLY ledger walls LINKS talus_mesh talus_fuzz_materials)
+talus_library(fuzz_app FOLDER app
+              ONLY accounts checkpoints expression fields history progress recorder results signals
+              LINKS talus_fuzz_io talus_fuzz_solver
+              PRIVATE muparser::muparser)
+
+function(talus_fuzz entry)
+  set(target talus_fuzz_${entry})
+  add_executable(${target} tests/fuzz/harness.cpp tests/fuzz/${entry}_entry.cpp)
+  target_compile_definitions(${target} PRIVATE TALUS_FUZZ_ENTRY=fuzz_${entry})
+  target_link_libraries(${target} PRIVATE talus_fuzz_app)
+  target_link_options(${target} PRIVATE -fsanitize=fuzzer)   # its main()
+  add_dependencies(fuzzers ${target})
+endfunction()
+
+add_custom_target(fuzzers)
+foreach(entry scene msh checkpoint)
+  talus_fuzz(${entry})
+endforeach()

@@ -1,0 +1,79 @@
+#!/usr/bin/env bash
+# Feeds damaged scenes, meshes and checkpoints to what reads them (tests/fuzz): tools/fuzz.sh quick (two minutes, as in CI), or
+# tools/fuzz.sh long [minutes for each] [entry ...]. Inputs that break something are left in build/fuzz/findings; what has been tried and was
+# worth keeping, in build/fuzz/corpus, from where the next call goes on.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+jobs=${JOBS:-$(nproc)}
+build=build/fuzz
+findings=$build/findings
+quick_seconds=50 # of each; three on two cores take twice that
+
+leg=${1-}
+shift || true
+case $leg in
+  quick) seconds=$quick_seconds ;;
+  long)
+    minutes=${1:-60}
+    shift || true
+    seconds=$((minutes * 60))
+    ;;
+  *)
+    echo "usage: tools/fuzz.sh quick | long [minutes] [scene|msh|checkpoint ...]" >&2
+    exit 2
+    ;;
+esac
+entries=("$@")
+[ ${#entries[@]} -gt 0 ] || entries=(scene msh checkpoint)
+
+cmake --preset fuzz -Wno-dev >/dev/null
+cmake --build $build --target fuzzers -j "$jobs"
+
+# What each starts from, besides its own corpus.
+more_seeds() {
+  case $1 in
+    scene) echo tests/io/scenes tests/io/bad_scenes ;;
+  esac
+}
+
+# Longer inputs only repeat what shorter ones do; a run of one takes milliseconds.
+fuzz() {
+  local entry=$1 seeds
+  read -ra seeds <<<"$(more_seeds "$entry")"
+  mkdir -p "$build/corpus/$entry" "$findings"
+  # OpenMP's threads would only wait: the inputs are small. What has been freed would fill the memory they may take.
+  OMP_NUM_THREADS=1 ASAN_OPTIONS=quarantine_size_mb=32 "$build/talus_fuzz_$entry" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=20000 \
+    -dict="tests/fuzz/$entry.dict" -artifact_prefix="$findings/$entry-" -print_final_stats=1 \
+    "$build/corpus/$entry" "tests/fuzz/corpus/$entry" "${seeds[@]}" >"$build/$entry.log" 2>&1
+}
+
+declare -A process=()
+failed=()
+wait_for() {
+  if ! wait "${process[$1]}"; then
+    failed+=("$1")
+  fi
+  unset "process[$1]"
+  echo "$1: $(sed -n 's/^stat::number_of_executed_units: */executions /p' "$build/$1.log"), $(find "$build/corpus/$1" -type f | wc -l) inputs kept"
+}
+for entry in "${entries[@]}"; do
+  if [ ${#process[@]} -ge "$jobs" ]; then
+    wait -n "${process[@]}" || true
+    for running in "${!process[@]}"; do
+      kill -0 "${process[$running]}" 2>/dev/null || wait_for "$running"
+    done
+  fi
+  fuzz "$entry" &
+  process[$entry]=$!
+done
+for running in "${!process[@]}"; do
+  wait_for "$running"
+done
+
+for entry in "${failed[@]}"; do
+  echo "fuzz: $entry is broken by the input named here:" >&2
+  grep -E 'ERROR:|SUMMARY:|runtime error:|uncaught|Test unit written to' "$build/$entry.log" >&2 || tail -20 "$build/$entry.log" >&2
+  echo "again: $build/talus_fuzz_$entry INPUT   then: fix it, and add the input to tests/fuzz/corpus/$entry" >&2
+done
+[ ${#failed[@]} -eq 0 ]
