@@ -128,6 +128,7 @@ void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
 template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
+  require_results(folder_);
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
   write_whole(file, [&](const fs::path& temporary) {
     ArrayWriter arrays(temporary);

@@ -59,34 +59,31 @@ class Run {
       };
     }
     watch_.lap(build_seconds_);
-    const auto with_last_good = [&](const char* what) {
+    const auto failed = [&](const char* what) {
       std::string message = what;
       if (!recorder.last_output().empty())
         message += "; last good output " + recorder.last_output();
       if (!checkpoints.last().empty())
         message += "; last checkpoint " + checkpoints.last().string();
+      try {
+        finish(recorder, RunStatus::failed, message);
+      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
+      }
       return message;
     };
     try {
       const StopRequests requests;
       simulate(scene_, std::move(mesh), std::move(setup), audience);
+      finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {
       const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), folder_.string());
       finish(recorder, RunStatus::stopped, message);
       throw Stopped(message);
     } catch (const RunError& e) {
-      const std::string message = with_last_good(e.what());
-      finish(recorder, RunStatus::failed, message);
-      throw RunError(message);
+      throw RunError(failed(e.what()));
     } catch (const EnvironmentError& e) {
-      const std::string message = with_last_good(e.what());
-      try {
-        finish(recorder, RunStatus::failed, message);
-      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
-      }
-      throw EnvironmentError(message);
+      throw EnvironmentError(failed(e.what()));
     }
-    finish(recorder, RunStatus::done, "");
     if (!options_.quiet)
       fmt::print("{}results in {}\n", table(recorder), folder_.string());
   }
@@ -138,15 +135,17 @@ class Run {
 
   void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
   {
+    require_results(folder_);
     Real steps = 0;
     watch_.lap(steps);
-    summary_.status = status;
-    summary_.message = message;
-    summary_.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
-    summary_.wall_total = mesh_seconds_ + build_seconds_ + steps;
-    complete(recorder, quick_, summary_);
-    summary_.files.insert(summary_.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
-    write_summary(folder_ / "summary.json", summary_);
+    RunSummary summary = summary_;
+    summary.status = status;
+    summary.message = message;
+    summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
+    summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
+    complete(recorder, quick_, summary);
+    summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
+    write_summary(folder_ / "summary.json", summary);
   }
 
   Scene scene_;
@@ -157,7 +156,7 @@ class Run {
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
   std::vector<Stage> stages_;
-  RunSummary summary_;
+  RunSummary summary_;  // as it begins
 };
 
 }  // namespace
