@@ -149,6 +149,7 @@ void Checkpoints<D>::see_end_of_stage(const Frame<D>& frame, const Recorder<D>& 
 template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
+  require_results(folder_);
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
   write_whole(file, [&](const fs::path& temporary) {
     ArrayWriter arrays(temporary);

@@ -39,9 +39,9 @@ class HistoryWriter {
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
+  static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
-  static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
   static void add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;

@@ -2,7 +2,9 @@
 
 #include <cmath>
 
+#include "app/disk_space.hpp"
 #include "app/fields.hpp"
+#include "app/results.hpp"
 
 namespace talus {
 
@@ -61,6 +63,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
 template <int D>
 void Recorder<D>::open(const Frame<D>& frame)
 {
+  check_disk_space(folder_, frame, outputs_, total(stage_list_));
   bytes_per_particle_ = talus::bytes_per_particle(frame);
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
     bodies_.push_back(summary_of(frame, b));
@@ -78,6 +81,7 @@ void Recorder<D>::open(const Frame<D>& frame)
 template <int D>
 void Recorder<D>::resume(const Frame<D>& frame)
 {
+  check_disk_space(folder_, frame, outputs_, total(stage_list_) - frame.clock.time);
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
   progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
@@ -145,11 +149,16 @@ template <int D>
 void Recorder<D>::write(const Frame<D>& frame, bool last)
 {
   const Real time = frame.clock.time;
-  if (particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time))
+  const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
+  const bool mesh = frame.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
+  const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
+  if (particles || mesh || history)
+    require_results(folder_);
+  if (particles)
     write_particles_file(frame);
-  if (frame.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time)))
+  if (mesh)
     write_mesh_file(frame);
-  if (history_ && (history_times_.due(time) || (last && history_time_ != time))) {
+  if (history) {
     history_->append(frame, accounts_);
     history_state_ = history_->state();
     history_time_ = time;

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 
 #include "core/error.hpp"
 
@@ -81,7 +83,7 @@ try {
     throw EnvironmentError(fmt::format(
         "{} is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out", folder.string()));
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
-    throw EnvironmentError(fmt::format("{} cannot be written", folder.string()));
+    throw EnvironmentError(fmt::format("{} cannot be written: {}", folder.string(), std::strerror(errno)));
   for (const auto& entry : fs::directory_iterator(folder))
     if (is_result(entry.path()) && entry.path().filename() != "summary.json")
       fs::remove(entry.path());
@@ -91,6 +93,12 @@ try {
   fs::remove(folder / "summary.json");  // the last: it says whose the rest is
 } catch (const fs::filesystem_error& e) {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));
+}
+
+void require_results(const fs::path& folder)
+{
+  if (std::error_code not_there; !fs::exists(folder / "summary.json", not_there))
+    throw EnvironmentError(fmt::format("{} has gone while the run went on (no summary.json there)", folder.string()));
 }
 
 fs::path default_results(const fs::path& scene)

@@ -14,6 +14,10 @@ inline constexpr auto initial_file = "initial.h5";
 /// EnvironmentError: it cannot be written, or holds something else, which is left alone.
 void prepare_results(const std::filesystem::path& folder);
 
+/// EnvironmentError: a run's folder is not there any more, or another has taken its place.  Without asking, its files would be made anew, each
+/// alone in an empty folder, and its history go on in a file that nobody finds.
+void require_results(const std::filesystem::path& folder);
+
 /// Removes what a run that was killed had not finished writing.
 void remove_leftovers(const std::filesystem::path& folder);
 

@@ -72,37 +72,32 @@ class Run {
       };
     }
     watch_.lap(build_seconds_);
-    const auto with_last_good = [&](const char* what) {
+    const auto failed = [&](const char* what, const std::string& way_back = {}) {
       std::string message = what;
       if (!recorder.last_output().empty())
         message += "; last good output " + recorder.last_output();
       if (!checkpoints.last().empty())
         message += "; last checkpoint " + checkpoints.last().string();
+      message += way_back;
+      try {
+        finish(recorder, RunStatus::failed, message);
+      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
+      }
       return message;
     };
     try {
       const StopRequests requests;
       simulate(scene_, std::move(mesh), std::move(setup), audience);
+      finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {
       const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), folder_.string());
       finish(recorder, RunStatus::stopped, message);
       throw Stopped(message);
     } catch (const RunError& e) {
-      const std::int64_t sound = recorder.last_seen().clock.step;
-      std::string message = with_last_good(e.what());
-      if (checkpoints.last_step() != sound)
-        message += fmt::format("; the state before it: {} --until {}", command(checkpoints), sound);
-      finish(recorder, RunStatus::failed, message);
-      throw RunError(message);
+      throw RunError(failed(e.what(), way_back(checkpoints, recorder.last_seen().clock.step)));
     } catch (const EnvironmentError& e) {
-      const std::string message = with_last_good(e.what());
-      try {
-        finish(recorder, RunStatus::failed, message);
-      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
-      }
-      throw EnvironmentError(message);
+      throw EnvironmentError(failed(e.what()));
     }
-    finish(recorder, RunStatus::done, "");
     if (!options_.quiet)
       fmt::print("{}results in {}\n", table(recorder), folder_.string());
   }
@@ -123,17 +118,19 @@ class Run {
             setup.origin ? setup.origin->file : ""};
   }
 
-  /// That gets to where the run is now.
-  std::string command(const Checkpoints<D>& checkpoints) const
+  /// To the state after the last sound step, where that is not a checkpoint: the command that computes it again.
+  std::string way_back(const Checkpoints<D>& checkpoints, std::int64_t sound) const
   {
+    if (checkpoints.last_step() == sound)
+      return {};
+    std::string command = fmt::format("talus run {} --out {}{}", options_.scene.string(), folder_.string(), quick_ ? " --quick" : "");
     if (!checkpoints.last().empty())
-      return fmt::format("talus run --resume {}", folder_.string());
-    if (from_)
-      return fmt::format("talus run --resume {} --out {}", from_->folder().string(), folder_.string());
-    std::string words = fmt::format("talus run {} --out {}{}", options_.scene.string(), folder_.string(), quick_ ? " --quick" : "");
+      command = fmt::format("talus run --resume {}", folder_.string());
+    else if (from_)
+      command = fmt::format("talus run --resume {} --out {}", from_->folder().string(), folder_.string());
     for (const std::string& change : options_.set)
-      words += fmt::format(" --set '{}'", change);
-    return words;
+      command += fmt::format(" --set '{}'", change);
+    return fmt::format("; the state before it: {} --until {}", command, sound);
   }
 
   /// EnvironmentError: the mesh is not that of the checkpoint.
@@ -182,17 +179,19 @@ class Run {
 
   void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
   {
+    require_results(folder_);
     Real steps = 0;
     watch_.lap(steps);
-    summary_.status = status;
-    summary_.message = message;
-    summary_.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
-    summary_.wall_total = mesh_seconds_ + build_seconds_ + steps;
-    complete(recorder, quick_, summary_);
-    summary_.files.insert(summary_.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
-    if (summary_.origin)
-      summary_.files.emplace_back(initial_file);
-    write_summary(folder_ / "summary.json", summary_);
+    RunSummary summary = summary_;
+    summary.status = status;
+    summary.message = message;
+    summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
+    summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
+    complete(recorder, quick_, summary);
+    summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
+    if (summary.origin)
+      summary.files.emplace_back(initial_file);
+    write_summary(folder_ / "summary.json", summary);
   }
 
   Scene scene_;
@@ -203,7 +202,7 @@ class Run {
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
   std::vector<Stage> stages_;
-  RunSummary summary_;
+  RunSummary summary_;  // as it begins
 };
 
 }  // namespace

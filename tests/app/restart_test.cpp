@@ -1,12 +1,8 @@
 // A run that was stopped and goes on ends with the same bits as one that was not: every law, kernel, transfer, boundary and stage.
-#include <algorithm>
-#include <cstring>
 #include <random>
-#include <set>
 
-#include "core/error.hpp"
-#include "io/array_file.hpp"
 #include "tests/app/program.hpp"
+#include "tests/app/same_state.hpp"
 
 namespace talus {
 namespace {
@@ -144,63 +140,6 @@ std::vector<Case> cases()
   return all;
 }
 
-/// f(path) for all that a file holds; unless `really_all`, clocks on the wall and places on the disk left out.
-template <class F>
-void for_each_entry(const ArrayReader& file, const std::string& group, F&& f, bool really_all = false)
-{
-  static const std::set<std::string> of_the_day{"timings", "output_seconds", "last_output", "scene_file"};
-  for (const std::string& name : file.names(group)) {
-    const std::string path = group.empty() ? name : group + "/" + name;
-    if (!really_all && of_the_day.contains(name))
-      continue;
-    bool is_group = true;
-    try {
-      is_group = !file.names(path).empty();
-    } catch (const EnvironmentError&) {
-      is_group = false;
-    }
-    if (is_group)
-      for_each_entry(file, path, f, really_all);
-    else
-      f(path);
-  }
-}
-
-template <class T>
-bool same_values(const ArrayReader& a, const ArrayReader& b, const std::string& path, bool& known)
-{
-  for (const int columns : {1, 2, 3, 4, 6, 9}) {
-    std::vector<T> x;
-    try {
-      x = a.read<T>(path, columns);
-    } catch (const EnvironmentError&) {
-      continue;
-    }
-    known = true;
-    const auto y = b.read<T>(path, columns);
-    return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(T)) == 0;
-  }
-  return true;
-}
-
-void expect_same_state(const fs::path& one, const fs::path& other)
-{
-  const ArrayReader a(one), b(other);
-  int compared = 0;
-  for_each_entry(a, "", [&](const std::string& path) {
-    bool known = false;
-    const bool same = same_values<double>(a, b, path, known) && same_values<float>(a, b, path, known) &&
-                      same_values<std::int32_t>(a, b, path, known) && same_values<std::int64_t>(a, b, path, known) &&
-                      same_values<std::uint8_t>(a, b, path, known);
-    EXPECT_TRUE(same) << path << " of " << one << " and " << other;
-    if (!known) {
-      EXPECT_EQ(a.text(path), b.text(path)) << path;
-    }
-    ++compared;
-  });
-  EXPECT_GT(compared, 60);
-}
-
 template <class T, class Change>
 bool copied(const ArrayReader& from, ArrayWriter& to, const std::string& path, Change&& change)
 {
@@ -233,16 +172,6 @@ void forge(const fs::path& file, Change&& change)
   fs::remove(file.string() + ".old");
 }
 
-std::vector<fs::path> files_in(const fs::path& folder, const std::string& extension)
-{
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (entry.path().extension() == extension)
-      files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
 class Restart : public Program, public testing::WithParamInterface<Case> {
  protected:
   void run(const std::string& words) const
@@ -273,12 +202,7 @@ TEST_P(Restart, GivesTheSameBitsThreeTimesInAChain)
     run("--resume again --threads 1");
     ASSERT_EQ(files_in(folder_ / "again/checkpoints", ".h5").size(), kept.size());
   }
-  expect_same_state(kept.back(), folder_ / "again/checkpoints" / kept.back().filename());
-  for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
-    if (const fs::path name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
-      EXPECT_TRUE(read_whole(entry.path()) == read_whole(folder_ / "again" / name)) << name;
-    }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "whole"), {}), std::distance(fs::directory_iterator(folder_ / "again"), {}));
+  expect_same_results(folder_ / "whole", folder_ / "again");
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Restart, testing::ValuesIn(cases()), [](const auto& of) { return of.param.name; });
@@ -370,12 +294,8 @@ TEST_F(Checkpoint, KilledAnywhereARunGoesOnNightly)
       continue;
     }
     ++runs;
-    for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
-      if (const fs::path name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
-        ASSERT_TRUE(read_whole(entry.path()) == read_whole(folder_ / "killed" / name)) << name << " after " << kills << " kills";
-      }
-    const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
-    expect_same_state(kept.back(), folder_ / "killed/checkpoints" / kept.back().filename());
+    expect_same_results(folder_ / "whole", folder_ / "killed");
+    ASSERT_FALSE(HasFailure()) << "after " << kills << " kills";
     EXPECT_TRUE(files_in(folder_ / "killed", ".tmp").empty() && files_in(folder_ / "killed/checkpoints", ".tmp").empty());
     fs::remove_all(folder_ / "killed");
   }

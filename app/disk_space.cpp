@@ -1,0 +1,83 @@
+#include "app/disk_space.hpp"
+
+#include <fmt/format.h>
+
+#include "app/fields.hpp"
+#include "app/history.hpp"
+#include "app/setup.hpp"
+#include "core/error.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Bytes of an item in a VTK file besides its fields: a position, an id, a cell of one corner.
+constexpr Real place_bytes = 3 * sizeof(double), id_bytes = sizeof(std::int64_t), vertex_bytes = 2 * sizeof(int);
+/// Names and units of columns; accounts, the scene.  Measured with few particles.
+constexpr Real vtk_header = 3e3, checkpoint_header = 7e4;
+constexpr Real history_number = 20;  // characters
+
+template <class ColumnOf>
+Real bytes_of_fields(const std::vector<std::string>& names, ColumnOf&& column_of)
+{
+  std::size_t bytes = 0;
+  for (const std::string& name : names)
+    bytes += static_cast<std::size_t>(column_of(name).components) * sizeof(float);
+  return static_cast<Real>(bytes);
+}
+
+/// How often something is written, at the beginning and at the end as well.
+Real times(Real time, Real every) { return std::floor(time / every) + 2; }
+
+std::string megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / 1e6); }
+
+}  // namespace
+
+template <int D>
+FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs)
+{
+  FileSizes sizes;
+  const auto particles = static_cast<Real>(frame.particles.size());
+  if (outputs.particles) {
+    const Real fields = bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(frame, {}, name); });
+    sizes.particles = vtk_header + particles * (place_bytes + id_bytes + vertex_bytes + fields);
+  }
+  if (outputs.mesh) {
+    const Real fields = bytes_of_fields(outputs.mesh->fields_wanted, [&](const auto& name) { return node_column(frame, name); });
+    const Real corners = (D + 2) * sizeof(int) + 1;  // with where they end, and the kind of the cell
+    sizes.mesh = vtk_header + frame.mesh.n_nodes() * (place_bytes + fields) + frame.mesh.n_cells() * corners;
+  }
+  if (outputs.history)
+    sizes.history_row = history_number * static_cast<Real>(HistoryWriter<D>::columns(*outputs.history, frame).size());
+  sizes.checkpoint = checkpoint_header + particles * bytes_per_particle(frame);
+  return sizes;
+}
+
+template <int D>
+void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame, const OutputSpec& outputs, Real time_left)
+{
+  std::error_code unknown;  // then the space is the largest number there is
+  const auto free = static_cast<Real>(std::filesystem::space(folder, unknown).available);
+  const FileSizes one = file_sizes(frame, outputs);
+  const Real least = one.particles + one.mesh + one.history_row + one.checkpoint;
+  if (free < least)
+    throw EnvironmentError(fmt::format("the disk of {} has {} left; one checkpoint and one file of each kind take up to {}",
+                                       folder.string(), megabytes(free), megabytes(least)));
+  Real all = one.checkpoint * (outputs.checkpoint.keep + 1);  // one more while it is written
+  if (outputs.particles)
+    all += one.particles * times(time_left, outputs.particles->every);
+  if (outputs.mesh)
+    all += one.mesh * times(time_left, outputs.mesh->every);
+  if (outputs.history)
+    all += one.history_row * times(time_left, outputs.history->every);
+  if (free < all)
+    fmt::print(stderr, "warning: the disk of {} has {} left; all outputs of the run may take up to {}\n", folder.string(), megabytes(free),
+               megabytes(all));
+}
+
+template FileSizes file_sizes<2>(const Frame<2>&, const OutputSpec&);
+template FileSizes file_sizes<3>(const Frame<3>&, const OutputSpec&);
+template void check_disk_space<2>(const std::filesystem::path&, const Frame<2>&, const OutputSpec&, Real);
+template void check_disk_space<3>(const std::filesystem::path&, const Frame<3>&, const OutputSpec&, Real);
+
+}  // namespace talus
