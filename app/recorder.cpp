@@ -48,8 +48,10 @@ bool Schedule::due(Real time)
 }
 
 template <int D>
-Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet)
+Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet,
+                      std::string made_by)
     : folder_(std::move(folder)),
+      made_by_(std::move(made_by)),
       outputs_(outputs),
       stage_list_(stages),
       progress_(total(stages), quiet),
@@ -177,7 +179,7 @@ void Recorder<D>::write_particles_file(const Frame<D>& frame)
   for (const Index row : rows)
     ids.push_back(frame.particles.id[static_cast<std::size_t>(row)]);
   const auto file = particle_file(particle_files_++);
-  write_particles(file, frame.clock.time, positions(frame.particles, rows), ids, columns);
+  write_particles(file, frame.clock.time, positions(frame.particles, rows), ids, columns, made_by_);
   particle_series_.append(frame.clock.time, file);
   particle_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
@@ -191,7 +193,7 @@ void Recorder<D>::write_mesh_file(const Frame<D>& frame)
   for (const std::string& name : outputs_.mesh->fields_wanted)
     columns.push_back(node_column(frame, name));
   const auto file = mesh_file(mesh_files_++);
-  write_mesh<D>(file, frame.clock.time, frame.mesh, columns, {});
+  write_mesh<D>(file, frame.clock.time, frame.mesh, columns, {}, made_by_);
   mesh_series_.append(frame.clock.time, file);
   mesh_time_ = frame.clock.time;
   files_.push_back(file.filename().string());

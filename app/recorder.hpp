@@ -45,8 +45,8 @@ struct LastSeen {
 template <int D>
 class Recorder {
  public:
-  /// `outputs` and the stages must outlive the recorder.
-  Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet);
+  /// `outputs` and the stages must outlive the recorder.  `made_by` is told in each file for ParaView.
+  Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
   void watch(const Frame<D>& frame, Moment moment);
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
@@ -94,6 +94,7 @@ class Recorder {
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
 
   std::filesystem::path folder_;
+  std::string made_by_;
   const OutputSpec& outputs_;
   const std::vector<Stage>& stage_list_;
   Accounts<D> accounts_;

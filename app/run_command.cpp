@@ -48,7 +48,7 @@ class Run {
     prepare(mesh, setup);
     if (const fs::path copy = folder_ / initial_file; initial && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial))
       write_whole(copy, [&](const fs::path& temporary) { fs::copy_file(*initial, temporary); });
-    Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet);
+    Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
                            recorder.watch(frame, moment);
@@ -166,7 +166,7 @@ class Run {
     write_summary(folder_ / "summary.json", summary_);
     write_whole(folder_ / "scene.yaml", scene_.text);
     write_msh(folder_ / "mesh.msh", mesh);
-    write_mesh<D>(folder_ / "mesh.vtu", 0, mesh, {}, {});
+    write_mesh<D>(folder_ / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
     for (const std::string& warning : setup.warnings)
       fmt::print(stderr, "warning: {}\n", warning);
     if (!options_.quiet)

@@ -164,6 +164,10 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
   s.mesh_cells = mesh.n_cells();
+  std::string inputs = scene.text;
+  for (const std::string& change : scene.overrides)
+    inputs += '\n' + change;
+  s.scene_digest = fmt::format("{:016x}", digest(inputs));
   s.mesh_digest = fmt::format("{:016x}", digest(mesh));
   s.mesh_quality = named(quality(mesh));
   s.warnings = setup.warnings;

@@ -1,6 +1,8 @@
 // RunSummary as JSON.  Keys keep this order, so two summaries can be compared line by line.
 #include "io/report.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "io/whole_file.hpp"
@@ -107,6 +109,11 @@ Json to_object(const WatchSummary& watch)
 
 }  // namespace
 
+std::string RunSummary::made_by() const
+{
+  return fmt::format("talus {}, commit {}, {}, {}; scene {}, mesh {}", version, commit, compiler, build, scene_digest, mesh_digest);
+}
+
 std::string to_json(const RunSummary& s)
 {
   Json json;
@@ -132,7 +139,7 @@ std::string to_json(const RunSummary& s)
     json["watch"] = to_object(*s.watch);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
-  json["scene"] = {{"file", s.scene_file}, {"text", s.scene_text}, {"set", s.overrides}};
+  json["scene"] = {{"file", s.scene_file}, {"digest", s.scene_digest}, {"text", s.scene_text}, {"set", s.overrides}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';  // replace: a scene may hold bytes that are not UTF-8
 }
 

@@ -101,7 +101,8 @@ struct RunSummary {
   int threads{};
 
   std::int64_t mesh_nodes{}, mesh_cells{};
-  std::string mesh_digest;  ///< of nodes and cells: runs with the same have the same mesh
+  std::string scene_digest;  ///< of the text and of what changed it
+  std::string mesh_digest;   ///< of nodes and cells: runs with the same have the same mesh
   std::vector<NamedValue> mesh_quality;
   std::vector<BodySummary> bodies;
   std::optional<OriginSummary> origin;
@@ -122,6 +123,9 @@ struct RunSummary {
 
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< written by the run, relative to its folder
+
+  /// Program and inputs in one line, for files that may be moved away from the summary.
+  std::string made_by() const;
 };
 
 /// The text of summary.json.  Numbers keep all their digits; those that are not finite become null.

@@ -20,6 +20,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
+#include <vtkStringArray.h>
 #include <vtkStringOutputWindow.h>
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
@@ -44,7 +45,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view id_name = "id";
+constexpr std::string_view id_name = "id", origin_name = "MadeBy";
 
 /// An array that shows `values` to VTK.  VTK's interface is not const; writers only read, and `save` = 1 keeps the memory ours.
 template <class Array, class T>
@@ -70,12 +71,18 @@ void add_columns(vtkFieldData* data, std::span<const Column> columns, std::size_
   }
 }
 
-void add_time(vtkDataObject* object, Real time)
+void add_origin(vtkDataObject* object, Real time, const std::string& made_by)
 {
   vtkNew<vtkDoubleArray> array;
   array->SetName("TimeValue");  // the name ParaView looks for
   array->InsertNextValue(time);
   object->GetFieldData()->AddArray(array);
+  if (made_by.empty())
+    return;
+  vtkNew<vtkStringArray> text;
+  text->SetName(origin_name.data());
+  text->InsertNextValue(made_by);
+  object->GetFieldData()->AddArray(text);
 }
 
 /// VTK prints errors and goes on; this keeps the first one instead.
@@ -258,7 +265,7 @@ std::string escaped(const std::string& text)
 }  // namespace
 
 void write_particles(const fs::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
-                     std::span<const Column> columns)
+                     std::span<const Column> columns, const std::string& made_by)
 {
   const std::size_t n = ids.size();
   if (positions.size() != 3 * n)
@@ -275,13 +282,13 @@ void write_particles(const fs::path& file, Real time, std::span<const Real> posi
   static_assert(std::is_same_v<std::int64_t, long>);
   cloud->GetPointData()->AddArray(lend<vtkLongArray>(ids, 1, id_name.data()));
   add_columns(cloud->GetPointData(), columns, n, file);
-  add_time(cloud, time);
+  add_origin(cloud, time, made_by);
   write<vtkXMLPolyDataWriter>(file, cloud);
 }
 
 template <int D>
 void write_mesh(const fs::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
-                std::span<const Column> cell_columns)
+                std::span<const Column> cell_columns, const std::string& made_by)
 {
   const auto nodes = mesh.nodes();
   vtkNew<vtkDoubleArray> coordinates;
@@ -305,12 +312,12 @@ void write_mesh(const fs::path& file, Real time, const Mesh<D>& mesh, std::span<
   grid->SetCells(D == 2 ? VTK_TRIANGLE : VTK_TETRA, cell_array(corners, mesh.n_cells(), D + 1));
   add_columns(grid->GetPointData(), node_columns, nodes.size(), file);
   add_columns(grid->GetCellData(), cell_columns, mesh.cells().size(), file);
-  add_time(grid, time);
+  add_origin(grid, time, made_by);
   write<vtkXMLUnstructuredGridWriter>(file, grid);
 }
 
-template void write_mesh<2>(const fs::path&, Real, const Mesh<2>&, std::span<const Column>, std::span<const Column>);
-template void write_mesh<3>(const fs::path&, Real, const Mesh<3>&, std::span<const Column>, std::span<const Column>);
+template void write_mesh<2>(const fs::path&, Real, const Mesh<2>&, std::span<const Column>, std::span<const Column>, const std::string&);
+template void write_mesh<3>(const fs::path&, Real, const Mesh<3>&, std::span<const Column>, std::span<const Column>, const std::string&);
 
 StoredParticles read_particles(const fs::path& file)
 {
@@ -322,7 +329,10 @@ StoredParticles read_particles(const fs::path& file)
   if ((type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE) || ids->GetNumberOfComponents() != 1)
     throw EnvironmentError(fmt::format("{}: its particles have no field \"{}\" of whole numbers", file.string(), id_name));
   static_assert(sizeof(long) == sizeof(std::int64_t) && sizeof(vtkIdType) == sizeof(std::int64_t));
-  StoredParticles particles{{}, stored_fields(*cloud->GetPointData(), cloud->GetPoints())};
+  StoredParticles particles{{}, stored_fields(*cloud->GetPointData(), cloud->GetPoints()), {}};
+  if (auto* text = vtkStringArray::SafeDownCast(cloud->GetFieldData()->GetAbstractArray(origin_name.data()));
+      text && text->GetNumberOfValues() > 0)
+    particles.made_by = text->GetValue(0);
   particles.ids.resize(static_cast<std::size_t>(ids->GetNumberOfTuples()));
   if (!particles.ids.empty())
     std::memcpy(particles.ids.data(), ids->GetVoidPointer(0), particles.ids.size() * sizeof(std::int64_t));

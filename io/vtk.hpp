@@ -19,16 +19,17 @@ struct Column {
   std::string unit = {};      ///< stored with the field, shown in pictures; empty for none
 };
 
-/// Writes a .vtp (appended raw, LZ4, 64-bit headers) with one vertex per particle, the field "id" and the field "TimeValue" [s].
+/// Writes a .vtp (appended raw, LZ4, 64-bit headers) with one vertex per particle, the field "id" and the field "TimeValue" [s]; `made_by`,
+/// which run wrote it, as the field "MadeBy" of the whole, unless it is empty.
 /// positions: 3 numbers per particle [m], z = 0 in 2-D.  Any number of particles, none included; values are written as they are.
 /// Errors: EnvironmentError naming the file; std::invalid_argument for lengths that do not fit.
 void write_particles(const std::filesystem::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
-                     std::span<const Column> columns);
+                     std::span<const Column> columns, const std::string& made_by = {});
 
 /// Writes a .vtu of the mesh with fields per node and per cell, in the numbering of `mesh`.  Errors as above.
 template <int D>
 void write_mesh(const std::filesystem::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
-                std::span<const Column> cell_columns);
+                std::span<const Column> cell_columns, const std::string& made_by = {});
 
 /// One field as a file holds it, item after item; single precision is widened without loss.
 struct StoredField {
@@ -41,6 +42,7 @@ struct StoredField {
 struct StoredParticles {
   std::vector<std::int64_t> ids;
   std::vector<StoredField> fields;  ///< first "position" [m], 3 numbers per particle, then in the order of the file
+  std::string made_by;              ///< empty if the file does not say
 };
 /// What write_particles has written.  EnvironmentError naming the file: it is not there, it is damaged, or its particles have no ids.
 StoredParticles read_particles(const std::filesystem::path& file);

@@ -8,6 +8,8 @@ namespace talus {
 
 namespace {
 
+constexpr std::uint64_t start = 0xcbf29ce484222325;
+
 void digest_bytes(std::span<const std::byte> bytes, std::uint64_t& sum)
 {
   for (std::size_t at = 0; at < bytes.size(); at += 4) {
@@ -22,9 +24,16 @@ void digest_bytes(std::span<const std::byte> bytes, std::uint64_t& sum)
 template <int D>
 std::uint64_t digest(const Mesh<D>& mesh)
 {
-  std::uint64_t sum = 0xcbf29ce484222325;
+  std::uint64_t sum = start;
   digest_bytes(std::as_bytes(mesh.nodes()), sum);
   digest_bytes(std::as_bytes(mesh.cells()), sum);
+  return sum;
+}
+
+std::uint64_t digest(std::string_view text)
+{
+  std::uint64_t sum = start;
+  digest_bytes(std::as_bytes(std::span(text)), sum);
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // Whether two meshes are the same.
 #include <cstdint>
+#include <string_view>
 
 #include "mesh/mesh.hpp"
 
@@ -9,6 +10,9 @@ namespace talus {
 /// Of nodes and cells, to the last bit and in their order: other meshes have another number but once in 2^64.
 template <int D>
 std::uint64_t digest(const Mesh<D>& mesh);
+
+/// Of a text.
+std::uint64_t digest(std::string_view text);
 
 extern template std::uint64_t digest<2>(const Mesh<2>&);
 extern template std::uint64_t digest<3>(const Mesh<3>&);

@@ -363,7 +363,6 @@ TEST_F(Checkpoint, NothingToGoOnFromIsSaid)
   EXPECT_EQ(talus("run --resume text.h5").code, 3);
   EXPECT_EQ(talus("run").code, 2);
   EXPECT_EQ(talus("run scene.yaml --resume out").code, 2);
-  EXPECT_EQ(talus("run --resume out --set dimension=3").code, 2);
 }
 
 }  // namespace

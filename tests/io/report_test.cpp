@@ -23,6 +23,7 @@ RunSummary example()
   s.title = "Slope \"A\"";
   s.scene_file = "slope.yaml";
   s.overrides = {"time.end=2"};
+  s.scene_digest = "fedcba9876543210";
   s.mesh_digest = "0123456789abcdef";
   s.scene_text = "title: Slope \"A\"  # \xc3\xa9\ndimension: 3\n";
   s.version = "1.2.3";
@@ -56,6 +57,8 @@ TEST(Report, EveryPartReadsBack)
   EXPECT_EQ(read["scene"]["text"], s.scene_text);
   EXPECT_EQ(read["scene"]["set"], json::array({"time.end=2"}));
   EXPECT_EQ(read["mesh"]["digest"], "0123456789abcdef");
+  EXPECT_EQ(read["scene"]["digest"], "fedcba9876543210");
+  EXPECT_EQ(s.made_by(), "talus 1.2.3, commit 0123456789ab, , ; scene fedcba9876543210, mesh 0123456789abcdef");
   EXPECT_EQ(read["program"]["commit"], s.commit);
   EXPECT_EQ(read["mesh"]["quality"]["worst"].get<Real>(), 0.1 + 0.2);
   EXPECT_EQ(read["bodies"][0]["particles"].get<std::int64_t>(), 5'000'000'000);

@@ -34,9 +34,11 @@ TEST(VtkRead, ParticlesAreReadWithEveryBit)
   const std::vector<Real> positions{0.1, 1.0 / 3, 0, -1e300, 5e-324, 0};
   const std::vector<std::int64_t> ids{3, large_id};
   write_particles(folder / "a.vtp", 0.5, positions, ids,
-                  std::vector<Column>{{"heat", 1, {0.1f, infinity}, "J"}, {"velocity", 3, {1, 2, 3, 4, 5, 6}, "m/s"}, {"none", 1, {0, 0}}});
+                  std::vector<Column>{{"heat", 1, {0.1f, infinity}, "J"}, {"velocity", 3, {1, 2, 3, 4, 5, 6}, "m/s"}, {"none", 1, {0, 0}}},
+                  "talus 1.2; scene 17");
   const StoredParticles read = read_particles(folder / "a.vtp");
   EXPECT_EQ(read.ids, ids);
+  EXPECT_EQ(read.made_by, "talus 1.2; scene 17");
   ASSERT_EQ(read.fields.size(), 4u);
   EXPECT_EQ(read.fields[0].name, "position");
   EXPECT_EQ(read.fields[0].unit, "m");
