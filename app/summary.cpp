@@ -72,7 +72,7 @@ std::vector<NamedValue> named(const MeshQuality<D>& q)
 }
 
 /// What the method keeps to round-off, and what only as well as the time step and the mesh allow.
-constexpr Real exactly = 1e-9, roughly = 1e-2;
+constexpr Real exactly = 1e-9, roughly = 5e-2;
 
 Closure closure_of(const EnergyNow& e) { return {share(e.defect, e.largest_term()), roughly, "largest term"}; }
 
