@@ -111,7 +111,7 @@ class Seeder {
   {
     carry_columns(initial.there.particles);
     for (const Taken& taken : taken_)
-      settle_stress(taken, warnings);
+      settle_stress(taken, initial.there.clock.dt, warnings);
     seeds_.origin = initial.origin;
   }
 
@@ -345,13 +345,13 @@ class Seeder {
 
   /// The body keeps its stress if its law can start from one; the elastic strain that belongs to it is found anew where the law makes another
   /// of the one there, because its constants have changed.  Any other law has the stress that it makes of the deformation.
-  void settle_stress(const Taken& taken, std::vector<std::string>& warnings)
+  void settle_stress(const Taken& taken, Real dt, std::vector<std::string>& warnings)
   {
     constexpr Real round_off = 1e-6;  // stresses in single precision
     constexpr Real worth_a_word = 0.01;
     const Body& body = seeds_.bodies[taken.body];
     AnyBatch& material = seeds_.materials[taken.body];
-    const auto stress_of_law = [&](bool take_over) { return fit_stress(body, material, take_over, seeds_.particles); };
+    const auto stress_of_law = [&](bool take_over) { return fit_stress(body, material, dt, take_over, seeds_.particles); };
     const auto fits = [&](const StressFit& fit) { return fit.apart <= round_off * fit.largest; };
     if (law_name(material) == taken.law && fits(stress_of_law(false)))
       return;

@@ -97,7 +97,7 @@ void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& parti
 }
 
 template <int D>
-StressFit fit_stress(const Body& body, const AnyBatch& material, bool take_over, Particles<D>& particles)
+StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool take_over, Particles<D>& particles)
 {
   const auto fit_one = [&]<class L>(const Batch<L>& batch, Index i) {
     const auto p = static_cast<std::size_t>(body.begin + i);
@@ -109,7 +109,9 @@ StressFit fit_stress(const Body& body, const AnyBatch& material, bool take_over,
     const Real q = particles.viscous.empty() ? 0 : particles.viscous[p];
     stress.diagonal().array() += q;
     auto history = batch.history[static_cast<std::size_t>(i)];
-    Mat3 answer = batch.law.update(Increment{F, L_there, stress, 0, q, true}, history, batch.constants);
+    // The one kind moves on by dt L, the other finds its stress from F and the rate of that step.
+    constexpr bool moves_on = starts_from_stress<L>;
+    Mat3 answer = batch.law.update(Increment{F, L_there, stress, moves_on ? 0 : dt, q, moves_on}, history, batch.constants);
     answer.diagonal().array() -= q;
     if (const Sym3 after = pack(answer); take_over && after.allFinite())
       particles.stress.set(p, after);
@@ -121,8 +123,8 @@ StressFit fit_stress(const Body& body, const AnyBatch& material, bool take_over,
 
 template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
 template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
-template StressFit fit_stress<2>(const Body&, const AnyBatch&, bool, Particles<2>&);
-template StressFit fit_stress<3>(const Body&, const AnyBatch&, bool, Particles<3>&);
+template StressFit fit_stress<2>(const Body&, const AnyBatch&, Real, bool, Particles<2>&);
+template StressFit fit_stress<3>(const Body&, const AnyBatch&, Real, bool, Particles<3>&);
 template Real mass_above<2>(const Mesh<2>&, std::span<const Real>, Vec<2>, Index, const Vec<2>&) noexcept;
 template Real mass_above<3>(const Mesh<3>&, std::span<const Real>, Vec<3>, Index, const Vec<3>&) noexcept;
 template void set_k0_stress<2>(const Mesh<2>&, const Vec<2>&, Real, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);

@@ -26,7 +26,7 @@ std::vector<std::string> laws_that_start_from_stress();
 template <int D>
 void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& particles);
 
-/// How the stress of a body compares to what its law makes of deformation and history as they are, nothing moving on.
+/// How the stress of a body compares to what its law makes of the same state, nothing moving on.
 struct StressFit {
   Real largest = 0;  ///< stress, by its Frobenius norm [Pa]
   Real apart = 0;    ///< largest difference, by the same norm [Pa]
@@ -36,9 +36,10 @@ struct StressFit {
     return *this;
   }
 };
+/// `dt`: of the step that led to the state [s].  Laws that can start from a stress are asked without yielding, which is for the next step to do.
 /// `take_over`: the stress becomes that of the law, less the viscous pressure; otherwise nothing changes.
 template <int D>
-StressFit fit_stress(const Body& body, const AnyBatch& material, bool take_over, Particles<D>& particles);
+StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool take_over, Particles<D>& particles);
 
 /// Mass per area [kg/m^(D-1)] met on the way from x in cell c along the unit vector `up` to the boundary of the mesh, for the mean
 /// density of each cell [kg/m^D].

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "io/array_file.hpp"
+#include "io/vtk.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus {
@@ -308,6 +309,26 @@ TEST_F(Initial, StrengthThatHasSoftenedStaysSo)
   }
 }
 
+/// Fluids and rubber know their stress by deformation and rate.
+TEST_F(Initial, NotABitOfTheStressChangesUnderTheSameLaw)
+{
+  for (const std::string law : {"law: newtonian, density: 1000, bulk_modulus: 1.0e5, viscosity: 10",
+                                "law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3", soil.c_str()}) {
+    run_well("first", {.material = law, .when = "time: {end: 0.05}\n"});
+    Bank bank = second();
+    bank.material = law;
+    run_well("second", bank);
+    const auto before = read_particles(read_pvd(folder_ / "first/particles.pvd").back().second);
+    const auto after = read_particles(read_pvd(folder_ / "second/particles.pvd").front().second);
+    EXPECT_EQ(after.ids, before.ids);
+    for (std::size_t k = 0; k < before.fields.size(); ++k)
+      if (const std::string& name = before.fields[k].name; name != "displacement") {
+        EXPECT_EQ(after.fields[k].values, before.fields[k].values) << name << " of " << law;
+      }
+    EXPECT_GT(std::abs(before.fields[3].values.at(0)), 100) << before.fields[3].name;
+  }
+}
+
 TEST_F(Initial, MassFollowsTheDensityOfTheMaterial)
 {
   run_well("first", {});
@@ -381,6 +402,12 @@ TEST_F(Initial, WhatCannotBeTakenIsRefusedWithItsPlace)
             "}]\nbodies: [{name: bank, material: soil}]\ninitial: {from: first}\n"
             "time: {end: 1}\n");
   EXPECT_THAT(talus("check refused.yaml").err, HasSubstr("initial.from: the bodies there are of 2 dimensions, this scene has 3\n"));
+  EXPECT_THAT(refusal(second("", "nowhere")), HasSubstr("refused.yaml:6:10: error: initial.from: nowhere is not there\n"));
+  EXPECT_THAT(refusal(second("", "first.yaml")),
+              HasSubstr("error: initial.from: first.yaml is not an HDF5 file, or its beginning is damaged\n"));
+  fs::create_directory(folder_ / "empty");
+  EXPECT_THAT(refusal(second("", "empty")), HasSubstr("empty has no checkpoints: the run is over, or was stopped before one was due; with "
+                                                      "outputs.checkpoint.at_end it leaves one\n"));
   const Outcome outcome = run("first", second());
   EXPECT_EQ(outcome.code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("first.yaml:6:10: error: initial"));
