@@ -61,7 +61,7 @@ void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame
   const FileSizes one = file_sizes(frame, outputs);
   const Real least = one.particles + one.mesh + one.history_row + one.checkpoint;
   if (free < least)
-    throw EnvironmentError(fmt::format("the disk of {} has {} left; one checkpoint and one file of each kind take up to {}",
+    throw EnvironmentError(fmt::format("the disk of {} has {} left; one checkpoint and one file of each kind take about {}",
                                        folder.string(), megabytes(free), megabytes(least)));
   Real all = one.checkpoint * (outputs.checkpoint.keep + 1);  // one more while it is written
   if (outputs.particles)
@@ -71,7 +71,7 @@ void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame
   if (outputs.history)
     all += one.history_row * times(time_left, outputs.history->every);
   if (free < all)
-    fmt::print(stderr, "warning: the disk of {} has {} left; all outputs of the run may take up to {}\n", folder.string(), megabytes(free),
+    fmt::print(stderr, "warning: the disk of {} has {} left; all outputs of the run may take about {}\n", folder.string(), megabytes(free),
                megabytes(all));
 }
 

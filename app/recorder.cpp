@@ -41,7 +41,7 @@ BodySummary summary_of(const Frame<D>& frame, std::size_t b)
 bool Schedule::due(Real time)
 {
   constexpr Real round_off = 1e-9;
-  if (!(time >= next_ * every_ - round_off * every_) || !std::isfinite(every_))
+  if (!std::isfinite(every_) || !(time >= next_ * every_ - round_off * every_))
     return false;
   next_ = std::floor(time / every_ + round_off) + 1;
   return true;

@@ -7,6 +7,7 @@
 #include "app/results.hpp"
 #include "app/signals.hpp"
 #include "app/summary.hpp"
+#include "app/traps.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "io/gmsh_mesh.hpp"
@@ -87,6 +88,7 @@ class Run {
     };
     try {
       const StopRequests requests;
+      const FloatingPointTraps traps;
       simulate(scene_, std::move(mesh), std::move(setup), audience);
       finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {

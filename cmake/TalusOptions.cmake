@@ -3,6 +3,9 @@
 include(CheckCXXCompilerFlag)
 # Never -ffast-math: it removes the NaN checks that diagnose a failing run. These two change no result and let loops vectorise.
 set(TALUS_COMPILE_OPTIONS -fno-math-errno -fno-trapping-math)
+if(TALUS_TRAPS)   # the second lets the compiler do what may trap before it knows whether it is wanted
+  list(REMOVE_ITEM TALUS_COMPILE_OPTIONS -fno-trapping-math)
+endif()
 if(TALUS_LEVEL)
   list(APPEND TALUS_COMPILE_OPTIONS -march=${TALUS_LEVEL})
 elseif(TALUS_NATIVE)

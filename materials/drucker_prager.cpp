@@ -48,12 +48,13 @@ struct ReturnMap {
   /// condition is a m^2 - b m + excess = 0, of which the smallest root counts; without one the strength drops to residual at once.
   Point<T> to_cone(const Point<T>& trial) const noexcept
   {
-    using std::sqrt;
+    using std::max, std::sqrt;
     const T excess = trial.tau + start.q * trial.mean - start.k;
     const Real a = -slope.q * c.bulk * c.q_psi;
     const T b = c.shear + c.bulk * start.q * c.q_psi + slope.k - slope.q * trial.mean;
     const T discriminant = b * b - 4 * a * excess;
-    T m = where(b > 0 && discriminant >= 0, 2 * excess / (b + sqrt(discriminant)), never);
+    const auto solved = b > 0 && discriminant >= 0;
+    T m = where(solved, 2 * excess / (where(solved, b, 1) + sqrt(max(discriminant, T(0)))), never);
     if (!everywhere(m <= left))
       m = where(m <= left, m, (trial.tau + c.residual.q * trial.mean - c.residual.k) / (c.shear + c.bulk * c.residual.q * c.q_psi));
     return {trial.mean - c.bulk * c.q_psi * m, trial.tau - c.shear * m, m, 0};

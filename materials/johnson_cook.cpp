@@ -45,9 +45,10 @@ struct SlowStrength {
     T lost = 0, lost_slope = 0;
     if (const auto warm = heat > 0; somewhere(warm)) {
       lost = where(warm, softening(heat), 0);
-      lost_slope = where(warm && heat < 1, metal.thermal_exponent * lost / heat * c.range_inverse, 0);
+      lost_slope = where(warm && heat < 1, metal.thermal_exponent * lost / above_nothing(heat) * c.range_inverse, 0);
     }
-    return {cold * (1 - lost), metal.hardening_exponent * gain / plastic_strain * (1 - lost), -cold * lost_slope};
+    const T hardens = metal.hardening_exponent * gain / above_nothing(plastic_strain) * (1 - lost);
+    return {cold * (1 - lost), where(plastic_strain > 0, hardens, infinitely_steep), -cold * lost_slope};
   }
 };
 
@@ -80,7 +81,7 @@ struct JohnsonCookReturn {
     const auto fast = rate > 1;
     if (!somewhere(fast))
       return {1, 0};
-    return {where(fast, 1 + metal.rate_coefficient * log(rate), 1), where(fast, metal.rate_coefficient / x, 0)};
+    return {where(fast, 1 + metal.rate_coefficient * log(rate), 1), where(fast, metal.rate_coefficient / above_nothing(x), 0)};
   }
   /// Trapezoidal in the Kirchhoff stress: the strength before and after the step, at the rate of the step.
   T work(const T& x, const T& factor, const T& end) const noexcept { return 0.5 * x * (J_before * factor * start.value + J * end); }
@@ -209,7 +210,7 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
   }
 
   if (const auto flowing = flow.strain > 0; damage && memory.keeps_damage && somewhere(flowing)) {
-    const T triaxiality = -pressure / max(flow.mises, T(std::numeric_limits<Real>::min()));
+    const T triaxiality = -pressure / above_nothing(flow.mises);
     const T strain = damage->fracture_strain<T>(triaxiality, relative * flow.strain, homologous(*this, memory.temperature, c));
     memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
   }
@@ -223,7 +224,7 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
   if (step)
     memory.energy = step->energy(pressure);
 
-  const T kept = where(mises > 0, flow.mises / mises, 1);
+  const T kept = where(mises > 0, flow.mises / above_nothing(mises), 1);
   const auto changed = kept < 1;
   memory.elastic_left = somewhere(changed) ? where(changed, trial.left_with(kept), trial.left) : trial.left;
   return unpack(scale_and_shift(2 * c.shear * kept / J, trial.shear_strain, -pressure));

@@ -48,9 +48,11 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
     const T a = in.dt * c.rate_scale * sqrt(T(p / J));
     const T linear = c.shear * a + (limiting_friction - static_friction) * p - excess;
     const T root = sqrt(T(linear * linear + 4 * c.shear * excess * a));
-    m = where(flows, where(linear > 0, 2 * excess * a / (linear + root), (root - linear) / (2 * c.shear)), 0);
+    const auto far = linear > 0;
+    m = where(flows, where(far, 2 * excess * a / where(far, linear + root, 1), (root - linear) / (2 * c.shear)), 0);
   }
-  const T kept = where(m > 0, max(T(1 - c.shear * m / tau), T(0)), 1);
+  const auto slid = m > 0;
+  const T kept = where(slid, max(T(1 - c.shear * m / where(slid, tau, 1)), T(0)), 1);
   Sym3Of<T> left = b;
   if (const auto changed = m > 0 || closing || p == 0; somewhere(changed))
     left = where(changed, expm1(scale_and_shift(2 * kept, shear_strain, p * (-2 / (3 * c.bulk)))), b);

@@ -2,6 +2,7 @@
 // What laws of metals share: the elastic trial state in logarithmic strain, and the state with part of its shear.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "materials/law.hpp"
 #include "materials/logarithm.hpp"
@@ -48,17 +49,28 @@ T growth_of(const IncrementOf<T>& in) noexcept
   return (Mat3Of<T>::Identity() + in.dt * in.L).determinant();
 }
 
+/// A divisor that may be zero where the quotient is not asked for: far below any strain, stress or share.
+template <class T>
+T above_nothing(const T& a) noexcept
+{
+  using std::max;
+  return max(a, T(1e-200));
+}
+
+/// Slope of hardening by a power below 1 where nothing has flown yet.
+inline constexpr Real infinitely_steep = std::numeric_limits<Real>::infinity();
+
 /// x^n, found fast where x is near a point at which it is known: hardening changes little within a step.
 template <class T>
 class PowerNear {
  public:
-  PowerNear(const T& at, Real exponent) noexcept : at_(at), inverse_(1 / at), exponent_(exponent), value_(power(at)) {}
+  PowerNear(const T& at, Real exponent) noexcept : at_(at), inverse_(1 / above_nothing(at)), exponent_(exponent), value_(power(at)) {}
   T operator()(const T& x) const noexcept
   {
     using std::abs, std::max;
     // The first terms that the binomial series leave out are below 0.001^6 and 0.02^8 for exponents below 1.
     const T r = (x - at_) * inverse_, size = abs(r) * max(exponent_, Real{1});
-    const auto same = x == at_;  // r may be 0 / 0
+    const auto same = x == at_;
     if (everywhere(same))
       return value_;
     if (everywhere(same || size <= 0.001))

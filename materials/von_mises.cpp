@@ -28,7 +28,7 @@ struct Hardening {
     if (law.power) {
       const T gained = law.power->coefficient * gain(plastic_strain);
       strength.value += gained;
-      strength.slope += law.power->exponent * gained / plastic_strain;
+      strength.slope += where(plastic_strain > 0, law.power->exponent * gained / above_nothing(plastic_strain), infinitely_steep);
     }
     return strength;
   }
@@ -50,7 +50,7 @@ struct VonMisesReturn {
     if (!law.rate)
       return {1, 0};
     const T gain = pow(T(relative * x), power);
-    return {1 + gain, power * gain / x};
+    return {1 + gain, power * gain / above_nothing(x)};
   }
   /// Stress less strength if the plastic strain of the step is x.
   ValueAndSlopeOf<T> operator()(const T& x) const noexcept
@@ -109,7 +109,7 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
   }
   const VonMisesReturn<T> map{*this, slow, start, mises, stiffness, plastic_strain, c.rate_inverse / in.dt, c.rate_power};
   const T root = c.closed_form ? T((mises - start.value) / (stiffness + hardening_modulus)) : map.plastic_increment(in.stress, yields);
-  const T x = where(yields, root, 0), end = mises - stiffness * x, kept = where(yields, end / mises, 1);
+  const T x = where(yields, root, 0), end = mises - stiffness * x, kept = where(yields, end / above_nothing(mises), 1);
   put(state, &State::elastic_left, where(yields, trial.left_with(kept), trial.left));
   put(state, &State::plastic_strain, T(plastic_strain + x));
   // Trapezoidal in the Kirchhoff stress, exact for linear hardening: the strength before and after the step, at the rate of the step.

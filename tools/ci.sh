@@ -75,10 +75,29 @@ stage_fuzz() { tools/fuzz.sh quick; }
 
 stage_test() { make test JOBS="$jobs"; }
 
+# All tests but the nightly ones, and every scene, with address and undefined-behaviour sanitizers.
 stage_asan() {
   cmake --preset asan -Wno-dev >/dev/null
   cmake --build build/asan -j "$jobs"
-  ctest --preset asan -j "$jobs" --label-exclude 'nightly|scenes-run'
+  ctest --preset asan -j "$jobs"
+}
+
+# Runs die where they compute what is not finite: every scene; every law, kernel, transfer, boundary and kind of stage (the scenes of the tests of
+# restarts); the benchmarks.
+stage_traps() {
+  cmake --preset traps -Wno-dev >/dev/null
+  cmake --build build/traps -j "$jobs" --target talus talus_app_tests
+  ctest --preset traps -j "$jobs" --tests-regex '^scenes\.run|Restart'
+  tools/verify.sh --program "$PWD/build/traps/talus" --level quick --jobs "$jobs" --regression --out build/verify_traps
+}
+
+# The tests of the folders, every load and store watched.  Of stage dev: slow enough without -O0.
+stage_valgrind() {
+  local folder
+  for folder in core mesh kernels materials solver io; do
+    OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=1 \
+      "build/dev/talus_${folder}_tests" --gtest_brief=1 --gtest_filter='-*Nightly*'
+  done
 }
 
 stage_bench() { make bench JOBS="$jobs"; }
@@ -97,14 +116,14 @@ for name in "$@"; do
     all) stages+=("${all_stages[@]}") ;;
     lint) stages+=("${lint_stages[@]}") ;;
     *) declare -F "stage_$name" >/dev/null || {
-      echo "no stage '$name': all, lint, ${all_stages[*]}, asan, bench" >&2
+      echo "no stage '$name': all, lint, ${all_stages[*]}, asan, traps, valgrind, bench" >&2
       exit 2
     }
       stages+=("$name") ;;
   esac
 done
 if [ ${#stages[@]} -eq 0 ]; then
-  echo "usage: tools/ci.sh <stage>...   all, lint, ${all_stages[*]}, asan, bench" >&2
+  echo "usage: tools/ci.sh <stage>...   all, lint, ${all_stages[*]}, asan, traps, valgrind, bench" >&2
   exit 2
 fi
 

@@ -125,7 +125,7 @@ TEST_F(Disk, FillsUpAtEveryFileNightly)
   int pages = 40;
   for (bool refused = true; refused; ++pages) {  // what is refused before it begins
     shell(fmt::format("mount -t tmpfs -o size={}k none disk\n\"$talus\" run scene.yaml --out disk/run --quiet 2>said.txt", 4 * pages));
-    refused = read("said.txt").find("take up to") != std::string::npos && read("said.txt").find("warning") == std::string::npos;
+    refused = read("said.txt").find("take about") != std::string::npos && read("said.txt").find("warning") == std::string::npos;
   }
   const int first = pages;
   for (std::string file = fill(pages); !file.empty(); file = fill(++pages)) {
@@ -145,7 +145,7 @@ TEST_F(Disk, WithoutRoomForOneOfEachIsRefusedBeforeTheFirstStep)
                   "cp -r disk/run full\nexit $code"),
             3);
   EXPECT_THAT(read("said.txt"), HasSubstr("error: the disk of disk/run has "));
-  EXPECT_THAT(read("said.txt"), HasSubstr("one checkpoint and one file of each kind take up to "));
+  EXPECT_THAT(read("said.txt"), HasSubstr("one checkpoint and one file of each kind take about "));
   EXPECT_TRUE(files_in(folder_ / "full", ".vtp").empty());
   EXPECT_THAT(read("full/summary.json"), HasSubstr("\"status\": \"failed\""));
 }
