@@ -55,7 +55,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
   if (block.scene.outputs.history) {
     block.scene.outputs.history->every = block.setup.limits.longest;  // a row each step
     scratch.emplace();
-    recorder.emplace(scratch->path(), block.scene.outputs, stages, true);
+    recorder.emplace(scratch->path(), block.scene.outputs, stages, true, "");
   }
   Laps laps(plan);
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),

@@ -39,12 +39,15 @@ struct SmallRun {
   Clock clock{};
   StageState stage;
   EnergyLedger energy{};
-  MassLedger mass{};
+  MassLedger<2> mass{};
+  MomentumLedger<2> momentum{};
+  Watched watched{};
+  Guards guards{};
   Timings timings{};
   Real residual = 0, crossing = 1;
   OutputSpec outputs;
-  std::vector<Stage> stages{{.name = "run", .duration = 1}};
-  Recorder<2> recorder{"", outputs, stages, true};
+  std::vector<Stage> stages{Stage{}};
+  Recorder<2> recorder{"", outputs, stages, true, ""};
   StateLimits limits{mesh.n_cells(), 1, n_particles};
 
   SmallRun()
@@ -57,14 +60,20 @@ struct SmallRun {
       p.cell[row] = static_cast<Index>(row);
     }
     const std::vector<Index> held{0, 1};
-    walls.add({.name = "floor", .kind = WallKind::fixed}, held);
+    Wall<2> floor;
+    floor.name = "floor";
+    floor.kind = WallKind::fixed;
+    walls.add(std::move(floor), mesh, held);
   }
   Frame<2> frame() const
   {
-    return {mesh,  particles,  bodies, materials, nodes, walls,   loads,    {},      clock,
-            stage, "the only", 0,      energy,    mass,  timings, residual, crossing};
+    return {mesh,       particles, bodies, materials, nodes,    walls,   loads,  {},      clock,    stage,
+            "the only", 0,         energy, mass,      momentum, watched, guards, timings, residual, crossing};
   }
-  State<2> state() { return {particles, bodies, materials, walls, clock, stage, energy, mass, timings, residual, crossing}; }
+  State<2> state()
+  {
+    return {particles, bodies, materials, walls, clock, stage, energy, mass, momentum, watched, timings, residual, crossing};
+  }
 };
 
 /// The file that a run would leave.
@@ -74,7 +83,7 @@ std::string good_checkpoint()
   SmallRun run;
   CheckpointSpec every_step;
   every_step.steps = 1;
-  Checkpoints<2> checkpoints(folder, every_step, {"0.1", "commit", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1});
+  Checkpoints<2> checkpoints(folder, every_step, {"0.1", "commit", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, ""});
   checkpoints.see(run.frame(), run.recorder);
   ++run.clock.step;
   checkpoints.see(run.frame(), run.recorder);
