@@ -4,6 +4,7 @@
 
 #include "app/recorder.hpp"
 #include "core/parallel.hpp"
+#include "io/whole_file.hpp"
 
 namespace talus {
 
@@ -55,6 +56,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
   if (block.scene.outputs.history) {
     block.scene.outputs.history->every = block.setup.limits.longest;  // a row each step
     scratch.emplace();
+    write_whole(scratch->path() / "summary.json", "{}\n");  // by which the recorder knows that its folder is still there
     recorder.emplace(scratch->path(), block.scene.outputs, stages, true, "");
   }
   Laps laps(plan);

@@ -87,6 +87,7 @@ void Recorder<D>::resume(const Frame<D>& frame)
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
   progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
+  last_.guards = frame.guards;
   particle_series_.resume(frame.clock.time);
   mesh_series_.resume(frame.clock.time);
   for (int n = particle_files_; std::filesystem::remove(particle_file(n)); ++n) {

@@ -66,6 +66,7 @@ class Run {
     if (from_) {
       audience.take_over = [&](const State<D>& state) { from_->take_over(state, recorder, limits); };
       audience.resumed = [&](const Frame<D>& frame) {
+        resumed_after_ = frame.clock.step;
         recorder.resume(frame);
         if (!options_.quiet)
           fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
@@ -123,7 +124,7 @@ class Run {
   /// To the state after the last sound step, where that is not a checkpoint: the command that computes it again.
   std::string way_back(const Checkpoints<D>& checkpoints, std::int64_t sound) const
   {
-    if (checkpoints.last_step() == sound)
+    if (checkpoints.last_step() == sound || resumed_after_ == sound)
       return {};
     std::string command = fmt::format("talus run {} --out {}{}", options_.scene.string(), folder_.string(), quick_ ? " --quick" : "");
     if (!checkpoints.last().empty())
@@ -201,6 +202,7 @@ class Run {
   bool quick_;
   const RunOptions& options_;
   const CheckpointList* from_;
+  std::optional<std::int64_t> resumed_after_;  // steps
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
   std::vector<Stage> stages_;

@@ -110,7 +110,9 @@ TEST_F(Run, StopsWhenAParticleLeavesTheMeshAndSaysWhich)
       testing::MatchesRegex(
           "error: step [0-9]+, t = 0\\.2[0-9]* s: particle [0-9]+ of \"block\" \\(block\\.yaml:6:5\\) at \\(2\\.0[0-9]*, [0-9.]+\\) is "
           "outside the mesh; "
-          "extend the mesh, close its boundary with a wall, or set on_exit: delete; last good output runs/block/particles_0002\\.vtp\n"));
+          "extend the mesh, close its boundary with a wall, or set on_exit: delete; last good output runs/block/particles_0002\\.vtp; the "
+          "state before it: talus run block\\.yaml "
+          "--out runs/block --until [0-9]+\n"));
   EXPECT_THAT(read("runs/block/summary.json"), HasSubstr("\"status\": \"failed\""));
   EXPECT_THAT(read("runs/block/summary.json"), HasSubstr("is outside the mesh"));
 }

@@ -37,7 +37,7 @@ TEST_F(Watch, TooFastAParticleStopsTheRunWithACheckpoint)
   write("block.yaml", falling("watch: {speed: 2.03}\n"));
   const Outcome outcome = talus("run block.yaml --out out");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_THAT(outcome.err, ContainsRegex("error: step [0-9]+, t = 0.0[0-9]+ s: particle [0-9]+ of \"block\" \\(block.yaml:[0-9]+\\) at "
+  EXPECT_THAT(outcome.err, ContainsRegex("error: step [0-9]+, t = 0.0[0-9]+ s: particle [0-9]+ of \"block\" \\(block.yaml:[0-9:]+\\) at "
                                          "\\([0-9.]+, [0-9.]+\\) moves at 2.0[0-9]+ m/s, beyond watch.speed = 2.03 m/s; last checkpoint "
                                          "out/checkpoints/step_[0-9]+.h5"));
   EXPECT_THAT(summary("out"), HasSubstr("\"status\": \"failed\""));
@@ -80,9 +80,11 @@ TEST_F(Watch, AllBalancesAreToldAndClose)
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("audit: mass closes to [0-9.e-]+; momentum closes to [0-9.]+e-1[0-9]; angular momentum closes to "
                                          "[0-9.e-]+; energy closes to [0-9.e-]+\n"));
-  EXPECT_THAT(summary("out"), Not(HasSubstr("\"closes\": false")));
-  for (const char* balance : {"mass", "momentum", "angular_momentum", "energy"})
-    EXPECT_THAT(summary("out"), HasSubstr(fmt::format("\"{}\": {{\n      \"clos", balance)));
+  const std::string text = summary("out"), closes = "\"closes\": true";
+  int closed = 0;
+  for (auto at = text.find(closes); at != std::string::npos; at = text.find(closes, at + 1))
+    ++closed;
+  EXPECT_EQ(closed, 4) << text;
 }
 
 TEST_F(Watch, ARunCanBeStoppedWhereItIsWanted)
@@ -114,7 +116,9 @@ TEST_F(Watch, TheStateBeforeAFailedStepCanBeHad)
   EXPECT_EQ(talus(command.substr(0, command.size() - 1) + " --quiet").code, 4);
   const Outcome again = talus("run --resume out --quiet");
   EXPECT_EQ(again.code, 1);
-  EXPECT_EQ(again.err.substr(0, again.err.find("; last")), outcome.err.substr(0, at)) << "the next step fails as it did";
+  const std::string body = " of \"block\"";
+  EXPECT_EQ(again.err.substr(0, again.err.find(body)), outcome.err.substr(0, outcome.err.find(body))) << "the next step fails as it did";
+  EXPECT_THAT(again.err, Not(HasSubstr("--until"))) << "it went on from there";
 }
 
 }  // namespace

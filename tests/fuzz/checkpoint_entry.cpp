@@ -80,6 +80,8 @@ struct SmallRun {
 std::string good_checkpoint()
 {
   const fs::path folder = fs::temp_directory_path() / ("talus_fuzz_" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  write_whole(folder / "summary.json", "{}\n");  // as every run begins
   SmallRun run;
   CheckpointSpec every_step;
   every_step.steps = 1;

@@ -23,7 +23,7 @@ M flying_block()
 std::string stopped(M& m, int* shown = nullptr)
 {
   try {
-    finish_stage(m, test_stage(0.02), {}, [&](const M&, Moment moment) {
+    finish_stage(m, test_stage(0.2), {}, [&](const M&, Moment moment) {
       if (shown && moment == Moment::given_up)
         ++*shown;
     });
@@ -37,7 +37,7 @@ TEST(Guards, ASoundRunPasses)
 {
   M m = flying_block();
   m.guards.speed = 3, m.guards.gain = 0.01;
-  begin_stage(m, test_stage(0.02), 0);
+  begin_stage(m, test_stage(0.2), 0);
   EXPECT_EQ(stopped(m), "");
   EXPECT_NEAR(m.watched.fastest, std::sqrt(1.25), 1e-6);
   EXPECT_LT(m.watched.mass, 1e-12);
@@ -48,7 +48,7 @@ TEST(Guards, MassThatIsNotThereIsMissed)
 {
   M m = flying_block();
   m.mass.start *= 1 + 1e-6;
-  begin_stage(m, test_stage(0.02), 0);
+  begin_stage(m, test_stage(0.2), 0);
   int shown = 0;
   EXPECT_THAT(stopped(m, &shown), HasSubstr("the mass does not add up"));
   EXPECT_EQ(shown, 1) << "before the run gives up its state can be kept";
@@ -59,7 +59,7 @@ TEST(Guards, EnergyFromNowhereIsSeen)
   const auto with_a_push = [](Real gain, bool stops) {
     M m = flying_block();
     m.guards.gain = gain, m.guards.gain_stops = stops;
-    begin_stage(m, test_stage(0.02), 0);
+    begin_stage(m, test_stage(0.2), 0);
     for (std::size_t p = 0; p < m.particles.id.size(); ++p)
       m.particles.v.set(p, 1.2 * m.particles.v[p]);
     const std::string message = stopped(m);
@@ -81,7 +81,7 @@ M with_a_failed_particle(Real allowed)
   Mat3 F = Mat3::Identity();
   F(0, 0) = -1;
   m.guards.failed = allowed;
-  begin_stage(m, test_stage(0.02), 0);
+  begin_stage(m, test_stage(0.2), 0);
   m.particles.F.set(5, F);
   return m;
 }
