@@ -19,7 +19,7 @@ FORBIDDEN = [
 WRITTEN_BY_PROGRAMS = {".msh", ".csv", ".svg"}   # their blanks are not ours
 BINARY = {".png", ".jpg", ".gif", ".ico", ".pdf", ".vtp", ".vtu"}
 NOT_OURS = {"LICENSE"}
-DAMAGED_ON_PURPOSE = ("tests/io/bad_",)
+DAMAGED_ON_PURPOSE = ("tests/io/bad_", "tests/fuzz/corpus/")
 SHOWN = 5   # findings of one file
 
 

@@ -289,8 +289,7 @@ TEST(GmshMesh, WrongRegionsAreRefusedAtTheirPlace)
               HasSubstr("nothing is left of region \"b\": earlier regions cover it"));
   EXPECT_THAT(complaint<2>(regions(0.1, {region("a", Box{{0, 0}, {1, 1}}), region("a", Box{{1, 0}, {2, 1}})})),
               HasSubstr("two regions have the name \"a\""));
-  EXPECT_THAT(complaint<2>(regions(1e-6, {region("a", Box{{0, 0}, {1, 1}})})),
-              HasSubstr("asks for 2.3e+12 cells, more than 1e+08"));
+  EXPECT_THAT(complaint<2>(regions(1e-6, {region("a", Box{{0, 0}, {1, 1}})})), HasSubstr("asks for 2.3e+12 cells, more than 1e+08"));
   MeshSpec no_size = regions(1, {region("a", Box{{0, 0}, {1, 1}})});
   no_size.size.reset();
   EXPECT_THAT(complaint<2>(no_size), HasSubstr("scene.yaml:3:7: error: mesh: the mesh needs a size"));
