@@ -104,7 +104,12 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
 template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state)
     : spec_(std::move(spec)), state_(std::move(state)), file_(HistoryFile::resume(file, columns(spec_, now), now.clock.time))
-{}
+{
+  const auto known = [&](std::int64_t id) { return id >= 0 && static_cast<std::size_t>(id) < now.row_of_id.size(); };
+  if (state_.impulse.size() != now.walls.walls().size() || state_.followed.size() != spec_.points.size() ||
+      !std::all_of(state_.followed.begin(), state_.followed.end(), known))
+    throw EnvironmentError("the walls or points of the checkpoint do not fit the scene");
+}
 
 template <int D>
 void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts)

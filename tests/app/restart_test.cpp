@@ -330,10 +330,19 @@ TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
                                                                                    {"walls/wall/count", 2},
                                                                                    {"particles/cell", 72},
                                                                                    {"particles/cell", -1},
-                                                                                   {"particles/id", 100000}}) {
+                                                                                   {"particles/id", 100000},
+                                                                                   {"recorder/history_state/followed/0", 100000},
+                                                                                   {"recorder/history_state/followed/0", -1},
+                                                                                   {"recorder/history_state/followed/count", 0},
+                                                                                   {"recorder/history_state/impulse/count", 0}}) {
     const Outcome outcome = refused_with(at, value);
     EXPECT_EQ(outcome.code, 3) << at << outcome.err;
     EXPECT_NE(outcome.err.find("do not fit the scene"), std::string::npos) << at << " " << outcome.err;
+  }
+  for (const std::int64_t count : {std::int64_t{-1}, std::int64_t{1} << 60}) {
+    const Outcome outcome = refused_with("recorder/files/count", count);
+    EXPECT_EQ(outcome.code, 3) << outcome.err;
+    EXPECT_NE(outcome.err.find("is not there"), std::string::npos) << outcome.err;
   }
 }
 
