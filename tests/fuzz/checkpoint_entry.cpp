@@ -43,7 +43,7 @@ struct SmallRun {
   Timings timings{};
   Real residual = 0, crossing = 1;
   OutputSpec outputs;
-  std::vector<Stage> stages{{.name = "run", .duration = 1}};
+  std::vector<Stage> stages{Stage{}};
   Recorder<2> recorder{"", outputs, stages, true};
   StateLimits limits{mesh.n_cells(), 1, n_particles};
 
@@ -57,7 +57,10 @@ struct SmallRun {
       p.cell[row] = static_cast<Index>(row);
     }
     const std::vector<Index> held{0, 1};
-    walls.add({.name = "floor", .kind = WallKind::fixed}, held);
+    Wall<2> floor;
+    floor.name = "floor";
+    floor.kind = WallKind::fixed;
+    walls.add(std::move(floor), held);
   }
   Frame<2> frame() const
   {

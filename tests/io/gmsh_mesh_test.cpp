@@ -354,7 +354,7 @@ TEST_F(GmshGeometry, MissingGeometryIsRefused)
   missing.geometry = "b.geo";
   EXPECT_THAT(complaint<2>(missing, folder_.path()), HasSubstr("b.geo\" does not exist"));
   missing.geometry = ".";
-  EXPECT_THAT(complaint<2>(missing, folder_.path()), HasSubstr("is no file"));
+  EXPECT_THAT(complaint<2>(missing, folder_.path()), HasSubstr("is a folder"));
 }
 
 TEST_F(GmshGeometry, MeshErrorsOfFilesNameTheFile)
