@@ -1,8 +1,9 @@
-# talus_fuzz_<entry> of tests/fuzz/<entry>_entry.cpp, with libFuzzer of clang (preset fuzz, tools/fuzz.sh). Only the sources that read are
-# compiled: with the sanitizers each costs several times what it does without.
+# talus_fuzz_<entry> of tests/fuzz/<entry>_entry.cpp, with libFuzzer of clang (preset fuzz, tools/fuzz.sh). With the sanitizers a source costs
+# several times what it does without, so only those that read are compiled, not optimised, and without the checks of each pointer that the
+# address sanitizer makes as well.
 # Of laws only the checks of their parameters run.
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
-target_compile_options(talus_fuzz_materials PRIVATE -O0 -fno-sanitize=all)
+target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
               ONLY accuracy array_file csv document field_reader gmsh_mesh gmsh_read gmsh_regions gmsh_session memory mesh_groups msh_ reader scalars scene
                    shape text_file vtk whole_file
