@@ -43,7 +43,7 @@ fuzz() {
   read -ra seeds <<<"$(more_seeds "$entry")"
   mkdir -p "$build/corpus/$entry" "$findings"
   # OpenMP's threads would only wait: the inputs are small. What has been freed would fill the memory they may take.
-  OMP_NUM_THREADS=1 ASAN_OPTIONS=quarantine_size_mb=32 "$build/talus_fuzz_$entry" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=20000 \
+  OMP_NUM_THREADS=1 ASAN_OPTIONS=quarantine_size_mb=32 LSAN_OPTIONS=print_suppressions=0 "$build/talus_fuzz_$entry" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=20000 \
     -dict="tests/fuzz/$entry.dict" -artifact_prefix="$findings/$entry-" -print_final_stats=1 \
     "$build/corpus/$entry" "tests/fuzz/corpus/$entry" "${seeds[@]}" >"$build/$entry.log" 2>&1
 }
@@ -72,7 +72,7 @@ for running in "${!process[@]}"; do
 done
 
 for entry in "${failed[@]}"; do
-  echo "fuzz: $entry is broken by the input named here:" >&2
+  echo "fuzz: $entry ended badly ($build/$entry.log):" >&2
   grep -E 'ERROR:|SUMMARY:|runtime error:|uncaught|Test unit written to' "$build/$entry.log" >&2 || tail -20 "$build/$entry.log" >&2
   echo "again: $build/talus_fuzz_$entry INPUT   then: fix it, and add the input to tests/fuzz/corpus/$entry" >&2
 done
