@@ -45,7 +45,7 @@ bool assigns(std::string_view text)
 Formula::Formula(const std::string& text) : machine_(std::make_shared<Machine>())
 {
   mu::Parser& parser = machine_->parser;
-  constexpr std::size_t most_characters = 1000;
+  constexpr std::size_t most_characters = 10'000;
   if (text.size() > most_characters)
     refuse(text, fmt::format("it has more than {} characters", most_characters));
   if (assigns(text))

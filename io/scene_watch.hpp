@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 2> words(OnFailure) { return {"stop", "de
 
 struct WatchSpec {
   std::optional<Real> speed;
-  Real energy_gain = 0.2;
+  Real energy_gain = 0.9;
   OnAlarm on_speed = OnAlarm::stop, on_energy_gain = OnAlarm::stop;
   OnFailure on_failure = OnFailure::stop;
   Real failed_mass = 1e-3;
