@@ -16,8 +16,6 @@ Real EnergyNow::largest_term() const noexcept
 
 namespace {
 
-Real share(Real part, Real whole) { return whole > 0 ? part / whole : 0; }
-
 /// Momentum of the particles; the moduli are those of each.
 template <int D>
 Push<D> momentum_of(const Particles<D>& particles)
@@ -92,7 +90,7 @@ MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
   const MomentumLedger<D>& given = frame.momentum;
   MomentumNow<D> now{start_, momentum_of(frame.particles), given.loads + given.damping + given.rest + -1 * frame.mass.carried_away};
   for (const Wall<D>& wall : frame.walls.walls())
-    now.given += Push<D>{wall.impulse, wall.angular, wall.impulse.norm(), wall.angular.norm()};
+    now.given += Push<D>::of(wall.impulse, wall.angular);
   return now;
 }
 

@@ -32,6 +32,9 @@ struct EnergyNow {
   Real largest_term() const noexcept;
 };
 
+/// |part| of a whole; 0 of nothing.
+inline Real share(Real part, Real whole) noexcept { return whole > 0 ? std::abs(part) / whole : 0; }
+
 /// Momentum and its moment about the origin since the start of the run [kg m/s], [kg m^2/s].
 template <int D>
 struct MomentumNow {

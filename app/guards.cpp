@@ -47,12 +47,7 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup)
 {
   if (!setup.loads.of_place.empty())
     return std::numeric_limits<Real>::infinity();
-  Vec<D> low = mesh.node(0), high = low;
-  for (Index n = 0; n < mesh.n_nodes(); ++n) {
-    low = low.cwiseMin(mesh.node(n));
-    high = high.cwiseMax(mesh.node(n));
-  }
-  const Real size = (high - low).norm();
+  const Real size = (mesh.high() - mesh.low()).norm();
   Real speed = 0;
   for (const Wall<D>& wall : setup.walls.walls())
     speed = std::max(speed, wall.velocity.norm() * largest_factor(wall.table));

@@ -87,7 +87,6 @@ void Recorder<D>::resume(const Frame<D>& frame)
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
   progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
-  last_.guards = frame.guards;
   particle_series_.resume(frame.clock.time);
   mesh_series_.resume(frame.clock.time);
   for (int n = particle_files_; std::filesystem::remove(particle_file(n)); ++n) {
@@ -120,7 +119,6 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   last_.timings = frame.timings;
   last_.mass = frame.mass;
   last_.watched = frame.watched;
-  last_.guards = frame.guards;
   if (moment != Moment::stage_done)
     return;
   done_before_ += stage_list_[static_cast<std::size_t>(frame.stage_number)].duration;
@@ -137,10 +135,8 @@ void Recorder<D>::warn(const Frame<D>& frame) const
   const auto say = [&](const std::string& what) {
     fmt::print(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
   };
-  if (frame.mass.failed_count > last_.mass.failed_count)
-    say(fmt::format("{} particle{} failed and {} deleted: {}", frame.mass.failed_count - last_.mass.failed_count,
-                    frame.mass.failed_count - last_.mass.failed_count == 1 ? "" : "s",
-                    frame.mass.failed_count - last_.mass.failed_count == 1 ? "was" : "were", now.failure));
+  if (const Index failed = frame.mass.failed_count - last_.mass.failed_count; failed > 0)
+    say(fmt::format("failed and deleted: {}{}", now.failure, failed > 1 ? fmt::format("; and {} more", failed - 1) : ""));
   if (now.speeding > 0 && before.speeding == 0)
     say(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, frame.guards.speed));
   if (now.gaining > 0 && before.gaining == 0)

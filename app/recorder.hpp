@@ -31,7 +31,6 @@ struct LastSeen {
   MassLedger<D> mass;
   Real mass_there{};  ///< of the particles [kg]
   Watched watched;
-  Guards guards;
   EnergyNow energy;
   MomentumNow<D> momentum;
   static constexpr auto fields()

@@ -216,12 +216,21 @@ namespace {
 /// Of a run that goes on, with what is changed on the way.  SceneErrors: that cannot be changed any more.
 Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes)
 {
-  static constexpr std::array<std::string_view, 5> free{"time.", "stages[", "watch.", "outputs.checkpoint.", "on_exit="};
+  const auto is_free = [](std::string_view change) {
+    static constexpr std::array<std::string_view, 4> whole{"time.", "watch.", "outputs.checkpoint.", "on_exit="};
+    const auto begins = [&](std::string_view key) { return change.starts_with(key); };
+    // What else a stage says it has said when it began.
+    const bool of_stage = begins("stages[") && (change.find("].duration=") != change.npos || change.find("].residual=") != change.npos);
+    return of_stage || std::any_of(whole.begin(), whole.end(), begins);
+  };
   std::vector<Problem> problems;
   for (const std::string& change : changes)
-    if (std::none_of(free.begin(), free.end(), [&](std::string_view key) { return change.starts_with(key); }))
-      problems.push_back({Where{"--set " + change, 0, 0, ""},
-                          "a run that goes on can change only what stands in time, stages, watch and outputs.checkpoint, and on_exit", ""});
+    if (!is_free(change))
+      problems.push_back(
+          {Where{"--set " + change, 0, 0, ""},
+           "a run that goes on can change only what stands in time, watch and outputs.checkpoint, duration and residual of stages, "
+           "and on_exit",
+           ""});
   if (!problems.empty())
     throw SceneErrors(std::move(problems));
   std::vector<std::string> set = run.set;

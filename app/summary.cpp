@@ -1,10 +1,10 @@
 #include "app/summary.hpp"
 
 #include <array>
-#include <fstream>
 
 #include "core/parallel.hpp"
 #include "core/version.hpp"
+#include "io/memory.hpp"
 #include "mesh/digest.hpp"
 #include "mesh/quality.hpp"
 
@@ -44,22 +44,6 @@ std::array<std::pair<std::string_view, Real>, 11> terms_of(const EnergyNow& e)
            {"damping", e.damping},
            {"transfer_loss", e.transfer},
            {"energy_defect", e.defect}}};
-}
-
-Real share(Real part, Real whole) { return whole > 0 ? std::abs(part) / whole : 0; }
-
-/// Most memory the program has held [B], 0 where the system does not tell.  Not getrusage: that begins with the size of the process that
-/// started this one.
-std::int64_t peak_memory()
-{
-  std::ifstream status("/proc/self/status");
-  for (std::string word; status >> word;)
-    if (word == "VmHWM:") {
-      std::int64_t kilobytes = 0;
-      status >> kilobytes;
-      return kilobytes * 1024;
-    }
-  return 0;
 }
 
 template <int D>
@@ -170,6 +154,8 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.scene_digest = fmt::format("{:016x}", digest(inputs));
   s.mesh_digest = fmt::format("{:016x}", digest(mesh));
   s.mesh_quality = named(quality(mesh));
+  s.watch.speed_limit = setup.guards.speed;
+  s.watch.gain_limit = setup.guards.gain;
   s.warnings = setup.warnings;
   s.origin = setup.origin;
   return s;
@@ -201,22 +187,22 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   const Real in_steps = t.locate + t.scatter + t.nodes + t.gather + t.stress;
   s.particle_steps_per_second = in_steps > 0 ? t.particle_steps / in_steps : 0;
   s.bytes_per_particle = recorder.bytes_per_particle();
-  s.peak_memory_bytes = peak_memory();
+  s.peak_memory_bytes = static_cast<std::int64_t>(peak_memory());
   if (!recorder.stages().empty()) {
     s.energy = audit(recorder);
     s.momentum = audit(last.momentum);
     s.angular_momentum = angular_audit(last.momentum);
   }
   s.mass = audit(last.mass, last.mass_there);
-  s.watch = WatchSummary{last.watched.fastest, last.guards.speed,     last.watched.gain,
-                         last.guards.gain,     last.watched.speeding, last.watched.gaining};
+  s.watch.fastest = last.watched.fastest, s.watch.gain = last.watched.gain;
+  s.watch.speeding = last.watched.speeding, s.watch.gaining = last.watched.gaining;
   if (last.watched.speeding > 0)
     s.warnings.push_back(fmt::format("particles moved at up to {:.4g} m/s, beyond watch.speed = {:.4g} m/s, in {} steps",
-                                     last.watched.fastest, last.guards.speed, last.watched.speeding));
+                                     last.watched.fastest, s.watch.speed_limit, last.watched.speeding));
   if (last.watched.gaining > 0)
     s.warnings.push_back(
         fmt::format("the energy grew by what nothing did work for, up to {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
-                    last.watched.gain, last.guards.gain));
+                    last.watched.gain, s.watch.gain_limit));
   if (last.mass.failed_count > 0)
     s.warnings.push_back(fmt::format("{} particles of {:.3g} kg failed and were deleted; the last: {}", last.mass.failed_count,
                                      last.mass.failed, last.watched.failure));
@@ -253,7 +239,7 @@ std::string table(const Recorder<D>& recorder)
        [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
   text += fmt::format("mass {:.6g} kg", last.mass.start);
   if (last.mass.deleted_count > 0)
-    text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh", last.mass.deleted, last.mass.deleted_count);
+    text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh or failed", last.mass.deleted, last.mass.deleted_count);
   return text + fmt::format("\naudit: {}; {}; {}; {}\n", in_words("mass", audit(last.mass, last.mass_there).closure),
                             in_words("momentum", audit(last.momentum).closure),
                             in_words("angular momentum", angular_audit(last.momentum).closure),

@@ -88,6 +88,9 @@ Real available_memory(const fs::path& root)
   return std::max(Real{0}, std::min({left_on_the_machine(root), left_in_groups(root), left_of_addresses(root)}));
 }
 
+/// Not by getrusage: that begins with the size of the process that started this one.
+Real peak_memory(const fs::path& root) { return number_in(root / "proc/self/status", "VmHWM:").value_or(0) * 1024; }
+
 std::string too_many(Real items, const std::string& what, Real bytes)
 {
   constexpr Real giga = 1e9;

@@ -135,8 +135,7 @@ std::string to_json(const RunSummary& s)
   json["simulated_time [s]"] = s.simulated_time;
   json["cost"] = cost(s);
   json["balances"] = balances(s);
-  if (s.watch)
-    json["watch"] = to_object(*s.watch);
+  json["watch"] = to_object(s.watch);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
   json["scene"] = {{"file", s.scene_file}, {"digest", s.scene_digest}, {"text", s.scene_text}, {"set", s.overrides}};

@@ -119,7 +119,7 @@ struct RunSummary {
   std::optional<EnergyAudit> energy;
   std::optional<MomentumAudit> momentum, angular_momentum;
   std::optional<MassAudit> mass;
-  std::optional<WatchSummary> watch;
+  WatchSummary watch;
 
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< written by the run, relative to its folder

@@ -193,7 +193,7 @@ void record(Model<D, K>& m, const Vec<D>& gravity, const Push<D>& tractions, con
 {
   const NodeWork<D> work = node_work(gravity, m.stage.damping, dt, m.mesh, m.nodes);
   m.mass.on_nodes = work.mass;
-  m.momentum.loads += work.pulled + dt * tractions;
+  m.momentum.loads += Push<D>::of(dt * work.mass * gravity, dt * moment<D>(work.first_moment, gravity)) + dt * tractions;
   m.momentum.damping += work.damped;
   m.energy.gravity += work.gravity;
   m.energy.damping += work.damping;

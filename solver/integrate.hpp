@@ -10,12 +10,13 @@ namespace talus {
 template <int D>
 struct NodeWork {
   Real kinetic_before{}, kinetic_after{}, gravity{}, damping{};
-  Real mass{};  ///< [kg]
-  Push<D> pulled, damped;
+  Real mass{};                           ///< [kg]
+  Vec<D> first_moment = Vec<D>::Zero();  ///< of mass [kg m]
+  Push<D> damped;
   NodeWork& operator+=(const NodeWork& other) noexcept
   {
     kinetic_before += other.kinetic_before, kinetic_after += other.kinetic_after, gravity += other.gravity, damping += other.damping;
-    mass += other.mass, pulled += other.pulled, damped += other.damped;
+    mass += other.mass, first_moment += other.first_moment, damped += other.damped;
     return *this;
   }
 };
@@ -111,9 +112,8 @@ NodeWork<D> node_work(const Vec<D>& gravity, Real damping, Real dt, const Mesh<D
     work.kinetic_before = 0.5 * sum.mass * v_old.squaredNorm();
     work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
     work.mass = sum.mass;
-    const Vec<D> weight = dt * sum.mass * gravity;
-    work.gravity = weight.dot(v_mid);
-    work.pulled = Push<D>::at(mesh.node(n), weight);
+    work.first_moment = sum.mass * mesh.node(n);
+    work.gravity = dt * sum.mass * gravity.dot(v_mid);
     if (damping > 0 && !nodes.bound[i]) {
       const Vec<D> brake = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
       work.damping = brake.dot(v_mid);

@@ -60,11 +60,8 @@ struct Push {
     return std::tuple{kept("linear", &Push::linear), kept("angular", &Push::angular), kept("size", &Push::size), kept("turn", &Push::turn)};
   }
 
-  static Push at(const Vec<D>& x, const Vec<D>& f) noexcept
-  {
-    const Vec3 about = moment<D>(x, f);
-    return {f, about, f.norm(), about.norm()};
-  }
+  static Push of(const Vec<D>& f, const Vec3& about) noexcept { return {f, about, f.norm(), about.norm()}; }
+  static Push at(const Vec<D>& x, const Vec<D>& f) noexcept { return of(f, moment<D>(x, f)); }
   Push& operator+=(const Push& other) noexcept
   {
     linear += other.linear, angular += other.angular, size += other.size, turn += other.turn;

@@ -171,7 +171,7 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
                         *stage.residual));
   if (stage.residual) {
     m.energy.set_to_rest = now.kinetic;
-    m.momentum.rest += Push<D>{-now.momentum, -now.angular, now.momentum.norm(), now.angular.norm()};
+    m.momentum.rest += Push<D>::of(-now.momentum, -now.angular);
     m.particles.v.assign(m.particles.v.size(), Vec<D>::Zero());
     for (auto* affine : {&m.particles.L, &m.particles.C})
       affine->assign(affine->size(), Mat<D>::Zero());

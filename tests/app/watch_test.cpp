@@ -97,10 +97,33 @@ TEST_F(Watch, ARunCanBeStoppedWhereItIsWanted)
   EXPECT_TRUE(exists("out/checkpoints/step_000000007.h5"));
   const Outcome another = talus("run --resume out --set dimension=3 --set time.cfl=0.1");
   EXPECT_EQ(another.code, 2);
-  EXPECT_THAT(another.err, HasSubstr("--set dimension=3: error: a run that goes on can change only what stands in time, stages, watch"));
+  EXPECT_THAT(another.err, HasSubstr("--set dimension=3: error: a run that goes on can change only what stands in time, watch"));
   EXPECT_THAT(another.err, Not(HasSubstr("cfl")));
   ASSERT_EQ(talus("run --resume out --quiet").code, 0);
   EXPECT_EQ(read("whole/history.csv"), read("out/history.csv"));
+}
+
+TEST_F(Watch, WhatLeavesTheMeshTakesItsMomentumAlong)
+{
+  write("block.yaml", block_scene("time: {end: 0.4}\non_exit: delete\n", ", velocity: [3, 0]"));
+  const Outcome outcome = talus("run block.yaml --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_GT(number("out", "particles_removed"), 10);
+  EXPECT_THAT(outcome.out, ContainsRegex("left the mesh or failed\naudit: mass closes to [0-9.e-]+; momentum closes to [0-9.]+e-1[0-9];"));
+}
+
+TEST_F(Watch, AStageThatWantsMoreTimeCanHaveIt)
+{
+  write("block.yaml", block_scene("stages: [{type: geostatic, duration: 0.05, damping: 0.7, residual: 1.0e-2}]\nloads: [{type: gravity, "
+                                  "acceleration: [0, -10]}]\nboundaries: [{type: fixed, on: y_min}]\n"));
+  const Outcome outcome = talus("run block.yaml --out out --quiet");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_THAT(outcome.err, ContainsRegex("did not come to rest within 0.05 s: .*; last checkpoint out/checkpoints/step_[0-9]+.h5\n$"));
+  const Outcome damped = talus("run --resume out --set stages[0].damping=0.9");
+  EXPECT_EQ(damped.code, 2) << "the stage has begun with another";
+  const Outcome rested = talus("run --resume out --set stages[0].duration=20");
+  EXPECT_EQ(rested.code, 0) << rested.err;
+  EXPECT_THAT(rested.out, ContainsRegex("; momentum closes to [0-9.]+e-1[0-9];")) << "with damping, and the motion taken out at rest";
 }
 
 TEST_F(Watch, TheStateBeforeAFailedStepCanBeHad)
