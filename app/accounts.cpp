@@ -69,6 +69,7 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
 {
   const EnergyLedger& e = frame.energy;
   EnergyNow now;
+  now.remapped = e.remapped;
   now.kinetic_start = kinetic_begin_;
   now.kinetic = totals(frame.particles).kinetic;
   now.plastic = plastic_work(frame) - plastic_begin_;

@@ -58,8 +58,8 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       particle_times_(every(outputs.particles)),
       mesh_times_(every(outputs.mesh)),
       history_times_(every(outputs.history)),
-      particle_series_(folder_ / "particles.pvd"),
-      mesh_series_(folder_ / "mesh.pvd")
+      particle_series_(folder_ / "particles.pvd", made_by_),
+      mesh_series_(folder_ / "mesh.pvd", made_by_)
 {}
 
 template <int D>

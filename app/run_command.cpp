@@ -22,6 +22,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The scene as it was read, and what --set changed of it, in comments at its end.
+std::string with_changes(const Scene& scene)
+{
+  std::string text = scene.text;
+  if (!scene.overrides.empty())
+    text += "\n# Run with changes:\n";
+  for (const std::string& change : scene.overrides)
+    text += fmt::format("#   --set '{}'\n", change);
+  return text;
+}
+
 /// One run in its folder, from mesh to summary.
 template <int D>
 class Run {
@@ -167,7 +178,7 @@ class Run {
       remove_leftovers(folder_);
     summary_ = begin_summary(scene_, mesh, setup);
     write_summary(folder_ / "summary.json", summary_);
-    write_whole(folder_ / "scene.yaml", scene_.text);
+    write_whole(folder_ / "scene.yaml", with_changes(scene_));
     write_msh(folder_ / "mesh.msh", mesh);
     write_mesh<D>(folder_ / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
     for (const std::string& warning : setup.warnings)

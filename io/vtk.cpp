@@ -366,7 +366,10 @@ void PvdSeries::append(Real time, const fs::path& file)
 {
   drop_from(time);
   entries_.emplace_back(time, file.lexically_proximate(file_.parent_path()).string());
-  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n  <Collection>\n";
+  std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\"";
+  if (!made_by_.empty())
+    text += fmt::format(" {}=\"{}\"", origin_name, escaped(made_by_));
+  text += ">\n  <Collection>\n";
   for (const auto& [t, name] : entries_)
     text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", t, escaped(name));
   write_whole(file_, text + "  </Collection>\n</VTKFile>\n");

@@ -57,7 +57,8 @@ StoredMeshFields read_mesh_fields(const std::filesystem::path& file);
 /// The list of the files of a run with their times.  Rewritten as a whole by every append, so it is valid after a kill.
 class PvdSeries {
  public:
-  explicit PvdSeries(std::filesystem::path file) : file_(std::move(file)) {}
+  /// `made_by` is told in the list, unless it is empty.
+  explicit PvdSeries(std::filesystem::path file, std::string made_by = {}) : file_(std::move(file)), made_by_(std::move(made_by)) {}
 
   /// Takes over the entries of an older list up to `time` [s], for a run that is resumed there.  No list there: nothing to take.
   void resume(Real time);
@@ -67,6 +68,7 @@ class PvdSeries {
  private:
   void drop_from(Real time);
   std::filesystem::path file_;
+  std::string made_by_;
   std::vector<std::pair<Real, std::string>> entries_;
 };
 

@@ -16,6 +16,7 @@ struct EnergyLedger {
   Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
+  bool remapped{};                        ///< MUSL: strain is taken from velocities that the forces did not work on
   static constexpr auto fields()
   {
     return std::tuple{kept("gravity", &EnergyLedger::gravity),
@@ -27,7 +28,8 @@ struct EnergyLedger {
                       kept("internal", &EnergyLedger::internal),
                       kept("kinetic_start", &EnergyLedger::kinetic_start),
                       kept("plastic_start", &EnergyLedger::plastic_start),
-                      kept("set_to_rest", &EnergyLedger::set_to_rest)};
+                      kept("set_to_rest", &EnergyLedger::set_to_rest),
+                      kept("remapped", &EnergyLedger::remapped)};
   }
 
   /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles did not get.

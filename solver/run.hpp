@@ -109,7 +109,7 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
              .seeks_rest = stage.residual || stage.damping > 0};
   if (stage.k0)
     set_k0_stress(m.mesh, m.loads.gravity(m.clock.time, 1), *stage.k0, m.bodies, m.materials, m.particles);
-  m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m)};
+  m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m), .remapped = m.transfer.musl};
   m.crossing = shortest_crossing(m.mesh, m.materials, m.particles);
 }
 

@@ -32,7 +32,7 @@ stage_cppcheck() {
     --suppressions-list=tools/cppcheck-suppressions.txt -I . "${folders[@]}"
 }
 
-# Ten sources in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
+# All sources of a folder in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
 # where gcc keeps it, after everything of clang's.
 stage_tidy() {

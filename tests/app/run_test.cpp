@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <numbers>
+#include <regex>
 
 #include "tests/app/program.hpp"
 
@@ -55,7 +56,34 @@ TEST_F(Run, InSinglePrecisionSwingsAsInDoubleToItsRounding)
   EXPECT_NE(full, single);
   EXPECT_NEAR(full, single, 1e-4 * std::abs(full));
   EXPECT_THAT(read("full/summary.json"), HasSubstr("\"precision\": \"double\""));
+  EXPECT_EQ(read("single/scene.yaml"), bar_scene + "\n# Run with changes:\n#   --set 'precision=single'\n");
+  EXPECT_EQ(talus("check single/scene.yaml").code, 0);
   EXPECT_THAT(read("single/summary.json"), HasSubstr("\"precision\": \"single\""));
+}
+
+/// What the line of the audit says of the energy.
+Real closure_told(const std::string& out)
+{
+  std::smatch found;
+  return std::regex_search(out, found, std::regex(R"(energy (?:closes to|DOES NOT CLOSE:) ([-+.e0-9]+))")) ? std::stod(found[1]) : -1;
+}
+
+TEST_F(Run, WithMuslTheAuditJudgesLossAndDefectTogether)
+{
+  write("bar.yaml", bar_scene);
+  for (const bool musl : {false, true}) {
+    const std::string folder = musl ? "musl" : "usl";
+    const Outcome outcome = talus(fmt::format("run bar.yaml --out {} --set transfer.musl={}", folder, musl));
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const HistoryTable table = history(folder);
+    const Real loss = last(table, "transfer_loss"), defect = last(table, "energy_defect");
+    const Real largest = std::max({first(table, "kinetic"), last(table, "kinetic"), last(table, "strain")});
+    const Real open = std::abs(musl ? loss + defect : defect) / largest;
+    EXPECT_NEAR(closure_told(outcome.out), open, 0.06 * open) << outcome.out;  // two digits are told
+    if (musl) {
+      EXPECT_GT(std::abs(defect), 2 * std::abs(loss + defect));
+    }
+  }
 }
 
 TEST_F(Run, LeavesEveryFileThatWasAskedFor)
@@ -69,7 +97,7 @@ TEST_F(Run, LeavesEveryFileThatWasAskedFor)
   EXPECT_FALSE(exists("there/particles_0005.vtp"));
   EXPECT_EQ(read("there/scene.yaml"), bar_scene);
   EXPECT_THAT(read("there/summary.json"), HasSubstr("\"status\": \"done\""));
-  EXPECT_THAT(outcome.out, HasSubstr("defect/largest"));
+  EXPECT_THAT(outcome.out, HasSubstr("open/largest"));
   EXPECT_THAT(outcome.out, HasSubstr("results in there"));
 }
 

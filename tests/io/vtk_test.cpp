@@ -214,13 +214,14 @@ TEST(Vtk, FolderThatCannotBeMadeIsAnEnvironmentError)
 TEST(Pvd, ListsTimesAndPathsThatOpen)
 {
   const ScratchFolder folder;
-  PvdSeries series(folder / "particles.pvd");
+  PvdSeries series(folder / "particles.pvd", "talus 1.2; -D 'a=\"b\"'");
   for (const Real t : {0.0, 0.1, 1.0 / 3})
     series.append(t, folder.path() / "particles" / fmt::format("a&b_{}.vtp", t));
   const auto read = read_pvd(folder / "particles.pvd");
   ASSERT_EQ(read.size(), 3u);
   EXPECT_EQ(read[2].first, 1.0 / 3);
   EXPECT_EQ(read[1].second, folder.path() / "particles/a&b_0.1.vtp");
+  EXPECT_THAT(read_whole(folder / "particles.pvd"), HasSubstr("MadeBy=\"talus 1.2; -D 'a=&quot;b&quot;'\">"));
   EXPECT_THAT(read_whole(folder / "particles.pvd"), HasSubstr("file=\"particles/a&amp;b_0.1.vtp\""));
 }
 
