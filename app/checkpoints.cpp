@@ -20,24 +20,26 @@ namespace fs = std::filesystem;
 constexpr std::int64_t format = 2;
 constexpr auto prefix = "step_", suffix = ".h5";
 
-bool is_checkpoint(const fs::path& file)
+bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
+
+/// Numbers have the same length up to a billion steps, and longer ones are newer.
+bool is_newer(const fs::path& a, const fs::path& b)
 {
-  const std::string name = file.filename().string();
-  return name.starts_with(prefix) && name.ends_with(suffix);
+  const std::string x = a.filename().string(), y = b.filename().string();
+  return std::pair(x.size(), x) > std::pair(y.size(), y);
 }
 
-/// Those in a folder, the newest first: numbers have the same length up to a billion steps, and longer ones are newer.
+/// Those in a folder, the newest first.  EnvironmentError: it is there and cannot be read.
 std::vector<fs::path> checkpoints_in(const fs::path& folder)
 {
   std::vector<fs::path> files;
-  std::error_code none_there;
-  for (const auto& entry : fs::directory_iterator(folder, none_there))
+  std::error_code trouble;
+  for (const auto& entry : fs::directory_iterator(folder, trouble))
     if (is_checkpoint(entry.path()))
       files.push_back(entry.path());
-  std::sort(files.begin(), files.end(), [](const fs::path& a, const fs::path& b) {
-    const std::string x = a.filename().string(), y = b.filename().string();
-    return std::pair(x.size(), x) > std::pair(y.size(), y);
-  });
+  if (trouble && trouble != std::errc::no_such_file_or_directory)
+    throw EnvironmentError(fmt::format("{} cannot be read: {}", folder.string(), trouble.message()));
+  std::sort(files.begin(), files.end(), is_newer);
   return files;
 }
 
@@ -150,6 +152,7 @@ template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
   require_results(folder_);
+  recorder.flush();  // what the checkpoint says is written is on the disk before it
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
   write_whole(file, [&](const fs::path& temporary) {
     ArrayWriter arrays(temporary);
@@ -169,12 +172,45 @@ void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
     fs::remove(all[i], stays);
 }
 
+std::vector<fs::path> set_aside_newer(const fs::path& folder, const fs::path& taken)
+{
+  std::vector<fs::path> aside;
+  for (const fs::path& file : checkpoints_in(folder / checkpoint_folder))
+    if (is_newer(file, taken)) {
+      aside.push_back(fs::path(file) += ".aside");
+      std::error_code stays;
+      fs::rename(file, aside.back(), stays);
+      if (stays)
+        throw EnvironmentError(fmt::format("{} cannot be renamed: {}", file.string(), stays.message()));
+    }
+  return aside;
+}
+
+namespace {
+
+/// The run whose checkpoint lies there, if it lies where a run puts it.
+std::optional<fs::path> folder_of_run(const fs::path& checkpoint)
+{
+  const fs::path place = fs::weakly_canonical(checkpoint).parent_path();
+  std::error_code not_there;
+  if (place.filename() == checkpoint_folder && fs::exists(place.parent_path() / "summary.json", not_there))
+    return place.parent_path();
+  return std::nullopt;
+}
+
+}  // namespace
+
 CheckpointList::CheckpointList(const fs::path& at)
 {
   std::error_code unreadable;
   if (!fs::exists(at, unreadable))
     throw EnvironmentError(fmt::format("{} is not there", at.string()));
-  files_ = fs::is_directory(at, unreadable) ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
+  const bool is_run = fs::is_directory(at, unreadable);
+  files_ = is_run ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
+  if (!is_run)
+    folder_ = folder_of_run(at);
+  else if (fs::exists(at / "summary.json", unreadable))
+    folder_ = at;
   if (files_.empty())
     throw EnvironmentError(fmt::format(
         "{} has no checkpoints: the run is over, or was stopped before one was due; with outputs.checkpoint.at_end it leaves one",
@@ -190,6 +226,8 @@ CheckpointList::CheckpointList(const fs::path& at)
         throw EnvironmentError(fmt::format("{} was written by version {} in format {}; this program knows format {}", file.string(),
                                            identity_.version, written_in, format));
       recall(arrays, "run", identity_);
+      recall(arrays, "clock", clock_);
+      recall(arrays, "stage", stage_);
       return;
     } catch (const EnvironmentError& e) {
       reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
@@ -197,8 +235,6 @@ CheckpointList::CheckpointList(const fs::path& at)
   }
   throw EnvironmentError(reasons);
 }
-
-fs::path CheckpointList::folder() const { return fs::absolute(files_.front()).parent_path().parent_path(); }
 
 template <class F>
 CheckpointList::Read CheckpointList::newest(F&& f) const
@@ -229,7 +265,7 @@ try {
 }  // namespace
 
 template <int D>
-void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
+fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
 {
   const auto sizes = fixed_sizes(state);
   const auto [from, reasons] = newest([&](const ArrayReader& arrays, const fs::path& file) {
@@ -240,6 +276,7 @@ void CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, con
   });
   if (!reasons.empty())
     fmt::print(stderr, "warning: {}; going on from {}\n", reasons, from.string());
+  return from;
 }
 
 template <int D>
@@ -260,8 +297,8 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
 
 template class Checkpoints<2>;
 template class Checkpoints<3>;
-template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
-template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+template fs::path CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
+template fs::path CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
 template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
 template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 

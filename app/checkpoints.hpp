@@ -78,12 +78,16 @@ class CheckpointList {
   explicit CheckpointList(const std::filesystem::path& at);
 
   const RunIdentity& identity() const noexcept { return identity_; }
-  /// Folder of the run.
-  std::filesystem::path folder() const;
-  /// Puts the newest state that is whole in the place of what is there.  One that is damaged is named on standard error, and the one before
-  /// it is taken.  EnvironmentError: none is whole and fits.
+  /// How far the run was.
+  const Clock& clock() const noexcept { return clock_; }
+  const StageState& stage() const noexcept { return stage_; }
+  std::span<const std::filesystem::path> files() const noexcept { return files_; }
+  /// Folder of the run, where they lie in one.
+  const std::optional<std::filesystem::path>& folder() const noexcept { return folder_; }
+  /// Puts the newest state that is whole in the place of what is there, and says which file had it.  One that is damaged is named on standard
+  /// error, and the one before it is taken.  EnvironmentError: none is whole and fits.
   template <int D>
-  void take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
+  std::filesystem::path take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
   /// Which file was read, and why newer ones were not.
   struct Read {
     std::filesystem::path file;
@@ -100,13 +104,20 @@ class CheckpointList {
   Read newest(F&& f) const;
 
   std::vector<std::filesystem::path> files_;
+  std::optional<std::filesystem::path> folder_;
   RunIdentity identity_;
+  Clock clock_;
+  StageState stage_;
 };
+
+/// Renames the checkpoints of a run's folder that are newer than the one it goes on from: they are of a way that is left now, or damaged, and
+/// would be taken for the newest of this one.  Returns their new names.
+std::vector<std::filesystem::path> set_aside_newer(const std::filesystem::path& folder, const std::filesystem::path& taken);
 
 extern template class Checkpoints<2>;
 extern template class Checkpoints<3>;
-extern template void CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
-extern template void CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+extern template std::filesystem::path CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
+extern template std::filesystem::path CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
 extern template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
 extern template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 

@@ -63,7 +63,9 @@ void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D
     if (audience.take_over) {
       audience.take_over(state_of(m));
       adopt_state(m);
-      audience.resumed(frame_of(m, stage_at_hand(m)));
+    }
+    audience.ready(frame_of(m, stage_at_hand(m)));
+    if (audience.take_over) {
       if (!m.stage.done)
         stage_done(finish_stage(m, stage_at_hand(m), limits, watch));
       number = m.stage.number + 1;

@@ -39,6 +39,8 @@ class HistoryWriter {
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
+  void flush() const { file_.flush(); }
+  Real last_time() const noexcept { return file_.last_time(); }  ///< of the last row there [s]
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:

@@ -10,6 +10,8 @@ namespace talus {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 /// "never", for outputs the scene does not have.
 template <class Spec>
 Real every(const std::optional<Spec>& spec)
@@ -72,8 +74,16 @@ void Recorder<D>::open(const Frame<D>& frame)
   if (outputs_.history) {
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame);
     history_state_ = history_->state();
-    files_.push_back("history.csv");
   }
+  name_lists();
+}
+
+/// Of the files the run writes those that are there from the beginning.
+template <int D>
+void Recorder<D>::name_lists()
+{
+  if (outputs_.history)
+    files_.push_back("history.csv");
   if (outputs_.particles)
     files_.push_back("particles.pvd");
   if (outputs_.mesh)
@@ -81,18 +91,55 @@ void Recorder<D>::open(const Frame<D>& frame)
 }
 
 template <int D>
-void Recorder<D>::resume(const Frame<D>& frame)
+void Recorder<D>::go_on(const Frame<D>& frame)
 {
   check_disk_space(folder_, frame, outputs_, total(stage_list_) - frame.clock.time);
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
   progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
+}
+
+template <int D>
+std::vector<std::string> Recorder<D>::resume(const Frame<D>& frame)
+{
+  go_on(frame);
+  std::vector<std::string> missing;
+  for (const std::string& file : files())
+    if (std::error_code unreadable; !fs::exists(folder_ / file, unreadable))
+      missing.push_back(fmt::format("{} is not there any more", (folder_ / file).string()));
+  if (history_ && history_time_ > elsewhere_.time && history_->last_time() != history_time_)
+    missing.push_back(fmt::format("{} lacks what was there up to t = {:.6g} s", (folder_ / "history.csv").string(), history_time_));
   particle_series_.resume(frame.clock.time);
   mesh_series_.resume(frame.clock.time);
-  for (int n = particle_files_; std::filesystem::remove(particle_file(n)); ++n) {
+  const auto check_series = [&](const PvdSeries& series, int written, const char* name) {
+    if (series.size() != static_cast<std::size_t>(written))
+      missing.push_back(fmt::format("{} names {} files, {} had been written", (folder_ / name).string(), series.size(), written));
+  };
+  if (outputs_.particles)
+    check_series(particle_series_, particle_files_ - elsewhere_.particle_files, "particles.pvd");
+  if (outputs_.mesh)
+    check_series(mesh_series_, mesh_files_ - elsewhere_.mesh_files, "mesh.pvd");
+  for (int n = particle_files_; fs::remove(particle_file(n)); ++n) {
   }
-  for (int n = mesh_files_; std::filesystem::remove(mesh_file(n)); ++n) {
+  for (int n = mesh_files_; fs::remove(mesh_file(n)); ++n) {
   }
+  return missing;
+}
+
+template <int D>
+void Recorder<D>::begin_again(const Frame<D>& frame)
+{
+  go_on(frame);
+  elsewhere_ = {static_cast<std::int64_t>(files_.size()), particle_files_, mesh_files_, frame.clock.time};
+  last_output_.clear();
+  name_lists();
+}
+
+template <int D>
+void Recorder<D>::flush() const
+{
+  if (history_)
+    history_->flush();
 }
 
 template <int D>
@@ -180,7 +227,7 @@ void Recorder<D>::write_particles_file(const Frame<D>& frame)
   particle_series_.append(frame.clock.time, file);
   particle_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
-  last_output_ = file.string();
+  last_output_ = files_.back();
 }
 
 template <int D>

@@ -41,6 +41,18 @@ struct LastSeen {
   }
 };
 
+/// What a run that goes on in a folder of its own has left in the folder that it comes from.
+struct Elsewhere {
+  std::int64_t files = 0;  ///< the first ones of all
+  int particle_files = 0, mesh_files = 0;
+  Real time = -1;  ///< rows of the history up to then [s]
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("files", &Elsewhere::files), kept("particle_files", &Elsewhere::particle_files),
+                      kept("mesh_files", &Elsewhere::mesh_files), kept("time", &Elsewhere::time)};
+  }
+};
+
 template <int D>
 class Recorder {
  public:
@@ -49,14 +61,19 @@ class Recorder {
 
   void watch(const Frame<D>& frame, Moment moment);
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
-  /// the frame is dropped.
-  void resume(const Frame<D>& frame);
+  /// the frame is dropped.  Says in words what should be there and is not.
+  std::vector<std::string> resume(const Frame<D>& frame);
+  /// Goes on from such a state with files of its own, in another folder.
+  void begin_again(const Frame<D>& frame);
+  /// What has been written is on the disk when it returns.
+  void flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
 
   const LastSeen<D>& last_seen() const noexcept { return last_; }
   std::span<const StageResult> stages() const noexcept { return stages_; }
-  const std::vector<std::string>& files() const noexcept { return files_; }  ///< relative to the folder
-  const std::string& last_output() const noexcept { return last_output_; }
+  /// Written to the folder, relative to it.
+  std::span<const std::string> files() const noexcept { return std::span(files_).subspan(static_cast<std::size_t>(elsewhere_.files)); }
+  std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
   Real output_seconds() const noexcept { return output_seconds_; }
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
@@ -77,6 +94,7 @@ class Recorder {
                       kept("last", &Recorder::last_),
                       kept("stages", &Recorder::stages_),
                       kept("files", &Recorder::files_),
+                      kept("elsewhere", &Recorder::elsewhere_),
                       kept("last_output", &Recorder::last_output_),
                       kept("bodies", &Recorder::bodies_),
                       kept("output_seconds", &Recorder::output_seconds_),
@@ -85,6 +103,8 @@ class Recorder {
 
  private:
   void open(const Frame<D>& frame);
+  void go_on(const Frame<D>& frame);
+  void name_lists();
   void warn(const Frame<D>& frame) const;
   void write(const Frame<D>& frame, bool last);
   void write_particles_file(const Frame<D>& frame);
@@ -108,7 +128,8 @@ class Recorder {
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
   std::vector<std::string> files_;
-  std::string last_output_;
+  Elsewhere elsewhere_;
+  std::string last_output_;  // relative as well
   std::vector<BodySummary> bodies_;
   Real output_seconds_ = 0, bytes_per_particle_ = 0;
 };

@@ -1,6 +1,8 @@
 #include "app/results.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +17,29 @@ namespace talus {
 
 namespace fs = std::filesystem;
 
+bool is_numbered(std::string_view name, std::string_view prefix, std::string_view suffix) noexcept
+{
+  if (!name.starts_with(prefix) || !name.ends_with(suffix) || name.size() <= prefix.size() + suffix.size())
+    return false;
+  const std::string_view number = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
+  return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+FolderLock::FolderLock(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+{
+  if (handle_ >= 0 && ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(handle_);
+    throw EnvironmentError(
+        fmt::format("another run is writing its results to {}: wait for its end, or choose another folder with --out", folder.string()));
+  }
+}
+
+FolderLock::~FolderLock()
+{
+  if (handle_ >= 0)
+    ::close(handle_);
+}
+
 namespace {
 
 /// Files that a run writes, and the pictures drawn of them.
@@ -26,15 +51,7 @@ bool is_result(const fs::path& file)
   for (const std::string_view known : names)
     if (name == known)
       return true;
-  const auto numbered = [&](std::string_view prefix, std::string_view suffix) {
-    if (!name.starts_with(prefix) || !name.ends_with(suffix) || name.size() <= prefix.size() + suffix.size())
-      return false;
-    for (const char c : std::string_view(name).substr(prefix.size(), name.size() - prefix.size() - suffix.size()))
-      if (std::isdigit(static_cast<unsigned char>(c)) == 0)
-        return false;
-    return true;
-  };
-  return numbered("particles_", ".vtp") || numbered("mesh_", ".vtu");
+  return is_numbered(name, "particles_", ".vtp") || is_numbered(name, "mesh_", ".vtu");
 }
 
 /// What a run that is killed now leaves behind of the summary it is writing.
@@ -54,7 +71,7 @@ void remove_leftovers(const fs::path& folder)
     std::error_code not_there;
     for (const auto& entry : fs::directory_iterator(place, not_there))
       if (const fs::path file = entry.path(); file.extension() == ".tmp" && (is_result(file.stem()) || file.stem().extension() == ".h5"))
-        fs::remove(file);
+        fs::remove(file, not_there);
   }
 }
 
@@ -75,10 +92,20 @@ void check_place(const fs::path& folder)
 
 }  // namespace
 
-void prepare_results(const fs::path& folder)
+void check_is_kept(const fs::path& source, const fs::path& folder)
+{
+  const fs::path cleared = fs::weakly_canonical(folder);
+  for (fs::path place = fs::weakly_canonical(source).parent_path(); place != place.parent_path(); place = place.parent_path())
+    if (place == cleared)
+      throw EnvironmentError(fmt::format("{} lies in {}, which is cleared for the results: choose another folder with --out",
+                                         source.string(), folder.string()));
+}
+
+FolderLock prepare_results(const fs::path& folder)
 try {
   check_place(folder);
   fs::create_directories(folder);
+  FolderLock lock(folder);
   if (!is_empty_but_for_leftovers(folder) && !fs::exists(folder / "summary.json"))
     throw EnvironmentError(fmt::format(
         "{} is not empty and holds no results of an earlier run (no summary.json): choose another folder with --out", folder.string()));
@@ -91,6 +118,7 @@ try {
   for (const std::string_view name : folders_of_results)
     fs::remove_all(folder / name);
   fs::remove(folder / "summary.json");  // the last: it says whose the rest is
+  return lock;
 } catch (const fs::filesystem_error& e) {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));
 }

@@ -2,6 +2,8 @@
 // The folder of a run: made, emptied of an older run's results, and known to be writable before anything is computed.
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <utility>
 
 namespace talus {
 
@@ -10,9 +12,34 @@ inline constexpr auto checkpoint_folder = "checkpoints";
 /// There too: the state of another run that this one began with, to go on without that run.
 inline constexpr auto initial_file = "initial.h5";
 
+/// prefix, digits, suffix.
+bool is_numbered(std::string_view name, std::string_view prefix, std::string_view suffix) noexcept;
+
+/// Keeps other runs out of a folder while it lives: they would take each other's results away.  Where the file system knows no such locks
+/// there is none.
+class FolderLock {
+ public:
+  FolderLock() = default;
+  /// EnvironmentError: another run has the folder.
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(FolderLock&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+  FolderLock& operator=(FolderLock&& other) noexcept
+  {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+
+ private:
+  int handle_ = -1;  // of the folder itself: no file is left behind
+};
+
 /// Makes `folder`, or clears it if it holds the results of an earlier run (it has a summary.json).
-/// EnvironmentError: it cannot be written, or holds something else, which is left alone.
-void prepare_results(const std::filesystem::path& folder);
+/// EnvironmentError: it cannot be written, another run is at work in it, or it holds something else, which is left alone.
+[[nodiscard]] FolderLock prepare_results(const std::filesystem::path& folder);
+
+/// EnvironmentError: clearing `folder` for results would take `source`, from which they are to be computed, away.
+void check_is_kept(const std::filesystem::path& source, const std::filesystem::path& folder);
 
 /// EnvironmentError: a run's folder is not there any more, or another has taken its place.  Without asking, its files would be made anew, each
 /// alone in an empty folder, and its history go on in a file that nobody finds.

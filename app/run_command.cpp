@@ -1,5 +1,9 @@
 // talus run
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <new>
 
 #include "app/checkpoints.hpp"
 #include "app/commands.hpp"
@@ -33,6 +37,51 @@ std::string with_changes(const Scene& scene)
   return text;
 }
 
+/// As a shell takes it for one word.
+std::string shell_word(const fs::path& word)
+{
+  const std::string text = word.string();
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%";
+  if (!text.empty() && text.find_first_not_of(plain) == text.npos)
+    return text;
+  std::string out = "'";
+  for (const char c : text)
+    out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+std::vector<std::string> names_of(const std::vector<fs::path>& files)
+{
+  std::vector<std::string> names;
+  for (const fs::path& file : files)
+    names.push_back(file.filename().string());
+  return names;
+}
+
+/// SceneErrors: a change of how long stages take comes too late for them.
+void check_durations(const CheckpointList& from, const std::vector<Stage>& stages, const std::vector<std::string>& changes)
+{
+  const StageState& now = from.stage();
+  std::vector<Problem> problems;
+  for (const std::string& change : changes) {
+    const bool of_time = change.starts_with("time.end="), of_stage = change.starts_with("stages[");
+    if (!of_time && !of_stage)
+      continue;
+    const auto number = of_time ? 0 : static_cast<Index>(std::strtol(change.c_str() + std::string_view("stages[").size(), nullptr, 10));
+    const Where where{"--set " + change, 0, 0, ""};
+    if (number < now.number || (number == now.number && now.done))
+      problems.push_back(
+          {where,
+           "this stage is over: what comes after it is a scene of its own, which can begin where this run ended (initial: {from: DIR})",
+           ""});
+    else if (number == now.number && change.find("residual=") == change.npos &&
+             now.begin + stages[static_cast<std::size_t>(number)].duration < from.clock().time)
+      problems.push_back({where, fmt::format("the run is at t = {:.6g} s already", from.clock().time), ""});
+  }
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+}
+
 /// One run in its folder, from mesh to summary.
 template <int D>
 class Run {
@@ -49,17 +98,17 @@ class Run {
     auto setup = set_up(scene_, mesh);
     if (quick_)
       shorten(first_step(mesh, setup), setup.stages, scene_.outputs);
-    const std::optional<fs::path> initial = setup.origin ? std::optional(setup.origin->file) : std::nullopt;
-    if (initial && !from_)
-      check_initial(*initial);
-    if (initial && from_)
+    stages_ = setup.stages;
+    if (from_)
+      check_durations(*from_, stages_, options_.set);
+    check_sources(setup);
+    if (setup.origin && from_)
       setup.origin->file = from_->identity().initial;  // what was read is the copy
     const RunIdentity identity = identity_of(mesh, setup);
     if (from_)
       compare(from_->identity(), identity);
-    prepare(mesh, setup);
-    if (const fs::path copy = folder_ / initial_file; initial && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial))
-      write_whole(copy, [&](const fs::path& temporary) { fs::copy_file(*initial, temporary); });
+    summary_ = begin_summary(scene_, mesh, setup);
+
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
@@ -73,20 +122,21 @@ class Run {
                            recorder.stage_done(result);
                            checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
                          }};
+    fs::path taken;
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.particles.size()};
-    if (from_) {
-      audience.take_over = [&](const State<D>& state) { from_->take_over(state, recorder, limits); };
-      audience.resumed = [&](const Frame<D>& frame) {
-        resumed_after_ = frame.clock.step;
-        recorder.resume(frame);
-        if (!options_.quiet)
-          fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
-                     frame.clock.step, frame.clock.time);
-      };
-    }
-    watch_.lap(build_seconds_);
+    if (from_)
+      audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
+    // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
+    audience.ready = [&](const Frame<D>& frame) {
+      prepare(frame);
+      if (from_)
+        go_on(frame, taken, recorder);
+      watch_.lap(build_seconds_);
+    };
     const auto failed = [&](const char* what, const std::string& way_back = {}) {
       std::string message = what;
+      if (!began_)
+        return message;
       if (!recorder.last_output().empty())
         message += "; last good output " + recorder.last_output();
       if (!checkpoints.last().empty())
@@ -98,19 +148,21 @@ class Run {
       }
       return message;
     };
+    const StopRequests requests;  // until the summary is written
     try {
-      const StopRequests requests;
       const FloatingPointTraps traps;
       simulate(scene_, std::move(mesh), std::move(setup), audience);
       finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {
-      const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), folder_.string());
+      const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), shell_word(folder_));
       finish(recorder, RunStatus::stopped, message);
       throw Stopped(message);
     } catch (const RunError& e) {
       throw RunError(failed(e.what(), way_back(checkpoints, recorder.last_seen().clock.step)));
     } catch (const EnvironmentError& e) {
       throw EnvironmentError(failed(e.what()));
+    } catch (const std::bad_alloc&) {
+      throw EnvironmentError(failed("not enough memory"));
     }
     if (!options_.quiet)
       fmt::print("{}results in {}\n", table(recorder), folder_.string());
@@ -137,13 +189,13 @@ class Run {
   {
     if (checkpoints.last_step() == sound || resumed_after_ == sound)
       return {};
-    std::string command = fmt::format("talus run {} --out {}{}", options_.scene.string(), folder_.string(), quick_ ? " --quick" : "");
-    if (!checkpoints.last().empty())
-      command = fmt::format("talus run --resume {}", folder_.string());
-    else if (from_)
-      command = fmt::format("talus run --resume {} --out {}", from_->folder().string(), folder_.string());
+    std::string command = fmt::format("talus run {} --out {}{}", shell_word(options_.scene), shell_word(folder_), quick_ ? " --quick" : "");
+    if (from_)
+      command = fmt::format("talus run --resume {} --out {}", shell_word(*options_.resume), shell_word(folder_));
     for (const std::string& change : options_.set)
-      command += fmt::format(" --set '{}'", change);
+      command += " --set " + shell_word(change);
+    if (!checkpoints.last().empty())  // it knows the changes
+      command = fmt::format("talus run --resume {}", shell_word(folder_));
     return fmt::format("; the state before it: {} --until {}", command, sound);
   }
 
@@ -158,37 +210,77 @@ class Run {
                  then.commit, now.commit);
   }
 
-  /// SceneErrors: what a new run begins with is among the results that it clears.
-  void check_initial(const fs::path& initial) const
+  /// Goes on in the folder of the run that it comes from.
+  bool in_place() const
   {
-    const fs::path from = fs::weakly_canonical(initial).parent_path();
-    if (from == fs::weakly_canonical(folder_) || from == fs::weakly_canonical(folder_ / checkpoint_folder))
-      throw SceneErrors(scene_.initial->where,
-                        fmt::format("{} is among the results in {}, which this run replaces: choose another folder with --out",
-                                    initial.string(), folder_.string()));
+    std::error_code not_there;
+    return from_ && from_->folder() && fs::equivalent(folder_, *from_->folder(), not_there);
+  }
+
+  /// EnvironmentError: what the run comes from would be gone with the results in its folder.
+  void check_sources(const Setup<D>& setup)
+  {
+    if (setup.origin)
+      initial_ = setup.origin->file;
+    if (in_place())
+      return;
+    if (from_)
+      for (const fs::path& file : from_->files())
+        check_is_kept(file, folder_);
+    if (initial_)
+      check_is_kept(*initial_, folder_);
   }
 
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".
-  void prepare(const Mesh<D>& mesh, const Setup<D>& setup)
+  void prepare(const Frame<D>& frame)
   {
-    stages_ = setup.stages;
-    if (std::error_code not_there; !from_ || !fs::equivalent(folder_, from_->folder(), not_there))
-      prepare_results(folder_);
-    else
+    if (in_place()) {
+      lock_ = FolderLock(folder_);
       remove_leftovers(folder_);
-    summary_ = begin_summary(scene_, mesh, setup);
+    } else {
+      lock_ = prepare_results(folder_);
+    }
+    began_ = true;
     write_summary(folder_ / "summary.json", summary_);
     write_whole(folder_ / "scene.yaml", with_changes(scene_));
-    write_msh(folder_ / "mesh.msh", mesh);
-    write_mesh<D>(folder_ / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
-    for (const std::string& warning : setup.warnings)
+    write_msh(folder_ / "mesh.msh", frame.mesh);
+    write_mesh<D>(folder_ / "mesh.vtu", 0, frame.mesh, {}, {}, summary_.made_by());
+    if (const fs::path copy = folder_ / initial_file; initial_ && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial_))
+      write_whole(copy, [&](const fs::path& temporary) {
+        std::error_code trouble;
+        fs::copy_file(*initial_, temporary, trouble);
+        if (trouble)
+          throw EnvironmentError(fmt::format("{} cannot be copied to {}: {}", initial_->string(), copy.string(), trouble.message()));
+      });
+    for (const std::string& warning : summary_.warnings)
       fmt::print(stderr, "warning: {}\n", warning);
     if (!options_.quiet)
-      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {} thread{}\n", scene_.title, setup.particles.size(),
-                 mesh.n_cells(), mesh.n_nodes(), scene_.kernel, summary_.transfer, threads(), threads() == 1 ? "" : "s");
-    if (!options_.quiet && setup.origin)
-      fmt::print("{}", describe(*setup.origin));
+      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {} thread{}\n", scene_.title, frame.particles.size(),
+                 frame.mesh.n_cells(), frame.mesh.n_nodes(), scene_.kernel, summary_.transfer, threads(), threads() == 1 ? "" : "s");
+    if (!options_.quiet && summary_.origin)
+      fmt::print("{}", describe(*summary_.origin));
     std::fflush(stdout);
+  }
+
+  void go_on(const Frame<D>& frame, const fs::path& taken, Recorder<D>& recorder)
+  {
+    resumed_after_ = frame.clock.step;
+    std::vector<std::string> news;
+    if (in_place()) {
+      if (const auto aside = set_aside_newer(folder_, taken); !aside.empty())
+        news.push_back(fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}",
+                                   taken.filename().string(), fmt::join(names_of(aside), ", ")));
+      const auto missing = recorder.resume(frame);
+      news.insert(news.end(), missing.begin(), missing.end());
+    } else {
+      recorder.begin_again(frame);
+    }
+    for (const std::string& what : news)
+      fmt::print(stderr, "warning: {}\n", what);
+    summary_.warnings.insert(summary_.warnings.end(), news.begin(), news.end());
+    if (!options_.quiet)
+      fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
+                 frame.clock.step, frame.clock.time);
   }
 
   void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
@@ -217,7 +309,10 @@ class Run {
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
   std::vector<Stage> stages_;
-  RunSummary summary_;  // as it begins
+  RunSummary summary_;               // as it begins
+  std::optional<fs::path> initial_;  // what bodies begin with
+  bool began_ = false;               // the folder is this run's
+  FolderLock lock_;
 };
 
 }  // namespace
@@ -260,8 +355,11 @@ void run_scene(const RunOptions& options)
   const Index wanted = options.threads.value_or(scene.threads);
   if (wanted > 0)
     set_threads(wanted);
+  if (from && !from->folder() && !options.out)
+    throw EnvironmentError(fmt::format("{} lies in no folder of a run (DIR/{}, with DIR/summary.json): say with --out where the results go",
+                                       options.resume->string(), checkpoint_folder));
   if (from && scene.initial) {
-    const fs::path copy = from->folder() / initial_file;
+    const fs::path copy = from->folder().value_or(options.resume->parent_path()) / initial_file;
     if (!fs::exists(copy))
       throw EnvironmentError(fmt::format("{} is not there: the state that the run began with, which it needs to go on", copy.string()));
     scene.initial->from = copy.string();
@@ -269,7 +367,7 @@ void run_scene(const RunOptions& options)
   const bool quick = from ? from->identity().quick : options.quick;
   if (quick)
     coarsen(scene);
-  const fs::path folder = options.out.value_or(from ? from->folder() : default_results(options.scene));
+  const fs::path folder = options.out ? *options.out : from ? *from->folder() : default_results(options.scene);
   const CheckpointList* const resumed = from ? &*from : nullptr;
   if (scene.dimension == 2)
     Run<2>(std::move(scene), folder, quick, options, resumed)();

@@ -14,8 +14,8 @@ struct Audience {
   std::function<void(const Frame<D>&, const StageResult&)> stage_done;
   /// If set: puts the state of an earlier run in the place of that at the start.
   std::function<void(const State<D>&)> take_over = {};
-  /// Then told what it looks like.
-  std::function<void(const Frame<D>&)> resumed = {};
+  /// Told when all is there that the run needs, before anything is done.
+  std::function<void(const Frame<D>&)> ready = [](const Frame<D>&) {};
 };
 
 /// What a model costs before it has made a step.

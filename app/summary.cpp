@@ -167,7 +167,7 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
 {
   const LastSeen<D>& last = recorder.last_seen();
   s.bodies = recorder.bodies();
-  s.files = recorder.files();
+  s.files.assign(recorder.files().begin(), recorder.files().end());
   for (const StageResult& stage : recorder.stages()) {
     const bool geostatic = stage.name == "geostatic";
     s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, geostatic ? std::optional(stage.residual) : std::nullopt,

@@ -2,6 +2,7 @@
 #include "io/csv.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -104,6 +105,7 @@ HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns) : Histor
 HistoryFile HistoryFile::resume(fs::path file, std::vector<CsvColumn> columns, Real time)
 {
   std::string rows;
+  Real last_time = -std::numeric_limits<Real>::infinity();
   if (std::error_code unreadable; fs::exists(file, unreadable)) {
     const HistoryTable old = read_history(file);
     if (old.columns != columns)
@@ -113,9 +115,12 @@ HistoryFile HistoryFile::resume(fs::path file, std::vector<CsvColumn> columns, R
       for (std::size_t c = 0; c < columns.size(); ++c)
         values[c] = old.values[c][r];
       rows += row(values);
+      last_time = values[0];
     }
   }
-  return HistoryFile(std::move(file), std::move(columns), rows);
+  HistoryFile history(std::move(file), std::move(columns), rows);
+  history.last_time_ = last_time;
+  return history;
 }
 
 void HistoryFile::append(std::span<const Real> values)
@@ -123,6 +128,13 @@ void HistoryFile::append(std::span<const Real> values)
   if (values.size() != columns_.size())
     throw std::invalid_argument(fmt::format("{}: a row of {} values for {} columns", path_.string(), values.size(), columns_.size()));
   put(row(values));
+  last_time_ = values[0];
+}
+
+void HistoryFile::flush() const
+{
+  if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL)  // of what is no file
+    throw EnvironmentError(fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));
 }
 
 void HistoryFile::put(std::string_view text)

@@ -2,6 +2,7 @@
 // Histories: a .csv whose header line names every column with its unit, one row per output time.
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -32,6 +33,9 @@ class HistoryFile {
 
   /// values: one per column.
   void append(std::span<const Real> values);
+  /// Rows are on the disk when it returns.
+  void flush() const;
+  Real last_time() const noexcept { return last_time_; }  ///< of the last row [s]; -infinity if there is none
   const std::filesystem::path& path() const noexcept { return path_; }
   std::span<const CsvColumn> columns() const noexcept { return columns_; }
 
@@ -45,6 +49,7 @@ class HistoryFile {
   std::filesystem::path path_;
   std::vector<CsvColumn> columns_;
   std::unique_ptr<std::FILE, Close> file_;
+  Real last_time_ = -std::numeric_limits<Real>::infinity();
 };
 
 /// A history as a table: values[column][row].

@@ -360,12 +360,18 @@ void PvdSeries::resume(Real time)
   for (const auto& [t, path] : read_pvd(file_))
     if (t <= time)
       entries_.emplace_back(t, path.lexically_proximate(file_.parent_path()).string());
+  save();
 }
 
 void PvdSeries::append(Real time, const fs::path& file)
 {
   drop_from(time);
   entries_.emplace_back(time, file.lexically_proximate(file_.parent_path()).string());
+  save();
+}
+
+void PvdSeries::save() const
+{
   std::string text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\"";
   if (!made_by_.empty())
     text += fmt::format(" {}=\"{}\"", origin_name, escaped(made_by_));

@@ -60,13 +60,16 @@ class PvdSeries {
   /// `made_by` is told in the list, unless it is empty.
   explicit PvdSeries(std::filesystem::path file, std::string made_by = {}) : file_(std::move(file)), made_by_(std::move(made_by)) {}
 
-  /// Takes over the entries of an older list up to `time` [s], for a run that is resumed there.  No list there: nothing to take.
+  /// Takes over the entries of an older list up to `time` [s], for a run that is resumed there, and forgets the later ones.  No list there:
+  /// nothing to take.
   void resume(Real time);
+  std::size_t size() const noexcept { return entries_.size(); }
   /// Adds a file; a path below the folder of the list is stored relative to it.  Entries that are not earlier give way.
   void append(Real time, const std::filesystem::path& file);
 
  private:
   void drop_from(Real time);
+  void save() const;
   std::filesystem::path file_;
   std::string made_by_;
   std::vector<std::pair<Real, std::string>> entries_;

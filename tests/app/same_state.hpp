@@ -26,7 +26,7 @@ inline std::vector<std::filesystem::path> files_in(const std::filesystem::path& 
 template <class F>
 void for_each_entry(const ArrayReader& file, const std::string& group, F&& f, bool really_all = false)
 {
-  static const std::set<std::string> of_the_day{"timings", "output_seconds", "last_output", "scene_file"};
+  static const std::set<std::string> of_the_day{"timings", "output_seconds", "last_output", "files", "elsewhere", "scene_file"};
   for (const std::string& name : file.names(group)) {
     const std::string path = group.empty() ? name : group + "/" + name;
     if (!really_all && of_the_day.contains(name))

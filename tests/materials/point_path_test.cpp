@@ -155,7 +155,7 @@ TEST(MaterialsPage, StrengthsUnderTheThreeMatchesAreTheMeasuredOnes)
 TEST(PointPath, UniaxialStressOfNeoHookeanSolidLeavesTheSidesFree)
 {
   const PointPath path{.steps = 20, .controls = {.xx = gradient(0.5), .yy = stress(0), .zz = stress(0)}};
-  const auto& end = drive_one(sample<NeoHookean>(), path).rows.back();
+  const auto end = drive_one(sample<NeoHookean>(), path).rows.back();
   EXPECT_NEAR(end.stress(1, 1), 0, 1e-12 * 1e7);
   // mu (l^2 - 1) + lambda ln J = 0 across, with J from F itself.
   const auto [lambda, mu] = lame(1e7, 0.3);
