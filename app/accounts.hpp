@@ -12,7 +12,7 @@ struct EnergyNow {
   Real gravity{}, loads{}, walls{};
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
-  bool remapped{};  ///< MUSL: transfer and defect are large together and nearly cancel
+  bool remapped{};  ///< MUSL: transfer and defect may be large together and nearly cancel
 
   static constexpr auto fields()
   {
@@ -31,8 +31,9 @@ struct EnergyNow {
   }
 
   Real dissipated() const noexcept { return plastic + friction + damping; }
-  /// What is judged: the defect; with MUSL, where only their sum means something, all that the numerics took.
-  Real unexplained() const noexcept { return remapped ? defect + transfer : defect; }
+  /// What is judged: the defect.  MUSL takes strain from velocities that the forces did not work on; what they did beyond it is in the
+  /// loss, with the other sign: there the defect is what is left of both, if that is less.
+  Real unexplained() const noexcept { return remapped && std::abs(defect + transfer) < std::abs(defect) ? defect + transfer : defect; }
   Real largest_term() const noexcept;
 };
 

@@ -32,7 +32,7 @@ StopRequests::StopRequests()
 StopRequests::~StopRequests()
 {
   for (const int number : requests)
-    std::signal(number, SIG_DFL);
+    std::signal(number, noted != 0 ? SIG_IGN : SIG_DFL);  // a program that was told to stop is about to end
 }
 
 std::string StopRequests::received()
