@@ -7,6 +7,7 @@
 
 #include "app/results.hpp"
 #include "app/signals.hpp"
+#include "app/sound_state.hpp"
 #include "io/kept.hpp"
 #include "io/whole_file.hpp"
 
@@ -62,13 +63,13 @@ void recall_laws(const ArrayReader& file, const std::vector<Body>& bodies, std::
   }
 }
 
-/// Sizes that set-up has decided and no state of the same scene changes.
+/// Which columns there are: set-up has decided, and no state of the same scene with particles in it has others.
 template <int D>
-std::vector<std::size_t> fixed_sizes(const State<D>& state)
+std::vector<bool> filled_columns(const Particles<D>& particles)
 {
-  std::vector<std::size_t> sizes{state.bodies.size(), state.walls.walls().size()};
-  state.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { sizes.push_back(column.empty() ? 0 : 1); });
-  return sizes;
+  std::vector<bool> there;
+  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { there.push_back(!column.empty()); });
+  return there;
 }
 
 void must(bool holds, const char* what)
@@ -77,7 +78,15 @@ void must(bool holds, const char* what)
     throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
 }
 
-/// Bodies one after the other, and as many rows in each column.
+/// A list of which set-up has as many: looked at before its items, of which not all is kept, are replaced.
+void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
+{
+  std::int64_t count = 0;
+  recall(arrays, below(list, "count"), count);
+  must(std::cmp_equal(count, n), what);
+}
+
+/// Bodies one after the other, and as many rows in each column; those that every scene needs are there.
 template <int D>
 void check_rows(const Particles<D>& particles, const std::vector<Body>& bodies)
 {
@@ -87,24 +96,34 @@ void check_rows(const Particles<D>& particles, const std::vector<Body>& bodies)
     end = body.end;
   }
   must(end == particles.size(), "bodies");
-  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
-    must(column.empty() || column.size() == particles.id.size(), "columns");
-  });
+  const std::size_t n = particles.id.size();
+  particles.for_each_column(
+      [&](std::string_view, std::string_view, const auto& column) { must(column.empty() || column.size() == n, "columns"); });
+  const auto all_there = [n](const auto&... columns) { return ((columns.size() == n) && ...); };
+  const Particles<D>& p = particles;
+  must(all_there(p.cell, p.x, p.v, p.L, p.F, p.stress, p.mass, p.volume0, p.volume), "columns");
 }
 
 /// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
 template <int D>
-void check_fit(const State<D>& state, const std::vector<std::size_t>& sizes, const StateLimits& limits)
+void check_fit(const State<D>& state, const std::vector<bool>& columns, const StateLimits& limits)
 {
   const Particles<D>& particles = state.particles;
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
-  must(fixed_sizes(state) == sizes || particles.size() == 0, "bodies, walls or columns");
+  must(filled_columns(particles) == columns || particles.size() == 0, "columns");
   must(particles.size() <= limits.particles, "bodies");
   check_rows(particles, state.bodies);
   const auto within = [](const auto& column, auto limit) {
     return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
   };
   must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
+}
+
+/// EnvironmentError: a state that nothing sound comes of.
+void refuse_if_any(const std::vector<std::string>& faults)
+{
+  if (!faults.empty())
+    throw EnvironmentError(fmt::format("{}", fmt::join(faults, "; ")));
 }
 
 }  // namespace
@@ -267,11 +286,22 @@ try {
 template <int D>
 fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
 {
-  const auto sizes = fixed_sizes(state);
+  const auto columns = filled_columns(state.particles);
   const auto [from, reasons] = newest([&](const ArrayReader& arrays, const fs::path& file) {
+    check_in(file, [&] {
+      check_count(arrays, "bodies", state.bodies.size(), "bodies");
+      check_count(arrays, "walls/wall", state.walls.walls().size(), "walls");
+    });
     for_each_part(state, [&](const std::string& name, auto& part) { recall(arrays, name, part); });
-    check_in(file, [&] { check_fit(state, sizes, limits); });
+    check_in(file, [&] { check_fit(state, columns, limits); });
     recall_laws(arrays, state.bodies, state.materials);
+    check_in(file, [&] {
+      std::vector<std::string> faults;
+      find_faults(state.clock, faults);
+      find_faults(state.stage, state.clock, faults);
+      find_faults(state.particles, state.bodies, state.materials, faults);
+      refuse_if_any(faults);
+    });
     recall(arrays, "recorder", recorder);
   });
   if (!reasons.empty())
@@ -282,16 +312,19 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
 template <int D>
 CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
 {
-  const std::size_t n_bodies = kept.bodies.size();
   return newest([&](const ArrayReader& arrays, const fs::path& file) {
+    check_in(file, [&] { check_count(arrays, "bodies", kept.bodies.size(), "bodies"); });
     recall(arrays, "clock", kept.clock);
     recall(arrays, "bodies", kept.bodies);
     recall(arrays, "particles", kept.particles);
-    check_in(file, [&] {
-      must(kept.bodies.size() == n_bodies, "bodies");
-      check_rows(kept.particles, kept.bodies);
-    });
+    check_in(file, [&] { check_rows(kept.particles, kept.bodies); });
     recall_laws(arrays, kept.bodies, kept.materials);
+    check_in(file, [&] {
+      std::vector<std::string> faults;
+      find_faults(kept.clock, faults);
+      find_faults(kept.particles, kept.bodies, kept.materials, faults);
+      refuse_if_any(faults);
+    });
   });
 }
 

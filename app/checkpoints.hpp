@@ -10,19 +10,20 @@ namespace talus {
 
 /// Which run a checkpoint belongs to.
 struct RunIdentity {
-  std::string version, commit;   ///< of the program
-  std::string scene_file;        ///< absolute path
-  std::string scene_text;        ///< as it was read
-  std::vector<std::string> set;  ///< what --set changed
+  std::string version, commit, compiler, build;  ///< of the program; `build`: its type and flags
+  std::string scene_file;                        ///< absolute path
+  std::string scene_text;                        ///< as it was read
+  std::vector<std::string> set;                  ///< what --set changed
   bool quick = false;
   std::int64_t mesh = 0;  ///< its digest
   std::string initial;    ///< checkpoint of another run that it began with, if it did
   static constexpr auto fields()
   {
     return std::tuple{
-        kept("version", &RunIdentity::version),  kept("commit", &RunIdentity::commit),  kept("scene_file", &RunIdentity::scene_file),
-        kept("scene", &RunIdentity::scene_text), kept("set", &RunIdentity::set),        kept("quick", &RunIdentity::quick),
-        kept("mesh", &RunIdentity::mesh),        kept("initial", &RunIdentity::initial)};
+        kept("version", &RunIdentity::version), kept("commit", &RunIdentity::commit),         kept("compiler", &RunIdentity::compiler),
+        kept("build", &RunIdentity::build),     kept("scene_file", &RunIdentity::scene_file), kept("scene", &RunIdentity::scene_text),
+        kept("set", &RunIdentity::set),         kept("quick", &RunIdentity::quick),           kept("mesh", &RunIdentity::mesh),
+        kept("initial", &RunIdentity::initial)};
   }
 };
 

@@ -44,7 +44,7 @@ Real plastic_work(const Frame<D>& frame)
   return total;
 }
 
-/// Columns and history of a particle [B].
+/// Columns and history of a particle [B]; 0 where there is none.
 template <int D>
 Real bytes_per_particle(const Frame<D>& frame)
 {
@@ -53,7 +53,7 @@ Real bytes_per_particle(const Frame<D>& frame)
       [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
   for (const AnyBatch& material : frame.materials)
     std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
-  return static_cast<Real>(bytes) / static_cast<Real>(frame.particles.size());
+  return static_cast<Real>(bytes) / static_cast<Real>(std::max(frame.particles.size(), Index{1}));
 }
 
 /// The body of a particle row.

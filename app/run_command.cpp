@@ -176,6 +176,8 @@ class Run {
     const Version v = version();
     return {std::string(v.number),
             std::string(v.commit),
+            std::string(v.compiler),
+            build_of(v),
             fs::absolute(scene_.file).lexically_normal().string(),
             scene_.text,
             scene_.overrides,
@@ -205,9 +207,16 @@ class Run {
     if (then.mesh != now.mesh)
       throw EnvironmentError(
           fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
-    if (then.commit != now.commit)
-      fmt::print(stderr, "warning: the checkpoint was made by commit {}, this program is {}: results may differ in the last digits\n",
-                 then.commit, now.commit);
+    std::vector<std::string> maker, here;  // what they differ in
+    for (const auto& [what, part] : {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler),
+                                     std::pair("build", &RunIdentity::build)})
+      if (then.*part != now.*part) {
+        maker.push_back(fmt::format("{} {}", what, then.*part));
+        here.push_back(fmt::format("{} {}", what, now.*part));
+      }
+    if (!maker.empty())
+      fmt::print(stderr, "warning: the checkpoint was made by {}; this program is {}: results may differ in the last digits\n",
+                 fmt::join(maker, ", "), fmt::join(here, ", "));
   }
 
   /// Goes on in the folder of the run that it comes from.

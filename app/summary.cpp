@@ -138,7 +138,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   s.overrides = scene.overrides;
   const Version v = version();
   s.version = v.number, s.commit = v.commit, s.compiler = v.compiler;
-  s.build = fmt::format("{}: {}", v.build_type, v.flags);
+  s.build = build_of(v);
   s.status = RunStatus::failed;
   s.message = "the run did not end";
   s.dimension = scene.dimension;

@@ -13,6 +13,7 @@ struct Version {
 };
 
 Version version() noexcept;
+std::string build_of(const Version&);  ///< Release: -O3 ...
 std::string describe(const Version&);  ///< one line: talus 0.1.0 (0123456789ab), GNU 12.2.0, Release: -O3 ...
 
 }  // namespace talus

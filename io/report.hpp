@@ -102,7 +102,7 @@ struct RunSummary {
 
   std::int64_t mesh_nodes{}, mesh_cells{};
   std::string scene_digest;  ///< of the text and of what changed it
-  std::string mesh_digest;   ///< of nodes and cells: runs with the same have the same mesh
+  std::string mesh_digest;   ///< of nodes, cells and groups: runs with the same have the same mesh
   std::vector<NamedValue> mesh_quality;
   std::vector<BodySummary> bodies;
   std::optional<OriginSummary> origin;

@@ -19,6 +19,28 @@ void digest_bytes(std::span<const std::byte> bytes, std::uint64_t& sum)
   }
 }
 
+/// With their number before them, so that what ends here and begins there makes a difference.
+template <class T>
+void digest_counted(std::span<const T> items, std::uint64_t& sum)
+{
+  const std::uint64_t count = items.size();
+  digest_bytes(std::as_bytes(std::span(&count, 1)), sum);
+  digest_bytes(std::as_bytes(items), sum);
+}
+
+/// Groups of one kind in the order of their names; members(name) are there for each.
+template <class Members>
+void digest_sets(const std::vector<std::string>& names, Members&& members, std::uint64_t& sum)
+{
+  const std::uint64_t count = names.size();
+  digest_bytes(std::as_bytes(std::span(&count, 1)), sum);
+  for (const std::string& name : names) {
+    const auto set = members(name);
+    digest_counted(std::span<const char>(name), sum);
+    digest_counted(std::span<const typename decltype(set)::value_type::value_type>(*set), sum);
+  }
+}
+
 }  // namespace
 
 template <int D>
@@ -27,6 +49,12 @@ std::uint64_t digest(const Mesh<D>& mesh)
   std::uint64_t sum = start;
   digest_bytes(std::as_bytes(mesh.nodes()), sum);
   digest_bytes(std::as_bytes(mesh.cells()), sum);
+  digest_sets(
+      mesh.node_set_names(), [&](const std::string& name) { return mesh.node_set(name); }, sum);
+  digest_sets(
+      mesh.facet_set_names(), [&](const std::string& name) { return mesh.facet_set(name); }, sum);
+  digest_sets(
+      mesh.cell_set_names(), [&](const std::string& name) { return mesh.cell_set(name); }, sum);
   return sum;
 }
 

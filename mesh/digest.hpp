@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Of nodes and cells, to the last bit and in their order: other meshes have another number but once in 2^64.
+/// Of nodes and cells, to the last bit and in their order, and of the groups by name: other meshes have another number but once in 2^64.
 template <int D>
 std::uint64_t digest(const Mesh<D>& mesh);
 

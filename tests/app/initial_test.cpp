@@ -2,9 +2,12 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <limits>
+#include <tuple>
 
 #include "io/array_file.hpp"
 #include "io/vtk.hpp"
+#include "tests/app/forged.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus {
@@ -413,6 +416,38 @@ TEST_F(Initial, WhatCannotBeTakenIsRefusedWithItsPlace)
   EXPECT_THAT(outcome.err, HasSubstr("first.yaml:6:10: error: initial"));
   EXPECT_THAT(outcome.err, HasSubstr(file + " is among the results in first, which this run replaces: choose another folder with --out\n"));
   EXPECT_FALSE(checkpoints("first").empty());
+}
+
+TEST_F(Initial, CheckpointsThatNoSoundRunHasWrittenAreRefused)
+{
+  run_well("first", {});
+  const fs::path good = checkpoints("first").back(), file = folder_ / "forged.h5";
+  const auto refused_as = [&](auto&& change) {
+    fs::copy_file(good, file, fs::copy_options::overwrite_existing);
+    change();
+    return refusal(second("", "forged.h5"));
+  };
+  constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+  for (const std::string column :
+       {"all", "particles/id", "particles/position", "particles/velocity", "particles/velocity_gradient", "particles/deformation_gradient",
+        "particles/stress", "particles/mass", "particles/volume0", "particles/volume"})
+    EXPECT_THAT(refused_as([&] { forge_empty(file, column); }),
+                testing::ContainsRegex("refused.yaml:6:10: error: initial.from: forged.h5: its (bodies|columns) do not fit the scene\n"))
+        << column;
+  EXPECT_THAT(refused_as([&] { forge_value(file, "bodies/count", 0, 0); }), HasSubstr("forged.h5: its bodies do not fit the scene\n"));
+  const std::string who = "refused.yaml:6:10: error: initial.from: forged.h5: particle [0-9]+ of \"bank\" .*at \\(.*\\): ";
+  for (const auto& [path, value, fault] :
+       std::vector<std::tuple<std::string, Real, std::string>>{{"particles/velocity", nan, "velocity is not finite"},
+                                                               {"particles/stress", nan, "stress is not finite"},
+                                                               {"particles/mass", -1, "mass is -1 kg, not above 0"},
+                                                               {"particles/volume", 0, "volume is 0 m\\^2, not above 0"},
+                                                               {"particles/deformation_gradient", -1, "det F is -[0-9.e-]+, not above 0"},
+                                                               {"laws/history/0/plastic_strain", nan, "plastic_strain is not finite"}}) {
+    const std::string& at = path;
+    const Real forged = value;
+    EXPECT_THAT(refused_as([&] { forge_value(file, at, 0, forged); }), testing::ContainsRegex(who + fault)) << path;
+  }
+  EXPECT_THAT(refused_as([&] { forge_value(file, "clock/time", 0, nan); }), HasSubstr("forged.h5: clock/time is nan s"));
 }
 
 TEST_F(Initial, DisplacementMustHaveBeenKept)

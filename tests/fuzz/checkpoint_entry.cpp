@@ -1,4 +1,5 @@
-// A small state is kept as a run keeps it; lines change what is in the file, whose digests are made anew, and the file is taken over.
+// A small state is kept as a run keeps it; lines change what is in the file, whose digests are made anew.  The file is taken over by a run
+// that goes on, and its bodies are read as by a scene that begins with them.
 //
 //   number PATH I VALUE    value I of an array            columns PATH N    another width
 //   rows PATH N            so many values                 text PATH WORDS   another text, or a text in place of numbers
@@ -6,8 +7,6 @@
 //   byte I VALUE           of the file itself, its digests left as they are
 //
 // A PATH that is not there is taken for the number of one.
-#include <unistd.h>
-
 #include <charconv>
 #include <optional>
 #include <sstream>
@@ -17,6 +16,7 @@
 #include "core/error.hpp"
 #include "io/whole_file.hpp"
 #include "mesh/generate.hpp"
+#include "mesh/simplex.hpp"
 #include "tests/fuzz/entries.hpp"
 #include "tests/fuzz/memory_file.hpp"
 
@@ -25,6 +25,47 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// A folder in memory, one for all runs of the process.
+const fs::path& run_folder()
+{
+  static const struct Folder {
+    fs::path path = MemoryFile().path();
+    Folder()
+    {
+      fs::create_directories(path);
+      write_whole(path / "summary.json", "{}\n");  // as every run begins
+    }
+    ~Folder()
+    {
+      std::error_code stays;
+      fs::remove_all(path, stays);
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+  } folder;
+  return folder.path;
+}
+
+OutputSpec small_outputs()
+{
+  PointSpec point;
+  point.name = "top";
+  point.at = {0.3, 0.6};
+  OutputSpec outputs;
+  outputs.history.emplace();
+  outputs.history->every = 0.1;
+  outputs.history->points.push_back(std::move(point));
+  return outputs;
+}
+
+std::vector<Stage> small_stages()
+{
+  std::vector<Stage> stages(1);
+  stages[0].name = "the only";
+  stages[0].duration = 1;
+  return stages;
+}
 
 /// All that a checkpoint is of.
 struct SmallRun {
@@ -45,30 +86,45 @@ struct SmallRun {
   Guards guards{};
   Timings timings{};
   Real residual = 0, crossing = 1;
-  OutputSpec outputs;
-  std::vector<Stage> stages{Stage{}};
-  Recorder<2> recorder{"", outputs, stages, true, ""};
+  OutputSpec outputs = small_outputs();
+  std::vector<Stage> stages = small_stages();
+  Recorder<2> recorder{run_folder(), outputs, stages, true, ""};
+  std::vector<Index> row_of_id;
   StateLimits limits{mesh.n_cells(), 1, n_particles};
 
   SmallRun()
   {
     const auto make_room = [](auto&... columns) { (columns.resize(n_particles), ...); };
     Particles<2>& p = particles;
-    make_room(p.id, p.cell, p.x, p.v, p.L, p.F, p.stress, p.volume0, p.volume, p.mass);
+    make_room(p.id, p.cell, p.x, p.x0, p.v, p.L, p.F, p.stress, p.volume0, p.volume, p.mass);
     for (std::size_t row = 0; row < n_particles; ++row) {
       p.id[row] = static_cast<std::int64_t>(row);
       p.cell[row] = static_cast<Index>(row);
+      p.x[row] = p.x0[row] = centroid<2>(mesh.corners(p.cell[row]));
+      p.v.set(row, Vec<2>::Zero());
+      p.L.set(row, Mat<2>::Zero());
+      p.F.set(row, Mat3::Identity());
+      p.stress.set(row, Sym3::Zero());
+      p.volume0[row] = p.volume[row] = 0.1;
+      p.mass.set(row, 100);
     }
+    index_particles();
     const std::vector<Index> held{0, 1};
     Wall<2> floor;
     floor.name = "floor";
     floor.kind = WallKind::fixed;
     walls.add(std::move(floor), mesh, held);
   }
+  void index_particles()
+  {
+    row_of_id.assign(n_particles, none);
+    for (Index row = 0; row < particles.size(); ++row)
+      row_of_id[static_cast<std::size_t>(particles.id[static_cast<std::size_t>(row)])] = row;
+  }
   Frame<2> frame() const
   {
-    return {mesh,       particles, bodies, materials, nodes,    walls,   loads,  {},      clock,    stage,
-            "the only", 0,         energy, mass,      momentum, watched, guards, timings, residual, crossing};
+    return {mesh,       particles, bodies, materials, nodes,    walls,   loads,  row_of_id, clock,    stage,
+            "the only", 0,         energy, mass,      momentum, watched, guards, timings,   residual, crossing};
   }
   State<2> state()
   {
@@ -76,22 +132,48 @@ struct SmallRun {
   }
 };
 
+/// As a run goes on.
+void go_on(const CheckpointList& checkpoints)
+{
+  SmallRun run;
+  checkpoints.take_over(run.state(), run.recorder, run.limits);
+  run.index_particles();
+  run.recorder.resume(run.frame());
+}
+
+/// As a scene begins with the bodies: each row is read.
+void begin_with(const CheckpointList& checkpoints)
+{
+  KeptBodies<2> kept;
+  kept.bodies = {{"block", 0, 0, {}}};
+  kept.materials.push_back(make_any_batch(VonMises{}, 0, 0, "steel"));
+  checkpoints.read(kept);
+  const Particles<2>& p = kept.particles;
+  volatile Real sum = 0;  // so that it is worked out
+  for (const Body& body : kept.bodies)
+    for (Index i = body.begin; i < body.end; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      sum = sum + static_cast<Real>(p.id[row]) + p.x[row].sum() + p.v[row].sum() + p.L[row].sum() + p.F[row].sum() + p.stress[row].sum() +
+            p.mass[row] + p.volume0[row] + p.volume[row];
+    }
+}
+
 /// The file that a run would leave.
 std::string good_checkpoint()
 {
-  const fs::path folder = fs::temp_directory_path() / ("talus_fuzz_" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  write_whole(folder / "summary.json", "{}\n");  // as every run begins
   SmallRun run;
   CheckpointSpec every_step;
   every_step.steps = 1;
-  Checkpoints<2> checkpoints(folder, every_step, {"0.1", "commit", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, ""});
+  Checkpoints<2> checkpoints(run_folder(), every_step,
+                             {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, ""});
+  run.recorder.watch(run.frame(), Moment::stage_begins);
   checkpoints.see(run.frame(), run.recorder);
   ++run.clock.step;
   checkpoints.see(run.frame(), run.recorder);
-  std::string bytes = read_whole(checkpoints.last());
-  fs::remove_all(folder);
-  return bytes;
+  const CheckpointList good(checkpoints.last());  // refused, it would be of no use to what follows
+  go_on(good);
+  begin_with(good);
+  return read_whole(checkpoints.last());
 }
 
 using Values = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int32_t>, std::vector<std::int64_t>,
@@ -286,12 +368,11 @@ class Recipe {
 void fuzz_checkpoint(std::string_view bytes)
 {
   const MemoryFile file(bytes.starts_with("\x89HDF") ? std::string(bytes) : Recipe(bytes).cooked());
-  SmallRun run;
-  try {
-    const CheckpointList checkpoints(file.path());
-    checkpoints.take_over(run.state(), run.recorder, run.limits);
-  } catch (const EnvironmentError&) {
-  }
+  for (const auto& way : {go_on, begin_with})
+    try {
+      way(CheckpointList(file.path()));
+    } catch (const EnvironmentError&) {
+    }
 }
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 
 #include <numeric>
 #include <random>
+#include <set>
 
 #include "mesh/digest.hpp"
 #include "mesh/generate.hpp"
@@ -82,6 +83,30 @@ TEST(MeshDigest, NoticesTheLastBit)
   moved.nodes[4][1] = std::nextafter(moved.nodes[4][1], 9);
   EXPECT_NE(digest(Mesh<2>(moved)), before);
   EXPECT_NE(digest(Mesh<2>(plane(4))), before);
+}
+
+TYPED_TEST(MeshOf, DigestNoticesGroups)
+{
+  constexpr int D = TypeParam::value;
+  const MeshData<D> data = sample<D>();
+  std::set<std::uint64_t> seen{digest(Mesh<D>(data))};
+  EXPECT_EQ(digest(Mesh<D>(data)), *seen.begin());
+  const auto is_another = [&](auto&& change) {
+    MeshData<D> changed = data;
+    change(changed);
+    return seen.insert(digest(Mesh<D>(std::move(changed)))).second;
+  };
+  EXPECT_TRUE(is_another([](auto& d) { d.facet_sets["x_nim"] = d.facet_sets.at("x_min"), d.facet_sets.erase("x_min"); })) << "another name";
+  EXPECT_TRUE(is_another([](auto& d) { std::swap(d.facet_sets.at("x_min"), d.facet_sets.at("x_max")); })) << "names change places";
+  EXPECT_TRUE(is_another([](auto& d) { d.facet_sets.at("x_min").pop_back(); })) << "one facet less";
+  EXPECT_TRUE(is_another([](auto& d) { d.facet_sets.erase("x_min"); }));
+  EXPECT_TRUE(is_another([](auto& d) { d.cell_sets["part"] = {0, 1}; }));
+  EXPECT_TRUE(is_another([](auto& d) { d.cell_sets["part"] = {0, 2}; }));
+  EXPECT_TRUE(is_another([](auto& d) { d.node_sets["part"] = {0}; }));
+  EXPECT_TRUE(is_another([](auto& d) { d.node_sets["part"] = {1}; }));
+  EXPECT_TRUE(is_another([](auto& d) { d.node_sets["trap"] = {1}; }));
+  EXPECT_FALSE(is_another([](auto& d) { std::reverse(d.cell_sets.at("all").begin(), d.cell_sets.at("all").end()); }))
+      << "a group has no order";
 }
 
 TYPED_TEST(MeshOf, VolumesArePositiveAndSumToTheBox)

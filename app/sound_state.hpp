@@ -1,0 +1,22 @@
+#pragma once
+// Whether a state that a file holds is one that a run can go on from: what its numbers are, not how many.
+#include <string>
+#include <vector>
+
+#include "materials/batch.hpp"
+#include "solver/model.hpp"
+
+namespace talus {
+
+/// Adds to `faults`, in words, what no sound run has.
+void find_faults(const Clock& clock, std::vector<std::string>& faults);
+void find_faults(const StageState& stage, const Clock& now, std::vector<std::string>& faults);
+/// Of each fault the first particle.  Bodies, histories and the rows of columns fit together.
+template <int D>
+void find_faults(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
+                 std::vector<std::string>& faults);
+
+extern template void find_faults<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
+extern template void find_faults<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
+
+}  // namespace talus
