@@ -1,6 +1,9 @@
 // What going on does with the files that are there: nothing of them is lost, and nothing of another way of the run is taken for its own.
 #include <gmock/gmock.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "tests/app/program.hpp"
 #include "tests/app/same_state.hpp"
 
@@ -157,13 +160,29 @@ TEST_F(Resume, TwoRunsDoNotWriteToOneFolder)
   EXPECT_FALSE(checkpoints("both").empty());
 }
 
-TEST_F(Resume, WhatCannotBeRunCostsNoResults)
+/// Triangles around one node, more than kernel umls has room for.
+std::string fan(int triangles)
 {
-  std::string large = scene();
-  large.replace(large.find("cells: [8, 8]"), 13, "cells: [400, 400]");
-  write("large.yaml", large + "kernel: umls\n");
-  const Outcome outcome = talus("info >info.txt; (ulimit -v 600000; '" TALUS_BINARY "' run large.yaml --quiet --out out --threads 1)");
-  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  std::string nodes = "1 1 1 0\n", cells;
+  for (int i = 0; i < triangles; ++i) {
+    const Real angle = 2 * std::numbers::pi * i / triangles;
+    nodes += fmt::format("{} {} {} 0\n", i + 2, 1 + 3 * std::cos(angle), 1 + 3 * std::sin(angle));
+    cells += fmt::format("{} 2 2 1 1 1 {} {}\n", i + 1, i + 2, (i + 1) % triangles + 2);
+  }
+  return fmt::format("$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n{}\n{}$EndNodes\n$Elements\n{}\n{}$EndElements\n", triangles + 1, nodes,
+                     triangles, cells);
+}
+
+TEST_F(Resume, WhatAKernelRefusesCostsNoResults)
+{
+  write("fan.msh", fan(200));
+  std::string refused = scene();
+  const std::string grid = "{grid: {low: [0, 0], high: [2, 2], cells: [8, 8]}}", floor = "boundaries: [{type: fixed, on: y_min}]\n";
+  refused.replace(refused.find(grid), grid.size(), "{file: fan.msh}").erase(refused.find(floor), floor.size());
+  write("fan.yaml", refused + "kernel: umls\n");
+  const Outcome outcome = talus("run fan.yaml --quiet --out out");
+  EXPECT_EQ(outcome.code, 2) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("kernel umls: cell"));
   EXPECT_TRUE(exists("out/history.csv"));
   EXPECT_THAT(read("out/summary.json"), HasSubstr("\"status\": \"done\""));
 }
