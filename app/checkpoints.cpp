@@ -248,6 +248,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
   const std::size_t n_bodies = kept.bodies.size();
   return newest([&](const ArrayReader& arrays, const fs::path& file) {
     recall(arrays, "clock", kept.clock);
+    recall(arrays, "stage", kept.stage);
     recall(arrays, "bodies", kept.bodies);
     recall(arrays, "particles", kept.particles);
     check_in(file, [&] {
