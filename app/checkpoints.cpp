@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 2;
+constexpr std::int64_t format = 3;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file)

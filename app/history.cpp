@@ -106,7 +106,7 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
     row.push_back(sums.angular[d]);
   put<D>(frame.particles.size() > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(not_there)), row);
   const EnergyNow e = accounts.energy(frame);
-  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer,
+  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
                          e.defect, frame.residual});
   const Real elapsed = clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {

@@ -28,7 +28,7 @@ std::vector<CsvColumn> common_columns(int dimension)
   for (std::size_t d = dimension == 2 ? 2 : 0; d < 3; ++d)
     all.push_back({fmt::format("angular_momentum_{}", axis_names[d]), "kg m^2/s"});
   add_vector(all, "centre_", dimension, "m");
-  for (const char* energy : {"kinetic", "strain", "plastic", "friction", "damping", "gravity_work", "load_work",
+  for (const char* energy : {"kinetic", "strain", "plastic", "friction", "damping", "carried_away", "gravity_work", "load_work",
                              "wall_work", "transfer_loss", "energy_defect"})
     all.push_back({energy, "J"});
   all.push_back({"residual"});
