@@ -9,7 +9,7 @@ namespace talus {
 Real EnergyNow::largest_term() const noexcept
 {
   Real largest = 0;
-  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, gravity, loads, walls})
+  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -51,6 +51,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
     } else {
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
       before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
+      before_.carried_away += stage_.carried_away, before_.plastic_deleted += stage_.plastic_deleted;
       transfer_before_ += stage_.transfer(kinetic_end_);
       taken_out_before_ += taken_out_;
     }
@@ -72,16 +73,17 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
   now.remapped = e.remapped;
   now.kinetic_start = kinetic_begin_;
   now.kinetic = totals(frame.particles).kinetic;
-  now.plastic = plastic_work(frame) - plastic_begin_;
+  now.plastic = plastic_work(frame) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;
   now.strain = before_.internal + e.internal - now.plastic;
   now.friction = 0 - before_.friction - e.friction;  // 0 - 0 is not -0
   now.damping = taken_out_before_ + taken_out_ - before_.damping - e.damping;
+  now.carried_away = before_.carried_away + e.carried_away;
   now.gravity = before_.gravity + e.gravity;
   now.loads = before_.loads + e.loads;
   now.walls = before_.walls + e.walls;
   now.transfer = transfer_before_ + e.transfer(now.kinetic + taken_out_);
   now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction -
-               now.damping - now.transfer;
+               now.damping - now.carried_away - now.transfer;
   return now;
 }
 

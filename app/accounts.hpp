@@ -5,10 +5,11 @@
 namespace talus {
 
 /// Energies since the start of the run [J].  Works are signed as done on the bodies; losses are positive.
-/// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + transfer + defect.
+/// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + carried_away + transfer + defect.
 struct EnergyNow {
-  Real kinetic_start{}, kinetic{}, strain{}, plastic{};
-  Real friction{}, damping{};  ///< damping: with the motion that is taken out at the end of a geostatic stage
+  Real kinetic_start{}, kinetic{}, strain{}, plastic{};  ///< strain, plastic: of deleted particles too
+  Real friction{}, damping{};                            ///< damping: with the motion that is taken out at the end of a geostatic stage
+  Real carried_away{};                                   ///< kinetic energy of what left the mesh or failed, and was deleted
   Real gravity{}, loads{}, walls{};
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
@@ -22,6 +23,7 @@ struct EnergyNow {
                       kept("plastic", &EnergyNow::plastic),
                       kept("friction", &EnergyNow::friction),
                       kept("damping", &EnergyNow::damping),
+                      kept("carried_away", &EnergyNow::carried_away),
                       kept("gravity", &EnergyNow::gravity),
                       kept("loads", &EnergyNow::loads),
                       kept("walls", &EnergyNow::walls),

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 2;
+constexpr std::int64_t format = 3;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
@@ -315,6 +315,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
   return newest([&](const ArrayReader& arrays, const fs::path& file) {
     check_in(file, [&] { check_count(arrays, "bodies", kept.bodies.size(), "bodies"); });
     recall(arrays, "clock", kept.clock);
+    recall(arrays, "stage", kept.stage);
     recall(arrays, "bodies", kept.bodies);
     recall(arrays, "particles", kept.particles);
     check_in(file, [&] { check_rows(kept.particles, kept.bodies); });

@@ -70,6 +70,7 @@ struct KeptBodies {
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
   Clock clock;
+  StageState stage;
 };
 
 /// Checkpoints to go on from, the newest first.

@@ -301,6 +301,15 @@ std::vector<Snapshot> mesh_fields_in(const fs::path& file)
   return snapshots;
 }
 
+/// Columns are told apart by their names.
+void check_different(const std::vector<CsvColumn>& columns, const fs::path& file)
+{
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t earlier = 0; earlier < c; ++earlier)
+      if (columns[c].name == columns[earlier].name)
+        throw Error(fmt::format("{}: columns {} and {} are both called \"{}\"", file.string(), earlier + 1, c + 1, columns[c].name));
+}
+
 FieldTable compare_histories(const RunFolders& folders, const DiffOptions& options)
 {
   FieldTable table{"history", "row"};
@@ -313,6 +322,7 @@ FieldTable compare_histories(const RunFolders& folders, const DiffOptions& optio
         throw Error(fmt::format("{}: its first column is not the time", file.string()));
       times[r] = histories[r].values.front();
       check_ascending(times[r], file);
+      check_different(histories[r].columns, file);
       for (std::size_t c = 1; c < histories[r].columns.size(); ++c)
         note_field(table, r, histories[r].columns[c].name, {histories[r].columns[c].unit, 1}, histories[r].values[c]);
     }

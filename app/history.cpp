@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <numeric>
 
+#include "io/history_columns.hpp"
+
 namespace talus {
 
 namespace {
 
-constexpr std::array<std::string_view, 3> axes{"x", "y", "z"};
-constexpr std::array<std::string_view, 6> stresses{"sxx", "syy", "szz", "sxy", "syz", "sxz"};
 constexpr Real not_there = std::numeric_limits<Real>::quiet_NaN();
 
 /// f(row) for the particles of one body, or of all.
@@ -65,30 +65,14 @@ Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particl
 template <int D>
 std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, const Frame<D>& start)
 {
-  std::vector<CsvColumn> all{{"time", "s"}, {"step"}, {"dt", "s"}, {"stage"}, {"mass", "kg"}};
-  const auto vector = [&](const std::string& prefix, const std::string& unit) {
-    for (std::size_t d = 0; d < D; ++d)
-      all.push_back({fmt::format("{}{}", prefix, axes[d]), unit});
-  };
-  vector("momentum_", "kg m/s");
-  for (std::size_t d = D == 2 ? 2 : 0; d < 3; ++d)
-    all.push_back({fmt::format("angular_momentum_{}", axes[d]), "kg m^2/s"});
-  vector("centre_", "m");
-  for (const char* energy :
-       {"kinetic", "strain", "plastic", "friction", "damping", "gravity_work", "load_work", "wall_work", "transfer_loss", "energy_defect"})
-    all.push_back({energy, "J"});
-  all.push_back({"residual"});
+  std::vector<CsvColumn> all = common_columns(D);
+  const auto add = [&](const std::vector<CsvColumn>& more) { all.insert(all.end(), more.begin(), more.end()); };
   for (const Wall<D>& wall : start.walls.walls())
-    vector(fmt::format("reaction_{}_", wall.name), "N");
-  for (const PointSpec& point : spec.points) {
-    vector(point.name + "_", "m");
-    vector(point.name + "_u", "m");
-    vector(point.name + "_v", "m/s");
-    for (const auto stress : stresses)
-      all.push_back({fmt::format("{}_{}", point.name, stress), "Pa"});
-  }
+    add(reaction_columns(wall.name, D));
+  for (const PointSpec& point : spec.points)
+    add(columns_of(point, D));
   for (const FrontSpec& front_spec : spec.fronts)
-    all.push_back({front_spec.name, "m"});
+    add(columns_of(front_spec));
   return all;
 }
 
@@ -122,8 +106,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
     row.push_back(sums.angular[d]);
   put<D>(frame.particles.size() > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(not_there)), row);
   const EnergyNow e = accounts.energy(frame);
-  row.insert(row.end(),
-             {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.gravity, e.loads, e.walls, e.transfer, e.defect, frame.residual});
+  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
+                         e.defect, frame.residual});
   const Real elapsed = clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
     const Vec<D>& impulse = frame.walls.walls()[w].impulse;

@@ -27,9 +27,7 @@ struct HistoryState {
   }
 };
 
-/// Columns: time, step, dt, stage; mass, momentum, angular momentum, centre of mass; the terms of EnergyNow; the residual; for each
-/// wall `reaction_<wall>_x` ..., its mean force on the bodies since the row before; for each point its position, displacement (u),
-/// velocity (v) and stress (s); each front.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
+/// Columns: those of io/history_columns.hpp.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
 /// deleted, the front of an empty body, the centre of mass of nothing.
 template <int D>
 class HistoryWriter {

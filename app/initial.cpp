@@ -84,14 +84,27 @@ KeptBodies<D> bodies_of(const Scene& scene)
   return kept;
 }
 
+/// Whether the state is the one that a stage ended with, or a later stage began with.
 template <int D>
-void warn(const Scene& scene, const RunIdentity& identity, const CheckpointList::Read& read, std::vector<std::string>& warnings)
+bool ends_a_stage(const KeptBodies<D>& there)
+{
+  return there.stage.done || (there.stage.number > 0 && there.clock.step == there.stage.first_step);
+}
+
+template <int D>
+void warn(const Scene& scene, const RunIdentity& identity, const CheckpointList::Read& read, const KeptBodies<D>& there,
+          std::vector<std::string>& warnings)
 {
   const std::string where = to_string(scene.initial->where);
   if (!read.reasons.empty())
     warnings.push_back(fmt::format("{}: {}; taking {}", where, read.reasons, read.file.string()));
   if (identity.quick)
     warnings.push_back(fmt::format("{}: {} was left by a quick run, coarse and short", where, read.file.string()));
+  if (!ends_a_stage(there))
+    warnings.push_back(fmt::format(
+        "{}: {} is the state after step {}, t = {:.6g} s, before its stage was over: of a run on its way, stopped or failed, or "
+        "one that did not keep its end; with outputs.checkpoint.at_end a run keeps it",
+        where, read.file.string(), there.clock.step, there.clock.time));
   if (const auto* stage = scene.stages.empty() ? nullptr : std::get_if<GeostaticSpec>(&scene.stages.front());
       stage != nullptr && stage->ramp > 0)
     warnings.push_back(
@@ -118,7 +131,7 @@ std::optional<InitialState<D>> find_initial_state(const Scene& scene, Complaints
     InitialState<D> state;
     state.there = bodies_of<D>(other);
     const CheckpointList::Read read = list.read(state.there);
-    warn<D>(scene, identity, read, warnings);
+    warn(scene, identity, read, state.there, warnings);
     state.source = match_bodies(scene, names_of(other.bodies), read.file.string(), complaints);
     state.origin = {.file = fs::absolute(read.file).string(),
                     .title = other.title,

@@ -32,8 +32,15 @@ std::string with_changes(const Scene& scene)
   std::string text = scene.text;
   if (!scene.overrides.empty())
     text += "\n# Run with changes:\n";
-  for (const std::string& change : scene.overrides)
-    text += fmt::format("#   --set '{}'\n", change);
+  for (const std::string& change : scene.overrides) {
+    text += "#   --set '";
+    for (const char c : change) {
+      text += c;
+      if (c == '\n' || c == '\r')
+        text += "#   ";  // a line of its own, and a comment too
+    }
+    text += "'\n";
+  }
   return text;
 }
 

@@ -7,6 +7,7 @@
 #include "app/fields.hpp"
 #include "app/guards.hpp"
 #include "app/seed.hpp"
+#include "io/history_columns.hpp"
 #include "io/scene_rules.hpp"
 
 namespace talus {
@@ -50,12 +51,12 @@ class Filled {
   std::vector<std::uint8_t> filled_;
 };
 
-/// Boundaries -> walls, whose names are those of their groups, numbered where one group has several.
+/// Boundaries, one after the other -> walls.
 template <int D>
 class WallBuilder {
  public:
-  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Complaints& complaints, Walls<D>& walls)
-      : mesh_(mesh), has_particles_(has_particles), complaints_(complaints), walls_(walls)
+  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, std::vector<std::string> names, Complaints& complaints, Walls<D>& walls)
+      : mesh_(mesh), has_particles_(has_particles), names_(std::move(names)), complaints_(complaints), walls_(walls)
   {}
 
   void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
@@ -78,9 +79,8 @@ class WallBuilder {
   template <class Spec>
   Wall<D> wall_of(const Spec& spec, WallKind kind)
   {
-    const auto count = ++times_[spec.on];
     Wall<D> wall;
-    wall.name = count == 1 ? spec.on : fmt::format("{}_{}", spec.on, count);
+    wall.name = names_[next_++];
     wall.kind = kind;
     wall.where = spec.where;
     return wall;
@@ -104,9 +104,10 @@ class WallBuilder {
 
   const Mesh<D>& mesh_;
   const Filled<D>& has_particles_;
+  std::vector<std::string> names_;  // of the walls, in the order of the boundaries
+  std::size_t next_ = 0;
   Complaints& complaints_;
   Walls<D>& walls_;
-  std::map<std::string, int> times_;
 };
 
 template <int D>
@@ -283,7 +284,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   setup.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
   const Filled<D> has_particles(mesh, setup.particles);
-  WallBuilder<D> walls(mesh, has_particles, complaints, setup.walls);
+  WallBuilder<D> walls(mesh, has_particles, wall_names(scene.boundaries), complaints, setup.walls);
   for (const BoundarySpec& boundary : scene.boundaries)
     std::visit(walls, boundary);
   LoadBuilder<D> loads(mesh, has_particles, complaints, setup);

@@ -20,10 +20,11 @@ EnergyNow balance_of(const StageResult& stage)
   now.remapped = e.remapped;
   now.kinetic_start = e.kinetic_start;
   now.kinetic = stage.kinetic_end;
-  now.plastic = stage.plastic_end - e.plastic_start;
+  now.plastic = stage.plastic_end - e.plastic_start + e.plastic_deleted;
   now.strain = e.internal - now.plastic;
   now.friction = 0 - e.friction;  // not -0
   now.damping = 0 - e.damping;
+  now.carried_away = e.carried_away;
   now.gravity = e.gravity;
   now.loads = e.loads;
   now.walls = e.walls;
@@ -32,7 +33,7 @@ EnergyNow balance_of(const StageResult& stage)
   return now;
 }
 
-std::array<std::pair<std::string_view, Real>, 11> terms_of(const EnergyNow& e)
+std::array<std::pair<std::string_view, Real>, 12> terms_of(const EnergyNow& e)
 {
   return {{{"gravity_work", e.gravity},
            {"load_work", e.loads},
@@ -43,6 +44,7 @@ std::array<std::pair<std::string_view, Real>, 11> terms_of(const EnergyNow& e)
            {"plastic", e.plastic},
            {"friction", e.friction},
            {"damping", e.damping},
+           {"carried_away", e.carried_away},
            {"transfer_loss", e.transfer},
            {"energy_defect", e.defect}}};
 }

@@ -1,14 +1,14 @@
-"""Reads particle files (.vtp) as talus writes them: appended raw data, LZ4 blocks, 64-bit headers."""
+"""Reads particle files (.vtp) and mesh files (.vtu) as talus writes them: appended raw data, LZ4 blocks, 64-bit headers."""
 import xml.etree.ElementTree as tree
 
 import lz4.block
 import numpy as np
 
-TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8"}
+TYPES = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "u1"}
 
 
 def read(path):
-    """Point data and 'Points' of a file as {name: array of shape (n,) or (n, components)}.
+    """Point data, 'Points' and, of a mesh, 'connectivity', 'offsets' and 'types' of a file as {name: array of shape (n,) or (n, components)}.
 
     Raises ValueError for another encoding than the one talus writes (VTK file formats, section 'XML file formats').
     """
@@ -18,8 +18,9 @@ def read(path):
     if not mark or b"vtkLZ4DataCompressor" not in head or b'header_type="UInt64"' not in head:
         raise ValueError(f"{path}: not a file with appended raw LZ4 data and 64-bit headers")
     root = tree.fromstring(head + b"</VTKFile>")
-    piece = root.find("PolyData/Piece")
-    return {array.get("Name"): _array(array, appended, start) for array in [*piece.find("PointData"), *piece.find("Points")]}
+    piece = root.find("*/Piece")
+    arrays = [*piece.find("PointData"), *piece.find("Points"), *piece.findall("Cells/DataArray")]
+    return {array.get("Name"): _array(array, appended, start) for array in arrays}
 
 
 def _array(node, appended, start):

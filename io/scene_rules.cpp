@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
 #include "core/words.hpp"
+#include "io/history_columns.hpp"
 #include "kernels/kernels.hpp"
 
 namespace talus {
@@ -248,6 +250,42 @@ class Rules {
       if (scene_.dimension == 2 && (direction == Direction::z_plus || direction == Direction::z_minus))
         add(path + ".direction", "there is no z in 2 dimensions");
     }
+    if (scene_.dimension == 2 || scene_.dimension == 3)
+      different_columns(history);
+  }
+
+  /// A table with two columns of one name is read differently by different programs.
+  void different_columns(const HistoryOutputSpec& history)
+  {
+    std::map<std::string, std::string> giver;  // of each column
+    const auto note = [&](const std::string& path, std::string_view key, const std::string& name, const std::vector<CsvColumn>& columns) {
+      bool told = name.empty();
+      for (const CsvColumn& column : columns) {
+        const auto [known, is_new] = giver.try_emplace(column.name, path);
+        if (!is_new && !told)
+          add(fmt::format("{}.{}", path, key),
+              fmt::format("its column \"{}\" of history.csv is there already: {} has it", column.name, known->second));
+        told = told || !is_new;
+      }
+    };
+    note("every history", "", "", common_columns(scene_.dimension));
+    const auto walls = wall_names(scene_.boundaries);
+    for (std::size_t i = 0; i < walls.size(); ++i)
+      note(fmt::format("boundaries[{}]", i), "on", walls[i], reaction_columns(walls[i], scene_.dimension));
+    for (std::size_t i = 0; i < history.points.size(); ++i)
+      if (const PointSpec& point = history.points[i]; is_first(history.points, i))
+        note(fmt::format("outputs.history.points[{}]", i), "name", point.name, columns_of(point, scene_.dimension));
+    for (std::size_t i = 0; i < history.fronts.size(); ++i)
+      if (const FrontSpec& front = history.fronts[i]; is_first(history.fronts, i))
+        note(fmt::format("outputs.history.fronts[{}]", i), "name", front.name, columns_of(front));
+  }
+
+  /// Of its name; others are found by different_names().
+  template <class Item>
+  static bool is_first(const std::vector<Item>& items, std::size_t i)
+  {
+    return std::none_of(items.begin(), items.begin() + static_cast<std::ptrdiff_t>(i),
+                        [&](const Item& item) { return item.name == items[i].name; });
   }
 
   void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known)

@@ -199,6 +199,17 @@ inline Real total_plastic_work(const AnyBatch& batch, const Rows<Real>& volume0)
 {
   return std::visit([&](const auto& typed) { return total_plastic_work(typed, volume0); }, batch);
 }
+/// The same of particle i of the body alone.
+inline Real plastic_work(const AnyBatch& batch, Index i, Real volume0)
+{
+  Real work = 0;
+  for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
+    if constexpr (std::decay_t<decltype(column)>::components == 1)
+      if (key == "plastic_work")
+        work = volume0 * column[i];
+  });
+  return work;
+}
 
 inline Real density(const AnyBatch& batch) noexcept
 {

@@ -52,7 +52,7 @@ void advance(Model<D, K>& m, Real dt)
   const Real time = m.clock.time, ramp = m.stage.ramp(time + dt);
   const Vec<D> gravity = m.loads.gravity(time + dt, ramp);
 
-  if (relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.mass, m.health))  //  1
+  if (relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.mass, m.energy, m.health))  //  1
     index_rows(m);
   if (m.health.worst())
     return;

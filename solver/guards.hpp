@@ -33,24 +33,29 @@ Index fastest_particle(const Particles<D>& particles)
   return fastest;
 }
 
-/// Kinetic and strain energy and what the laws dissipated, beyond all that was there or was put in, over the largest of the terms.
+/// Kinetic and strain energy and what the laws dissipated, of deleted particles too, beyond all that was there or was put in, over the
+/// largest of the terms.
 template <int D, Kernel<D> K>
 Real energy_gain(const Model<D, K>& m, Real kinetic)
 {
   const EnergyLedger& e = m.energy;
   const Real put_in = e.gravity + e.loads + e.walls + e.friction + e.damping;
   Real largest = m.guards.least_energy;
-  for (const Real term : {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.damping})
+  for (const Real term : {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.damping, e.carried_away})
     largest = std::max(largest, std::abs(term));
-  return largest > 0 ? (kinetic - e.kinetic_start + e.internal - put_in) / largest : 0;
+  return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - put_in) / largest : 0;
 }
 
-/// Looks at the state between two steps and notes what it sees.  In words what no policy of the scene lets pass, nothing if all is well.
-/// Sums over all particles are looked at every so many steps: what goes wrong grows over tens of them.
+enum class Look : std::uint8_t { between_steps, at_end_of_stage };
+
+/// Looks at the state after a step and notes what it sees.  In words what no policy of the scene lets pass, nothing if all is well.
+/// Sums over all particles are looked at every so many steps, since what goes wrong grows over tens of them, and at the end of a stage.
 template <int D, Kernel<D> K>
-std::optional<std::string> fault(Model<D, K>& m)
+std::optional<std::string> fault(Model<D, K>& m, Look look)
 {
   constexpr int steps_between_sums = 10;
+  if (m.clock.step == m.stage.first_step)
+    return std::nullopt;  // no step yet: it was looked at when the stage before ended
   const Guards& limit = m.guards;
   Watched& seen = m.watched;
   seen.fastest = std::max(seen.fastest, seen.speed);
@@ -60,8 +65,7 @@ std::optional<std::string> fault(Model<D, K>& m)
       return fmt::format("{} moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s",
                          describe(m.particles, m.bodies, fastest_particle(m.particles)), seen.speed, limit.speed);
   }
-  // In the first steps of a stage all terms are small, and the mean velocity of a step is not that of its stress power.
-  if (m.clock.step % steps_between_sums != 0 || m.clock.step < m.stage.first_step + 2 * steps_between_sums)
+  if (look == Look::between_steps && m.clock.step % steps_between_sums != 0)
     return std::nullopt;
 
   const Totals<D> now = totals(m.particles);
@@ -71,6 +75,9 @@ std::optional<std::string> fault(Model<D, K>& m)
   if (lost > limit.mass)
     return fmt::format("the mass does not add up: {:.10g} kg should be there, particles have {:.10g} kg, nodes carried {:.10g} kg", there,
                        now.mass, m.mass.on_nodes);
+  // In the first steps of a stage all terms are small, and the mean velocity of a step is not that of its stress power.
+  if (m.clock.step < m.stage.first_step + 2 * steps_between_sums)
+    return std::nullopt;
   const Real gain = energy_gain(m, now.kinetic);
   seen.gain = std::max(seen.gain, gain);
   if (gain > limit.gain) {

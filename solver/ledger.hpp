@@ -16,6 +16,8 @@ struct EnergyLedger {
   Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
+  Real carried_away{};                    ///< kinetic energy of the particles that were deleted
+  Real plastic_deleted{};                 ///< plastic work that they had behind them
   bool remapped{};                        ///< MUSL: strain is taken from velocities that the forces did not work on
   static constexpr auto fields()
   {
@@ -29,15 +31,17 @@ struct EnergyLedger {
                       kept("kinetic_start", &EnergyLedger::kinetic_start),
                       kept("plastic_start", &EnergyLedger::plastic_start),
                       kept("set_to_rest", &EnergyLedger::set_to_rest),
+                      kept("carried_away", &EnergyLedger::carried_away),
+                      kept("plastic_deleted", &EnergyLedger::plastic_deleted),
                       kept("remapped", &EnergyLedger::remapped)};
   }
 
-  /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles did not get.
-  Real transfer(Real kinetic_now) const noexcept { return nodes - (kinetic_now - kinetic_start); }
+  /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles, deleted ones included, did not get.
+  Real transfer(Real kinetic_now) const noexcept { return nodes - (kinetic_now - kinetic_start + carried_away); }
   /// All work done on the bodies, minus what became of it: zero if everything is accounted for.
   Real defect(Real kinetic_now) const noexcept
   {
-    return gravity + loads + walls + friction + damping - internal - transfer(kinetic_now) - (kinetic_now - kinetic_start);
+    return gravity + loads + walls + friction + damping - internal - transfer(kinetic_now) - carried_away - (kinetic_now - kinetic_start);
   }
 };
 
@@ -92,7 +96,7 @@ struct MomentumLedger {
 template <int D>
 struct MassLedger {
   Real start{};     ///< [kg]
-  Real on_nodes{};  ///< what the nodes carried in the last step [kg]
+  Real on_nodes{};  ///< what the nodes carried in the last step, less what failed in it [kg]
   Real deleted{};   ///< left the mesh, or failed [kg]
   Real failed{};    ///< of it what failed [kg]
   Index deleted_count{}, failed_count{};

@@ -1,6 +1,7 @@
 #include "solver/relocate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 
@@ -85,13 +86,24 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
   }
 }
 
+/// Books what the particle takes along, as far as it is a number.
 template <int D>
-void mark_deleted(Particles<D>& particles, std::size_t p, MassLedger<D>& mass)
+void mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles, Index row,
+                  MassLedger<D>& mass, EnergyLedger& energy)
 {
+  const std::size_t p = z(row);
   mass.deleted += particles.mass[p];
   ++mass.deleted_count;
-  if (particles.x[p].allFinite() && particles.v[p].allFinite())
+  if (particles.x[p].allFinite() && particles.v[p].allFinite()) {
     mass.carried_away += Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+    energy.carried_away += 0.5 * particles.mass[p] * particles.v[p].squaredNorm();
+  }
+  std::size_t body = 0;
+  while (row >= bodies[body].end)
+    ++body;
+  const Real work = plastic_work(materials[body], row - bodies[body].begin, particles.volume0[p]);
+  if (std::isfinite(work))
+    energy.plastic_deleted += work;
   particles.cell[p] = none;
 }
 
@@ -99,7 +111,7 @@ void mark_deleted(Particles<D>& particles, std::size_t p, MassLedger<D>& mass)
 
 template <int D>
 void remove_failed(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order,
-                   MassLedger<D>& mass)
+                   MassLedger<D>& mass, EnergyLedger& energy)
 {
   for (Index row = 0; row < particles.size(); ++row) {  // in order of rows, as below
     const std::size_t p = z(row);
@@ -108,7 +120,8 @@ void remove_failed(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, 
       continue;
     mass.failed += particles.mass[p];
     ++mass.failed_count;
-    mark_deleted(particles, p, mass);
+    mass.on_nodes -= particles.mass[p];  // it took part in the step in which it failed
+    mark_deleted(bodies, materials, particles, row, mass, energy);
   }
   drop_lost(bodies, materials, particles);
   order.row.clear();
@@ -116,7 +129,8 @@ void remove_failed(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, 
 
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger<D>& mass, Health& health)
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger<D>& mass, EnergyLedger& energy,
+              Health& health)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
@@ -168,7 +182,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
         mass.held_most = std::max(mass.held_most, distance);
         moved = true;
       } else if (exits.policy == OnExitPolicy::remove) {
-        mark_deleted(particles, p, mass);
+        mark_deleted(bodies, materials, particles, row, mass, energy);
         deleted = true;
       } else {
         health.report(particles.id[p], Trouble::lost);
@@ -193,10 +207,10 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
 }
 
 template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
-                          CellOrder&, MassLedger<2>&, Health&);
+                          CellOrder&, MassLedger<2>&, EnergyLedger&, Health&);
 template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
-                          CellOrder&, MassLedger<3>&, Health&);
-template void remove_failed<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger<2>&);
-template void remove_failed<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger<3>&);
+                          CellOrder&, MassLedger<3>&, EnergyLedger&, Health&);
+template void remove_failed<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger<2>&, EnergyLedger&);
+template void remove_failed<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger<3>&, EnergyLedger&);
 
 }  // namespace talus

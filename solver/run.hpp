@@ -84,7 +84,7 @@ void stop_if_unwell(Model<D, K>& m, bool step_is_done)
   std::string what = describe(m, *finding);
   const bool may_go = step_is_done && m.guards.failed > 0;
   if (may_go) {
-    remove_failed(m.bodies, m.materials, m.particles, m.order, m.mass);
+    remove_failed(m.bodies, m.materials, m.particles, m.order, m.mass, m.energy);
     index_rows(m);
     m.health.clear();
     m.watched.failure = what;
@@ -129,13 +129,15 @@ std::optional<std::string> obstacle(Model<D, K>& m, const StepLimits& limits)
     return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s",
                        row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted, limits.shortest);
   }
-  return fault(m);
+  return fault(m, Look::between_steps);
 }
 
-/// RunError naming step and time; before it the state, which is whole, is shown.
+/// RunError naming step and time; before it the state, which is whole, is shown as it was `before` it was looked at: a run that goes on from
+/// there looks again, and counts once what it sees.
 template <int D, Kernel<D> K, class Watch>
-[[noreturn]] void give_up(const Model<D, K>& m, Watch&& watch, const std::string& why)
+[[noreturn]] void give_up(Model<D, K>& m, const Watched& before, Watch&& watch, const std::string& why)
 {
+  m.watched = before;
   watch(m, Moment::given_up);
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, why));
 }
@@ -148,8 +150,9 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   const Real begin = m.stage.begin, end = begin + stage.duration;
   while (m.clock.time < end * (1 - 1e-14) && m.stage.balanced < steps_in_balance) {
     watch(m, Moment::step_begins);
+    const Watched before = m.watched;
     if (const auto why = obstacle(m, limits))
-      give_up(m, watch, *why);
+      give_up(m, before, watch, *why);
     const Real wanted = wanted_step(m, limits), left = end - m.clock.time;
     const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
     const std::int64_t step = m.clock.step;
@@ -160,11 +163,14 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
     m.stage.balanced = calm ? m.stage.balanced + 1 : 0;
     watch(m, Moment::step_done);
   }
+  const Watched before = m.watched;
+  if (const auto why = fault(m, Look::at_end_of_stage))
+    give_up(m, before, watch, *why);
   const Totals<D> now = totals(m.particles);
   const StageResult result{stage.name, begin,    m.clock.time, m.clock.step - m.stage.first_step,
                            m.residual, m.energy, now.kinetic,  plastic_work(m)};
   if (stage.residual && m.stage.balanced < steps_in_balance)
-    give_up(m, watch,
+    give_up(m, before, watch,
             fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it "
                         "more duration or damping",
                         stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration, m.residual,

@@ -38,7 +38,7 @@ THIRD_PARTY = [
     ("benchmark/*", ["tests/speed/*"]),
     ("talus_version.hpp", ["core/version.cpp"]),
 ]
-SYSTEM = re.compile(r"[a-z0-9_]+|(sys/)?(unistd|fcntl|wait|stat|types|resource|time|mman|ioctl|utsname|sysinfo|signal|termios|dlfcn|cxxabi|execinfo|sched)\.h")
+SYSTEM = re.compile(r"[a-z0-9_]+|(sys/)?(unistd|fcntl|file|wait|stat|types|resource|time|mman|ioctl|utsname|sysinfo|signal|termios|dlfcn|cxxabi|execinfo|sched)\.h")
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 OMP = re.compile(r'(#\s*pragma\s+omp\b|_Pragma\s*\(\s*"omp\b)(?P<rest>.*)')
 

@@ -217,6 +217,10 @@ TEST_F(Diff, WhatCannotBeReadEndsWithTwo)
   const Outcome backwards = talus("diff a b");
   EXPECT_EQ(backwards.code, 2);
   EXPECT_EQ(backwards.err, "error: b/history.csv: its times do not ascend: entry 2 is 0 s\n");
+  write("b/history.csv", "time [s],kinetic [J],toe [m],kinetic [m]\n0,1,2,3\n");
+  const Outcome twice = talus("diff a b");
+  EXPECT_EQ(twice.code, 2);
+  EXPECT_EQ(twice.err, "error: b/history.csv: columns 2 and 4 are both called \"kinetic\"\n");
   std::filesystem::copy_file(folder_ / "a/history.csv", folder_ / "b/history.csv", std::filesystem::copy_options::overwrite_existing);
   write("b/summary.json", "{}");
   EXPECT_THAT(talus("diff a b").err, HasSubstr("b/summary.json is not the summary of a run"));

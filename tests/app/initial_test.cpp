@@ -490,6 +490,37 @@ TEST_F(Initial, ADamagedStateGivesWayToTheOneBefore)
   EXPECT_THAT(refusal(second()), HasSubstr("error: initial.from: first/checkpoints/"));
 }
 
+TEST_F(Initial, AStateOnTheWayIsWarnedOf)
+{
+  const std::string midst =
+      ", before its stage was over: of a run on its way, stopped or failed, or one that did not keep its end; with "
+      "outputs.checkpoint.at_end a run keeps it\n";
+  run_well("first", {.when = "time: {end: 0.05}\n", .checkpoint = ", steps: 10, keep: 9"});
+  auto kept = checkpoints("first");
+  ASSERT_GE(kept.size(), 2U);
+  fs::remove(kept.back());
+  kept.pop_back();
+  const Outcome outcome = run("second", second());
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::StartsWith("warning: second.yaml:6:10: first/checkpoints/" + kept.back().filename().string() +
+                                               " is the state after step " + std::to_string(10 * kept.size()) + ", t = 0.0"));
+  EXPECT_THAT(outcome.err, HasSubstr(midst));
+
+  EXPECT_EQ(run("failed", {.more = "watch: {speed: 1.0e-4}\n", .when = "time: {end: 0.05}\n"}).code, 1);
+  const Outcome of_failed = run("second", second("", "failed"));
+  EXPECT_EQ(of_failed.code, 0) << of_failed.err;
+  EXPECT_THAT(of_failed.err, HasSubstr(midst));
+}
+
+TEST_F(Initial, TheEndOfAStageThatIsNotTheLastIsAnEndToo)
+{
+  run_well("short", {.when = "stages: [{type: run, duration: 0.02}]\n"});
+  const std::string steps = checkpoints("short").back().stem().string().substr(5);
+  write("first.yaml", Bank{.when = "stages: [{type: run, duration: 0.02}, {type: run, duration: 0.02}]\n"}.text());
+  ASSERT_EQ(talus("run first.yaml --quiet --out first --until " + std::to_string(std::stoi(steps))).code, 4);
+  run_well("second", second());
+}
+
 TEST_F(Initial, QuickRunsOfSuchScenesRun)
 {
   run_well("first", {}, "--quick");

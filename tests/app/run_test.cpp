@@ -83,6 +83,16 @@ TEST_F(Run, TheAuditSaysHowWellEnergyCloses)
   }
 }
 
+TEST_F(Run, AChangeOfTwoLinesStaysAComment)
+{
+  write("bar.yaml", bar_scene);
+  ASSERT_EQ(talus("run bar.yaml --quiet --out out --set time.end=0.01 --set 'title=\"a\n b\"'").code, 0);
+  const std::string text = read("out/scene.yaml");
+  ASSERT_EQ(text.substr(0, bar_scene.size()), bar_scene);
+  EXPECT_EQ(text.substr(bar_scene.size()), "\n# Run with changes:\n#   --set 'time.end=0.01'\n#   --set 'title=\"a\n#    b\"'\n");
+  EXPECT_EQ(talus("check out/scene.yaml").code, 0);
+}
+
 TEST_F(Run, LeavesEveryFileThatWasAskedFor)
 {
   write("bar.yaml", bar_scene);

@@ -112,6 +112,71 @@ TEST_F(Watch, WhatLeavesTheMeshTakesItsMomentumAlong)
   EXPECT_THAT(outcome.out, ContainsRegex("left the mesh or failed\naudit: mass closes to [0-9.e-]+; momentum closes to [0-9.]+e-1[0-9];"));
 }
 
+TEST_F(Watch, WhatLeavesTheMeshTakesItsEnergyAlong)
+{
+  write("block.yaml", block_scene("time: {end: 1}\non_exit: delete\noutputs: {history: {every: 0.05}}\n", ", velocity: [3, 0]"));
+  const Outcome outcome = talus("run block.yaml --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable table = history("out");
+  const Real all = first(table, "kinetic");
+  ASSERT_EQ(last(table, "mass"), 0) << "it has left as it came";
+  EXPECT_NEAR(all, 0.5 * 1000 * 9, 1e-9 * all);
+  EXPECT_EQ(first(table, "carried_away"), 0);
+  EXPECT_NEAR(last(table, "carried_away"), all, 1e-6 * all);
+  for (const char* nothing : {"kinetic", "strain", "transfer_loss", "energy_defect"})
+    EXPECT_NEAR(last(table, nothing), 0, 1e-6 * all) << nothing;
+  for (std::size_t row = 0; row < table.rows(); ++row) {
+    const Real left = 1000 - (*table["mass"])[row];
+    EXPECT_NEAR((*table["carried_away"])[row], 0.5 * left * 9, 1e-6 * all) << "at t = " << (*table["time"])[row];
+  }
+  EXPECT_NEAR(number("out", "carried_away [J]"), all, 1e-6 * all);
+  EXPECT_THAT(outcome.out, ContainsRegex("\n  carried_away +4500\n"));
+}
+
+/// A column of soil collapses out of a mesh that is narrow: what has flowed has dissipated, wherever it is now.
+TEST_F(Watch, WhatIsDeletedKeepsItsPlasticWorkInTheBalance)
+{
+  std::string scene = block_scene(
+      "time: {end: 0.6}\non_exit: delete\nloads: [{type: gravity, acceleration: [0, -9.81]}]\n"
+      "boundaries: [{type: friction, on: y_min, coefficient: 0.5}]\noutputs: {history: {every: 0.02}}\n");
+  const std::string rubber = "law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3";
+  scene.replace(scene.find(rubber), rubber.size(),
+                "law: drucker_prager, density: 2000, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 20, cohesion: 0, match: "
+                "plane_strain");
+  const std::string low = "low: [0.5, 0], high: [1.5, 1]";
+  scene.replace(scene.find(low), low.size(), "low: [0, 0], high: [2, 1.75]");
+  write("soil.yaml", scene);
+  const Outcome outcome = talus("run soil.yaml --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable table = history("out");
+  EXPECT_GT(number("out", "particles_removed"), 20);
+  EXPECT_GT(last(table, "carried_away"), 0);
+  EXPECT_GT(last(table, "plastic"), 0);
+  const auto plastic = *table["plastic"];
+  for (std::size_t row = 1; row < plastic.size(); ++row)
+    EXPECT_GE(plastic[row], (1 - 1e-9) * plastic[row - 1]) << "at t = " << (*table["time"])[row];
+}
+
+TEST_F(Watch, TheLastStepIsLookedAtToo)
+{
+  write("block.yaml", block_scene("time: {end: 0.004}\n", ", velocity: [0.1, 0]"));
+  ASSERT_EQ(talus("run block.yaml --out out --quiet").code, 0);
+  ASSERT_LT(number("out", "steps"), 10);
+  EXPECT_NEAR(number("out", "fastest [m/s]"), 0.1, 1e-3);
+  const Outcome stopped = talus("run block.yaml --out out --quiet --set watch.speed=0.09");
+  EXPECT_EQ(stopped.code, 1);
+  EXPECT_THAT(stopped.err, HasSubstr("moves at 0.1 m/s, beyond watch.speed = 0.09 m/s; last checkpoint out/checkpoints/step_00000000"));
+  const Outcome freed = talus("run --resume out --quiet --set watch.on_speed=warn");
+  EXPECT_EQ(freed.code, 0) << freed.err;
+  const Real resumed = number("out", "steps_beyond");
+  ASSERT_EQ(talus("run block.yaml --out straight --quiet --set watch.speed=0.09 --set "
+                  "watch.on_speed=warn")
+                .code,
+            0);
+  EXPECT_EQ(resumed, number("straight", "steps_beyond")) << "what stopped the run is counted once";
+  EXPECT_GE(resumed, 1);
+}
+
 TEST_F(Watch, AStageThatWantsMoreTimeCanHaveIt)
 {
   write("block.yaml", block_scene("stages: [{type: geostatic, duration: 0.05, damping: 0.7, residual: 1.0e-2}]\nloads: [{type: gravity, "

@@ -157,7 +157,7 @@ TEST(GmshWrite, SolidMeshAndItsGroupsComeBackFromBytes) { comes_back<3>(MshKind:
 TEST(GmshWrite, GmshReadsWhatIsWritten)
 {
   const ScratchFolder folder;
-  const Mesh<3> mesh(box<3>({0, 0, 0}, {1, 2, 3}, {2, 2, 2}));
+  const Mesh<3> mesh(jittered<3>(box<3>({0, 0, 0}, {1, 2, 3}, {2, 2, 2}), 0.2, 7));
   for (const MshKind kind : {MshKind::ascii, MshKind::binary}) {
     write_msh(folder / "a.msh", mesh, kind);
     gmsh::initialize(0, nullptr, false);
@@ -165,11 +165,31 @@ TEST(GmshWrite, GmshReadsWhatIsWritten)
     gmsh::open((folder / "a.msh").string());
     std::vector<std::size_t> tags, nodes;
     gmsh::model::mesh::getElementsByType(4, tags, nodes);
+    std::vector<std::size_t> node_tags;
+    std::vector<double> coordinates, parameters;
+    gmsh::model::mesh::getNodes(node_tags, coordinates, parameters);
     gmsh::vectorpair groups;
     gmsh::model::getPhysicalGroups(groups);
+    std::vector<std::string> names;
+    for (const auto& [dimension, tag] : groups) {
+      names.emplace_back();
+      gmsh::model::getPhysicalName(dimension, tag, names.back());
+    }
     gmsh::finalize();
-    EXPECT_EQ(tags.size(), 48U);
+    ASSERT_EQ(tags.size(), 48U);
+    ASSERT_EQ(nodes.size(), 4 * tags.size());
+    ASSERT_EQ(node_tags.size(), static_cast<std::size_t>(mesh.n_nodes()));
+    ASSERT_EQ(coordinates.size(), 3 * node_tags.size());
+    for (std::size_t i = 0; i < node_tags.size(); ++i)
+      for (int d = 0; d < 3; ++d)
+        EXPECT_EQ(coordinates[3 * i + static_cast<std::size_t>(d)], mesh.node(static_cast<Index>(node_tags[i] - 1))[d]);
+    for (std::size_t i = 0; i < tags.size(); ++i) {
+      const auto cell = mesh.cell(static_cast<Index>(tags[i] - tags.front()));
+      for (std::size_t k = 0; k < 4; ++k)
+        EXPECT_EQ(nodes[4 * i + k], static_cast<std::size_t>(cell[k]) + 1);
+    }
     EXPECT_EQ(groups.size(), 7U);  // six sides and all
+    EXPECT_THAT(names, ::testing::UnorderedElementsAre("all", "x_min", "x_max", "y_min", "y_max", "z_min", "z_max"));
   }
 }
 

@@ -74,6 +74,34 @@ TEST(Guards, EnergyFromNowhereIsSeen)
   EXPECT_NEAR(seen.gain, gained, 1e-3);
 }
 
+TEST(Guards, TheEndOfAStageIsLookedAt)
+{
+  const auto short_stage = [](M& m) -> std::string {
+    const Stage stage = test_stage(1e-4);
+    begin_stage(m, stage, 0);
+    try {
+      finish_stage(m, stage, {}, [](const M&, Moment) {});
+    } catch (const RunError& e) {
+      return e.what();
+    }
+    return {};
+  };
+  M fast = flying_block();
+  fast.guards.speed = 1;
+  EXPECT_THAT(short_stage(fast), HasSubstr("beyond watch.speed"));
+  EXPECT_EQ(fast.clock.step, 1);
+  EXPECT_EQ(fast.watched.speeding, 0) << "it is looked at again when the run goes on";
+  M light = flying_block();
+  light.mass.start *= 1 + 1e-6;
+  EXPECT_THAT(short_stage(light), HasSubstr("the mass does not add up"));
+  M sound = flying_block();
+  EXPECT_EQ(short_stage(sound), "");
+  EXPECT_NEAR(sound.watched.fastest, std::sqrt(1.25), 1e-6);
+  sound.guards.speed = 1, sound.guards.speed_stops = false;
+  EXPECT_EQ(short_stage(sound), "");
+  EXPECT_EQ(sound.watched.speeding, 1) << "once for each step, and none for the state that the stage began with";
+}
+
 /// One particle is turned inside out before the first step.
 M with_a_failed_particle(Real allowed)
 {
@@ -101,6 +129,17 @@ TEST(Guards, AFailedParticleStopsTheRunUnlessItMayGo)
   EXPECT_NEAR(totals(without.particles).mass + without.mass.failed, without.mass.start, 1e-12 * without.mass.start);
   EXPECT_THAT(without.watched.failure, HasSubstr("particle 5"));
   EXPECT_TRUE(std::isfinite(without.energy.internal));
+  EXPECT_NEAR(without.energy.carried_away, 0.5 * without.mass.failed * 1.25, 1e-2 * without.mass.failed);
+}
+
+TEST(Guards, WhatFailedInTheLastStepIsNotMissed)
+{
+  M m = with_a_failed_particle(0.1);
+  const Stage stage = test_stage(1e-4);
+  begin_stage(m, stage, 0);
+  EXPECT_NO_THROW(finish_stage(m, stage, {}, [](const M&, Moment) {}));
+  EXPECT_EQ(m.mass.failed_count, 1);
+  EXPECT_EQ(m.clock.step, 1);
 }
 
 TEST(Guards, NoMoreMayFailThanIsAllowed)
