@@ -18,7 +18,8 @@ struct Exits {
 
 /// Finds each particle's cell.  A particle outside behind a closed facet is set back onto it: weights of moving least squares do
 /// not vanish beside a wall, so round-off of a cell's size may carry a particle across.  Others are reported lost or deleted.
-/// What deleted particles take along is booked.  Afterwards `order` is sorted, and the arrays follow it when too many rows are out of place.  True if rows changed place.
+/// What deleted particles take along is booked.  Afterwards `order` is sorted, and the arrays follow it when too many rows are out of
+/// place.  True if rows changed place.
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
               std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger<D>& mass, EnergyLedger& energy,

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
 build=build/fuzz
 findings=$build/findings
-quick_seconds=40 # of each: two minutes together
+quick_seconds=60 # of the three at once: two minutes of two cores
 
 leg=${1-}
 shift || true
@@ -49,26 +49,14 @@ fuzz() {
 }
 
 declare -A process=()
-failed=()
-wait_for() {
-  if ! wait "${process[$1]}"; then
-    failed+=("$1")
-  fi
-  unset "process[$1]"
-  echo "$1: $(sed -n 's/^stat::number_of_executed_units: */executions /p' "$build/$1.log"), $(find "$build/corpus/$1" -type f | wc -l) inputs kept"
-}
 for entry in "${entries[@]}"; do
-  if [ ${#process[@]} -ge "$jobs" ]; then
-    wait -n "${process[@]}" || true
-    for running in "${!process[@]}"; do
-      kill -0 "${process[$running]}" 2>/dev/null || wait_for "$running"
-    done
-  fi
   fuzz "$entry" &
   process[$entry]=$!
 done
-for running in "${!process[@]}"; do
-  wait_for "$running"
+failed=()
+for entry in "${entries[@]}"; do
+  wait "${process[$entry]}" || failed+=("$entry")
+  echo "$entry: $(sed -n 's/^stat::number_of_executed_units: */executions /p' "$build/$entry.log"), $(find "$build/corpus/$entry" -type f | wc -l) inputs kept"
 done
 
 for entry in "${failed[@]}"; do
