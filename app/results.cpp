@@ -92,13 +92,13 @@ void check_place(const fs::path& folder)
 
 }  // namespace
 
-void check_is_kept(const fs::path& source, const fs::path& folder)
+bool lies_in(const fs::path& source, const fs::path& folder)
 {
   const fs::path cleared = fs::weakly_canonical(folder);
-  for (fs::path place = fs::weakly_canonical(source).parent_path(); place != place.parent_path(); place = place.parent_path())
-    if (place == cleared)
-      throw EnvironmentError(fmt::format("{} lies in {}, which is cleared for the results: choose another folder with --out",
-                                         source.string(), folder.string()));
+  fs::path place = fs::weakly_canonical(source).parent_path();
+  while (place != cleared && place != place.parent_path())
+    place = place.parent_path();
+  return place == cleared;
 }
 
 FolderLock prepare_results(const fs::path& folder)

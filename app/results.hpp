@@ -38,8 +38,8 @@ class FolderLock {
 /// EnvironmentError: it cannot be written, another run is at work in it, or it holds something else, which is left alone.
 [[nodiscard]] FolderLock prepare_results(const std::filesystem::path& folder);
 
-/// EnvironmentError: clearing `folder` for results would take `source`, from which they are to be computed, away.
-void check_is_kept(const std::filesystem::path& source, const std::filesystem::path& folder);
+/// True if clearing `folder` for results may take `source` away.
+bool lies_in(const std::filesystem::path& source, const std::filesystem::path& folder);
 
 /// EnvironmentError: a run's folder is not there any more, or another has taken its place.  Without asking, its files would be made anew, each
 /// alone in an empty folder, and its history go on in a file that nobody finds.

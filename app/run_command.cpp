@@ -233,18 +233,23 @@ class Run {
     return from_ && from_->folder() && fs::equivalent(folder_, *from_->folder(), not_there);
   }
 
-  /// EnvironmentError: what the run comes from would be gone with the results in its folder.
+  /// EnvironmentError, SceneErrors: what the run comes from would be gone with the results in its folder.
   void check_sources(const Setup<D>& setup)
   {
     if (setup.origin)
       initial_ = setup.origin->file;
     if (in_place())
       return;
+    const auto refusal = [&](const fs::path& source) {
+      return fmt::format("{} is among the results in {}, which this run replaces: choose another folder with --out", source.string(),
+                         folder_.string());
+    };
     if (from_)
       for (const fs::path& file : from_->files())
-        check_is_kept(file, folder_);
-    if (initial_)
-      check_is_kept(*initial_, folder_);
+        if (lies_in(file, folder_))
+          throw EnvironmentError(refusal(file));
+    if (initial_ && lies_in(*initial_, folder_))
+      throw SceneErrors(scene_.initial->where, refusal(*initial_));
   }
 
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".

@@ -184,7 +184,7 @@ TEST_F(Diff, OtherMeshesAreNotComparedNodeByNode)
   const Outcome outcome = talus("diff a b");
   EXPECT_EQ(outcome.code, 1) << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("  position +m +- +- +81 and 25 nodes +-\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("made with other mesh.msh"));
+  EXPECT_THAT(outcome.out, HasSubstr("made with other scene.yaml, mesh.msh"));
 }
 
 TEST_F(Diff, WhatCannotBeReadEndsWithTwo)

@@ -97,14 +97,14 @@ TEST_F(Resume, WhatARunComesFromIsNotCleared)
   fs::copy(before[3], folder_ / "out/checkpoints/keep/state.h5");
   const Outcome refused = talus("run --resume out/checkpoints/keep/state.h5 --out out");
   EXPECT_EQ(refused.code, 3);
-  EXPECT_THAT(refused.err, HasSubstr("which is cleared for the results"));
+  EXPECT_THAT(refused.err, HasSubstr("is among the results in out, which this run replaces"));
   std::string again = scene();
   again.replace(again.find(", shape: {type: box, low: [0.5, 0], high: [1.5, 1]}, particles_per_cell: 3"),
                 std::string(", shape: {type: box, low: [0.5, 0], high: [1.5, 1]}, particles_per_cell: 3").size(), "");
   write("again.yaml", again + "initial: {from: out/checkpoints/keep/state.h5}\n");
   const Outcome initial = talus("run again.yaml --out out");
-  EXPECT_EQ(initial.code, 3) << initial.err;
-  EXPECT_THAT(initial.err, HasSubstr("which is cleared for the results"));
+  EXPECT_EQ(initial.code, 2) << initial.err;
+  EXPECT_THAT(initial.err, HasSubstr("again.yaml:9:10: error: initial"));
   EXPECT_EQ(checkpoints("out"), before);
 }
 
