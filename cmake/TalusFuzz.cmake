@@ -5,11 +5,11 @@
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
-              ONLY accuracy array_file csv document field_reader gmsh_mesh gmsh_read gmsh_regions gmsh_session memory mesh_groups msh_ reader scalars scene
+              ONLY accuracy array_file csv document field_reader cell_count gmsh_door gmsh_mesh gmsh_read memory mesh_groups msh_ reader scalars scene
                    shape text_file vtk whole_file
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
-              PRIVATE yaml-cpp Gmsh::Gmsh VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)
+              PRIVATE yaml-cpp VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)
 talus_library(fuzz_solver FOLDER solver ONLY ledger walls LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
               ONLY accounts checkpoints disk_space expression fields history progress recorder results signals sound_state

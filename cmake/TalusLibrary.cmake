@@ -31,6 +31,29 @@ function(talus_library name)
   endif()
 endfunction()
 
+# talus_module(name FOLDER folder ONLY stems USES library PRIVATE private...): libtalus_<name>.so, which the program opens when it needs it
+# (dlopen). What it uses of the library it finds in the program that has opened it.
+function(talus_module name)
+  cmake_parse_arguments(arg "" "FOLDER;USES" "ONLY;PRIVATE" ${ARGN})
+  set(sources)
+  foreach(stem ${arg_ONLY})
+    list(APPEND sources ${arg_FOLDER}/${stem}.cpp)
+  endforeach()
+  add_library(talus_${name} MODULE ${sources})
+  target_link_libraries(talus_${name} PRIVATE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX ${arg_PRIVATE})
+  if(TALUS_SHARED)
+    target_link_libraries(talus_${name} PRIVATE ${arg_USES})
+  endif()
+  set_property(GLOBAL APPEND PROPERTY TALUS_MODULES talus_${name})
+endfunction()
+
+# For whoever links a library that opens modules.
+function(talus_use_modules target)
+  get_property(modules GLOBAL PROPERTY TALUS_MODULES)
+  add_dependencies(${target} ${modules})
+  set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON BUILD_RPATH "$ORIGIN")
+endfunction()
+
 function(talus_executable name source library)
   if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${source})
     message(STATUS "${name} is left out: there is no ${source}")
@@ -39,6 +62,7 @@ function(talus_executable name source library)
   add_executable(${name} ${source})
   target_link_libraries(${name} PRIVATE ${library})
   add_dependencies(programs ${name})
+  talus_use_modules(${name})
   talus_use_pch(${name} talus_pch)
 endfunction()
 

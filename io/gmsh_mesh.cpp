@@ -4,9 +4,9 @@
 
 #include <stdexcept>
 
+#include "io/cell_count.hpp"
+#include "io/gmsh_door.hpp"
 #include "io/gmsh_read.hpp"
-#include "io/gmsh_regions.hpp"
-#include "io/gmsh_session.hpp"
 #include "io/mesh_groups.hpp"
 #include "mesh/generate.hpp"
 
@@ -45,9 +45,9 @@ MeshData<D> make_unnamed(const MeshSpec& spec, const std::filesystem::path& dire
   if (!spec.file.empty())
     return read_msh<D>(directory / spec.file, spec.where);
   if (!spec.geometry.empty())
-    return mesh_geometry<D>(spec, directory / spec.geometry);
+    return gmsh<D>().mesh_geometry(spec, directory / spec.geometry);
   if (!spec.regions.empty())
-    return mesh_regions<D>(spec);
+    return gmsh<D>().mesh_regions(spec);
   if (spec.grid)
     return make_grid<D>(*spec.grid, spec);
   throw SceneErrors(spec.where, "the mesh needs one of file, geometry, regions and grid");

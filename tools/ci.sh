@@ -95,7 +95,7 @@ stage_traps() {
 # gives; their own delete is inlined, so memcheck sees a free() that is not theirs.
 stage_valgrind() {
   local folder
-  for folder in core mesh kernels materials solver io; do
+  for folder in core mesh kernels materials solver io gmsh; do
     OMP_NUM_THREADS=2 OMP_WAIT_POLICY=passive valgrind --quiet --error-exitcode=1 --show-mismatched-frees=no \
       "build/dev/talus_${folder}_tests" --gtest_brief=1 --gtest_filter='-*Nightly*'
   done

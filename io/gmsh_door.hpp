@@ -1,0 +1,26 @@
+#pragma once
+// The way to gmsh, which is a part of its own (libtalus_gmsh.so): it brings a hundred libraries, and to load them takes longer than many a
+// command. It is opened where a mesh is to be made by gmsh.
+#include "io/gmsh_regions.hpp"
+
+namespace talus {
+
+/// The functions of gmsh_regions.hpp, as the part hands them out.
+template <int D>
+struct GmshFunctions {
+  MeshData<D> (*mesh_geometry)(const MeshSpec&, const std::filesystem::path&);
+  MeshData<D> (*mesh_regions)(const MeshSpec&);
+};
+struct GmshPart {
+  GmshFunctions<2> in_2d;
+  GmshFunctions<3> in_3d;
+};
+
+/// EnvironmentError: the part is not where it belongs, beside the program or its libraries, or cannot be loaded.
+template <int D>
+const GmshFunctions<D>& gmsh();
+
+extern template const GmshFunctions<2>& gmsh<2>();
+extern template const GmshFunctions<3>& gmsh<3>();
+
+}  // namespace talus
