@@ -104,7 +104,7 @@ TEST_F(Resume, WhatARunComesFromIsNotCleared)
   write("again.yaml", again + "initial: {from: out/checkpoints/keep/state.h5}\n");
   const Outcome initial = talus("run again.yaml --out out");
   EXPECT_EQ(initial.code, 2) << initial.err;
-  EXPECT_THAT(initial.err, HasSubstr("again.yaml:9:10: error: initial"));
+  EXPECT_THAT(initial.err, HasSubstr("again.yaml:11:10: error: initial"));
   EXPECT_EQ(checkpoints("out"), before);
 }
 

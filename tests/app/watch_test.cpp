@@ -109,7 +109,8 @@ TEST_F(Watch, WhatLeavesTheMeshTakesItsMomentumAlong)
   const Outcome outcome = talus("run block.yaml --out out");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_GT(number("out", "particles_removed"), 10);
-  EXPECT_THAT(outcome.out, ContainsRegex("left the mesh or failed\naudit: mass closes to [0-9.e-]+; momentum closes to (0|[0-9.]+e-[1-9][0-9]);"));
+  EXPECT_THAT(outcome.out,
+              ContainsRegex("left the mesh or failed\naudit: mass closes to [0-9.e-]+; momentum closes to (0|[0-9.]+e-[1-9][0-9]);"));
 }
 
 TEST_F(Watch, WhatLeavesTheMeshTakesItsEnergyAlong)
