@@ -111,10 +111,11 @@ class Run {
     check_sources(setup);
     if (setup.origin && from_)
       setup.origin->file = from_->identity().initial;  // what was read is the copy
-    const RunIdentity identity = identity_of(mesh, setup);
+    const std::uint64_t mesh_digest = digest(mesh);
+    const RunIdentity identity = identity_of(mesh_digest, setup);
     if (from_)
       compare(from_->identity(), identity);
-    summary_ = begin_summary(scene_, mesh, setup);
+    summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
 
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
@@ -178,7 +179,7 @@ class Run {
  private:
   bool is_over(const Frame<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
 
-  RunIdentity identity_of(const Mesh<D>& mesh, const Setup<D>& setup) const
+  RunIdentity identity_of(std::uint64_t mesh_digest, const Setup<D>& setup) const
   {
     const Version v = version();
     return {std::string(v.number),
@@ -189,7 +190,7 @@ class Run {
             scene_.text,
             scene_.overrides,
             quick_,
-            static_cast<std::int64_t>(digest(mesh)),
+            static_cast<std::int64_t>(mesh_digest),
             setup.origin ? setup.origin->file : ""};
   }
 

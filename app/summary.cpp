@@ -131,7 +131,7 @@ std::string in_words(std::string_view what, const Closure& closure)
 }  // namespace
 
 template <int D>
-RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup)
+RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t mesh_digest, const Setup<D>& setup)
 {
   RunSummary s;
   s.title = scene.title;
@@ -155,7 +155,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>
   for (const std::string& change : scene.overrides)
     inputs += '\n' + change;
   s.scene_digest = fmt::format("{:016x}", digest(inputs));
-  s.mesh_digest = fmt::format("{:016x}", digest(mesh));
+  s.mesh_digest = fmt::format("{:016x}", mesh_digest);
   s.mesh_quality = named(quality(mesh));
   s.watch.speed_limit = setup.guards.speed;
   s.watch.gain_limit = setup.guards.gain;
@@ -250,8 +250,8 @@ std::string table(const Recorder<D>& recorder)
                             in_words("energy", closure_of(last.energy)));
 }
 
-template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, const Setup<2>&);
-template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, const Setup<3>&);
+template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, std::uint64_t, const Setup<2>&);
+template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, std::uint64_t, const Setup<3>&);
 template void complete<2>(const Recorder<2>&, bool, RunSummary&);
 template void complete<3>(const Recorder<3>&, bool, RunSummary&);
 template std::string table<2>(const Recorder<2>&);

@@ -6,7 +6,7 @@ namespace talus {
 
 /// What is known before the first step.  Its status is "failed" until the run has ended, so that a killed run does not look finished.
 template <int D>
-RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup);
+RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t mesh_digest, const Setup<D>& setup);
 
 /// Adds what the recorder has seen.  `quick`: stages did not look for equilibrium.
 template <int D>
@@ -16,8 +16,8 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& summary);
 template <int D>
 std::string table(const Recorder<D>& recorder);
 
-extern template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, const Setup<2>&);
-extern template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, const Setup<3>&);
+extern template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, std::uint64_t, const Setup<2>&);
+extern template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, std::uint64_t, const Setup<3>&);
 extern template void complete<2>(const Recorder<2>&, bool, RunSummary&);
 extern template void complete<3>(const Recorder<3>&, bool, RunSummary&);
 extern template std::string table<2>(const Recorder<2>&);

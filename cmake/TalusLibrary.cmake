@@ -1,3 +1,16 @@
+# talus_choose(list exclude only): keeps of the sources in the variable `list` what EXCLUDE and ONLY say, stems as below.
+function(talus_choose list exclude only)
+  set(chosen ${${list}})
+  foreach(stem ${exclude})
+    list(FILTER chosen EXCLUDE REGEX "/${stem}[^/]*\\.cpp$")
+  endforeach()
+  if(only)
+    string(JOIN "|" stems ${only})
+    list(FILTER chosen INCLUDE REGEX "/(${stems})[^/]*\\.cpp$")
+  endif()
+  set(${list} ${chosen} PARENT_SCOPE)
+endfunction()
+
 # talus_library(name [APART] [FOLDER folder] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
 # makes the library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
 # render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library. APART:
@@ -8,13 +21,7 @@ function(talus_library name)
     set(arg_FOLDER ${name})
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_FOLDER}/*.cpp)
-  foreach(stem ${arg_EXCLUDE})
-    list(FILTER sources EXCLUDE REGEX "/${stem}[^/]*\\.cpp$")
-  endforeach()
-  if(arg_ONLY)
-    string(JOIN "|" stems ${arg_ONLY})
-    list(FILTER sources INCLUDE REGEX "/(${stems})[^/]*\\.cpp$")
-  endif()
+  talus_choose(sources "${arg_EXCLUDE}" "${arg_ONLY}")
 
   if(sources)
     add_library(talus_${name} ${TALUS_LIBRARY_KIND} ${sources})

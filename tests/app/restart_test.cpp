@@ -442,14 +442,22 @@ TEST_F(Checkpoint, OfAnotherProgramIsTakenWithAWord)
   }
 }
 
-TEST_F(Checkpoint, OfAMeshWithOtherGroupsIsRefused)
+/// A run on the mesh of a file.
+class CheckpointOnAFile : public Program {
+ protected:
+  void SetUp() override
+  {
+    Parts parts;
+    parts.dimension = "dimension: 2\nmesh: {file: box.msh}\n";
+    write("grid.yaml", Parts{}.text());
+    ASSERT_EQ(talus("mesh grid.yaml --out box.msh").code, 0);
+    write("scene.yaml", parts.text());
+    ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
+  }
+};
+
+TEST_F(CheckpointOnAFile, WithOtherGroupsIsRefused)
 {
-  Parts parts;
-  parts.dimension = "dimension: 2\nmesh: {file: box.msh}\n";
-  write("grid.yaml", Parts{}.text());
-  ASSERT_EQ(talus("mesh grid.yaml --out box.msh").code, 0);
-  write("scene.yaml", parts.text());
-  ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   ASSERT_EQ(talus("run --resume out --quiet").code, 0) << "nothing has changed";
   std::string msh = read("box.msh");
   const std::string one = "\"x_min\"", other = "\"x_max\"";
@@ -464,14 +472,8 @@ TEST_F(Checkpoint, OfAMeshWithOtherGroupsIsRefused)
   EXPECT_THAT(outcome.err, HasSubstr("is not the one that the checkpoint was made with"));
 }
 
-TEST_F(Checkpoint, OfAnotherMeshIsRefused)
+TEST_F(CheckpointOnAFile, OfAnotherMeshIsRefused)
 {
-  Parts parts;
-  parts.dimension = "dimension: 2\nmesh: {file: box.msh}\n";
-  write("grid.yaml", Parts{}.text());
-  ASSERT_EQ(talus("mesh grid.yaml --out box.msh").code, 0);
-  write("scene.yaml", parts.text());
-  ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   write("finer.yaml", Parts{.dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [7, 7]}}\n"}.text());
   ASSERT_EQ(talus("mesh finer.yaml --out box.msh").code, 0);
   const Outcome outcome = talus("run --resume out --quiet");
