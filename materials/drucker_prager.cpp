@@ -156,7 +156,7 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const ReturnMap<T> map{c, plastic_strain};
   const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
-  const T kept = where(trial.tau > 0, end.tau / trial.tau, 0);
+  const T kept = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // no 0 / 0 beside the others
   if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; somewhere(changed)) {
     const Sym3Of<T> left = expm1(scale_and_shift(2 * kept, shear_strain, end.mean * (2 / (3 * c.bulk))));
     put(state, &State::elastic_left, where(changed, left, b));
