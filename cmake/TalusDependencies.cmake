@@ -9,8 +9,11 @@ list(TRANSFORM TALUS_VTK_RENDER REPLACE "VTK::" "" OUTPUT_VARIABLE vtk_component
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(fmt 9 REQUIRED)
 find_package(OpenMP REQUIRED COMPONENTS CXX)
+find_package(MPI REQUIRED COMPONENTS C)
+target_compile_definitions(MPI::MPI_C INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)   # MPI's old C++ classes, which mpi.h would bring along
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(Gmsh 4.8 REQUIRED)
+find_package(METIS 5.1 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(VTK 9.1 REQUIRED QUIET COMPONENTS IOCore ${vtk_components})
 find_package(CLI11 2.1 REQUIRED)
@@ -18,7 +21,7 @@ find_package(muparser 2.3 REQUIRED)
 find_package(PkgConfig REQUIRED)
 # By its full name: plain `hdf5` may be any of several builds, and two of them must not meet in one program.
 pkg_check_modules(TALUS_HDF5 REQUIRED IMPORTED_TARGET hdf5-openmpi>=1.10.7)
-target_compile_definitions(PkgConfig::TALUS_HDF5 INTERFACE OMPI_SKIP_MPICXX)   # MPI's old C++ classes, which hdf5.h would bring along
+target_compile_definitions(PkgConfig::TALUS_HDF5 INTERFACE OMPI_SKIP_MPICXX)   # hdf5.h brings along mpi.h
 if(NOT DEFINED BUILD_TESTING OR BUILD_TESTING)
   find_package(GTest 1.12 REQUIRED)
   find_package(benchmark 1.7 REQUIRED)

@@ -25,7 +25,7 @@ function(talus_tests name)
   talus_use_pch(${target} talus_tests_pch)
   if(name STREQUAL app)
     if(TARGET talus)
-      target_compile_definitions(${target} PRIVATE TALUS_BINARY="$<TARGET_FILE:talus>")
+      target_compile_definitions(${target} PRIVATE TALUS_BINARY="$<TARGET_FILE:talus>" TALUS_MPIEXEC="${MPIEXEC_EXECUTABLE}")
       add_dependencies(${target} talus)
     endif()
     if(TARGET talus-render)
@@ -37,6 +37,24 @@ function(talus_tests name)
   set(common DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 60)
   gtest_discover_tests(${target} ${common} TEST_FILTER "-*Nightly*" PROPERTIES LABELS unit TIMEOUT 300 ENVIRONMENT OMP_WAIT_POLICY=passive)
   gtest_discover_tests(${target} ${common} TEST_FILTER "*Nightly*" PROPERTIES LABELS nightly TIMEOUT 7200 ENVIRONMENT OMP_WAIT_POLICY=passive)
+endfunction()
+
+# tests/ranks/*_test.cpp -> talus_ranks_tests: what several ranks do together, the whole of it under mpirun with 1, 2, 3 and 4 of them.
+function(talus_rank_tests)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/ranks/*_test.cpp)
+  add_executable(talus_ranks_tests ${PROJECT_SOURCE_DIR}/tests/ranks/main.cpp ${sources})
+  talus_use_modules(talus_ranks_tests)
+  target_link_libraries(talus_ranks_tests PRIVATE talus_app GTest::gtest GTest::gmock)
+  target_compile_options(talus_ranks_tests PRIVATE ${TALUS_TEST_OPTIONS})
+  target_compile_definitions(talus_ranks_tests PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  talus_use_pch(talus_ranks_tests talus_tests_pch)
+  # Open MPI refuses root, which is who runs the tests in a container, and more ranks than cores, unless told.
+  foreach(ranks 1 2 3 4)
+    add_test(NAME ranks.${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} --oversubscribe --bind-to none
+                                         $<TARGET_FILE:talus_ranks_tests>)
+    set_tests_properties(ranks.${ranks} PROPERTIES LABELS ranks TIMEOUT 300 PROCESSORS 2
+      ENVIRONMENT "OMP_WAIT_POLICY=passive;OMP_NUM_THREADS=1;OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+  endforeach()
 endfunction()
 
 # tests/speed/*.cpp -> talus_speed (Google Benchmark). Not a ctest: a number is no verdict.

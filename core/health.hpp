@@ -47,6 +47,9 @@ class Health {
     return Finding{word % ids, static_cast<Trouble>(word / ids)};
   }
   void clear() noexcept { worst_ = fine; }
+  /// The worst as a number, the smaller the worse: what several ranks agree on.
+  std::int64_t word() const noexcept { return worst_.load(); }
+  void take(std::int64_t word) noexcept { worst_ = word; }
 
  private:
   static constexpr std::int64_t ids = std::int64_t{1} << 60;

@@ -18,14 +18,16 @@ BELOW = {  # folder -> folders it may include, besides itself
     "app": ["core", "mesh", "kernels", "materials", "solver", "io"],
 }
 BELOW_TESTS = {**{folder: [folder, *below] for folder, below in BELOW.items()},
-               "fuzz": [*BELOW], "speed": ["core", "mesh", "kernels", "materials", "solver"]}
+               "fuzz": [*BELOW], "ranks": [*BELOW], "speed": ["core", "mesh", "kernels", "materials", "solver"]}
 
 # header pattern, files that may include it; tests/io/report_test.cpp may include what io/report.cpp may. The first match decides.
 THIRD_PARTY = [
     ("Eigen/*", ["*"]),
     ("fmt/*", ["*"]),
     ("omp.h", ["core/parallel.hpp", "core/parallel.cpp"]),
+    ("mpi.h", ["core/exchange.cpp"]),
     ("immintrin.h", ["core/lanes.hpp"]),
+    ("metis.h", ["mesh/partition.cpp"]),
     ("yaml-cpp/*", ["io/reader.cpp"]),
     ("gmsh.h*", ["io/gmsh_*.cpp"]),
     ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),

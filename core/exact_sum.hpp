@@ -1,0 +1,133 @@
+#pragma once
+// Sums without rounding errors until their value is asked for: the order of the summands, and who added them, leaves no trace in the bits.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+/// A sum of doubles as one long integer, in units of the smallest double 2^-1074: digits of 32 bits in words of 64.  A double goes into two
+/// neighbouring words, as their digit or as more than that; carries are passed on once in a thousand summands.
+class ExactSum {
+ public:
+  static constexpr int digits = 68;  ///< 66 hold the largest double, two more hold what 2^60 of them come to
+  /// As sent to other ranks: the digits, then how many summands were NaN, +inf and -inf.
+  static constexpr std::size_t words = digits + 3;
+
+  void add(Real x) noexcept
+  {
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const int exponent = static_cast<int>(bits >> 52) & 2047;
+    if (exponent == 2047) [[unlikely]] {
+      add_not_finite(x);
+      return;
+    }
+    const int normal = exponent != 0;
+    const std::uint64_t mantissa = (bits & ((std::uint64_t{1} << 52) - 1)) | static_cast<std::uint64_t>(normal) << 52;
+    const int place = exponent - normal, first = place >> 5, shift = place & 31;
+    const std::int64_t sign = -static_cast<std::int64_t>(bits >> 63);  // 0 or -1; (d ^ sign) - sign is +d or -d
+    std::int64_t* digit = &digit_[static_cast<std::size_t>(first)];
+    digit[0] += (static_cast<std::int64_t>(mantissa << shift & 0xffffffff) ^ sign) - sign;
+    digit[1] += (static_cast<std::int64_t>(mantissa >> (32 - shift)) ^ sign) - sign;
+    used_ |= static_cast<std::uint64_t>(mantissa != 0) << first;
+    if (++weight_ >= heaviest) [[unlikely]]
+      normalise();
+  }
+  void add(const ExactSum& other) noexcept;
+
+  /// The sum, rounded once: to nearest, ties to even.  A sum of zero is +0, whatever the signs of its zeros; beyond the largest double it
+  /// is infinite.  With summands that were not finite it is what IEEE arithmetic makes of them.
+  Real value() const noexcept;
+  /// Back to zero.  Costs, as value() does, what the digits in use cost.
+  void clear() noexcept;
+
+  /// `words` of them.  Added up word by word as integers, those of as many as 2^20 sums are the words of the sum of all.
+  void write(std::span<std::int64_t> to) const noexcept;
+  /// Adds what such words hold: written ones, or up to 2^20 written ones added up.
+  void add(std::span<const std::int64_t> from) noexcept;
+  void read(std::span<const std::int64_t> from) noexcept
+  {
+    clear();
+    add(from);
+  }
+
+ private:
+  static constexpr int heaviest = 1024;
+  struct Range {
+    int lowest, highest;  ///< of the digits in use; none are if lowest is the larger
+  };
+  Range range() const noexcept;
+  void use(int digit) noexcept { used_ |= std::uint64_t{1} << std::min(digit, 63); }
+  void add_not_finite(Real x) noexcept;
+  void normalise() noexcept;
+
+  std::array<std::int64_t, digits> digit_{};
+  std::array<std::int64_t, 3> not_finite_{};  ///< summands that were NaN, +inf, -inf
+  std::uint64_t used_ = 0;                    ///< bit k: digits k and k + 1 are in use; bit 63: all from there on
+  int weight_ = 0;                            ///< no word is larger than weight_ 2^52
+};
+
+/// Exact sums of every entry of T: a Real, a Vec, or a plain struct of such, which in memory is so many doubles in a row.
+template <class T>
+class ExactSums {
+  static_assert(sizeof(T) % sizeof(Real) == 0 && alignof(T) == alignof(Real), "made of doubles only");
+  static constexpr std::size_t entries = sizeof(T) / sizeof(Real);
+
+ public:
+  static constexpr std::size_t words = entries * ExactSum::words;
+
+  void add(const T& summand) noexcept
+  {
+    std::array<Real, entries> x;
+    std::memcpy(x.data(), static_cast<const void*>(&summand), sizeof(T));
+    for (std::size_t i = 0; i < entries; ++i)
+      sum_[i].add(x[i]);
+  }
+  void add(const ExactSums& other) noexcept
+  {
+    for (std::size_t i = 0; i < entries; ++i)
+      sum_[i].add(other.sum_[i]);
+  }
+  T value() const noexcept
+  {
+    std::array<Real, entries> x;
+    for (std::size_t i = 0; i < entries; ++i)
+      x[i] = sum_[i].value();
+    T sum;
+    std::memcpy(static_cast<void*>(&sum), x.data(), sizeof(T));
+    return sum;
+  }
+  void clear() noexcept
+  {
+    for (ExactSum& sum : sum_)
+      sum.clear();
+  }
+
+  /// As ExactSum's, entry after entry: `words` words in all.
+  void write(std::span<std::int64_t> to) const noexcept
+  {
+    for (std::size_t i = 0; i < entries; ++i)
+      sum_[i].write(to.subspan(i * ExactSum::words, ExactSum::words));
+  }
+  void add(std::span<const std::int64_t> from) noexcept
+  {
+    for (std::size_t i = 0; i < entries; ++i)
+      sum_[i].add(from.subspan(i * ExactSum::words, ExactSum::words));
+  }
+  void read(std::span<const std::int64_t> from) noexcept
+  {
+    clear();
+    add(from);
+  }
+
+ private:
+  std::array<ExactSum, entries> sum_;
+};
+
+}  // namespace talus
