@@ -126,6 +126,8 @@ std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha)
 {
   std::vector<Real> S(mesh.ring_of_node().item.size());
   parallel_for(mesh.n_nodes(), [&](Index n) {
+    if (!mesh.is_whole(n))
+      return;  // another rank's
     const RingOf<D> ring(mesh, n);
     Real sum = 0;
     Vec<D> centre = Vec<D>::Zero();
@@ -154,6 +156,8 @@ std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha)
   std::vector<Real> S(mesh.ring_of_node().item.size());
   std::vector<std::uint8_t> failed(static_cast<std::size_t>(mesh.n_nodes()), 0);
   parallel_for(mesh.n_nodes(), [&](Index n) {
+    if (!mesh.is_whole(n))
+      return;  // another rank's
     const RingOf<D> ring(mesh, n);
     const auto& here = facets[static_cast<std::size_t>(n)];
     const auto along = directions_along(mesh, here);

@@ -183,23 +183,7 @@ inline bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept
   return std::visit([&](auto& typed) { return prestress(typed, i, stress); }, batch);
 }
 
-/// Energy [J] dissipated so far in a body; `volume0` [m^3] of all particles of the model.  0 for a law without "plastic_work".
-template <class L>
-Real total_plastic_work(const Batch<L>& batch, const Rows<Real>& volume0)
-{
-  Real total = 0;
-  for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
-    if constexpr (std::decay_t<decltype(column)>::components == 1)
-      if (key == "plastic_work")
-        total += parallel_sum<Real>(column.size(), [&](Index i) { return volume0[static_cast<std::size_t>(batch.begin + i)] * column[i]; });
-  });
-  return total;
-}
-inline Real total_plastic_work(const AnyBatch& batch, const Rows<Real>& volume0)
-{
-  return std::visit([&](const auto& typed) { return total_plastic_work(typed, volume0); }, batch);
-}
-/// The same of particle i of the body alone.
+/// Energy [J] dissipated so far in particle i of a body, whose volume was `volume0` [m^3].  0 for a law without "plastic_work".
 inline Real plastic_work(const AnyBatch& batch, Index i, Real volume0)
 {
   Real work = 0;

@@ -55,7 +55,8 @@ class BoxTree {
   void around(const Vec<D>& x, Visit&& visit) const noexcept
   {
     Stack stack;
-    stack.push(top(), 0);
+    if (n_items_ > 0)
+      stack.push(top(), 0);
     while (!stack.empty()) {
       const auto [level, i] = stack.pop();
       if (!levels_[level][i].holds(x))
@@ -72,7 +73,7 @@ class BoxTree {
     }
   }
 
-  /// The item with the least squared_distance(i); the lowest of equals.
+  /// The item with the least squared_distance(i); the lowest of equals.  There must be one.
   template <class SquaredDistance>
   Index nearest(const Vec<D>& x, SquaredDistance&& squared_distance) const noexcept
   {

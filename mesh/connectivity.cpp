@@ -92,6 +92,20 @@ Csr cells_at_nodes(std::span<const std::array<Index, D + 1>> cells, Index n_node
 }
 
 template <int D>
+std::vector<Index> nodes_in_use(std::span<const std::array<Index, D + 1>> cells, std::span<const Index> chosen, Index n_nodes)
+{
+  std::vector<std::uint8_t> used(static_cast<std::size_t>(n_nodes), 0);
+  for (const Index c : chosen)
+    for (const Index n : cells[c])
+      used[n] = 1;
+  std::vector<Index> nodes;
+  for (Index n = 0; n < n_nodes; ++n)
+    if (used[n] != 0)
+      nodes.push_back(n);
+  return nodes;
+}
+
+template <int D>
 FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
 {
   // Every facet is looked at from its lowest node, beside the few others of that node.
@@ -172,6 +186,8 @@ Csr nodes_around(std::span<const std::array<Index, D + 1>> cells, const Csr& cel
 
 template std::vector<Index> hilbert_order<2>(std::span<const Vec<2>>, std::span<const std::array<Index, 3>>);
 template std::vector<Index> hilbert_order<3>(std::span<const Vec<3>>, std::span<const std::array<Index, 4>>);
+template std::vector<Index> nodes_in_use<2>(std::span<const std::array<Index, 3>>, std::span<const Index>, Index);
+template std::vector<Index> nodes_in_use<3>(std::span<const std::array<Index, 4>>, std::span<const Index>, Index);
 template FacetMatch<2> match_facets<2>(std::span<const std::array<Index, 3>>, const Csr&);
 template FacetMatch<3> match_facets<3>(std::span<const std::array<Index, 4>>, const Csr&);
 template Csr cells_at_nodes<2>(std::span<const std::array<Index, 3>>, Index);

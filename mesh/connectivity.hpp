@@ -16,6 +16,10 @@ std::vector<Index> hilbert_order(std::span<const Vec<D>> nodes, std::span<const 
 template <int D>
 Csr cells_at_nodes(std::span<const std::array<Index, D + 1>> cells, Index n_nodes);
 
+/// Nodes of the chosen cells, ascending.
+template <int D>
+std::vector<Index> nodes_in_use(std::span<const std::array<Index, D + 1>> cells, std::span<const Index> chosen, Index n_nodes);
+
 template <int D>
 struct FacetMatch {
   std::vector<std::array<Index, D + 1>> neighbours;  ///< cell across the facet opposite each local node, or `none`

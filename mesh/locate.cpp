@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <limits>
 
 #include "mesh/simplex.hpp"
 
@@ -44,15 +45,6 @@ Extent<D> facet_box(const Mesh<D>& mesh, Facet f)
   return box;
 }
 
-template <int D>
-Real largest_cell(const Mesh<D>& mesh)
-{
-  Real largest = 0;
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-    largest = std::max(largest, longest_edge<D>(mesh.corners(c)));
-  return largest;
-}
-
 enum class Position : std::uint8_t { deep, within, outside };
 
 /// Where x is with respect to one cell: distances to its facets, and its box because beyond a sharp tip those are small.
@@ -74,7 +66,7 @@ Position position(const Mesh<D>& mesh, Index c, const Vec<D>& x, Real margin) no
 
 template <int D>
 Locator<D>::Locator(const Mesh<D>& mesh)
-    : margin_(2 * location_tolerance * largest_cell(mesh)),
+    : margin_(2 * location_tolerance * mesh.largest_edge()),
       cells_(mesh.n_cells(), [&](Index c) { return cell_box(mesh, c); }),
       facets_(static_cast<Index>(mesh.boundary_facets().size()), [&](Index i) { return facet_box(mesh, mesh.boundary_facets()[i]); })
 {}
@@ -112,6 +104,8 @@ template <int D>
 typename Locator<D>::Nearest Locator<D>::nearest(const Mesh<D>& mesh, const Vec<D>& x) const noexcept
 {
   const std::span<const Facet> facets = mesh.boundary_facets();
+  if (facets.empty())
+    return {Vec<D>::Constant(std::numeric_limits<Real>::infinity()), 0, {0, 0}};
   const Index i = facets_.nearest(x, [&](Index f) { return (closest_point(facet_corners(mesh, facets[f]), x) - x).squaredNorm(); });
   return {closest_point(facet_corners(mesh, facets[i]), x), facets[i].cell, facets[i]};
 }

@@ -12,6 +12,9 @@ namespace talus {
 inline constexpr Real location_tolerance = 1e-10;
 
 /// Where a point is.  On a facet, edge or node shared by cells the lowest cell number wins, whatever the hint was.
+///
+/// In a part of a mesh (see Mesh) a point is where it is in the whole, if the cells that share a node with its cell there are held too;
+/// a point in a cell that is not held is outside.
 template <int D>
 class Locator {
  public:
@@ -53,7 +56,8 @@ class Locator {
   }
 
   /// The point of the mesh boundary nearest to x and its cell, for x outside: the projection on the nearest boundary facet.
-  /// x must be finite.
+  /// x must be finite.  A part from the inside of a mesh may have no boundary facets: the point is then infinitely far, and neither cell
+  /// nor facet mean anything.
   struct Nearest {
     Vec<D> x;
     Index cell;
@@ -64,7 +68,7 @@ class Locator {
  private:
   std::optional<Index> search(const Mesh<D>& mesh, const Vec<D>& x) const noexcept;
 
-  Real margin_;  // a point this deep [m] inside a cell is within the tolerance of no other
+  Real margin_;  // a point this deep [m] inside a cell is within the tolerance of no other cell of the whole mesh
   BoxTree<D> cells_, facets_;
 };
 

@@ -45,6 +45,27 @@ std::vector<Index> renumber(const std::vector<Index>& members, std::span<const I
   return result;
 }
 
+bool is_before(Facet a, Facet b) noexcept { return std::tie(a.cell, a.local) < std::tie(b.cell, b.local); }
+
+/// What `values` has for each of `chosen`.
+template <class T>
+std::vector<T> picked(const std::vector<T>& values, std::span<const Index> chosen)
+{
+  std::vector<T> result(chosen.size());
+  parallel_for(static_cast<Index>(chosen.size()), [&](Index i) { result[i] = values[chosen[i]]; });
+  return result;
+}
+
+/// The new numbers of those members of a set that have one.
+std::vector<Index> held(const std::vector<Index>& members, std::span<const Index> renumbered)
+{
+  std::vector<Index> result;
+  for (const Index member : members)
+    if (renumbered[member] != none)
+      result.push_back(renumbered[member]);
+  return result;
+}
+
 /// The facet with these nodes, seen from the lower numbered of its cells.
 template <int D>
 std::optional<Facet> find_facet(const Mesh<D>& mesh, const std::array<Index, D>& nodes)
@@ -92,6 +113,44 @@ Mesh<D>::Mesh(MeshData<D> data)
   find_boundary();
   measure();
   take_sets(data, inverse(old_cells, data.cells.size()), inverse(old_nodes, data.nodes.size()));
+}
+
+template <int D>
+Mesh<D>::Mesh(const Mesh& whole, std::span<const Index> cells)
+{
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    if (cells[i] < 0 || cells[i] >= whole.n_cells() || (i > 0 && cells[i] <= cells[i - 1]))
+      throw std::invalid_argument(fmt::format("cell {} stands where an ascending number below {} is wanted", cells[i], whole.n_cells()));
+  const std::vector<Index> nodes = nodes_in_use<D>(whole.cells(), cells, whole.n_nodes());
+  const std::vector<Index> new_cell = inverse(cells, whole.cells_.size()), new_node = inverse(nodes, whole.nodes_.size());
+
+  nodes_ = picked(whole.nodes_, nodes);
+  node_size_ = picked(whole.node_size_, nodes);
+  on_boundary_ = picked(whole.on_boundary_, nodes);
+  cells_ = picked(whole.cells_, cells);
+  volume_ = picked(whole.volume_, cells);
+  altitude_ = picked(whole.altitude_, cells);
+  gradients_ = picked(whole.gradients_, cells);
+  neighbours_ = picked(whole.neighbours_, cells);
+  parallel_for(n_cells(), [&](Index c) {
+    for (Index& n : cells_[c])
+      n = new_node[n];
+    for (Index& other : neighbours_[c])
+      other = other == none ? none : new_cell[other];
+  });
+  largest_edge_ = whole.largest_edge_;
+  low_ = whole.low_;
+  high_ = whole.high_;
+
+  cells_of_node_ = cells_at_nodes<D>(cells_, n_nodes());
+  ring_of_node_ = nodes_around<D>(cells_, cells_of_node_);
+  cut_.resize(nodes.size());
+  for (std::size_t n = 0; n < nodes.size(); ++n)
+    cut_[n] = whole.cells_of_node_[nodes[n]].size() != cells_of_node_[static_cast<Index>(n)].size() || !whole.is_whole(nodes[n]) ? 1 : 0;
+  for (const Facet f : whole.boundary_facets_)
+    if (new_cell[f.cell] != none)
+      boundary_facets_.push_back({new_cell[f.cell], f.local});
+  take_sets(whole, new_cell, new_node);
 }
 
 /// Cells in the given order and turned positive, nodes by first use; answers the old number of each node.
@@ -156,6 +215,7 @@ void Mesh<D>::measure()
       sum += (nodes_[m] - nodes_[n]).norm();
     node_size_[n] = sum / static_cast<Real>(ring.size() - 1);  // the ring holds n itself, and simplices have no diagonals
   });
+  largest_edge_ = -parallel_min(n_cells(), 0, [&](Index c) { return -longest_edge<D>(corners(c)); });
   low_ = high_ = nodes_[0];
   for (const Vec<D>& x : nodes_) {
     low_ = low_.cwiseMin(x);
@@ -193,6 +253,31 @@ void Mesh<D>::take_sets(const MeshData<D>& data, std::span<const Index> new_cell
 }
 
 template <int D>
+void Mesh<D>::take_sets(const Mesh& whole, std::span<const Index> new_cell, std::span<const Index> new_node)
+{
+  for (const std::string& name : whole.node_set_names())  // with the nodes of facets and cells that are not held
+    node_sets_[name] = held(*whole.node_set(name), new_node);
+  for (const auto& [name, members] : whole.cell_sets_)
+    cell_sets_[name] = held(members, new_cell);
+  for (const auto& [name, members] : whole.facet_sets_) {
+    std::vector<Facet>& facets = facet_sets_[name];
+    std::size_t n_boundary = 0;
+    for (Facet f : members) {
+      const Index across = whole.neighbours_[f.cell][f.local];
+      if (new_cell[f.cell] == none && across != none) {
+        const auto& back = whole.neighbours_[across];
+        f = {across, static_cast<Index>(std::find(back.begin(), back.end(), f.cell) - back.begin())};
+      }
+      if (new_cell[f.cell] == none)
+        continue;
+      facets.push_back({new_cell[f.cell], f.local});
+      n_boundary += whole.on_boundary(f) ? 1 : 0;
+    }
+    std::sort(facets.begin() + static_cast<std::ptrdiff_t>(n_boundary), facets.end(), is_before);
+  }
+}
+
+template <int D>
 std::array<Vec<D>, D + 1> Mesh<D>::corners(Index c) const noexcept
 {
   const Cell& nodes = cell(c);
@@ -200,6 +285,12 @@ std::array<Vec<D>, D + 1> Mesh<D>::corners(Index c) const noexcept
   for (int a = 0; a <= D; ++a)
     s[a] = node(nodes[a]);
   return s;
+}
+
+template <int D>
+bool Mesh<D>::on_boundary(Facet f) const noexcept
+{
+  return std::binary_search(boundary_facets_.begin(), boundary_facets_.end(), f, is_before);
 }
 
 template <int D>

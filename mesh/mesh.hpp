@@ -39,6 +39,11 @@ class Mesh {
   using Cell = std::array<Index, D + 1>;
 
   explicit Mesh(MeshData<D> data);
+  /// Some cells of `whole` (ascending; may be none) and the nodes they use, both in the order of the whole.  What was measured there is
+  /// taken over, so that a node at the rim knows its size, and the box is that of the whole.  `neighbours`, `cells_of_node` and
+  /// `ring_of_node` know the cells held.  Where the mesh was cut is no boundary: `boundary_facets` and `on_boundary` are those of the
+  /// whole.  Every named set is there, if only with the members held; a facet inside is seen from a cell that is held.
+  Mesh(const Mesh& whole, std::span<const Index> cells);
 
   Index n_nodes() const noexcept { return static_cast<Index>(nodes_.size()); }
   Index n_cells() const noexcept { return static_cast<Index>(cells_.size()); }
@@ -52,14 +57,18 @@ class Mesh {
   Real volume(Index c) const noexcept { return volume_[static_cast<std::size_t>(c)]; }        ///< area in 2-D [m^D]
   Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }    ///< the smallest one [m]
   Real node_size(Index n) const noexcept { return node_size_[static_cast<std::size_t>(n)]; }  ///< h_n, mean length of the edges at n [m]
+  Real largest_edge() const noexcept { return largest_edge_; }                                ///< of all cells [m]
   const Vec<D>& low() const noexcept { return low_; }                                         ///< corners of the bounding box [m]
   const Vec<D>& high() const noexcept { return high_; }
 
-  /// Cell across the facet opposite each local node, or `none` on the boundary.
+  /// Cell across the facet opposite each local node, or `none` on the boundary and where a larger mesh was cut.
   const std::array<Index, D + 1>& neighbours(Index c) const noexcept { return neighbours_[static_cast<std::size_t>(c)]; }
   const Csr& cells_of_node() const noexcept { return cells_of_node_; }  ///< ascending
-  const Csr& ring_of_node() const noexcept { return ring_of_node_; }    ///< nodes that share a cell with it, itself included, ascending
+  /// False for nodes where the mesh was cut out of a larger one: cells around them are missing.
+  bool is_whole(Index n) const noexcept { return cut_.empty() || cut_[static_cast<std::size_t>(n)] == 0; }
+  const Csr& ring_of_node() const noexcept { return ring_of_node_; }  ///< nodes that share a cell with it, itself included, ascending
   std::span<const Facet> boundary_facets() const noexcept { return boundary_facets_; }
+  bool on_boundary(Facet f) const noexcept;  ///< false where a larger mesh was cut
   bool on_boundary(Index n) const noexcept { return on_boundary_[static_cast<std::size_t>(n)] != 0; }
 
   std::array<Index, D> nodes_of(Facet f) const noexcept;  ///< in the order that turns the normal outwards of f.cell
@@ -84,6 +93,7 @@ class Mesh {
   void find_boundary();
   void measure();
   void take_sets(const MeshData<D>& data, std::span<const Index> new_cell, std::span<const Index> new_node);
+  void take_sets(const Mesh& whole, std::span<const Index> new_cell, std::span<const Index> new_node);
 
   std::vector<Vec<D>> nodes_;
   std::vector<Cell> cells_;
@@ -91,8 +101,10 @@ class Mesh {
   std::vector<std::array<Vec<D>, D + 1>> gradients_;
   std::vector<std::array<Index, D + 1>> neighbours_;
   Csr cells_of_node_, ring_of_node_;
+  std::vector<std::uint8_t> cut_;  ///< of a mesh of some cells of another: by node
   std::vector<Facet> boundary_facets_;
   std::vector<std::uint8_t> on_boundary_;
+  Real largest_edge_;
   Vec<D> low_, high_;
   std::map<std::string, std::vector<Index>, std::less<>> node_sets_, cell_sets_;
   std::map<std::string, std::vector<Facet>, std::less<>> facet_sets_;

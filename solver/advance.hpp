@@ -23,14 +23,8 @@ class StopWatch {
   Clock::time_point last_ = Clock::now();
 };
 
-/// Counts what walls did to slaves and hats, which the kinetic energy of nodes knows nothing of.
-inline void count_beyond_nodes(const WallWork& work, EnergyLedger& energy) noexcept
-{
-  energy.walls += work.other;
-  energy.friction += work.friction;
-  energy.nodes += work.friction + work.other;
-}
-
+template <int D, Kernel<D> K>
+void find_places(Model<D, K>& m);
 template <int D, Kernel<D> K>
 void sum_on_nodes(Model<D, K>& m);
 template <int D, Kernel<D> K>
@@ -43,6 +37,12 @@ template <int D, Kernel<D> K>
 void respond(Model<D, K>& m, Index body, Index block, Real dt);
 template <int D, Kernel<D> K>
 void respond_as_bodies(Model<D, K>& m, Real dt);
+template <int D, Kernel<D> K>
+bool all_well(Model<D, K>& m);
+template <int D, Kernel<D> K>
+void count(Model<D, K>& m, const Vec<D>& gravity, Real dt);
+template <int D, Kernel<D> K>
+void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt);
 
 /// One step of length dt [s].  Afterwards `m.health` tells whether the state is sound.
 template <int D, Kernel<D> K>
@@ -52,26 +52,26 @@ void advance(Model<D, K>& m, Real dt)
   const Real time = m.clock.time, ramp = m.stage.ramp(time + dt);
   const Vec<D> gravity = m.loads.gravity(time + dt, ramp);
 
-  if (relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.mass, m.energy, m.health))  //  1
-    index_rows(m);
-  if (m.health.worst())
+  m.tally.clear();
+  find_places(m);  //  1
+  if (!all_well(m))
     return;
-  const Push<D> on_particles = apply(m.loads, time + dt, ramp, m.row_of_id, m.particles);  //  2
+  apply(m.loads, time + dt, ramp, m.row_of_id, m.order, m.particles, m.tally.on_particles);  //  2
   watch.lap(m.timings.locate);
 
   scatter(m);  //  3
   watch.lap(m.timings.scatter);
 
   sum_on_nodes(m);  //  4
-  const Push<D> on_mesh = apply(m.loads, time + dt, ramp, m.mesh, std::span(m.nodes.sum));
-  m.slaves.lump(m.mesh, m.nodes);                                //  5
-  integrate(gravity, dt, m.nodes);                               //  6
-  const WallWork wall_work = m.walls.apply(time + dt, m.nodes);  //  7
+  apply(m.loads, time + dt, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
+  m.slaves.lump(m.mesh, m.nodes);                       //  5
+  integrate(gravity, dt, m.nodes);                      //  6
+  m.walls.apply(time + dt, m.nodes, m.tally.at_nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);
-  count_beyond_nodes(m.slaves.follow(m.mesh, m.nodes, time + dt, m.walls, m.nodes.motion), m.energy);  //  8
-  record(m, gravity, on_particles + on_mesh, wall_work, dt);
-  m.energy.loads += work(m.loads, time + dt, ramp, dt, m.nodes);
+  m.slaves.follow(m.mesh, m.nodes, time + dt, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
+  count(m, gravity, dt);
+  add_work(m.loads, time + dt, ramp, dt, m.own, m.nodes, m.tally.work_on_mesh);
   watch.lap(m.timings.nodes);
 
   show_to_particles(m, dt);  //  9
@@ -83,12 +83,23 @@ void advance(Model<D, K>& m, Real dt)
   } else {
     gather(m, dt, stress);  // 10, 12
   }
-  m.energy.loads += work(m.particles);
+  add_work(m.order, m.particles, m.tally.work_on_particles);
   respond_as_bodies(m, dt);
+  close_books(m, gravity, dt);
   watch.lap(m.timings.gather);  // its share of stresses is told apart by respond_as_bodies()
 
   m.clock = {m.clock.step + 1, time + dt, dt};
-  m.timings.particle_steps += static_cast<Real>(m.particles.size());
+}
+
+/// Cells, ranks and rows of the particles.
+template <int D, Kernel<D> K>
+void find_places(Model<D, K>& m)
+{
+  bool changed = relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.tally, m.health);
+  changed |= m.migration(m.share, m.bodies, m.materials, m.particles, m.order);
+  changed |= follow_order(m.bodies, m.materials, m.particles, m.order);
+  if (changed)
+    follow_rows(m);
 }
 
 /// Rows of blocks -> nodes; with a node part, hats stand between.
@@ -96,10 +107,10 @@ template <int D, Kernel<D> K>
 void sum_on_nodes(Model<D, K>& m)
 {
   if constexpr (HasNodePart<K, D>) {
-    assemble(m.blocks, m.hats.sum);
+    assemble<Whole>(m.blocks, m.own, m.halo, m.hats.sum);
     collect(m.kernel.node_part(), m.mesh, m.hats.sum, !HasOwnValues<K, D>, m.nodes.sum);
   } else {
-    assemble(m.blocks, m.nodes.sum);
+    assemble<Whole>(m.blocks, m.own, m.halo, m.nodes.sum);
   }
 }
 
@@ -121,7 +132,7 @@ void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt
   if constexpr (HasNodePart<K, D>) {
     spread(m.kernel.node_part(), m.nodes.motion, m.hats);
     if constexpr (!HasOwnValues<K, D>)
-      count_beyond_nodes(m.walls.apply(m.clock.time + dt, m.hats.sum, m.hats.motion), m.energy);
+      m.walls.apply(m.clock.time + dt, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
   }
 }
 
@@ -131,10 +142,10 @@ template <int D, Kernel<D> K, class Then>
 void remap(Model<D, K>& m, Real dt, Then&& then)
 {
   if constexpr (HasNodePart<K, D>) {
-    assemble_momentum(m.blocks, m.hats.sum);
+    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.hats.sum);
     collect_momentum(m.kernel.node_part(), m.mesh, m.hats.sum, m.nodes.sum);
   } else {
-    assemble_momentum(m.blocks, m.nodes.sum);
+    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.nodes.sum);
   }
   m.slaves.lump_momentum(m.mesh, m.nodes);
   parallel_for(static_cast<Index>(m.remapped.size()), [&](Index n) {
@@ -161,11 +172,10 @@ void respond(Model<D, K>& m, Index body, Index block, Real dt)
     m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, rows, dt, m.stage.elastic, m.averaged, m.particles, m.health);
 }
 
-/// What is of a body as a whole: volumes averaged before the stress, heat after it; and the sums of the step.
+/// What is of a body as a whole: volumes averaged before the stress, heat after it; and what the particles report.
 template <int D, Kernel<D> K>
 void respond_as_bodies(Model<D, K>& m, Real dt)
 {
-  StressSums total;
   for (Index body = 0; body < m.n_bodies(); ++body) {
     AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
     if (averages_volume(material)) {
@@ -177,30 +187,72 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
     }
     if (m.heat)
       conduct_heat(m.mesh, material, m.order, body, dt, m.particles, *m.heat);
-    for (Index block = 0; block < m.order.blocks; ++block)
-      total += m.stress_sums[m.order.key(body, block)];
   }
-  m.energy.internal += total.work;
-  m.crossing = total.crossing;
-  m.watched.speed = total.speed;
-  m.timings.stress += total.seconds / threads();
-  m.timings.gather -= total.seconds / threads();
+  StressSums most;
+  for (const StressSums& sums : m.stress_sums) {
+    m.tally.internal.add(sums.work);
+    most.take_extremes(sums);
+  }
+  m.crossing = most.crossing;
+  m.watched.speed = most.speed;
+  m.timings.stress += most.seconds / threads();
+  m.timings.gather -= most.seconds / threads();
 }
 
-/// Work, impulses and residual of the step, for the audit.
+/// Before anything is changed that could not be undone.
 template <int D, Kernel<D> K>
-void record(Model<D, K>& m, const Vec<D>& gravity, const Push<D>& tractions, const WallWork& wall_work, Real dt)
+bool all_well(Model<D, K>& m)
 {
-  const NodeWork<D> work = node_work(gravity, m.stage.damping, dt, m.mesh, m.nodes);
+  m.health.take(m.ranks->min(m.health.word()));
+  if (!m.health.worst())
+    return true;
+  m.ranks->sum(m.tally.departed);
+  book(m.tally.departed.value(), m.mass, m.energy);
+  return false;
+}
+
+/// Work and balance of the own nodes, once all that moves them has spoken.
+template <int D, Kernel<D> K>
+void count(Model<D, K>& m, const Vec<D>& gravity, Real dt)
+{
+  add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.nodes,
+             [&](Index n) { return node_work(gravity, m.stage.damping, dt, m.mesh, m.nodes, n); });
+  add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.balance,
+             [&](Index n) { return balance_at(gravity, m.stage.seeks_rest, dt, m.nodes, n); });
+}
+
+/// The sums of the step, of all ranks, into the ledgers; the length of the next one and the state of health.
+template <int D, Kernel<D> K>
+void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
+{
+  Tally<D>& t = m.tally;
+  t.particles.add(static_cast<Real>(m.particles.size()));
+  m.ranks->sum(t.departed, t.on_particles, t.on_mesh, t.at_nodes, t.beyond_nodes, t.nodes, t.balance, t.work_on_mesh, t.work_on_particles,
+               t.internal, t.particles);
+  m.walls.keep_impulses(*m.ranks);
+  std::array<Real, 3> extremes{m.crossing, -m.watched.speed, -t.held_most};
+  m.ranks->least(extremes);
+  m.health.take(m.ranks->min(m.health.word()));
+
+  book(t.departed.value(), m.mass, m.energy);
+  const NodeWork<D> work = t.nodes.value();
+  const WallWork walls = t.at_nodes.value(), beyond = t.beyond_nodes.value();
+  const Push<D> tractions = t.on_particles.value() + t.on_mesh.value();
   m.mass.on_nodes = work.mass;
+  m.mass.held_most = std::max(m.mass.held_most, -extremes[2]);
   m.momentum.loads += Push<D>::of(dt * work.mass * gravity, dt * moment<D>(work.first_moment, gravity)) + dt * tractions;
   m.momentum.damping += work.damped;
   m.energy.gravity += work.gravity;
   m.energy.damping += work.damping;
-  m.energy.walls += wall_work.other;
-  m.energy.friction += wall_work.friction;
-  m.energy.nodes += work.kinetic_after - work.kinetic_before;
-  m.residual = unbalanced(gravity, m.stage.seeks_rest, dt, m.nodes, tractions.size);
+  m.energy.walls += walls.other + beyond.other;
+  m.energy.friction += walls.friction + beyond.friction;
+  m.energy.nodes += work.kinetic_after - work.kinetic_before + beyond.friction + beyond.other;
+  m.energy.loads += t.work_on_mesh.value() + t.work_on_particles.value();
+  m.energy.internal += t.internal.value();
+  m.timings.particle_steps += t.particles.value();
+  m.residual = unbalanced(t.balance.value(), tractions.size);
+  m.crossing = extremes[0];
+  m.watched.speed = -extremes[1];
 }
 
 }  // namespace talus

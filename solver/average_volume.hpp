@@ -14,7 +14,7 @@ template <int D>
 void average_volume(const Mesh<D>& mesh, const CellOrder& order, Index body, Real dt, const Particles<D>& particles, StarSums<D, 2>& sums,
                     std::vector<Real>& averaged)
 {
-  sums.gather(mesh, order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
+  sums.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
     for (const Index row : run) {
       const auto p = static_cast<std::size_t>(row);
       const auto hats = hats_inside(mesh, c, particles.x[p]);
@@ -29,7 +29,7 @@ void average_volume(const Mesh<D>& mesh, const CellOrder& order, Index body, Rea
     for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
       std::array<Real, D + 1> ratio;
       for (std::size_t a = 0; a <= D; ++a) {
-        const auto& [volume, volume0] = sums[mesh.cell(c)[a]];
+        const auto& [volume, volume0] = sums[mesh.cell(c)[a]].sum;
         ratio[a] = volume0 > 0 ? volume / volume0 : 1;  // nothing there: then the hat of every particle is zero
       }
       for (const Index row : run) {

@@ -1,14 +1,14 @@
 #pragma once
 // Rows of blocks of cells: where the particles of a block deposit, apart from every other block.
 #include "core/parallel.hpp"
-#include "kernels/kernel.hpp"
+#include "mesh/mesh.hpp"
 #include "solver/cell_order.hpp"
 #include "solver/nodes.hpp"
 
 namespace talus {
 
-/// Static tables and the rows themselves.  A node reached from several blocks has a row in each; `assemble` adds them up in
-/// ascending order, so no two threads ever write the same row and sums do not depend on the number of threads.
+/// Static tables and the rows themselves.  A node reached from several blocks has a row in each; `assemble` (halo.hpp) adds them up
+/// in ascending order, so no two threads ever write the same row and sums do not depend on the number of threads.
 template <int D, class Sum = NodeSum<D>>
 struct BlockRows {
   std::vector<Index> begin;         ///< block -> its first row; one more at the end
@@ -34,18 +34,18 @@ struct BlockRows {
   }
 };
 
-/// Tables for a kernel on a mesh.
-template <int D, class Sum, Kernel<D> K>
-BlockRows<D, Sum> make_block_rows(const K& kernel, const Mesh<D>& mesh)
+/// Tables for stencils on a mesh: stencil(cell) are its nodes.
+template <class Sum, int D, class Stencil>
+BlockRows<D, Sum> make_block_rows(const Mesh<D>& mesh, Stencil&& stencil)
 {
   const auto z = [](Index i) { return static_cast<std::size_t>(i); };
   BlockRows<D, Sum> blocks;
-  const Index n_blocks = (mesh.n_cells() + block_cells - 1) / block_cells;
+  const Index n_blocks = blocks_of(mesh.n_cells());
   blocks.occupied.assign(z(n_blocks), 0);
   blocks.begin.assign(z(n_blocks) + 1, 0);
   blocks.slot_begin.assign(z(mesh.n_cells()) + 1, 0);
   for (Index c = 0; c < mesh.n_cells(); ++c)
-    blocks.slot_begin[z(c) + 1] = blocks.slot_begin[z(c)] + static_cast<Index>(kernel.stencil(mesh, c).size());
+    blocks.slot_begin[z(c) + 1] = blocks.slot_begin[z(c)] + static_cast<Index>(stencil(c).size());
   blocks.slot.resize(z(blocks.slot_begin.back()));
 
   std::vector<Index> row_of_node(z(mesh.n_nodes()), none), node_of_row;  // numbers rows by first use
@@ -54,7 +54,7 @@ BlockRows<D, Sum> make_block_rows(const K& kernel, const Mesh<D>& mesh)
     const Index last_cell = std::min(mesh.n_cells(), (b + 1) * block_cells);
     for (Index c = b * block_cells; c < last_cell; ++c) {
       Index entry = blocks.slot_begin[z(c)];
-      for (const Index n : kernel.stencil(mesh, c)) {
+      for (const Index n : stencil(c)) {
         if (row_of_node[z(n)] < first_row) {
           row_of_node[z(n)] = static_cast<Index>(node_of_row.size());
           node_of_row.push_back(n);
@@ -78,32 +78,6 @@ BlockRows<D, Sum> make_block_rows(const K& kernel, const Mesh<D>& mesh)
   for (std::size_t r = 0; r < node_of_row.size(); ++r)
     rows.item[z(next[z(node_of_row[r])]++)] = static_cast<Index>(r);
   return blocks;
-}
-
-/// Adds the rows of all occupied blocks to the nodes.
-template <int D, class Sum>
-void assemble(const BlockRows<D, Sum>& blocks, std::vector<Sum>& sum)
-{
-  parallel_for(static_cast<Index>(sum.size()), [&](Index n) {
-    Sum total;
-    for (const Index r : blocks.rows_of_node[n])
-      if (blocks.occupied[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])])
-        total += blocks.row[static_cast<std::size_t>(r)];
-    sum[static_cast<std::size_t>(n)] = total;
-  });
-}
-
-/// The same for momentum alone.
-template <int D, class Sum>
-void assemble_momentum(const BlockRows<D, Sum>& blocks, std::vector<Sum>& sum)
-{
-  parallel_for(static_cast<Index>(sum.size()), [&](Index n) {
-    Sum& total = sum[static_cast<std::size_t>(n)];
-    total.clear_momentum();
-    for (const Index r : blocks.rows_of_node[n])
-      if (blocks.occupied[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])])
-        total.add_momentum(blocks.row[static_cast<std::size_t>(r)]);
-  });
 }
 
 }  // namespace talus

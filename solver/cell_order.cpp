@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -51,7 +52,8 @@ std::span<Index> part(std::vector<Index>& rows, const std::vector<Index>& first,
 void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
                   CellOrder& order)
 {
-  order.blocks = (n_cells + block_cells - 1) / block_cells;
+  order.blocks = blocks_of(n_cells);
+  order.is_new = true;
   order.row.resize(cell.size());
   order.first.assign(bodies.size() * static_cast<std::size_t>(order.blocks) + 1, 0);
   order.count.resize(static_cast<std::size_t>(n_cells));
@@ -81,6 +83,7 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
   const auto n_keys = static_cast<Index>(keys);
   const auto base_of = [&](std::size_t key) { return key - key % static_cast<std::size_t>(order.blocks); };  // bodies do not change
   const auto key_of = [&](std::size_t base, Index row) { return base + static_cast<std::size_t>(at(cell, row) / block_cells); };
+  order.is_new = true;
   order.arrived.reserve(order.row.size());  // never grows within a step
   order.moved.resize(order.row.size());
   order.next_row.resize(order.row.size());
@@ -133,6 +136,50 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
   });
   std::swap(order.row, order.next_row);
   std::swap(order.first, order.count);
+}
+
+void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, std::span<const Index> left,
+                  std::span<const std::pair<Index, Index>> moves, std::span<const Index> arrived, CellOrder& order)
+{
+  const auto blocks = static_cast<std::size_t>(order.blocks);
+  order.is_new = true;
+  std::vector<Index> stood(std::max(order.row.size(), cell.size()));  // row -> which it was
+  std::iota(stood.begin(), stood.end(), 0);
+  for (const auto& [from, to] : moves)
+    at(stood, to) = at(stood, from);
+  std::vector<Index> stands(stood.size());  // the other way round
+  std::iota(stands.begin(), stands.end(), 0);
+  for (const auto& [from, to] : moves)
+    if (static_cast<std::size_t>(to) < cell.size())
+      at(stands, at(stood, to)) = to;
+
+  std::vector<std::uint8_t> is_left(blocks, 0);
+  for (const Index block : left)
+    at(is_left, block) = 1;
+  std::vector<std::vector<Index>> here(order.keys());  // those who arrive
+  std::size_t body = 0;
+  for (const Index row : arrived) {
+    while (row >= bodies[body].end)
+      ++body;
+    here[body * blocks + static_cast<std::size_t>(at(cell, row) / block_cells)].push_back(row);
+  }
+
+  order.next_row.resize(cell.size());
+  order.next_first.assign(order.keys() + 1, 0);
+  for (std::size_t key = 0; key < order.keys(); ++key)
+    order.next_first[key + 1] = order.next_first[key] + static_cast<Index>(here[key].size()) +
+                                (is_left[key % blocks] != 0 ? 0 : order.first[key + 1] - order.first[key]);
+  parallel_for(static_cast<Index>(order.keys()), [&](Index k) {
+    const auto key = static_cast<std::size_t>(k);
+    const auto sorted = part(order.next_row, order.next_first, key);
+    auto to = sorted.begin();
+    if (is_left[key % blocks] == 0)
+      to = std::transform(order.rows(key).begin(), order.rows(key).end(), to, [&](Index row) { return at(stands, row); });
+    std::copy(here[key].begin(), here[key].end(), to);
+    insertion_sort(cell, id, sorted);
+  });
+  std::swap(order.row, order.next_row);
+  std::swap(order.first, order.next_first);
 }
 
 Real disorder(const CellOrder& order) noexcept

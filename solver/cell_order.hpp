@@ -6,18 +6,16 @@
 #include <vector>
 
 #include "core/particles.hpp"
+#include "mesh/blocks.hpp"
 
 namespace talus {
-
-/// Cells [b * block_cells, (b+1) * block_cells) form block b: near one another in space, because the mesh numbers its cells
-/// along a space-filling curve.  Blocks are the unit of parallel work; they depend on the mesh only.
-inline constexpr Index block_cells = 128;
 
 /// Inside a cell particles stand in the order of their ids, so nodal sums depend on the state and not on its history.
 struct CellOrder {
   std::vector<Index> row;    ///< particle rows sorted by (body, cell, id)
   std::vector<Index> first;  ///< (body * blocks + block) -> first position in `row`; one more at the end
   Index blocks = 0;
+  bool is_new = false;  ///< since follow_order() last looked
 
   /// Where in `first` the particles of a body in a block begin.
   std::size_t key(Index body, Index block) const noexcept
@@ -44,6 +42,11 @@ void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id,
 /// Sorts after some particles have changed their cells: the same order, but only blocks that somebody has left, entered or moved in are
 /// touched, in parallel.
 void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, CellOrder& order);
+
+/// After all rows in the blocks `left` have gone, for which others have taken their places: `moves` tell from where to where, one after the
+/// other.  `arrived` are new rows, body by body; their cells and ids are known, and so are the ranges of bodies as they are now.
+void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, std::span<const Index> left,
+                  std::span<const std::pair<Index, Index>> moves, std::span<const Index> arrived, CellOrder& order);
 
 /// Share of the particles whose row does not follow that of the particle before them in the order.
 Real disorder(const CellOrder& order) noexcept;

@@ -11,6 +11,7 @@ struct HeatSums {
   StarSums<D, 2> content;
   StarSums<D, 1> flow;
   explicit HeatSums(const Mesh<D>& mesh) : content(mesh), flow(mesh) {}
+  HeatSums(Exchange& ranks, const Mesh<D>& mesh, const Share& share) : content(ranks, mesh, share), flow(ranks, mesh, share) {}
 };
 
 /// One explicit step of  rho c dT/dt = div(k grad T)  on the hats of the mesh, insulated at every surface and between bodies:
@@ -24,7 +25,7 @@ void conduct_heat(const Mesh<D>& mesh, AnyBatch& material, const CellOrder& orde
 {
   const auto conduct = [&](auto& batch, Real conductivity, Real specific_heat) {
     const auto temperature = [&](std::size_t p) -> Real& { return batch.history[p - static_cast<std::size_t>(batch.begin)].temperature; };
-    sums.content.gather(mesh, order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
+    sums.content.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
       for (const Index row : run) {
         const auto p = static_cast<std::size_t>(row);
         const auto hats = hats_inside(mesh, c, particles.x[p]);
@@ -35,11 +36,11 @@ void conduct_heat(const Mesh<D>& mesh, AnyBatch& material, const CellOrder& orde
         }
       }
     });
-    sums.flow.gather(mesh, order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
+    sums.flow.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
       const auto& gradients = mesh.gradients(c);
       Vec<D> slope = Vec<D>::Zero();
       for (std::size_t a = 0; a <= D; ++a) {
-        const auto& [capacity, content] = sums.content[mesh.cell(c)[a]];
+        const auto& [capacity, content] = sums.content[mesh.cell(c)[a]].sum;
         if (!(capacity > 0))
           return;  // particles on a facet leave the corner opposite it empty: no gradient, no flow
         slope += content / capacity * gradients[a];

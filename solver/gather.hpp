@@ -80,7 +80,7 @@ template <class S, bool increments, bool affine, int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D, K>& m, Real dt)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
-  parallel_for_uneven(m.order.blocks, [&](Index b) {
+  for_each_own_block<MomentumAlone>(m.blocks, m.halo, [&](Index b) {
     if (!m.blocks.occupied[static_cast<std::size_t>(b)])
       return;
     const auto rows = m.blocks.rows(b);

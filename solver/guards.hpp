@@ -22,15 +22,13 @@ std::string describe(const Particles<D>& particles, const std::vector<Body>& bod
   return fmt::format("particle {}{} at ({})", particles.id[p], body, place);
 }
 
-template <int D>
-Index fastest_particle(const Particles<D>& particles)
+/// Of the particles that the ranks have chosen the one with the least value, in words.  Every rank has to ask.
+template <int D, Kernel<D> K>
+std::string describe_least(const Model<D, K>& m, const Chosen& here)
 {
-  Index fastest = none;
-  Real most = -1;
-  for (Index row = 0; row < particles.size(); ++row)
-    if (const Real speed = particles.v[static_cast<std::size_t>(row)].squaredNorm(); speed > most)
-      most = speed, fastest = row;
-  return fastest;
+  const bool mine = m.ranks->min(here.value) == here.value && here.row != none;
+  const std::int64_t id = mine ? m.particles.id[static_cast<std::size_t>(here.row)] : std::numeric_limits<std::int64_t>::max();
+  return m.ranks->first(m.ranks->min(id) == id && mine ? describe(m.particles, m.bodies, here.row) : std::string());
 }
 
 /// Kinetic and strain energy and what the laws dissipated, of deleted particles too, beyond all that was there or was put in, over the
@@ -62,13 +60,13 @@ std::optional<std::string> fault(Model<D, K>& m, Look look)
   if (seen.speed > limit.speed) {
     ++seen.speeding;
     if (limit.speed_stops)
-      return fmt::format("{} moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s",
-                         describe(m.particles, m.bodies, fastest_particle(m.particles)), seen.speed, limit.speed);
+      return fmt::format("{} moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", describe_least(m, fastest_particle(m.particles)),
+                         seen.speed, limit.speed);
   }
   if (look == Look::between_steps && m.clock.step % steps_between_sums != 0)
     return std::nullopt;
 
-  const Totals<D> now = totals(m.particles);
+  const Totals<D> now = totals(m);
   const Real there = m.mass.start - m.mass.deleted;
   const Real lost = std::max(std::abs(now.mass - there), std::abs(m.mass.on_nodes - there)) / m.mass.start;
   seen.mass = std::max(seen.mass, lost);
@@ -85,7 +83,7 @@ std::optional<std::string> fault(Model<D, K>& m, Look look)
     if (limit.gain_stops)
       return fmt::format(
           "the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}; the fastest is {}",
-          gain, limit.gain, describe(m.particles, m.bodies, fastest_particle(m.particles)));
+          gain, limit.gain, describe_least(m, fastest_particle(m.particles)));
   }
   return std::nullopt;
 }

@@ -12,15 +12,23 @@ constexpr bool starts_from_stress = requires(const L& law, typename L::State& st
   law.prestress(Mat3(), state);
 };
 
-}  // namespace
-
+/// A straight way up from a particle, and the mass per area met on it.
 template <int D>
-Real mass_above(const Mesh<D>& mesh, std::span<const Real> density, Vec<D> x, Index c, const Vec<D>& up) noexcept
-{
+struct Ray {
+  Vec<D> x;
+  Index cell;  ///< or none beyond the boundary
   Real mass = 0;
-  for (Index crossed = 0; c != none && crossed <= mesh.n_cells(); ++crossed) {  // a straight line meets each cell once
-    const auto B = mesh.barycentric(c, x);
-    const auto& gradient = mesh.gradients(c);
+  Index row;  ///< of the particle, on its rank
+  int rank;
+};
+
+/// Follows a ray through cells whose density [kg/m^D] is known here, those that `owns`, up to another or to the boundary.
+template <int D, class Owns>
+void follow(const Mesh<D>& mesh, std::span<const Real> density, const Vec<D>& up, Owns&& owns, Ray<D>& ray) noexcept
+{
+  for (Index crossed = 0; ray.cell != none && owns(ray.cell); ++crossed) {
+    const auto B = mesh.barycentric(ray.cell, ray.x);
+    const auto& gradient = mesh.gradients(ray.cell);
     Real way = std::numeric_limits<Real>::infinity();
     std::size_t exit = 0;
     for (std::size_t k = 0; k <= D; ++k) {
@@ -30,24 +38,65 @@ Real mass_above(const Mesh<D>& mesh, std::span<const Real> density, Vec<D> x, In
         exit = k;
       }
     }
-    mass += density[static_cast<std::size_t>(c)] * way;
-    x += way * up;
-    c = mesh.neighbours(c)[exit];
+    ray.mass += density[static_cast<std::size_t>(ray.cell)] * way;
+    ray.x += way * up;
+    ray.cell = crossed < mesh.n_cells() ? mesh.neighbours(ray.cell)[exit] : none;  // a straight line meets each cell once
   }
+}
+
+/// Mass per area [kg/m^(D-1)] above each particle.  Rays that leave the blocks of a rank go on at the next one's.
+template <int D>
+std::vector<Real> masses_above(const Mesh<D>& mesh, const Share& share, Exchange& ranks, std::span<const Real> density, const Vec<D>& up,
+                               const Particles<D>& particles)
+{
+  const auto owns = [&](Index cell) { return share.alone() || share.owns_cell(cell); };
+  const auto n_ranks = static_cast<std::size_t>(ranks.size());
+  std::vector<Real> mass(particles.id.size());
+  std::vector<Ray<D>> here;
+  for (std::size_t p = 0; p < mass.size(); ++p)
+    here.push_back({particles.x[p], particles.cell[p], 0, static_cast<Index>(p), ranks.rank()});
+  std::vector<std::vector<Ray<D>>> home(n_ranks);
+  for (std::int64_t travelling = 1; travelling > 0;) {
+    std::vector<std::vector<Ray<D>>> out(n_ranks);
+    for (Ray<D>& ray : here) {
+      follow(mesh, density, up, owns, ray);
+      if (ray.cell == none) {
+        home[static_cast<std::size_t>(ray.rank)].push_back(ray);
+      } else {
+        const int next = share.rank_of_block[static_cast<std::size_t>(ray.cell / block_cells)];
+        ray.cell = share.whole_cell(ray.cell);
+        out[static_cast<std::size_t>(next)].push_back(ray);
+      }
+    }
+    here.clear();
+    for (const std::vector<Ray<D>>& from : exchange_rows(ranks, out))
+      here.insert(here.end(), from.begin(), from.end());
+    for (Ray<D>& ray : here)
+      ray.cell = share.local_cell(ray.cell);
+    travelling = ranks.sum(static_cast<std::int64_t>(here.size()));
+  }
+  for (const std::vector<Ray<D>>& back : exchange_rows(ranks, home))
+    for (const Ray<D>& ray : back)
+      mass[static_cast<std::size_t>(ray.row)] = ray.mass;
   return mass;
 }
 
+}  // namespace
+
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
-                   Particles<D>& particles)
+void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, Real k0, const CellOrder& order,
+                   const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
 {
   const Real g = gravity.norm();
   if (!(g > 0))
     return;
   const Vec<D> up = -gravity / g;
   std::vector<Real> density(static_cast<std::size_t>(mesh.n_cells()), 0.0);
-  for (std::size_t p = 0; p < particles.id.size(); ++p)
+  for (const Index row : order.row) {
+    const auto p = static_cast<std::size_t>(row);
     density[static_cast<std::size_t>(particles.cell[p])] += particles.mass[p] / mesh.volume(particles.cell[p]);
+  }
+  const std::vector<Real> above = masses_above(mesh, share, ranks, density, up, particles);
 
   Vec3 up3 = Vec3::Zero();
   up3.head<D>() = up;
@@ -55,7 +104,7 @@ void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const st
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (Index row = bodies[b].begin; row < bodies[b].end; ++row) {
       const auto p = static_cast<std::size_t>(row);
-      const Mat3 stress = -g * mass_above(mesh, density, particles.x[p], particles.cell[p], up) * shape;
+      const Mat3 stress = -g * above[p] * shape;
       if (!prestress(materials[b], row - bodies[b].begin, stress))
         throw SceneErrors(
             bodies[b].where,
@@ -125,9 +174,9 @@ template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
 template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
 template StressFit fit_stress<2>(const Body&, const AnyBatch&, Real, bool, Particles<2>&);
 template StressFit fit_stress<3>(const Body&, const AnyBatch&, Real, bool, Particles<3>&);
-template Real mass_above<2>(const Mesh<2>&, std::span<const Real>, Vec<2>, Index, const Vec<2>&) noexcept;
-template Real mass_above<3>(const Mesh<3>&, std::span<const Real>, Vec<3>, Index, const Vec<3>&) noexcept;
-template void set_k0_stress<2>(const Mesh<2>&, const Vec<2>&, Real, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void set_k0_stress<3>(const Mesh<3>&, const Vec<3>&, Real, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void set_k0_stress<2>(const Mesh<2>&, const Share&, Exchange&, const Vec<2>&, Real, const CellOrder&, const std::vector<Body>&,
+                               std::vector<AnyBatch>&, Particles<2>&);
+template void set_k0_stress<3>(const Mesh<3>&, const Share&, Exchange&, const Vec<3>&, Real, const CellOrder&, const std::vector<Body>&,
+                               std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

@@ -4,18 +4,20 @@
 #include <string>
 #include <vector>
 
+#include "core/exchange.hpp"
 #include "core/particles.hpp"
 #include "materials/batch.hpp"
-#include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
+#include "solver/cell_order.hpp"
 
 namespace talus {
 
 /// K0 state: the stress along gravity carries the weight of all mass above the particle, the stress across it is k0 times as
 /// large.  "Above" is followed cell by cell against gravity, so any surface and any layering is right.  Throws SceneErrors, with
-/// the place of the body, if its law cannot start from a stress.
+/// the place of the body, if its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Vec<D>& gravity, Real k0, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
-                   Particles<D>& particles);
+void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, Real k0, const CellOrder& order,
+                   const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
 
 bool can_start_from_stress(const AnyBatch& material);
 /// Names of the laws that can.
@@ -40,10 +42,5 @@ struct StressFit {
 /// `take_over`: the stress becomes that of the law, less the viscous pressure; otherwise nothing changes.
 template <int D>
 StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool take_over, Particles<D>& particles);
-
-/// Mass per area [kg/m^(D-1)] met on the way from x in cell c along the unit vector `up` to the boundary of the mesh, for the mean
-/// density of each cell [kg/m^D].
-template <int D>
-Real mass_above(const Mesh<D>& mesh, std::span<const Real> density, Vec<D> x, Index c, const Vec<D>& up) noexcept;
 
 }  // namespace talus

@@ -69,19 +69,18 @@ void Slaves<D>::lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const
 }
 
 template <int D>
-WallWork Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion) const
+void Slaves<D>::follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion,
+                       ExactSums<WallWork>& work) const
 {
-  WallWork work;
   for (const Index slave : slaves_) {
     NodeMotion<D> mean;
     for_each_master(mesh, nodes, slave, [&](Index master, Real share) {
       mean.v += share * motion[static_cast<std::size_t>(master)].v;
       mean.change += share * motion[static_cast<std::size_t>(master)].change;
     });
-    work += walls.apply(slave, end, mass_[static_cast<std::size_t>(slave)], mean);
+    walls.apply(slave, end, mass_[static_cast<std::size_t>(slave)], mean, work);
     motion[static_cast<std::size_t>(slave)] = mean;
   }
-  return work;
 }
 
 template <int D>

@@ -32,8 +32,10 @@ class Slaves {
   void lump(const Mesh<D>& mesh, Nodes<D>& nodes);
   /// Hands on momentum alone, after it was summed anew.
   void lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const;
-  /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own.
-  WallWork follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion) const;
+  /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own; their
+  /// work is added.
+  void follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion,
+              ExactSums<WallWork>& work) const;
   /// The same for `v` alone.
   void follow_velocity(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const;
   Index size() const noexcept { return static_cast<Index>(slaves_.size()); }
@@ -98,54 +100,57 @@ void damp(Real damping, Real dt, Nodes<D>& nodes)
   });
 }
 
-/// What gravity and damping did and the kinetic energies, once the walls have spoken.
+/// What gravity and damping did and the kinetic energies, once the walls have spoken: of one node.
 template <int D>
-NodeWork<D> node_work(const Vec<D>& gravity, Real damping, Real dt, const Mesh<D>& mesh, const Nodes<D>& nodes)
+NodeWork<D> node_work(const Vec<D>& gravity, Real damping, Real dt, const Mesh<D>& mesh, const Nodes<D>& nodes, Index n)
 {
-  return parallel_sum<NodeWork<D>>(static_cast<Index>(nodes.sum.size()), [&](Index n) {
-    const auto i = static_cast<std::size_t>(n);
-    NodeWork<D> work;
-    if (!nodes.active[i])
-      return work;
-    const NodeSum<D>& sum = nodes.sum[i];
-    const Vec<D> v_old = sum.momentum / sum.mass, v = nodes.motion[i].v, v_mid = 0.5 * (v_old + v);
-    work.kinetic_before = 0.5 * sum.mass * v_old.squaredNorm();
-    work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
-    work.mass = sum.mass;
-    work.first_moment = sum.mass * mesh.node(n);
-    work.gravity = dt * sum.mass * gravity.dot(v_mid);
-    if (damping > 0 && !nodes.bound[i]) {
-      const Vec<D> brake = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
-      work.damping = brake.dot(v_mid);
-      work.damped = Push<D>::at(mesh.node(n), brake);
-    }
+  const auto i = static_cast<std::size_t>(n);
+  NodeWork<D> work;
+  if (!nodes.active[i])
     return work;
-  });
+  const NodeSum<D>& sum = nodes.sum[i];
+  const Vec<D> v_old = sum.momentum / sum.mass, v = nodes.motion[i].v, v_mid = 0.5 * (v_old + v);
+  work.kinetic_before = 0.5 * sum.mass * v_old.squaredNorm();
+  work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
+  work.mass = sum.mass;
+  work.first_moment = sum.mass * mesh.node(n);
+  work.gravity = dt * sum.mass * gravity.dot(v_mid);
+  if (damping > 0 && !nodes.bound[i]) {
+    const Vec<D> brake = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
+    work.damping = brake.dot(v_mid);
+    work.damped = Push<D>::at(mesh.node(n), brake);
+  }
+  return work;
 }
 
-/// Sum over active nodes of |net force with wall reactions, without damping| over that of |gravity and loads|, or of |reactions| where
-/// walls alone load the bodies: zero at rest in equilibrium.  The net force is the one that is felt in stages that seek rest.
-/// `other_loads` [N] are those of tractions.
+/// Sums of the moduli of forces [N].
+struct Balance {
+  Real net{};       ///< with wall reactions, without damping
+  Real load{};      ///< gravity
+  Real reaction{};  ///< of walls
+  Balance& operator+=(const Balance& other) noexcept
+  {
+    net += other.net, load += other.load, reaction += other.reaction;
+    return *this;
+  }
+};
+
+/// Those at one node.  The net force is the one that is `felt` in stages that seek rest.
 template <int D>
-Real unbalanced(const Vec<D>& gravity, bool felt, Real dt, const Nodes<D>& nodes, Real other_loads)
+Balance balance_at(const Vec<D>& gravity, bool felt, Real dt, const Nodes<D>& nodes, Index n)
 {
-  struct Sums {
-    Real net{}, load{}, reaction{};
-    Sums& operator+=(const Sums& other) noexcept
-    {
-      net += other.net, load += other.load, reaction += other.reaction;
-      return *this;
-    }
-  };
-  const Sums sums = parallel_sum<Sums>(static_cast<Index>(nodes.sum.size()), [&](Index n) {
-    const auto i = static_cast<std::size_t>(n);
-    if (!nodes.active[i])
-      return Sums{};
-    const NodeSum<D>& sum = nodes.sum[i];
-    const Vec<D> change = nodes.motion[i].change / dt;
-    const Real reaction = nodes.bound[i] ? (sum.mass * (change - gravity) - sum.force).norm() : 0;
-    return Sums{sum.mass * (felt ? nodes.felt[i] : change).norm(), sum.mass * gravity.norm(), reaction};
-  });
+  const auto i = static_cast<std::size_t>(n);
+  if (!nodes.active[i])
+    return {};
+  const NodeSum<D>& sum = nodes.sum[i];
+  const Vec<D> change = nodes.motion[i].change / dt;
+  const Real reaction = nodes.bound[i] ? (sum.mass * (change - gravity) - sum.force).norm() : 0;
+  return {sum.mass * (felt ? nodes.felt[i] : change).norm(), sum.mass * gravity.norm(), reaction};
+}
+
+/// Net force over gravity and `other_loads` [N], or over reactions where walls alone load the bodies: zero at rest in equilibrium.
+inline Real unbalanced(const Balance& sums, Real other_loads) noexcept
+{
   const Real load = sums.load + other_loads;
   const Real scale = load > 0 ? load : sums.reaction;
   return scale > 0 ? sums.net / scale : 0;

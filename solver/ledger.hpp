@@ -1,5 +1,6 @@
 #pragma once
 // Where energy, momentum and mass went: every term is computed by itself, so that the balance proves something.
+#include "core/exact_sum.hpp"
 #include "core/fields.hpp"
 #include "core/particles.hpp"
 
@@ -117,6 +118,25 @@ struct MassLedger {
   }
 };
 
+/// What particles take along that are deleted, and what was done to those that stay; numbers of particles are whole.
+template <int D>
+struct Departed {
+  Real mass{}, count{}, failed{}, failed_count{};  ///< [kg], of them those that failed
+  Real kinetic{}, plastic{};                       ///< [J]
+  Push<D> momentum{};
+  Real held_count{};  ///< set back onto a closed wall
+};
+template <int D>
+void book(const Departed<D>& gone, MassLedger<D>& mass, EnergyLedger& energy) noexcept
+{
+  mass.deleted += gone.mass, mass.failed += gone.failed;
+  mass.on_nodes -= gone.failed;  // it took part in the step in which it failed
+  mass.deleted_count += static_cast<Index>(gone.count), mass.failed_count += static_cast<Index>(gone.failed_count);
+  mass.held_count += static_cast<std::int64_t>(gone.held_count);
+  mass.carried_away += gone.momentum;
+  energy.carried_away += gone.kinetic, energy.plastic_deleted += gone.plastic;
+}
+
 /// Totals over the particles at one time.
 template <int D>
 struct Totals {
@@ -131,10 +151,13 @@ struct Totals {
   }
 };
 
+/// Those of one particle.
 template <int D>
-Totals<D> totals(const Particles<D>& particles);
-
-extern template Totals<2> totals<2>(const Particles<2>&);
-extern template Totals<3> totals<3>(const Particles<3>&);
+Totals<D> totals_of(const Particles<D>& particles, std::size_t p) noexcept
+{
+  const Real m = particles.mass[p];
+  const Vec<D> x = particles.x[p], v = particles.v[p];
+  return {m, 0.5 * m * v.squaredNorm(), m * v, m * moment<D>(x, v), m * x};
+}
 
 }  // namespace talus

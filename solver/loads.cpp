@@ -53,8 +53,24 @@ MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> face
 }
 
 template <int D>
-Push<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept
+void restrict_to(const Share& share, MeshTraction<D>& load)
 {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < load.node.size(); ++k)
+    if (const Index node = share.local_node(load.node[k]); node != none) {
+      load.node[kept] = node;
+      load.area[kept] = load.area[k];
+      load.measure[kept++] = load.measure[k];
+    }
+  load.node.resize(kept), load.area.resize(kept), load.measure.resize(kept);
+}
+
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, const CellOrder& order, Particles<D>& particles,
+           ExactSums<Push<D>>& total)
+{
+  if (particles.applied.empty())
+    return;
   particles.applied.assign(particles.applied.size(), Vec<D>::Zero());
   const auto add = [&](std::size_t p, const Vec<D>& force) { particles.applied.set(p, particles.applied[p] + force); };
   for (const auto& load : loads.on_particles) {
@@ -74,13 +90,12 @@ Push<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index
     for (std::size_t p = 0; p < particles.applied.size(); ++p)
       add(p, ramp * particles.mass[p] * load.acceleration(place[p], time));
   }
-  Push<D> total;
-  for (std::size_t p = 0; p < particles.applied.size(); ++p) {
+  add_particles(order, total, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
     const Vec<D> x = particles.x[p], force = particles.applied[p];
     particles.applied_at[p] = force.dot(x);
-    total += Push<D>::at(x, force);
-  }
-  return total;
+    return Push<D>::at(x, force);
+  });
 }
 
 namespace {
@@ -99,38 +114,38 @@ void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
 }  // namespace
 
 template <int D>
-Push<D> apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, std::span<NodeSum<D>> sum) noexcept
+void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
+           ExactSums<Push<D>>& total)
 {
-  Push<D> total;
   for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
     if (sum[node].mass <= 0)
       return;
     sum[node].force += force;
-    total += Push<D>::at(mesh.node(static_cast<Index>(node)), force);
+    if (own.has(static_cast<Index>(node)))
+      total.add(Push<D>::at(mesh.node(static_cast<Index>(node)), force));
   });
-  return total;
 }
 
 template <int D>
-Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& nodes) noexcept
+void add_work(const Loads<D>& loads, Real time, Real ramp, Real dt, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total)
 {
-  Real total = 0;
   for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
-    if (nodes.sum[node].mass > 0)
-      total += dt * force.dot(nodes.motion[node].v - 0.5 * nodes.motion[node].change);
+    if (nodes.sum[node].mass > 0 && own.has(static_cast<Index>(node)))
+      total.add(dt * force.dot(nodes.motion[node].v - 0.5 * nodes.motion[node].change));
   });
-  return total;
 }
 
 template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<const Facet>, const Particles<2>&);
 template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
-template Push<2> apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, Particles<2>&) noexcept;
-template Push<2> apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, std::span<NodeSum<2>>) noexcept;
-template Real work<2>(const Loads<2>&, Real, Real, Real, const Nodes<2>&) noexcept;
+template void restrict_to<2>(const Share&, MeshTraction<2>&);
+template void restrict_to<3>(const Share&, MeshTraction<3>&);
+template void apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, const CellOrder&, Particles<2>&, ExactSums<Push<2>>&);
+template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<Push<2>>&);
+template void add_work<2>(const Loads<2>&, Real, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
-template Push<3> apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, Particles<3>&) noexcept;
-template Push<3> apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, std::span<NodeSum<3>>) noexcept;
-template Real work<3>(const Loads<3>&, Real, Real, Real, const Nodes<3>&) noexcept;
+template void apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, const CellOrder&, Particles<3>&, ExactSums<Push<3>>&);
+template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<Push<3>>&);
+template void add_work<3>(const Loads<3>&, Real, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
 
 }  // namespace talus

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "core/error.hpp"
-#include "core/parallel.hpp"
 #include "core/particles.hpp"
 #include "core/table.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/ledger.hpp"
 #include "solver/nodes.hpp"
+#include "solver/own_nodes.hpp"
+#include "solver/sums.hpp"
 
 namespace talus {
 
@@ -61,6 +62,10 @@ struct Loads {
   bool any_on_particles() const noexcept { return !of_place.empty() || !on_particles.empty(); }
 };
 
+/// Of one of several ranks: nodes that are held, in their numbers here.
+template <int D>
+void restrict_to(const Share& share, MeshTraction<D>& load);
+
 /// Shares the facets' area among the particles of the cells behind them.
 /// Facets without a particle behind them are left out; the caller may compare the areas.
 template <int D>
@@ -70,24 +75,28 @@ template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
 
 /// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `row_of_id` finds a particle, or
-/// `none` for one that was deleted.  Returns the sum of the forces.
+/// `none` for one that was deleted.  The forces are added to `total`.
 template <int D>
-Push<D> apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, Particles<D>& particles) noexcept;
+void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, const CellOrder& order, Particles<D>& particles,
+           ExactSums<Push<D>>& total);
 
-/// Work [J] of mesh tractions over a step, from the nodes' mean velocity.
+/// Adds the work [J] of mesh tractions over a step, from the mean velocity of the nodes that are `own`.
 template <int D>
-Real work(const Loads<D>& loads, Real time, Real ramp, Real dt, const Nodes<D>& nodes) noexcept;
+void add_work(const Loads<D>& loads, Real time, Real ramp, Real dt, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total);
 
-/// Adds mesh tractions to the force of nodes that have mass.  Returns their sum.
+/// Adds mesh tractions to the force of nodes that have mass, and those of `own` nodes to `total`.
 template <int D>
-Push<D> apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, std::span<NodeSum<D>> sum) noexcept;
+void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
+           ExactSums<Push<D>>& total);
 
-/// Work [J] of the forces on particles since apply(): force times displacement.
+/// Adds the work [J] of the forces on particles since apply(): force times displacement.
 template <int D>
-Real work(const Particles<D>& particles)
+void add_work(const CellOrder& order, const Particles<D>& particles, ExactSums<Real>& total)
 {
-  return parallel_sum<Real>(static_cast<Index>(particles.applied.size()), [&](Index i) {
-    const auto p = static_cast<std::size_t>(i);
+  if (particles.applied.empty())
+    return;
+  add_particles(order, total, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
     return particles.applied[p].dot(particles.x[p]) - particles.applied_at[p];
   });
 }

@@ -2,10 +2,14 @@
 // Everything a run is made of, by value.
 #include "core/fields.hpp"
 #include "solver/conduct_heat.hpp"
+#include "solver/halo.hpp"
 #include "solver/integrate.hpp"
 #include "solver/ledger.hpp"
 #include "solver/loads.hpp"
+#include "solver/migrate.hpp"
 #include "solver/relocate.hpp"
+#include "solver/sums.hpp"
+#include "solver/tally.hpp"
 #include "solver/through_both.hpp"
 #include "solver/transfer.hpp"
 #include "solver/update_stress.hpp"
@@ -86,12 +90,27 @@ struct Watched {
   }
 };
 
+/// How far from the nodes that particles read others have a say in what they read: two rings for a slave to find its masters, four for
+/// these to have got what is theirs, of other slaves and by the masses of all their masters; and with a node part one ring from hats to
+/// unknowns and one back, and two for what is felt of accelerations.
+template <int D, Kernel<D> K>
+inline constexpr int rings_beyond_stencils = HasNodePart<K, D> ? 10 : 6;
+/// Rings of cells to be held around own ones: stencils reach two rings, and operators and sizes of nodes are made from two more.
+template <int D, Kernel<D> K>
+inline constexpr int rings_held = rings_beyond_stencils<D, K> + 4;
+
 template <int D, Kernel<D> K>
 struct Model {
   Mesh<D> mesh;
   Locator<D> locator;
   K kernel;
   BlockRows<D, typename Through<D, K>::Sum> blocks;
+
+  Exchange* ranks = &one_rank();  ///< that share the run
+  Share share;
+  Halo<typename Through<D, K>::Sum> halo;
+  Migration<D> migration;
+  OwnNodes own;
 
   Particles<D> particles;
   std::vector<Body> bodies;
@@ -108,6 +127,7 @@ struct Model {
   std::vector<Real> averaged;           ///< volume ratios of average_volume(), scratch
   std::vector<StressSums> stress_sums;  ///< of the particles of each body in each block, scratch
 
+  Tally<D> tally;  ///< of the step at hand
   Transfer transfer;
   Loads<D> loads;
   Walls<D> walls;
@@ -128,7 +148,9 @@ struct Model {
       : mesh(std::move(m)),
         locator(mesh),
         kernel(make_kernel<K>(mesh, options)),
-        blocks(make_block_rows<D, typename Through<D, K>::Sum>(kernel, mesh))
+        blocks(make_block_rows<typename Through<D, K>::Sum>(mesh, [&](Index c) { return kernel.stencil(mesh, c); })),
+        halo(blocks.size()),
+        own(all_nodes(mesh))
   {
     nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
     nodes.motion.resize(nodes.sum.size());
@@ -137,6 +159,15 @@ struct Model {
       hats.sum.resize(nodes.sum.size());
       hats.motion.resize(nodes.sum.size());
     }
+  }
+  /// Becomes that of one of several ranks, its mesh being their part of a larger one.  Every rank has to join.
+  void join(Exchange& others, Share part)
+  {
+    ranks = &others;
+    share = std::move(part);
+    halo = make_halo(*ranks, mesh, share, blocks, rings_beyond_stencils<D, K>);
+    migration = Migration<D>(*ranks, share);
+    own = own_nodes(mesh, share);
   }
   Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
   /// What particles read.
@@ -164,15 +195,34 @@ inline constexpr Real least_share_of_cells = 0.3;
 /// half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
 inline constexpr Real least_share_of_hats = 0.2;
 
-/// Where each id stands now, if anybody asks.
+/// What goes by rows, after these have changed: where each id stands now, if anybody asks; scratch.
 template <int D, Kernel<D> K>
-void index_rows(Model<D, K>& m)
+void follow_rows(Model<D, K>& m)
 {
+  if (m.stars)
+    m.averaged.resize(m.particles.id.size());
   if (m.row_of_id.empty())
     return;
   std::fill(m.row_of_id.begin(), m.row_of_id.end(), none);
   for (Index p = 0; p < m.particles.size(); ++p)
     m.row_of_id[static_cast<std::size_t>(m.particles.id[static_cast<std::size_t>(p)])] = p;
+}
+
+/// M is a Model, or what an observer sees of it.  Every rank has to ask.
+template <class M>
+auto totals(const M& m)
+{
+  return totals(m.particles, m.order, *m.ranks);
+}
+/// Energy dissipated by the laws so far [J].  The same.
+template <class M>
+Real plastic_work(const M& m)
+{
+  ExactSums<Real> sum;
+  for (std::size_t b = 0; b < m.materials.size(); ++b)
+    add_plastic_work(m.materials[b], m.order, static_cast<Index>(b), m.particles.volume0, sum);
+  m.ranks->sum(sum);
+  return sum.value();
 }
 
 /// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  Columns that follow from
@@ -190,18 +240,17 @@ void make_ready(Model<D, K>& m, bool by_id)
     m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
   const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) { return std::any_of(m.materials.begin(), m.materials.end(), has); };
   if (any_material(conducts_heat))
-    m.heat.emplace(m.mesh);
+    m.share.alone() ? m.heat.emplace(m.mesh) : m.heat.emplace(*m.ranks, m.mesh, m.share);
   if (any_material(averages_volume)) {
     m.particles.volume_ratio.resize(n, 1);
-    m.averaged.resize(n);
-    m.stars.emplace(m.mesh);
+    m.share.alone() ? m.stars.emplace(m.mesh) : m.stars.emplace(*m.ranks, m.mesh, m.share);
   }
   if (any_material(has_bulk_viscosity) && m.particles.viscous.empty())
     m.particles.viscous.assign(n, 0);
   if (m.transfer.musl)
     m.remapped.resize(m.nodes.sum.size());
   if (by_id || !m.loads.on_particles.empty())
-    m.row_of_id.assign(n, none);
+    m.row_of_id.assign(static_cast<std::size_t>(m.ranks->sum(static_cast<std::int64_t>(n))), none);
   m.walls.settle();
   m.nodes.bound.resize(m.nodes.sum.size());
   for (Index node = 0; node < m.mesh.n_nodes(); ++node)
@@ -209,20 +258,13 @@ void make_ready(Model<D, K>& m, bool by_id)
   m.exits.closed.assign(static_cast<std::size_t>(m.mesh.n_cells()), 0);
   for (const Facet facet : m.walls.closed_facets(m.mesh))
     m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
-  m.mass.start = totals(m.particles).mass;
   m.nodes.least_share_of_gross = HasNodePart<K, D> && !HasOwnValues<K, D> ? least_share_of_hats : least_share_of_cells;
   m.nodes.least_share = m.kernel.claims().non_negative ? least_share : least_share_of_signed_weights;
-  index_rows(m);
-}
-
-/// Energy dissipated by the laws so far [J].
-template <int D, Kernel<D> K>
-Real plastic_work(const Model<D, K>& m)
-{
-  Real total = 0;
-  for (const AnyBatch& material : m.materials)
-    total += total_plastic_work(material, m.particles.volume0);
-  return total;
+  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
+  follow_rows(m);
+  if (!m.share.alone())
+    m.migration.agree_on_columns(m.particles);
+  m.mass.start = totals(m).mass;
 }
 
 }  // namespace talus

@@ -1,6 +1,8 @@
 #pragma once
 // Nodal rows: what particles deposit, and what they read back.
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <vector>
 
@@ -19,6 +21,10 @@ struct alignas(64) NodeSum {
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   void clear_momentum() noexcept { momentum.setZero(); }
   void add_momentum(const NodeSum& other) noexcept { momentum += other.momentum; }
+  bool has_momentum() const noexcept { return !momentum.isZero(0); }
+  static constexpr std::size_t momentum_bytes = sizeof(Vec<D>);
+  void write_momentum(std::byte* to) const noexcept { std::memcpy(to, momentum.data(), sizeof(momentum)); }
+  void read_momentum(const std::byte* from) noexcept { std::memcpy(momentum.data(), from, sizeof(momentum)); }
   static constexpr float unseen = std::numeric_limits<float>::infinity();
   bool is_seen() const noexcept { return lightest < unseen; }
   NodeSum& operator+=(const NodeSum& other) noexcept
@@ -48,6 +54,18 @@ struct HatSum : NodeSum<D> {
   {
     NodeSum<D>::add_momentum(other);
     affine += other.affine;
+  }
+  bool has_momentum() const noexcept { return NodeSum<D>::has_momentum() || !affine.isZero(0); }
+  static constexpr std::size_t momentum_bytes = NodeSum<D>::momentum_bytes + sizeof(Mat<D>);
+  void write_momentum(std::byte* to) const noexcept
+  {
+    NodeSum<D>::write_momentum(to);
+    std::memcpy(to + NodeSum<D>::momentum_bytes, affine.data(), sizeof(affine));
+  }
+  void read_momentum(const std::byte* from) noexcept
+  {
+    NodeSum<D>::read_momentum(from);
+    std::memcpy(affine.data(), from + NodeSum<D>::momentum_bytes, sizeof(affine));
   }
   HatSum& operator+=(const HatSum& other) noexcept
   {

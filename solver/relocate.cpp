@@ -33,22 +33,8 @@ void permute(std::vector<T, Allocator>& column, std::span<const Index> order, st
   parallel_for(n, [&](Index i) { std::memcpy(rows + z(i) * sizeof(T), sorted + z(i) * sizeof(T), sizeof(T)); });
 }
 
-template <int D>
-void follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
-{
-  static thread_local std::vector<std::byte> spare;
-  static thread_local std::vector<Index> within;
-  particles.for_each_column([&](std::string_view, std::string_view, auto& column) { permute(column, order.row, spare); });
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    within.resize(z(bodies[b].size()));
-    for (Index i = 0; i < bodies[b].size(); ++i)
-      within[z(i)] = order.row[z(bodies[b].begin + i)] - bodies[b].begin;
-    permute(materials[b], within);
-  }
-  std::iota(order.row.begin(), order.row.end(), 0);
-}
+}  // namespace
 
-/// Drops the rows whose cell is `none`.
 template <int D>
 void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
 {
@@ -86,51 +72,50 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
   }
 }
 
-/// Books what the particle takes along, as far as it is a number.
+namespace {
+
+/// What the particle takes along, as far as it is a number.
 template <int D>
-void mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles, Index row,
-                  MassLedger<D>& mass, EnergyLedger& energy)
+Departed<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles, Index row)
 {
   const std::size_t p = z(row);
-  mass.deleted += particles.mass[p];
-  ++mass.deleted_count;
+  Departed<D> gone{.mass = particles.mass[p], .count = 1};
   if (particles.x[p].allFinite() && particles.v[p].allFinite()) {
-    mass.carried_away += Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
-    energy.carried_away += 0.5 * particles.mass[p] * particles.v[p].squaredNorm();
+    gone.momentum = Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+    gone.kinetic = 0.5 * particles.mass[p] * particles.v[p].squaredNorm();
   }
   std::size_t body = 0;
   while (row >= bodies[body].end)
     ++body;
   const Real work = plastic_work(materials[body], row - bodies[body].begin, particles.volume0[p]);
   if (std::isfinite(work))
-    energy.plastic_deleted += work;
+    gone.plastic = work;
   particles.cell[p] = none;
+  return gone;
 }
 
 }  // namespace
 
 template <int D>
-void remove_failed(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order,
-                   MassLedger<D>& mass, EnergyLedger& energy)
+void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+                   CellOrder& order, ExactSums<Departed<D>>& departed)
 {
-  for (Index row = 0; row < particles.size(); ++row) {  // in order of rows, as below
+  for (Index row = 0; row < particles.size(); ++row) {
     const std::size_t p = z(row);
     const bool sound = particles.x[p].allFinite() && particles.v[p].allFinite() && particles.stress[p].allFinite();
     if (sound && particles.F[p].determinant() > 0)
       continue;
-    mass.failed += particles.mass[p];
-    ++mass.failed_count;
-    mass.on_nodes -= particles.mass[p];  // it took part in the step in which it failed
-    mark_deleted(bodies, materials, particles, row, mass, energy);
+    Departed<D> gone = mark_deleted(bodies, materials, particles, row);
+    gone.failed = gone.mass, gone.failed_count = 1;
+    departed.add(gone);
   }
   drop_lost(bodies, materials, particles);
-  order.row.clear();
+  sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
 }
 
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger<D>& mass, EnergyLedger& energy,
-              Health& health)
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, Tally<D>& tally, Health& health)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
@@ -164,7 +149,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
     });
 
   bool rows_changed = false;
-  if (outside) {  // rare, and in order of rows, so that ledgers do not depend on threads
+  if (outside) {  // rare
     bool deleted = false;
     for (Index row = 0; row < particles.size(); ++row) {
       const std::size_t p = z(row);
@@ -178,11 +163,11 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
           centre += mesh.node(n) / (D + 1);
         particles.x[p] = nearest.x + inset * (centre - nearest.x);
         particles.cell[p] = locator(mesh, particles.x[p], nearest.cell).value_or(nearest.cell);
-        ++mass.held_count;
-        mass.held_most = std::max(mass.held_most, distance);
+        tally.departed.add({.held_count = 1});
+        tally.held_most = std::max(tally.held_most, distance);
         moved = true;
       } else if (exits.policy == OnExitPolicy::remove) {
-        mark_deleted(bodies, materials, particles, row, mass, energy);
+        tally.departed.add(mark_deleted(bodies, materials, particles, row));
         deleted = true;
       } else {
         health.report(particles.id[p], Trouble::lost);
@@ -194,23 +179,42 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
     moved = moved || deleted;
   }
 
-  if (!moved)
-    return false;
   if (unsorted || rows_changed)
     sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
-  else
+  else if (moved)
     sort_again(particles.cell, particles.id, order);
-  if (disorder(order) <= most_disorder)
-    return rows_changed;
-  follow_order(bodies, materials, particles, order);
+  return rows_changed;
+}
+
+template <int D>
+bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
+{
+  if (!std::exchange(order.is_new, false) || disorder(order) <= most_disorder)
+    return false;
+  static thread_local std::vector<std::byte> spare;
+  static thread_local std::vector<Index> within;
+  particles.for_each_column([&](std::string_view, std::string_view, auto& column) { permute(column, order.row, spare); });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    within.resize(z(bodies[b].size()));
+    for (Index i = 0; i < bodies[b].size(); ++i)
+      within[z(i)] = order.row[z(bodies[b].begin + i)] - bodies[b].begin;
+    permute(materials[b], within);
+  }
+  std::iota(order.row.begin(), order.row.end(), 0);
   return true;
 }
 
 template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
-                          CellOrder&, MassLedger<2>&, EnergyLedger&, Health&);
+                          CellOrder&, Tally<2>&, Health&);
 template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
-                          CellOrder&, MassLedger<3>&, EnergyLedger&, Health&);
-template void remove_failed<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger<2>&, EnergyLedger&);
-template void remove_failed<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger<3>&, EnergyLedger&);
+                          CellOrder&, Tally<3>&, Health&);
+template void drop_lost<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void drop_lost<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template bool follow_order<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
+template bool follow_order<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
+template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&,
+                               ExactSums<Departed<2>>&);
+template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&,
+                               ExactSums<Departed<3>>&);
 
 }  // namespace talus

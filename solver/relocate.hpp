@@ -4,7 +4,7 @@
 #include "materials/batch.hpp"
 #include "mesh/locate.hpp"
 #include "solver/cell_order.hpp"
-#include "solver/ledger.hpp"
+#include "solver/tally.hpp"
 
 namespace talus {
 
@@ -18,24 +18,36 @@ struct Exits {
 
 /// Finds each particle's cell.  A particle outside behind a closed facet is set back onto it: weights of moving least squares do
 /// not vanish beside a wall, so round-off of a cell's size may carry a particle across.  Others are reported lost or deleted.
-/// What deleted particles take along is booked.  Afterwards `order` is sorted, and the arrays follow it when too many rows are out of
-/// place.  True if rows changed place.
+/// What deleted particles take along is added to the tally.  Afterwards `order` is sorted.
+/// True if rows changed place.
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, MassLedger<D>& mass, EnergyLedger& energy,
-              Health& health);
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, Tally<D>& tally, Health& health);
+
+/// Drops the particles whose cell is `none`.
+template <int D>
+void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
+
+/// Sorts the arrays by `order` where too many rows are out of place.  True if rows changed place.
+template <int D>
+bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order);
 
 /// Deletes the particles that no step can go on from: position, velocity, deformation or stress not finite, or turned inside out.
-/// `order` has to be made anew.
 template <int D>
-void remove_failed(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order,
-                   MassLedger<D>& mass, EnergyLedger& energy);
+void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+                   CellOrder& order, ExactSums<Departed<D>>& departed);
 
 extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
-                                 CellOrder&, MassLedger<2>&, EnergyLedger&, Health&);
+                                 CellOrder&, Tally<2>&, Health&);
 extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
-                                 CellOrder&, MassLedger<3>&, EnergyLedger&, Health&);
-extern template void remove_failed<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&, MassLedger<2>&, EnergyLedger&);
-extern template void remove_failed<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&, MassLedger<3>&, EnergyLedger&);
+                                 CellOrder&, Tally<3>&, Health&);
+extern template void drop_lost<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+extern template void drop_lost<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template bool follow_order<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
+extern template bool follow_order<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
+extern template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&,
+                                      ExactSums<Departed<2>>&);
+extern template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&,
+                                      ExactSums<Departed<3>>&);
 
 }  // namespace talus

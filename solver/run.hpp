@@ -56,9 +56,10 @@ enum class Moment : std::uint8_t { stage_begins, step_begins, step_done, stage_d
 template <int D, Kernel<D> K>
 std::string describe(const Model<D, K>& m, const Health::Finding& finding)
 {
-  Index row = 0;
-  while (m.particles.id[static_cast<std::size_t>(row)] != finding.id)
-    ++row;
+  const auto at = std::find(m.particles.id.begin(), m.particles.id.end(), finding.id);
+  if (at == m.particles.id.end())
+    return {};  // another rank has it
+  const auto row = static_cast<Index>(at - m.particles.id.begin());
   const std::string who = describe(m.particles, m.bodies, row);
   const Real J = m.particles.F[static_cast<std::size_t>(row)].determinant();
   switch (finding.trouble) {
@@ -81,11 +82,14 @@ void stop_if_unwell(Model<D, K>& m, bool step_is_done)
   const auto finding = m.health.worst();
   if (!finding)
     return;
-  std::string what = describe(m, *finding);
+  std::string what = m.ranks->first(describe(m, *finding));
   const bool may_go = step_is_done && m.guards.failed > 0;
   if (may_go) {
-    remove_failed(m.bodies, m.materials, m.particles, m.order, m.mass, m.energy);
-    index_rows(m);
+    ExactSums<Departed<D>> departed;
+    remove_failed(m.mesh, m.bodies, m.materials, m.particles, m.order, departed);
+    m.ranks->sum(departed);
+    book(departed.value(), m.mass, m.energy);
+    follow_rows(m);
     m.health.clear();
     m.watched.failure = what;
     if (m.mass.failed <= m.guards.failed * m.mass.start)
@@ -108,9 +112,9 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
              .elastic = stage.elastic,
              .seeks_rest = stage.residual || stage.damping > 0};
   if (stage.k0)
-    set_k0_stress(m.mesh, m.loads.gravity(m.clock.time, 1), *stage.k0, m.bodies, m.materials, m.particles);
-  m.energy = {.kinetic_start = totals(m.particles).kinetic, .plastic_start = plastic_work(m), .remapped = m.transfer.musl};
-  m.crossing = shortest_crossing(m.mesh, m.materials, m.particles);
+    set_k0_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(m.clock.time, 1), *stage.k0, m.order, m.bodies, m.materials, m.particles);
+  m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m), .remapped = m.transfer.musl};
+  m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
 }
 
 /// The longest step that is stable [s].
@@ -125,9 +129,9 @@ template <int D, Kernel<D> K>
 std::optional<std::string> obstacle(Model<D, K>& m, const StepLimits& limits)
 {
   if (const Real wanted = wanted_step(m, limits); !(wanted >= limits.shortest)) {
-    const Index row = slowest_particle(m.mesh, m.materials, m.particles);
-    return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s",
-                       row == none ? std::string("the run") : describe(m.particles, m.bodies, row), wanted, limits.shortest);
+    const std::string who = describe_least(m, slowest_particle(m.mesh, m.materials, m.particles));
+    return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s", who.empty() ? "the run" : who, wanted,
+                       limits.shortest);
   }
   return fault(m, Look::between_steps);
 }
@@ -159,14 +163,14 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
     advance(m, dt);
     stop_if_unwell(m, m.clock.step > step);
     const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
-                      totals(m.particles).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
+                      totals(m).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
     m.stage.balanced = calm ? m.stage.balanced + 1 : 0;
     watch(m, Moment::step_done);
   }
   const Watched before = m.watched;
   if (const auto why = fault(m, Look::at_end_of_stage))
     give_up(m, before, watch, *why);
-  const Totals<D> now = totals(m.particles);
+  const Totals<D> now = totals(m);
   const StageResult result{stage.name, begin,    m.clock.time, m.clock.step - m.stage.first_step,
                            m.residual, m.energy, now.kinetic,  plastic_work(m)};
   if (stage.residual && m.stage.balanced < steps_in_balance)

@@ -20,7 +20,7 @@ float lightest_of(const Particles<D>& particles, std::span<const Index> run) noe
 template <class S, bool affine, bool loaded, int D, Kernel<D> K>
 void scatter(Model<D, K>& m)
 {
-  parallel_for_uneven(m.blocks.size(), [&](Index b) {
+  for_each_own_block<Whole>(m.blocks, m.halo, [&](Index b) {
     const auto rows = m.blocks.rows(b);
     Through<D, K> through(m.kernel);
     bool occupied = false;
@@ -43,7 +43,8 @@ void scatter(Model<D, K>& m)
             through.template add_to<affine, loaded, true>(rows, m.blocks.slots(c), lightest_of<S>(m.particles, run));
           },
           ask);
-    m.blocks.occupied[static_cast<std::size_t>(b)] = occupied ? 1 : 0;
+    if (std::exchange(m.blocks.occupied[static_cast<std::size_t>(b)], occupied ? 1 : 0) && !occupied)
+      std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});  // nothing left for others to read
   });
 }
 

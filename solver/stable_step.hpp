@@ -28,25 +28,43 @@ Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
   return least;
 }
 
-/// The particle that asks for the shortest step: row, for messages.
+/// A particle of this rank, or none, and what it was chosen for.
+struct Chosen {
+  Index row = none;
+  Real value = std::numeric_limits<Real>::infinity();
+};
+/// The better of two, of equals the one with the lower id: rows may stand in any order.
 template <int D>
-Index slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
+Chosen lesser(const Particles<D>& particles, const Chosen& a, const Chosen& b) noexcept
 {
-  Index slowest = none;
-  Real least = std::numeric_limits<Real>::infinity();
+  const auto id = [&](const Chosen& one) {
+    return one.row == none ? std::numeric_limits<std::int64_t>::max() : particles.id[static_cast<std::size_t>(one.row)];
+  };
+  return std::pair(b.value, id(b)) < std::pair(a.value, id(a)) ? b : a;
+}
+
+/// The particle that asks for the shortest step, with its crossing_time.
+template <int D>
+Chosen slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
+{
+  Chosen slowest;
   for (const auto& material : materials)
     std::visit(
         [&](const auto& batch) {
-          for (Index row = batch.begin; row < batch.end; ++row) {
-            const Real own = crossing_time_of(mesh, batch, particles, row - batch.begin);
-            if (own < least) {
-              least = own;
-              slowest = row;
-            }
-          }
+          for (Index row = batch.begin; row < batch.end; ++row)
+            slowest = lesser(particles, slowest, {row, crossing_time_of(mesh, batch, particles, row - batch.begin)});
         },
         material);
   return slowest;
+}
+/// The fastest one, with minus the square of its speed.
+template <int D>
+Chosen fastest_particle(const Particles<D>& particles)
+{
+  Chosen fastest;
+  for (Index row = 0; row < particles.size(); ++row)
+    fastest = lesser(particles, fastest, {row, -particles.v[static_cast<std::size_t>(row)].squaredNorm()});
+  return fastest;
 }
 
 }  // namespace talus

@@ -4,9 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "core/parallel.hpp"
-#include "mesh/mesh.hpp"
-#include "solver/cell_order.hpp"
+#include "solver/halo.hpp"
 
 namespace talus {
 
@@ -23,41 +21,68 @@ std::array<Real, D + 1> hats_inside(const Mesh<D>& mesh, Index c, const Vec<D>& 
   return hats;
 }
 
-/// K sums per node.  Every cell keeps its own, which are then added up in ascending order of cells: the bits do not depend on threads.
+/// K sums at a node.
+template <int K>
+struct StarRow {
+  std::array<Real, K> sum{};
+  Real& operator[](std::size_t k) noexcept { return sum[k]; }
+  const Real& operator[](std::size_t k) const noexcept { return sum[k]; }
+  bool is_seen() const noexcept
+  {
+    return std::any_of(sum.begin(), sum.end(), [](Real entry) { return entry != 0; });
+  }
+  StarRow& operator+=(const StarRow& other) noexcept
+  {
+    for (std::size_t k = 0; k < K; ++k)
+      sum[k] += other.sum[k];
+    return *this;
+  }
+};
+
+/// K sums per node.  Blocks keep rows of their own, which are then added up as those of momentum are: the bits depend neither on threads nor
+/// on ranks.
 template <int D, int K>
 class StarSums {
  public:
-  using Row = std::array<Real, K>;
+  using Row = StarRow<K>;
 
-  explicit StarSums(const Mesh<D>& mesh)
-      : of_corner_(static_cast<std::size_t>(mesh.n_cells())), of_node_(static_cast<std::size_t>(mesh.n_nodes()))
-  {}
+  /// Of a rank that is alone.
+  explicit StarSums(const Mesh<D>& mesh) : StarSums(mesh, all_nodes(mesh)) { halo_ = Halo<Row>(blocks_.size()); }
+  StarSums(Exchange& ranks, const Mesh<D>& mesh, const Share& share) : StarSums(mesh, own_nodes(mesh, share))
+  {
+    halo_ = make_halo(ranks, mesh, share, blocks_, 0);
+  }
 
   /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
   template <class Add>
-  void gather(const Mesh<D>& mesh, const CellOrder& order, Index body, const Particles<D>& particles, Add&& add)
+  void gather(const CellOrder& order, Index body, const Particles<D>& particles, Add&& add)
   {
-    parallel_for(mesh.n_cells(), [&](Index c) { of_corner_[static_cast<std::size_t>(c)] = {}; });
-    parallel_for_uneven(order.blocks, [&](Index block) {
-      for_each_run(order.rows(body, block), particles.cell,
-                   [&](Index c, std::span<const Index> run) { add(c, run, of_corner_[static_cast<std::size_t>(c)]); });
+    for_each_own_block<Whole>(blocks_, halo_, [&](Index block) {
+      const auto rows = blocks_.rows(block);
+      std::fill(rows.begin(), rows.end(), Row{});
+      for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
+        std::array<Row, D + 1> corners{};
+        add(c, run, corners);
+        for (std::size_t a = 0; a <= D; ++a)
+          rows[blocks_.slots(c)[a]] += corners[a];
+      });
+      blocks_.occupied[static_cast<std::size_t>(block)] = order.rows(body, block).empty() ? 0 : 1;
     });
-    parallel_for(mesh.n_nodes(), [&](Index n) {
-      Row total{};
-      for (const Index c : mesh.cells_of_node()[n]) {
-        const auto& cell = mesh.cell(c);
-        const auto a = static_cast<std::size_t>(std::find(cell.begin(), cell.end(), n) - cell.begin());
-        for (std::size_t k = 0; k < K; ++k)
-          total[k] += of_corner_[static_cast<std::size_t>(c)][a][k];
-      }
-      of_node_[static_cast<std::size_t>(n)] = total;
-    });
+    assemble<Whole>(blocks_, own_, halo_, of_node_);
   }
 
   const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
 
  private:
-  std::vector<std::array<Row, D + 1>> of_corner_;
+  StarSums(const Mesh<D>& mesh, OwnNodes own)
+      : blocks_(make_block_rows<Row>(mesh, [&](Index c) { return std::span(mesh.cell(c)); })),
+        own_(std::move(own)),
+        of_node_(static_cast<std::size_t>(mesh.n_nodes()))
+  {}
+
+  BlockRows<D, Row> blocks_;
+  OwnNodes own_;
+  Halo<Row> halo_;
   std::vector<Row> of_node_;
 };
 

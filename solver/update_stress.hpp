@@ -14,13 +14,12 @@ struct StressSums {
   Real crossing = std::numeric_limits<Real>::infinity();  ///< shortest altitude of a particle's cell / (wave speed + |v|) [s]
   Real speed = 0;                                         ///< of the fastest particle [m/s]
   Real seconds = 0;                                       ///< of a processor
-  StressSums& operator+=(const StressSums& other) noexcept
+  /// All but the work.
+  void take_extremes(const StressSums& other) noexcept
   {
-    work += other.work;
     crossing = std::min(crossing, other.crossing);
     speed = std::max(speed, other.speed);
     seconds += other.seconds;
-    return *this;
   }
 };
 

@@ -63,8 +63,24 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> fac
 }
 
 template <int D>
+void Walls<D>::restrict_to(const Share& share)
+{
+  std::erase_if(rules_, [&](NodeRule& rule) {
+    rule.node = share.local_node(rule.node);
+    rule.counted = rule.node != none && share.owns_node(rule.node);
+    return rule.node == none;
+  });
+  std::erase_if(facets_, [&](Facet& facet) {
+    facet.cell = share.local_cell(facet.cell);
+    return facet.cell == none;
+  });
+  rule_of_node_.assign(share.node.size(), none);
+}
+
+template <int D>
 void Walls<D>::settle()
 {
+  pushed_.resize(walls_.size());
   for (NodeRule& rule : rules_) {
     for (Plane& plane : rule.frictions)
       plane.normal.normalize();
@@ -86,14 +102,13 @@ void Walls<D>::settle()
 }
 
 template <int D>
-WallWork Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs)
+void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
 {
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
   const auto push = [&](Index wall, const Vec<D>& by) {
-    Wall<D>& pushed = walls_[static_cast<std::size_t>(wall)];
-    pushed.impulse += mass * by;
-    pushed.angular += mass * moment<D>(rule.place, by);
+    if (rule.counted)
+      pushed_[static_cast<std::size_t>(wall)].add({mass * by, mass * moment<D>(rule.place, by)});
     v += by;
   };
   rubs = false;
@@ -122,40 +137,49 @@ WallWork Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec
   const Vec<D> v_mid = 0.5 * (v_old + v);
   const Real friction = mass * rubbed.dot(v_mid);
   change = v - v_old;
-  return {friction, mass * (v - v_free).dot(v_mid) - friction};
+  if (rule.counted)
+    work.add({friction, mass * (v - v_free).dot(v_mid) - friction});
 }
 
 template <int D>
-WallWork Walls<D>::apply(Real end, Nodes<D>& nodes)
+void Walls<D>::apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work)
 {
-  WallWork work;
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     rule.rubs = false;
     if (nodes.active[n])
-      work += act(rule, end, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs);
+      act(rule, end, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
   }
-  return work;
 }
 
 template <int D>
-WallWork Walls<D>::apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats)
+void Walls<D>::apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work)
 {
-  WallWork work;
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     bool rubs{};
     if (sums[n].is_seen())
-      work += act(rule, end, sums[n].mass, hats[n].v, hats[n].change, rubs);
+      act(rule, end, sums[n].mass, hats[n].v, hats[n].change, rubs, work);
   }
-  return work;
 }
 
 template <int D>
-WallWork Walls<D>::apply(Index node, Real end, Real mass, NodeMotion<D>& motion)
+void Walls<D>::apply(Index node, Real end, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work)
 {
   bool rubs{};
-  return binds(node) ? act(rule_of(node), end, mass, motion.v, motion.change, rubs) : WallWork{};
+  if (binds(node))
+    act(rule_of(node), end, mass, motion.v, motion.change, rubs, work);
+}
+
+template <int D>
+void Walls<D>::keep_impulses(Exchange& ranks)
+{
+  ranks.sum(std::span(pushed_));
+  for (std::size_t w = 0; w < walls_.size(); ++w) {
+    const Impulse by = pushed_[w].value();
+    walls_[w].impulse += by.linear, walls_[w].angular += by.angular;
+    pushed_[w].clear();
+  }
 }
 
 template <int D>

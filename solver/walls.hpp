@@ -4,9 +4,12 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/exact_sum.hpp"
+#include "core/exchange.hpp"
 #include "core/fields.hpp"
 #include "core/table.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
 #include "solver/ledger.hpp"
 #include "solver/nodes.hpp"
 
@@ -37,11 +40,6 @@ struct Wall {
 struct WallWork {
   Real friction{};  ///< of tangential impulses of friction walls, <= 0
   Real other{};     ///< of all other impulses: prescribed motion, inelastic arrival
-  WallWork& operator+=(const WallWork& more) noexcept
-  {
-    friction += more.friction, other += more.other;
-    return *this;
-  }
 };
 
 /// All conditions of a scene, sorted out per node.  Where several meet in a node: `fixed` wins over `velocity` (the earlier
@@ -54,16 +52,20 @@ class Walls {
   /// Conditions with a normal: facets of one group.  Facets that meet in a node under less than 30 degrees share their mean
   /// normal (a smooth surface); sharper ones stay separate planes (an edge).
   void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets);
-  /// To be called once after the last add().
+  /// Of one of several ranks: only conditions on nodes and cells that are held, in their numbers here.
+  void restrict_to(const Share& share);
+  /// To be called once after the last add() or restrict_to().
   void settle();
 
-  /// The new velocities of nodes with active mass obey the walls at the end of the step [s].  Returns the work done.
-  WallWork apply(Real end, Nodes<D>& nodes);
+  /// The new velocities of nodes with active mass obey the walls at the end of the step [s].  The work done is added to `work`.
+  void apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work);
   /// So does what particles read on hats, where it is not that of the node alone: the row of a hat on a wall may reach nodes off it.
   /// `sums` say with which mass a hat moves, and which are seen.
-  WallWork apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats);
+  void apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
   /// And so does a node that follows others: its own mass [kg] gets its part of the walls' pushes.
-  WallWork apply(Index node, Real end, Real mass, NodeMotion<D>& motion);
+  void apply(Index node, Real end, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
+  /// The walls keep the impulses of the step that is over, those of all ranks.
+  void keep_impulses(Exchange& ranks);
   /// The kinematic part alone, on remapped velocities (rows: remapped one in `v`, the step's own in `change`).  A node that rubs
   /// keeps the step's own: friction acted on that one, and a strain taken from any other would make energy.
   void hold(Real time, std::span<NodeMotion<D>> remapped) const;
@@ -91,7 +93,12 @@ class Walls {
     Index whole = none;          ///< wall that sets all components
     std::vector<Plane> rollers;  ///< normals made orthonormal
     std::vector<Plane> frictions;
-    bool rubs = false;  ///< the last apply() found it pressed against a friction wall
+    bool rubs = false;    ///< the last apply() found it pressed against a friction wall
+    bool counted = true;  ///< by this rank: another one keeps impulses and work of nodes that are not its own
+  };
+  struct Impulse {
+    Vec<D> linear = Vec<D>::Zero();
+    Vec3 angular = Vec3::Zero();
   };
   NodeRule& rule(const Mesh<D>& mesh, Index node);
   const NodeRule& rule_of(Index node) const noexcept  ///< of a node that is bound
@@ -99,10 +106,11 @@ class Walls {
     return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];
   }
   /// Pushes a mass [kg] that moves with v and has changed by `change` in this step; walls keep the impulses.
-  WallWork act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs);
+  void act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
 
   std::vector<Wall<D>> walls_;
+  std::vector<ExactSums<Impulse>> pushed_;  ///< by each wall in this step
   std::vector<NodeRule> rules_;
   std::vector<Index> rule_of_node_;  ///< or none
   std::vector<Facet> facets_;

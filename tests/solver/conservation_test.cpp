@@ -76,9 +76,9 @@ Model<C::D, typename C::K> flying_block(Precision precision = Precision::full)
 TYPED_TEST(EveryKernelAndTransfer, KeepMassAndMomentumOfAFreeBlock)
 {
   auto m = flying_block<TypeParam>();
-  const auto before = totals(m.particles);
+  const auto before = totals(m);
   run_until(m, stable<TypeParam> ? 0.2 : 0.05);
-  const auto after = totals(m.particles);
+  const auto after = totals(m);
   EXPECT_NEAR(before.mass, after.mass, 1e-14 * before.mass) << "rows are sorted anew, so the sum may round differently";
   const Real scale = 0.2 * before.mass;  // speeds are of this order
   EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12 * scale);
@@ -89,7 +89,7 @@ TYPED_TEST(EveryKernelAndTransfer, KeepMassAndMomentumOfAFreeBlock)
 TYPED_TEST(EveryKernelAndTransfer, DoInSingleWhatTheyDoInDoubleToItsRounding)
 {
   auto twofold = flying_block<TypeParam>(), single = flying_block<TypeParam>(Precision::single);
-  const auto before = totals(single.particles);
+  const auto before = totals(single);
   const Real dt = 0.3 * shortest_crossing(twofold.mesh, twofold.materials, twofold.particles);
   for (int step = 0; step < 40; ++step) {
     advance(twofold, dt);
@@ -115,7 +115,7 @@ TYPED_TEST(EveryKernelAndTransfer, DoInSingleWhatTheyDoInDoubleToItsRounding)
   EXPECT_LT(wrong_place, 10 * rounding * path);
   EXPECT_LT(wrong_stress, 1000 * rounding * stress);
   EXPECT_LT(wrong_F, 100 * rounding);
-  const auto after = totals(single.particles);
+  const auto after = totals(single);
   EXPECT_LT((after.momentum - before.momentum).norm(), 10 * rounding * 0.2 * before.mass);
 }
 
@@ -161,7 +161,7 @@ TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalanceWhileStable)
   if (!stable<TypeParam>)
     return;
   auto m = flying_block<TypeParam>();
-  m.energy = {.kinetic_start = totals(m.particles).kinetic};
+  m.energy = {.kinetic_start = totals(m).kinetic};
   const Real start = m.energy.kinetic_start;
   const Real dt = 0.05 * shortest_crossing(m.mesh, m.materials, m.particles);  // the balance is first order in the step
   Real strained = 0;
@@ -169,7 +169,7 @@ TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalanceWhileStable)
     advance(m, dt);
     strained = std::max(strained, std::abs(m.energy.internal));
   }
-  const Real kinetic = totals(m.particles).kinetic;
+  const Real kinetic = totals(m).kinetic;
   EXPECT_GT(strained, 1e-3 * start) << "at some time of the swing, or there is no balance to close";
   EXPECT_LT(std::abs(m.energy.defect(kinetic)), 0.01 * start);
 }

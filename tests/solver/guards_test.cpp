@@ -126,7 +126,7 @@ TEST(Guards, AFailedParticleStopsTheRunUnlessItMayGo)
   EXPECT_EQ(stopped(without), "");
   EXPECT_EQ(without.particles.size(), before - 1);
   EXPECT_EQ(without.mass.failed_count, 1);
-  EXPECT_NEAR(totals(without.particles).mass + without.mass.failed, without.mass.start, 1e-12 * without.mass.start);
+  EXPECT_NEAR(totals(without).mass + without.mass.failed, without.mass.start, 1e-12 * without.mass.start);
   EXPECT_THAT(without.watched.failure, HasSubstr("particle 5"));
   EXPECT_TRUE(std::isfinite(without.energy.internal));
   EXPECT_NEAR(without.energy.carried_away, 0.5 * without.mass.failed * 1.25, 1e-2 * without.mass.failed);

@@ -131,9 +131,9 @@ TEST(Projected, HoldsAFilmOnAWall)
   close_off(m, "y_min", WallKind::roller);
   m.loads.gravity.acceleration = {0, -10};
   make_ready(m, false);
-  const Real kinetic = totals(m.particles).kinetic;
+  const Real kinetic = totals(m).kinetic;
   ASSERT_NO_THROW(run_until(m, 0.05));
-  EXPECT_LT(totals(m.particles).kinetic, kinetic);
+  EXPECT_LT(totals(m).kinetic, kinetic);
   for (const auto& x : m.particles.x) {
     EXPECT_GT(x[1], 0);
     EXPECT_LT(x[1], 1.1 * share / 8) << "the height of the film at the start";
@@ -154,7 +154,7 @@ void slide_on_a_rough_floor(Scheme scheme)
   close_off(m, "y_min", WallKind::friction, friction);
   m.loads.gravity.acceleration = {1, -10};
   make_ready(m, false);
-  const Totals<2> start = totals(m.particles);
+  const Totals<2> start = totals(m);
   const auto floor = *m.mesh.facet_set("y_min");
   for (int step = 0; step < 60; ++step) {
     advance(m, 1e-3);
@@ -164,7 +164,7 @@ void slide_on_a_rough_floor(Scheme scheme)
           ASSERT_GT(m.hats.motion[static_cast<std::size_t>(n)].v[1], -1e-12) << "what particles read leads into the floor";
         }
   }
-  const Totals<2> end = totals(m.particles);
+  const Totals<2> end = totals(m);
   const Vec<2> floor_gave = m.walls.walls()[0].impulse, gravity_gave = end.mass * m.clock.time * m.loads.gravity.acceleration;
   EXPECT_LT((end.momentum - start.momentum - floor_gave - gravity_gave).norm(), 1e-10 * start.momentum.norm());
   EXPECT_LT(-floor_gave[0], friction * (1 + 1e-10) * floor_gave[1]);
@@ -193,10 +193,10 @@ Real motion_left(Index cells, int steps)
   std::uniform_real_distribution<Real> number(-1e-9, 1e-9);
   set_each(m.particles.v, [&](std::size_t) { return Vec<2>{number(random), number(random)}; });
   make_ready(m, false);
-  const Real start = totals(m.particles).kinetic;
+  const Real start = totals(m).kinetic;
   for (int step = 0; step < steps; ++step)
     advance(m, 1e-2);
-  return totals(m.particles).kinetic / start;
+  return totals(m).kinetic / start;
 }
 
 TEST(Projected, TransferToAndFroMakesNoMotion)

@@ -38,7 +38,8 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
   for (auto& row : nodes.sum)
     row.mass = 1;
   nodes.motion[at] = {v, v};
-  walls.apply(0.1, nodes);
+  ExactSums<WallWork> work;
+  walls.apply(0.1, nodes, work);
   return nodes.motion[at].v;
 }
 
@@ -110,7 +111,7 @@ struct Incline {
   }
   Vec<2> centre(const Model<2, Umls<2>>& m) const
   {
-    const auto t = totals(m.particles);
+    const auto t = totals(m);
     return along(t.centre / t.mass);
   }
 };
