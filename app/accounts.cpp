@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/parallel.hpp"
-
 namespace talus {
 
 Real EnergyNow::largest_term() const noexcept
@@ -18,9 +16,10 @@ namespace {
 
 /// Momentum of the particles; the moduli are those of each.
 template <int D>
-Push<D> momentum_of(const Particles<D>& particles)
+Push<D> momentum_of(const Frame<D>& frame)
 {
-  return parallel_sum<Push<D>>(particles.size(), [&](Index row) {
+  const Particles<D>& particles = frame.particles;
+  return sum_particles<Push<D>>(frame.order, *frame.ranks, [&](Index row) {
     const auto p = static_cast<std::size_t>(row);
     return Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
   });
@@ -45,9 +44,9 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
 {
   if (moment == Moment::stage_begins) {
     if (!begun_) {
-      kinetic_begin_ = totals(frame.particles).kinetic;
+      kinetic_begin_ = totals(frame).kinetic;
       plastic_begin_ = frame.energy.plastic_start;
-      start_ = momentum_of(frame.particles);
+      start_ = momentum_of(frame);
     } else {
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
       before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
@@ -60,7 +59,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
   }
   if (moment == Moment::stage_done) {
     taken_out_ = frame.energy.set_to_rest;
-    kinetic_end_ = totals(frame.particles).kinetic + taken_out_;
+    kinetic_end_ = totals(frame).kinetic + taken_out_;
   }
   stage_ = frame.energy;
 }
@@ -72,7 +71,7 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
   EnergyNow now;
   now.remapped = e.remapped;
   now.kinetic_start = kinetic_begin_;
-  now.kinetic = totals(frame.particles).kinetic;
+  now.kinetic = totals(frame).kinetic;
   now.plastic = plastic_work(frame) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;
   now.strain = before_.internal + e.internal - now.plastic;
   now.friction = 0 - before_.friction - e.friction;  // 0 - 0 is not -0
@@ -91,7 +90,7 @@ template <int D>
 MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
 {
   const MomentumLedger<D>& given = frame.momentum;
-  MomentumNow<D> now{start_, momentum_of(frame.particles), given.loads + given.damping + given.rest + -1 * frame.mass.carried_away};
+  MomentumNow<D> now{start_, momentum_of(frame), given.loads + given.damping + given.rest + -1 * frame.mass.carried_away};
   for (const Wall<D>& wall : frame.walls.walls())
     now.given += Push<D>::of(wall.impulse, wall.angular);
   return now;

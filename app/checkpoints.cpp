@@ -8,6 +8,7 @@
 #include "app/results.hpp"
 #include "app/signals.hpp"
 #include "app/sound_state.hpp"
+#include "app/whole.hpp"
 #include "io/kept.hpp"
 #include "io/whole_file.hpp"
 
@@ -110,7 +111,8 @@ void check_fit(const State<D>& state, const std::vector<bool>& columns, const St
 {
   const Particles<D>& particles = state.particles;
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
-  must(filled_columns(particles) == columns || particles.size() == 0, "columns");
+  const bool known = std::find(columns.begin(), columns.end(), true) != columns.end();  // not by a rank that had no particles
+  must(!known || filled_columns(particles) == columns || particles.size() == 0, "columns");
   must(particles.size() <= limits.particles, "bodies");
   check_rows(particles, state.bodies);
   const auto within = [](const auto& column, auto limit) {
@@ -152,8 +154,14 @@ void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
     reason = "by " + reason;
   else if (until_ && frame.clock.step >= *until_)
     reason = "as asked";
-  if (reason.empty() && !due(frame.clock))
+  // Signals and clocks on the wall differ from rank to rank.
+  enum : std::int64_t { go_on, write_one, stop };
+  const std::int64_t wish = !reason.empty() ? stop : frame.ranks->is_root() && due(frame.clock) ? write_one : go_on;
+  const std::int64_t what = frame.ranks->max(wish);
+  if (what == go_on)
     return;
+  if (what == stop)
+    reason = frame.ranks->first(reason);
   write(frame, recorder);
   if (!reason.empty())
     throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, frame.clock.step + 1, frame.clock.time,
@@ -170,21 +178,25 @@ void Checkpoints<D>::see_end_of_stage(const Frame<D>& frame, const Recorder<D>& 
 template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
-  require_results(folder_);
-  recorder.flush();  // what the checkpoint says is written is on the disk before it
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
-  write_whole(file, [&](const fs::path& temporary) {
-    ArrayWriter arrays(temporary);
-    keep(arrays, "format", format);
-    keep(arrays, "run", identity_);
-    for_each_part(frame, [&](const std::string& name, const auto& part) { keep(arrays, name, part); });
-    keep_laws(arrays, frame.materials);
-    keep(arrays, "recorder", recorder);
-    arrays.close();
+  on_root(frame, [&](const Frame<D>& whole) {
+    require_results(folder_);
+    recorder.flush();  // what the checkpoint says is written is on the disk before it
+    write_whole(file, [&](const fs::path& temporary) {
+      ArrayWriter arrays(temporary);
+      keep(arrays, "format", format);
+      keep(arrays, "run", identity_);
+      for_each_part(whole, [&](const std::string& name, const auto& part) { keep(arrays, name, part); });
+      keep_laws(arrays, whole.materials);
+      keep(arrays, "recorder", recorder);
+      arrays.close();
+    });
   });
   last_ = file;
   at_ = frame.clock;
   when_ = Watch::now();
+  if (!frame.ranks->is_root())
+    return;
   const auto all = checkpoints_in(folder_ / checkpoint_folder);
   std::error_code stays;  // one too many is no reason to end a run
   for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
@@ -304,7 +316,7 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
     });
     recall(arrays, "recorder", recorder);
   });
-  if (!reasons.empty())
+  if (!reasons.empty() && world().is_root())
     fmt::print(stderr, "warning: {}; going on from {}\n", reasons, from.string());
   return from;
 }

@@ -37,7 +37,9 @@ template <int D>
 FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs)
 {
   FileSizes sizes;
-  const auto particles = static_cast<Real>(frame.particles.size());
+  const auto particles = static_cast<Real>(frame.ranks->sum(static_cast<std::int64_t>(frame.particles.size())));
+  const Index n_nodes = frame.share.alone() ? frame.mesh.n_nodes() : frame.share.whole_nodes;
+  const Index n_cells = frame.share.alone() ? frame.mesh.n_cells() : frame.share.whole_cells;
   if (outputs.particles) {
     const Real fields = bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(frame, {}, name); });
     sizes.particles = vtk_header + particles * (place_bytes + id_bytes + vertex_bytes + fields);
@@ -45,7 +47,7 @@ FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs)
   if (outputs.mesh) {
     const Real fields = bytes_of_fields(outputs.mesh->fields_wanted, [&](const auto& name) { return node_column(frame, name); });
     const Real corners = (D + 2) * sizeof(int) + 1;  // with where they end, and the kind of the cell
-    sizes.mesh = vtk_header + frame.mesh.n_nodes() * (place_bytes + fields) + frame.mesh.n_cells() * corners;
+    sizes.mesh = vtk_header + n_nodes * (place_bytes + fields) + n_cells * corners;
   }
   if (outputs.history)
     sizes.history_row = history_number * static_cast<Real>(HistoryWriter<D>::columns(*outputs.history, frame).size());
@@ -53,12 +55,12 @@ FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs)
   return sizes;
 }
 
-template <int D>
-void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame, const OutputSpec& outputs, Real time_left)
+namespace {
+
+void compare_with_free_space(const std::filesystem::path& folder, const FileSizes& one, const OutputSpec& outputs, Real time_left)
 {
   std::error_code unknown;  // then the space is the largest number there is
   const auto free = static_cast<Real>(std::filesystem::space(folder, unknown).available);
-  const FileSizes one = file_sizes(frame, outputs);
   const Real least = one.particles + one.mesh + one.history_row + one.checkpoint;
   if (free < least)
     throw EnvironmentError(fmt::format("the disk of {} has {} left; one checkpoint and one file of each kind take about {}",
@@ -73,6 +75,15 @@ void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame
   if (free < all)
     fmt::print(stderr, "warning: the disk of {} has {} left; all outputs of the run may take about {}\n", folder.string(), megabytes(free),
                megabytes(all));
+}
+
+}  // namespace
+
+template <int D>
+void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame, const OutputSpec& outputs, Real time_left)
+{
+  const FileSizes one = file_sizes(frame, outputs);
+  frame.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left); });
 }
 
 template FileSizes file_sizes<2>(const Frame<2>&, const OutputSpec&);

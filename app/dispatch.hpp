@@ -3,7 +3,9 @@
 #include <stdexcept>
 
 #include "app/simulate.hpp"
+#include "core/exchange.hpp"
 #include "kernels/kernels.hpp"
+#include "mesh/partition.hpp"
 
 namespace talus {
 
@@ -21,12 +23,40 @@ inline void options_of(const Scene&, NoOptions&) {}
 inline void options_of(const Scene& scene, UmlsOptions& options) { options = scene.umls.value_or(options); }
 inline void options_of(const Scene& scene, ProjectedOptions& options) { options = scene.projected.value_or(options); }
 
+/// Blocks are shared out by their particles.
+template <int D>
+Part<D> part_of(const Mesh<D>& mesh, const Particles<D>& particles, int rings)
+{
+  std::vector<std::int64_t> weights(static_cast<std::size_t>(blocks_of(mesh.n_cells())), 0);
+  for (const Index cell : particles.cell)
+    ++weights[static_cast<std::size_t>(cell / block_cells)];
+  return cut(mesh, partition(mesh, weights, world().size()), world().rank(), rings);
+}
+
+/// The model of a rank: of the whole where it is alone.
 template <int D, Kernel<D> K>
 Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
-try {
+{
   Options<K> options;
   options_of(scene, options);
-  Model<D, K> m(std::move(mesh), options);
+  Share share;
+  if (!world().alone()) {
+    Part<D> part = part_of(mesh, setup.particles, rings_held<D, K>);
+    share = std::move(part.share);
+    mesh = std::move(part.mesh);
+    restrict_to(share, setup);
+  }
+  std::optional<Model<D, K>> built;
+  world().agree(Exchange::caught([&] {
+    try {
+      built.emplace(std::move(mesh), options);
+    } catch (const std::invalid_argument& e) {
+      throw SceneErrors(scene.mesh.where, fmt::format("kernel \"{}\": {}", scene.kernel, e.what()));
+    }
+  }));
+  Model<D, K>& m = *built;
+  if (!world().alone())
+    m.join(world(), std::move(share));
   m.particles = std::move(setup.particles);
   m.bodies = std::move(setup.bodies);
   m.materials = std::move(setup.materials);
@@ -36,9 +66,7 @@ try {
   m.exits = std::move(setup.exits);
   m.guards = setup.guards;
   make_ready(m, scene.outputs.history && !scene.outputs.history->points.empty());
-  return m;
-} catch (const std::invalid_argument& e) {
-  throw SceneErrors(scene.mesh.where, fmt::format("kernel \"{}\": {}", scene.kernel, e.what()));
+  return std::move(m);
 }
 
 template <int D>

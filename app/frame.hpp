@@ -7,9 +7,12 @@ namespace talus {
 template <int D>
 struct Frame {
   const Mesh<D>& mesh;
+  const Share& share;  ///< whose its blocks and nodes are
   const Particles<D>& particles;
   const std::vector<Body>& bodies;
   const std::vector<AnyBatch>& materials;
+  const CellOrder& order;
+  Exchange* ranks;  ///< that share the run
   const Nodes<D>& nodes;
   const Walls<D>& walls;
   const Loads<D>& loads;
@@ -30,21 +33,12 @@ struct Frame {
 template <int D, Kernel<D> K>
 Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
-  return {m.mesh,     m.particles,    m.bodies, m.materials, m.nodes,    m.walls,   m.loads,  m.row_of_id, m.clock,    m.stage,
-          stage.name, m.stage.number, m.energy, m.mass,      m.momentum, m.watched, m.guards, m.timings,   m.residual, m.crossing};
+  return {m.mesh,  m.share,    m.particles, m.bodies, m.materials, m.order,    m.ranks,        m.nodes,
+          m.walls, m.loads,    m.row_of_id, m.clock,  m.stage,     stage.name, m.stage.number, m.energy,
+          m.mass,  m.momentum, m.watched,   m.guards, m.timings,   m.residual, m.crossing};
 }
 
-/// Energy the laws have dissipated so far [J].
-template <int D>
-Real plastic_work(const Frame<D>& frame)
-{
-  Real total = 0;
-  for (const AnyBatch& material : frame.materials)
-    total += total_plastic_work(material, frame.particles.volume0);
-  return total;
-}
-
-/// Columns and history of a particle [B]; 0 where there is none.
+/// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.
 template <int D>
 Real bytes_per_particle(const Frame<D>& frame)
 {
@@ -53,7 +47,7 @@ Real bytes_per_particle(const Frame<D>& frame)
       [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
   for (const AnyBatch& material : frame.materials)
     std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
-  return static_cast<Real>(bytes) / static_cast<Real>(std::max(frame.particles.size(), Index{1}));
+  return frame.ranks->max(static_cast<Real>(bytes) / static_cast<Real>(std::max(frame.particles.size(), Index{1})));
 }
 
 /// The body of a particle row.

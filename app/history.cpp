@@ -30,30 +30,34 @@ void put(const Vec<D>& v, std::vector<Real>& row)
 }  // namespace
 
 template <int D>
-std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles)
+std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
 {
   const Vec<D> at = Eigen::Map<const Vec<D>>(spec.at.data());
-  std::pair<Real, std::int64_t> best{std::numeric_limits<Real>::infinity(), 0};
+  constexpr auto nobody = std::numeric_limits<std::int64_t>::max();
+  std::pair<Real, std::int64_t> best{std::numeric_limits<Real>::infinity(), nobody};
   for_each_row(spec.body, bodies, [&](std::size_t p) {
     best = std::min(best, std::pair{(particles.x[p] - at).squaredNorm(), particles.id[p]});
   });
-  return best.second;
+  const Real nearest = ranks.min(best.first);
+  const std::int64_t id = ranks.min(best.first == nearest ? best.second : nobody);
+  return id == nobody ? 0 : id;
 }
 
 template <int D>
-Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles)
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
 {
   const auto axis = static_cast<Index>(spec.direction) / 2;
   const Real sign = static_cast<Index>(spec.direction) % 2 == 0 ? 1 : -1;
-  std::vector<std::pair<Real, Real>> reach;  // coordinate along the direction, mass
-  Real total = 0;
-  for_each_row(spec.body, bodies, [&](std::size_t p) {
-    reach.emplace_back(sign * particles.x[p][axis], particles.mass[p]);
-    total += particles.mass[p];
-  });
+  std::vector<Vec<2>> here;  // coordinate along the direction, mass
+  for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({sign * particles.x[p][axis], particles.mass[p]}); });
+  std::vector<std::pair<Real, Real>> reach;
+  for (const std::vector<Vec<2>>& of_rank : gather_rows<Vec<2>>(ranks, here))
+    for (const Vec<2>& one : of_rank)
+      reach.emplace_back(one[0], one[1]);
   if (reach.empty())
     return not_there;
   std::sort(reach.begin(), reach.end());
+  const Real total = std::accumulate(reach.begin(), reach.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
   std::size_t i = 0;
   Real mass = reach[0].second;
   const Real wanted = spec.mass_share * total * (1 - 1e-12);  // sums of the same masses in another order
@@ -77,18 +81,19 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 }
 
 template <int D>
-HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start)
-    : spec_(std::move(spec)), file_(file, columns(spec_, start))
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start) : spec_(std::move(spec))
 {
+  start.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
   state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
   for (const PointSpec& point : spec_.points)
-    state_.followed.push_back(nearest_particle(point, start.bodies, start.particles));
+    state_.followed.push_back(nearest_particle(point, start.bodies, start.particles, *start.ranks));
 }
 
 template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state)
-    : spec_(std::move(spec)), state_(std::move(state)), file_(HistoryFile::resume(file, columns(spec_, now), now.clock.time))
+    : spec_(std::move(spec)), state_(std::move(state))
 {
+  now.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.clock.time)); });
   const auto known = [&](std::int64_t id) { return id >= 0 && static_cast<std::size_t>(id) < now.row_of_id.size(); };
   if (state_.impulse.size() != now.walls.walls().size() || state_.followed.size() != spec_.points.size() ||
       !std::all_of(state_.followed.begin(), state_.followed.end(), known))
@@ -98,13 +103,13 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
 template <int D>
 void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts)
 {
-  const Totals<D> sums = totals(frame.particles);
+  const Totals<D> sums = totals(frame);
   const Clock& clock = frame.clock;
   std::vector<Real> row{clock.time, static_cast<Real>(clock.step), clock.dt, static_cast<Real>(frame.stage_number), sums.mass};
   put<D>(sums.momentum, row);
   for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
     row.push_back(sums.angular[d]);
-  put<D>(frame.particles.size() > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(not_there)), row);
+  put<D>(sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(not_there)), row);
   const EnergyNow e = accounts.energy(frame);
   row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
                          e.defect, frame.residual});
@@ -117,8 +122,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   for (const std::int64_t id : state_.followed)
     add_point(frame, id, row);
   for (const FrontSpec& spec : spec_.fronts)
-    row.push_back(front(spec, frame.bodies, frame.particles));
-  file_.append(row);
+    row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
+  frame.ranks->together([&] { file_->append(row); });
   state_.time = clock.time;
 }
 
@@ -126,20 +131,26 @@ template <int D>
 void HistoryWriter<D>::add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row)
 {
   const Index at = frame.row_of_id[static_cast<std::size_t>(id)];
-  if (at == none)
-    return row.resize(row.size() + 3 * D + 6, not_there);
-  const auto p = static_cast<std::size_t>(at);
-  put<D>(frame.particles.x[p], row);
-  put<D>(frame.particles.x[p] - frame.particles.x0[p], row);
-  put<D>(frame.particles.v[p], row);
-  const Sym3 stress = frame.particles.stress[p];
-  row.insert(row.end(), stress.begin(), stress.end());
+  std::vector<Real> here;
+  if (at != none) {
+    const auto p = static_cast<std::size_t>(at);
+    put<D>(frame.particles.x[p], here);
+    put<D>(frame.particles.x[p] - frame.particles.x0[p], here);
+    put<D>(frame.particles.v[p], here);
+    const Sym3 stress = frame.particles.stress[p];
+    here.insert(here.end(), stress.begin(), stress.end());
+  }
+  std::vector<Real> point(3 * D + 6, not_there);
+  for (const std::vector<Real>& of_rank : gather_rows<Real>(*frame.ranks, here))
+    if (!of_rank.empty())
+      point = of_rank;
+  row.insert(row.end(), point.begin(), point.end());
 }
 
-template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&);
-template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&);
-template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&);
-template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&);
+template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
+template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
+template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
+template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
 template class HistoryWriter<2>;
 template class HistoryWriter<3>;
 

@@ -6,13 +6,15 @@
 
 namespace talus {
 
-/// Id of the particle of `spec.body` (any, if empty) that is nearest to `spec.at`; of several equally near the lowest.
+/// Id of the particle of `spec.body` (any, if empty) that is nearest to `spec.at`; of several equally near the lowest.  Every rank has to ask.
 template <int D>
-std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles);
+std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles,
+                              Exchange& ranks = one_rank());
 
-/// Coordinate [m] that a share of the mass does not pass, looking along the direction of `spec`.  NaN without particles.
+/// Coordinate [m] that a share of the mass does not pass, looking along the direction of `spec`.  NaN without particles.  Of all ranks, on the
+/// root; every rank has to ask.
 template <int D>
-Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles);
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
 
 /// What a row owes to the rows before.
 template <int D>
@@ -27,7 +29,7 @@ struct HistoryState {
   }
 };
 
-/// Columns: those of io/history_columns.hpp.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
+/// The file is the root's; the other ranks give what it needs.  Columns: those of io/history_columns.hpp.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
 /// deleted, the front of an empty body, the centre of mass of nothing.
 template <int D>
 class HistoryWriter {
@@ -37,8 +39,8 @@ class HistoryWriter {
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
-  void flush() const { file_.flush(); }
-  Real last_time() const noexcept { return file_.last_time(); }  ///< of the last row there [s]
+  void flush() const { file_->flush(); }                          ///< on the root
+  Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
@@ -46,7 +48,7 @@ class HistoryWriter {
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;
-  HistoryFile file_;
+  std::optional<HistoryFile> file_;
 };
 
 extern template class HistoryWriter<2>;

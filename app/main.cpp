@@ -2,27 +2,31 @@
 #include <fmt/format.h>
 
 #include <new>
+#include <optional>
 
 #include "app/cli.hpp"
 #include "core/error.hpp"
+#include "core/exchange.hpp"
 
 namespace {
 
 constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3, run_stopped = 4;
 
-int fail(int code, const char* what)
-{
-  std::fflush(stdout);
-  fmt::print(stderr, "{}\n", what);
-  return code;
-}
-
 }  // namespace
 
 int main(int argc, char** argv)
 {
+  std::optional<talus::Ranks> ranks;
+  const auto fail = [&](int code, const char* what) {
+    if (ranks)
+      return ranks->end(code, what);
+    std::fflush(stdout);
+    fmt::print(stderr, "{}\n", what);
+    return code;
+  };
   try {
-    return talus::cli(argc, argv);
+    ranks.emplace();
+    return ranks->end(talus::cli(argc, argv));
   } catch (const talus::SceneErrors& e) {
     return fail(scene_wrong, e.what());
   } catch (const talus::Stopped& e) {

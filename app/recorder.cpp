@@ -5,6 +5,7 @@
 #include "app/disk_space.hpp"
 #include "app/fields.hpp"
 #include "app/results.hpp"
+#include "app/whole.hpp"
 
 namespace talus {
 
@@ -27,15 +28,28 @@ Real total(const std::vector<Stage>& stages)
   return sum;
 }
 
+struct Content {
+  Real particles{}, mass{};  ///< mass in [kg]
+  Content& operator+=(const Content& other) noexcept
+  {
+    particles += other.particles, mass += other.mass;
+    return *this;
+  }
+};
+
 template <int D>
 BodySummary summary_of(const Frame<D>& frame, std::size_t b)
 {
   const Body& body = frame.bodies[b];
-  BodySummary summary{body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]),
-                      std::string(law_name(frame.materials[b])), body.size(), 0};
-  for (Index row = body.begin; row < body.end; ++row)
-    summary.mass += frame.particles.mass[static_cast<std::size_t>(row)];
-  return summary;
+  ExactSums<Content> sum;
+  const auto number = static_cast<Index>(b);
+  add_particles(frame.order, {number, number + 1}, sum, [&](Index row) {
+    return Content{1, frame.particles.mass[static_cast<std::size_t>(row)]};
+  });
+  frame.ranks->sum(sum);
+  const Content content = sum.value();
+  return {body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]),
+          std::string(law_name(frame.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
 }
 
 }  // namespace
@@ -56,7 +70,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       made_by_(std::move(made_by)),
       outputs_(outputs),
       stage_list_(stages),
-      progress_(total(stages), quiet),
+      progress_(total(stages), quiet || !world().is_root()),
       particle_times_(every(outputs.particles)),
       mesh_times_(every(outputs.mesh)),
       history_times_(every(outputs.history)),
@@ -103,6 +117,14 @@ template <int D>
 std::vector<std::string> Recorder<D>::resume(const Frame<D>& frame)
 {
   go_on(frame);
+  std::vector<std::string> missing;
+  frame.ranks->together([&] { missing = drop_later(frame); });
+  return missing;
+}
+
+template <int D>
+std::vector<std::string> Recorder<D>::drop_later(const Frame<D>& frame)
+{
   std::vector<std::string> missing;
   for (const std::string& file : files())
     if (std::error_code unreadable; !fs::exists(folder_ / file, unreadable))
@@ -169,7 +191,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   if (moment != Moment::stage_done)
     return;
   done_before_ += stage_list_[static_cast<std::size_t>(frame.stage_number)].duration;
-  last_.mass_there = totals(frame.particles).mass;
+  last_.mass_there = totals(frame).mass;
   last_.energy = accounts_.energy(frame);
   last_.momentum = accounts_.momentum(frame);
 }
@@ -178,6 +200,8 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
 template <int D>
 void Recorder<D>::warn(const Frame<D>& frame) const
 {
+  if (!frame.ranks->is_root())
+    return;
   const Watched &now = frame.watched, &before = last_.watched;
   const auto say = [&](const std::string& what) {
     fmt::print(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
@@ -199,7 +223,7 @@ void Recorder<D>::write(const Frame<D>& frame, bool last)
   const bool mesh = frame.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
   const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
   if (particles || mesh || history)
-    require_results(folder_);
+    frame.ranks->together([&] { require_results(folder_); });
   if (particles)
     write_particles_file(frame);
   if (mesh)
@@ -214,17 +238,19 @@ void Recorder<D>::write(const Frame<D>& frame, bool last)
 template <int D>
 void Recorder<D>::write_particles_file(const Frame<D>& frame)
 {
-  const auto rows = rows_by_id(frame.particles);
-  std::vector<Column> columns;
-  for (const std::string& name : particle_fields_of(outputs_))
-    columns.push_back(particle_column(frame, rows, name));
-  std::vector<std::int64_t> ids;
-  ids.reserve(rows.size());
-  for (const Index row : rows)
-    ids.push_back(frame.particles.id[static_cast<std::size_t>(row)]);
   const auto file = particle_file(particle_files_++);
-  write_particles(file, frame.clock.time, positions(frame.particles, rows), ids, columns, made_by_);
-  particle_series_.append(frame.clock.time, file);
+  on_root(frame, [&](const Frame<D>& whole) {
+    const auto rows = rows_by_id(whole.particles);
+    std::vector<Column> columns;
+    for (const std::string& name : particle_fields_of(outputs_))
+      columns.push_back(particle_column(whole, rows, name));
+    std::vector<std::int64_t> ids;
+    ids.reserve(rows.size());
+    for (const Index row : rows)
+      ids.push_back(whole.particles.id[static_cast<std::size_t>(row)]);
+    write_particles(file, whole.clock.time, positions(whole.particles, rows), ids, columns, made_by_);
+    particle_series_.append(whole.clock.time, file);
+  });
   particle_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
   last_output_ = files_.back();
@@ -235,10 +261,12 @@ void Recorder<D>::write_mesh_file(const Frame<D>& frame)
 {
   std::vector<Column> columns;
   for (const std::string& name : outputs_.mesh->fields_wanted)
-    columns.push_back(node_column(frame, name));
+    columns.push_back(whole_column(frame, node_column(frame, name)));
   const auto file = mesh_file(mesh_files_++);
-  write_mesh<D>(file, frame.clock.time, frame.mesh, columns, {}, made_by_);
-  mesh_series_.append(frame.clock.time, file);
+  frame.ranks->together([&] {
+    write_mesh<D>(file, frame.clock.time, whole_mesh_ ? *whole_mesh_ : frame.mesh, columns, {}, made_by_);
+    mesh_series_.append(frame.clock.time, file);
+  });
   mesh_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
 }

@@ -60,8 +60,10 @@ class Recorder {
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
   void watch(const Frame<D>& frame, Moment moment);
+  /// The mesh to be written where this rank, the root, holds only a part of it.
+  void keep_mesh(Mesh<D> whole) { whole_mesh_ = std::move(whole); }
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
-  /// the frame is dropped.  Says in words what should be there and is not.
+  /// the frame is dropped.  Says in words what should be there and is not, on the root.
   std::vector<std::string> resume(const Frame<D>& frame);
   /// Goes on from such a state with files of its own, in another folder.
   void begin_again(const Frame<D>& frame);
@@ -104,6 +106,7 @@ class Recorder {
  private:
   void open(const Frame<D>& frame);
   void go_on(const Frame<D>& frame);
+  std::vector<std::string> drop_later(const Frame<D>& frame);
   void name_lists();
   void warn(const Frame<D>& frame) const;
   void write(const Frame<D>& frame, bool last);
@@ -125,6 +128,7 @@ class Recorder {
   int particle_files_ = 0, mesh_files_ = 0;
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // of the last ones written
   Real stage_start_ = 0, done_before_ = 0;
+  std::optional<Mesh<D>> whole_mesh_;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
   std::vector<std::string> files_;

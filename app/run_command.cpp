@@ -12,6 +12,7 @@
 #include "app/signals.hpp"
 #include "app/summary.hpp"
 #include "app/traps.hpp"
+#include "core/exchange.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "io/gmsh_mesh.hpp"
@@ -117,6 +118,9 @@ class Run {
       compare(from_->identity(), identity);
     summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
 
+    n_particles_ = setup.particles.size(), n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
+    if (!world().alone() && world().is_root())
+      whole_ = mesh;
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
@@ -136,7 +140,11 @@ class Run {
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
     audience.ready = [&](const Frame<D>& frame) {
-      prepare(frame);
+      world().together([&] { prepare(frame); });
+      began_ = true;
+      if (whole_ && scene_.outputs.mesh)
+        recorder.keep_mesh(std::move(*whole_));
+      whole_.reset();
       if (from_)
         go_on(frame, taken, recorder);
       watch_.lap(build_seconds_);
@@ -172,7 +180,7 @@ class Run {
     } catch (const std::bad_alloc&) {
       throw EnvironmentError(failed("not enough memory"));
     }
-    if (!options_.quiet)
+    if (!options_.quiet && world().is_root())
       fmt::print("{}results in {}\n", table(recorder), folder_.string());
   }
 
@@ -222,7 +230,7 @@ class Run {
         maker.push_back(fmt::format("{} {}", what, then.*part));
         here.push_back(fmt::format("{} {}", what, now.*part));
       }
-    if (!maker.empty())
+    if (!maker.empty() && world().is_root())
       fmt::print(stderr, "warning: the checkpoint was made by {}; this program is {}: results may differ in the last digits\n",
                  fmt::join(maker, ", "), fmt::join(here, ", "));
   }
@@ -262,11 +270,11 @@ class Run {
     } else {
       lock_ = prepare_results(folder_);
     }
-    began_ = true;
     write_summary(folder_ / "summary.json", summary_);
     write_whole(folder_ / "scene.yaml", with_changes(scene_));
-    write_msh(folder_ / "mesh.msh", frame.mesh);
-    write_mesh<D>(folder_ / "mesh.vtu", 0, frame.mesh, {}, {}, summary_.made_by());
+    const Mesh<D>& mesh = whole_ ? *whole_ : frame.mesh;
+    write_msh(folder_ / "mesh.msh", mesh);
+    write_mesh<D>(folder_ / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
     if (const fs::path copy = folder_ / initial_file; initial_ && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial_))
       write_whole(copy, [&](const fs::path& temporary) {
         std::error_code trouble;
@@ -277,8 +285,9 @@ class Run {
     for (const std::string& warning : summary_.warnings)
       fmt::print(stderr, "warning: {}\n", warning);
     if (!options_.quiet)
-      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {} thread{}\n", scene_.title, frame.particles.size(),
-                 frame.mesh.n_cells(), frame.mesh.n_nodes(), scene_.kernel, summary_.transfer, threads(), threads() == 1 ? "" : "s");
+      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {}{} thread{}\n", scene_.title, n_particles_, n_cells_,
+                 n_nodes_, scene_.kernel, summary_.transfer, world().alone() ? "" : fmt::format("{} ranks with ", world().size()),
+                 threads(), threads() == 1 ? "" : "s");
     if (!options_.quiet && summary_.origin)
       fmt::print("{}", describe(*summary_.origin));
     std::fflush(stdout);
@@ -289,7 +298,9 @@ class Run {
     resumed_after_ = frame.clock.step;
     std::vector<std::string> news;
     if (in_place()) {
-      if (const auto aside = set_aside_newer(folder_, taken); !aside.empty())
+      std::vector<fs::path> aside;
+      world().together([&] { aside = set_aside_newer(folder_, taken); });
+      if (!aside.empty())
         news.push_back(fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}",
                                    taken.filename().string(), fmt::join(names_of(aside), ", ")));
       const auto missing = recorder.resume(frame);
@@ -297,16 +308,18 @@ class Run {
     } else {
       recorder.begin_again(frame);
     }
-    for (const std::string& what : news)
+    for (const std::string& what : news)  // of the root alone
       fmt::print(stderr, "warning: {}\n", what);
     summary_.warnings.insert(summary_.warnings.end(), news.begin(), news.end());
-    if (!options_.quiet)
+    if (!options_.quiet && world().is_root())
       fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
                  frame.clock.step, frame.clock.time);
   }
 
   void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
   {
+    if (!world().is_root())
+      return;
     require_results(folder_);
     Real steps = 0;
     watch_.lap(steps);
@@ -330,6 +343,8 @@ class Run {
   std::optional<std::int64_t> resumed_after_;  // steps
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
+  Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
+  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts
   std::vector<Stage> stages_;
   RunSummary summary_;               // as it begins
   std::optional<fs::path> initial_;  // what bodies begin with
@@ -377,6 +392,8 @@ void run_scene(const RunOptions& options)
   const Index wanted = options.threads.value_or(scene.threads);
   if (wanted > 0)
     set_threads(wanted);
+  else if (!world().alone())
+    set_threads(std::max(1, threads() / ranks_on_this_machine()));
   if (from && !from->folder() && !options.out)
     throw EnvironmentError(fmt::format("{} lies in no folder of a run (DIR/{}, with DIR/summary.json): say with --out where the results go",
                                        options.resume->string(), checkpoint_folder));

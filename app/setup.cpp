@@ -307,6 +307,17 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   return setup;
 }
 
+template <int D>
+void restrict_to(const Share& share, Setup<D>& setup)
+{
+  keep_own_particles(share, setup.bodies, setup.materials, setup.particles);
+  setup.walls.restrict_to(share);
+  for (MeshTraction<D>& load : setup.loads.on_mesh)
+    restrict_to(share, load);
+}
+
+template void restrict_to<2>(const Share&, Setup<2>&);
+template void restrict_to<3>(const Share&, Setup<3>&);
 template Setup<2> set_up<2>(const Scene&, const Mesh<2>&);
 template Setup<3> set_up<3>(const Scene&, const Mesh<3>&);
 

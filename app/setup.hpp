@@ -29,6 +29,10 @@ struct Setup {
 template <int D>
 Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh);
 
+/// Leaves what concerns the blocks, nodes and particles of one of several ranks, in the numbers of its part.
+template <int D>
+void restrict_to(const Share& share, Setup<D>& setup);
+
 /// The scheme of a scene, with the defaults that go with it.
 Transfer transfer_of(const TransferSpec& spec);
 
@@ -38,6 +42,8 @@ std::string describe(const OriginSummary& origin);
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);
 
+extern template void restrict_to<2>(const Share&, Setup<2>&);
+extern template void restrict_to<3>(const Share&, Setup<3>&);
 extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&);
 extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&);
 

@@ -42,10 +42,10 @@ void for_each_part(const S& state, F&& f)
 template <int D, Kernel<D> K>
 void adopt_state(Model<D, K>& m)
 {
-  if (!m.averaged.empty())
-    m.averaged.resize(m.particles.id.size());
+  if (!m.share.alone())
+    keep_own_particles(m.share, m.bodies, m.materials, m.particles);
   sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
-  index_rows(m);
+  follow_rows(m);
 }
 
 }  // namespace talus

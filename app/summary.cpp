@@ -148,6 +148,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
                            setup.transfer.musl ? ", musl" : "");
   s.precision = words(scene.precision)[static_cast<std::size_t>(scene.precision)];
+  s.ranks = world().size();
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
   s.mesh_cells = mesh.n_cells();

@@ -61,7 +61,8 @@ Json program(const RunSummary& s) { return {{"version", s.version}, {"commit", s
 
 Json cost(const RunSummary& s)
 {
-  return {{"threads", s.threads},
+  return {{"ranks", s.ranks},
+          {"threads", s.threads},
           {"wall [s]", s.wall_total},
           {"wall_by_phase", to_object(s.wall_seconds)},
           {"particle_steps_per_second", s.particle_steps_per_second},

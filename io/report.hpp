@@ -99,6 +99,7 @@ struct RunSummary {
   int dimension{};
   std::string kernel, transfer, precision;
   int threads{};
+  int ranks = 1;
 
   std::int64_t mesh_nodes{}, mesh_cells{};
   std::string scene_digest;  ///< of the text and of what changed it

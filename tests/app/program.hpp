@@ -22,10 +22,11 @@ class Program : public testing::Test {
  protected:
   ScratchFolder folder_;
 
-  /// `talus words` in the scratch folder.
-  Outcome talus(const std::string& words) const
+  /// `talus words` in the scratch folder, started by `launcher`.
+  Outcome talus(const std::string& words, const std::string& launcher = "") const
   {
-    const std::string command = "cd '" + folder_.path().string() + "' && '" TALUS_BINARY "' " + words + " >out.txt 2>err.txt";
+    const std::string command =
+        "cd '" + folder_.path().string() + "' && " + launcher + " '" TALUS_BINARY "' " + words + " >out.txt 2>err.txt";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_whole(folder_ / "out.txt"), read_whole(folder_ / "err.txt")};
   }

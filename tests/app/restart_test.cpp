@@ -7,6 +7,7 @@
 #include "tests/app/forged.hpp"
 #include "tests/app/program.hpp"
 #include "tests/app/same_state.hpp"
+#include "tests/app/scenes_of_all.hpp"
 
 namespace talus {
 namespace {
@@ -14,138 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// Two bodies that fall, bounce and slide; every line may be replaced.
-struct Parts {
-  std::string dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}}\n";
-  std::string more = "";  ///< kernel, transfer, precision
-  std::string law = "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3";
-  std::string bodies = "";  ///< replaces both
-  std::string boundaries =
-      "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: x_min}, {type: fixed, on: x_max}, {type: fixed, on: "
-      "y_max}]\n";
-  std::string time = "time: {end: 0.042, max_step: 1.4e-3}\n";
-  std::string loads = "loads: [{type: gravity, acceleration: [0, -9.81]}]\n";
-  std::string outputs = "";
-
-  std::string text() const
-  {
-    const std::string usual =
-        "bodies:\n"
-        "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
-        "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [1, "
-        "-4]}\n";
-    return "title: Restart\n" + dimension + more + "materials: [{name: stuff, density: 2000, " + law + "}]\n" +
-           (bodies.empty() ? usual : bodies) + loads + boundaries + time +
-           "outputs:\n  checkpoint: {steps: 4, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
-           (outputs.empty() ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}]" : outputs) + "}\n";
-  }
-};
-
-struct Case {
-  std::string name;
-  Parts parts;
-  friend std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.name; }
-};
-
-const std::string metal =
-    "law: johnson_cook, youngs_modulus: 1.0e7, poisson_ratio: 0.3, yield_stress: 5.0e3, hardening_coefficient: 2.0e4, hardening_exponent: "
-    "0.3, "
-    "rate_coefficient: 0.02, thermal_exponent: 1, room_temperature: 293, melting_temperature: 330, specific_heat: 0.5";
-const std::string solid = "dimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [2, 2, 1], cells: [4, 4, 2]}}\n";
-
-std::vector<Case> cases()
-{
-  std::vector<Case> all;
-  const auto law = [&](const std::string& name, const std::string& text) { all.push_back({"law_" + name, {.law = text}}); };
-  law("linear_elastic", "law: linear_elastic, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("neo_hookean", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
-  law("corotated", "law: corotated, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("hencky", "law: hencky, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("linear_first_piola", "law: linear_first_piola, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("drucker_prager",
-      "law: drucker_prager, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, match: plane_strain, "
-      "dilation_angle: 8, "
-      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
-  law("mohr_coulomb",
-      "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, dilation_angle: 8, "
-      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
-  law("modified_cam_clay",
-      "law: modified_cam_clay, shear_modulus: 4.0e5, compression_index: 0.2, swelling_index: 0.05, critical_state_slope: 1.1, "
-      "preconsolidation_pressure: 1.0e4, reference_pressure: 5.0e4");
-  law("mu_i",
-      "law: mu_i, youngs_modulus: 1.0e6, poisson_ratio: 0.3, static_friction: 0.38, limiting_friction: 0.64, inertial_number: 0.28, "
-      "grain_diameter: "
-      "5.0e-3, grain_density: 2500");
-  law("newtonian", "law: newtonian, bulk_modulus: 1.0e6, viscosity: 1");
-  law("herschel_bulkley",
-      "law: herschel_bulkley, bulk_modulus: 1.0e6, yield_stress: 50, consistency: 4, regularisation: 1, flow_index: 0.8");
-  law("von_mises", "law: von_mises, youngs_modulus: 1.0e6, poisson_ratio: 0.3, yield_stress: 3.0e3");
-  law("johnson_cook", metal);
-  law("johnson_cook_of_all", metal + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
-  law("johnson_cook_heat", metal + ", conductivity: 300, initial_temperature: 300");
-
-  for (const std::string kernel : {"umls", "linear", "umls_projected"})
-    for (const std::string scheme : {"apic", "aflip"})
-      all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
-  for (const std::string scheme : {"flip", "tpic"})
-    all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
-  all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
-  all.push_back({"single", {.more = "precision: single\n"}});
-  all.push_back({"single_soil", {.more = "precision: single\n", .law = all[5].parts.law}});
-  all.push_back(
-      {"averaged_volume",
-       {.bodies =
-            "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [1, "
-            "-3], f_bar: true}\n"}});
-  all.push_back(
-      {"averaged_metal",
-       {.law = metal,
-        .bodies =
-            "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [1, "
-            "-9], f_bar: true}\n"}});
-  all.push_back(
-      {"tractions",
-       {.bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 2]}, particles_per_cell: 3}\n",
-        .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81], table: [[0, 0], [0.03, 1], [1, 2]]}\n"
-                 "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n"}});
-  all.push_back(
-      {"moving_wall",
-       {.boundaries =
-            "boundaries: [{type: velocity, on: x_min, velocity: [2, 0], table: [[0, 0], [0.02, 1], [1, 0]]}, {type: fixed, on: y_min}, "
-            "{type: fixed, on: x_max}, {type: fixed, on: y_max}]\n"}});
-  all.push_back(
-      {"deletion",
-       {.more = "on_exit: delete\n",
-        .bodies =
-            "bodies:\n"
-            "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [-9, 0]}\n"
-            "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [9, "
-            "0]}\n",
-        .boundaries = "boundaries: [{type: roller, on: y_min}]\n"}});
-  all.push_back(
-      {"stages",
-       {.law = all[5].parts.law,
-        .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
-        .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
-        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
-                "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
-  Parts in_3d{.dimension = solid,
-              .law = all[5].parts.law,
-              .bodies =
-                  "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
-                  "particles_per_cell: 4, velocity: "
-                  "[2, -2, 1]}\n",
-              .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
-              .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
-              .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"};
-  all.push_back({"solid", in_3d});
-  in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
-  in_3d.law = Parts{}.law;
-  all.push_back({"solid_umls", in_3d});
-  return all;
-}
-
-class Restart : public Program, public testing::WithParamInterface<Case> {
+class Restart : public Program, public testing::WithParamInterface<SceneCase> {
  protected:
   void run(const std::string& words) const
   {
@@ -178,14 +48,14 @@ TEST_P(Restart, GivesTheSameBitsThreeTimesInAChain)
   expect_same_results(folder_ / "whole", folder_ / "again");
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Restart, testing::ValuesIn(cases()), [](const auto& of) { return of.param.name; });
+INSTANTIATE_TEST_SUITE_P(Of, Restart, testing::ValuesIn(scenes_of_all()), [](const auto& of) { return of.param.name; });
 
 using Checkpoint = Program;
 
 /// A run that would take minutes.
 std::string long_scene(const std::string& checkpoint = "")
 {
-  Parts parts;
+  SceneParts parts;
   parts.time = "time: {end: 1000}\n";
   parts.boundaries =
       "boundaries: [{type: roller, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}, {type: roller, on: y_max}]\n";
@@ -210,7 +80,7 @@ TEST_F(Checkpoint, IsWrittenWhenTheRunIsToldToStop)
 
 TEST_F(Checkpoint, TheLastAreKeptAndADamagedOneGivesWayToTheOneBefore)
 {
-  Parts parts;
+  SceneParts parts;
   std::string scene = parts.text();
   const std::string many = "checkpoint: {steps: 4, keep: 1000}";
   scene.replace(scene.find(many), many.size(), "checkpoint: {steps: 4, keep: 3}");
@@ -233,7 +103,7 @@ TEST_F(Checkpoint, TheLastAreKeptAndADamagedOneGivesWayToTheOneBefore)
 
 TEST_F(Checkpoint, GoesOnInAFolderOfItsOwn)
 {
-  write("scene.yaml", Parts{}.text());
+  write("scene.yaml", SceneParts{}.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out whole").code, 0);
   const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
   const std::string middle = kept.at(kept.size() / 2).filename().string();
@@ -249,7 +119,7 @@ TEST_F(Checkpoint, GoesOnInAFolderOfItsOwn)
 /// Killed without warning, at any moment: in a step, while a checkpoint or an output is written, while it reads one.
 TEST_F(Checkpoint, KilledAnywhereARunGoesOnNightly)
 {
-  Parts parts;
+  SceneParts parts;
   parts.time = "time: {end: 0.42, max_step: 1.4e-3}\n";
   write("scene.yaml", parts.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out whole --threads 1").code, 0);
@@ -279,7 +149,7 @@ TEST_F(Checkpoint, KilledAnywhereARunGoesOnNightly)
 
 TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
 {
-  write("scene.yaml", Parts{}.text());
+  write("scene.yaml", SceneParts{}.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   const auto kept = files_in(folder_ / "out/checkpoints", ".h5");
   const fs::path file = folder_ / "forged.h5";
@@ -328,8 +198,8 @@ TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
 /// Each with its place; what is wrong besides is said as well.
 TEST_F(Checkpoint, OfAnUnsoundStateIsRefused)
 {
-  Parts parts;
-  parts.law = metal;
+  SceneParts parts;
+  parts.law = metal_law;
   write("scene.yaml", parts.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   const fs::path good = files_in(folder_ / "out/checkpoints", ".h5")[1], file = folder_ / "forged.h5";
@@ -393,7 +263,7 @@ TEST_F(Checkpoint, OfAnUnsoundStateIsRefused)
 /// A list that is too short in the newest leaves the names of bodies and walls as they are for the one before.
 TEST_F(Checkpoint, WhatIsWrongWithTheNewestDoesNotSpoilTheOneBefore)
 {
-  write("scene.yaml", Parts{}.text());
+  write("scene.yaml", SceneParts{}.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out whole").code, 0);
   for (const std::string list : {"bodies/count", "walls/wall/count"}) {
     fs::remove_all(folder_ / "again");
@@ -427,7 +297,7 @@ TEST_F(Checkpoint, WithoutAnyParticleLeftIsAsGoodAsAnyOther)
 
 TEST_F(Checkpoint, OfAnotherProgramIsTakenWithAWord)
 {
-  write("scene.yaml", Parts{}.text());
+  write("scene.yaml", SceneParts{}.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   const fs::path good = files_in(folder_ / "out/checkpoints", ".h5")[1], file = folder_ / "forged.h5";
   for (const std::string part : {"commit", "compiler", "build"}) {
@@ -447,9 +317,9 @@ class CheckpointOnAFile : public Program {
  protected:
   void SetUp() override
   {
-    Parts parts;
+    SceneParts parts;
     parts.dimension = "dimension: 2\nmesh: {file: box.msh}\n";
-    write("grid.yaml", Parts{}.text());
+    write("grid.yaml", SceneParts{}.text());
     ASSERT_EQ(talus("mesh grid.yaml --out box.msh").code, 0);
     write("scene.yaml", parts.text());
     ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
@@ -474,7 +344,7 @@ TEST_F(CheckpointOnAFile, WithOtherGroupsIsRefused)
 
 TEST_F(CheckpointOnAFile, OfAnotherMeshIsRefused)
 {
-  write("finer.yaml", Parts{.dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [7, 7]}}\n"}.text());
+  write("finer.yaml", SceneParts{.dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [7, 7]}}\n"}.text());
   ASSERT_EQ(talus("mesh finer.yaml --out box.msh").code, 0);
   const Outcome outcome = talus("run --resume out --quiet");
   EXPECT_EQ(outcome.code, 3);

@@ -73,6 +73,8 @@ struct SmallRun {
   Mesh<2> mesh{box<2>({0, 0}, {1, 1}, {2, 2})};
   Particles<2> particles;
   std::vector<Body> bodies{{"block", 0, n_particles, {}}};
+  Share share;
+  CellOrder order;
   std::vector<AnyBatch> materials{make_any_batch(VonMises{}, 0, n_particles, "steel")};
   Nodes<2> nodes;
   Walls<2> walls;
@@ -120,11 +122,12 @@ struct SmallRun {
     row_of_id.assign(n_particles, none);
     for (Index row = 0; row < particles.size(); ++row)
       row_of_id[static_cast<std::size_t>(particles.id[static_cast<std::size_t>(row)])] = row;
+    sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
   }
   Frame<2> frame() const
   {
-    return {mesh,       particles, bodies, materials, nodes,    walls,   loads,  row_of_id, clock,    stage,
-            "the only", 0,         energy, mass,      momentum, watched, guards, timings,   residual, crossing};
+    return {mesh,  share,      particles, bodies, materials, order,    &one_rank(), nodes,  walls,   loads,    row_of_id, clock,
+            stage, "the only", 0,         energy, mass,      momentum, watched,     guards, timings, residual, crossing};
   }
   State<2> state()
   {

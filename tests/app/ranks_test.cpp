@@ -1,0 +1,184 @@
+// Several ranks write the same files as one, to the last bit: every law, kernel, transfer, boundary and stage.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <chrono>
+#include <thread>
+
+#include "tests/app/program.hpp"
+#include "tests/app/same_state.hpp"
+#include "tests/app/scenes_of_all.hpp"
+
+namespace talus {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+class OnRanks : public Program {
+ protected:
+  Outcome talus_on(int ranks, const std::string& words) const
+  {
+    const std::string launcher = "'" TALUS_MPIEXEC "' -n " + std::to_string(ranks) + " --oversubscribe --bind-to none";
+    return talus(words, "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + launcher);
+  }
+  void run_on(int ranks, const std::string& words, int code = 0) const
+  {
+    const Outcome outcome = ranks == 1 ? talus(words) : talus_on(ranks, words);
+    ASSERT_EQ(outcome.code, code) << words << "\n" << outcome.err;
+  }
+  /// All files but checkpoints, whose rows stand in another order, and the summary, which has times.
+  void expect_same_files(const std::string& a, const std::string& b) const
+  {
+    std::set<std::string> names[2];
+    for (const auto& [folder, seen] : {std::pair(a, &names[0]), std::pair(b, &names[1])})
+      for (const auto& entry : fs::directory_iterator(folder_ / folder))
+        if (entry.is_regular_file() && entry.path().filename() != "summary.json")
+          seen->insert(entry.path().filename().string());
+    EXPECT_EQ(names[0], names[1]);
+    for (const std::string& name : names[0])
+      EXPECT_TRUE(read(a + "/" + name) == read(b + "/" + name)) << name;
+  }
+};
+
+/// With as many cells as some blocks have.
+std::string in_blocks(SceneParts parts)
+{
+  const auto replace = [](std::string& text, const std::string& from, const std::string& to) {
+    if (const auto at = text.find(from); at != text.npos)
+      text.replace(at, from.size(), to);
+  };
+  replace(parts.dimension, "cells: [6, 6]", "cells: [20, 20]");
+  replace(parts.dimension, "cells: [4, 4, 2]", "cells: [6, 6, 3]");
+  replace(parts.time, "end: 0.042", "end: 0.012");
+  return parts.text();
+}
+
+class EverySceneOnRanks : public OnRanks, public testing::WithParamInterface<SceneCase> {};
+
+TEST_P(EverySceneOnRanks, GivesTheSameBits)
+{
+  write("scene.yaml", in_blocks(GetParam().parts));
+  run_on(1, "run scene.yaml --quiet --threads 2 --out alone");
+  run_on(3, "run scene.yaml --quiet --threads 1 --out three");
+  expect_same_files("alone", "three");
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, EverySceneOnRanks, testing::ValuesIn(scenes_of_all()), [](const auto& of) { return of.param.name; });
+
+/// Thrown from one end of the mesh to the other, over the borders of all parts.
+SceneParts thrown()
+{
+  SceneParts parts;
+  parts.dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [4, 1], cells: [48, 12]}}\n";
+  parts.bodies =
+      "bodies:\n"
+      "  - {name: ball, material: stuff, shape: {type: sphere, centre: [0.4, 0.4], radius: 0.25}, particles_per_cell: 3, velocity: [40, "
+      "2]}\n"
+      "  - {name: gate, material: stuff, shape: {type: box, low: [3.5, 0], high: [3.8, 1]}, particles_per_cell: 3}\n";
+  parts.boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_max}, {type: roller, on: y_max}]\n";
+  parts.time = "time: {end: 0.08}\n";
+  return parts;
+}
+
+TEST_F(OnRanks, ABodyCrossesAllParts)
+{
+  write("scene.yaml", thrown().text());
+  run_on(1, "run scene.yaml --quiet --threads 1 --out alone");
+  EXPECT_GT(last(history("alone"), "toe [m]"), 3.5) << "it should have come that far";
+  for (const int ranks : {2, 4}) {
+    const std::string out = "ranks_" + std::to_string(ranks);
+    run_on(ranks, "run scene.yaml --quiet --threads 2 --out " + out);
+    expect_same_files("alone", out);
+  }
+}
+
+TEST_F(OnRanks, MoreThanThereAreBlocks)
+{
+  write("scene.yaml", SceneParts{}.text());
+  run_on(1, "run scene.yaml --quiet --out alone");
+  run_on(4, "run scene.yaml --quiet --threads 1 --out four");
+  expect_same_files("alone", "four");
+}
+
+constexpr int stopped = 4;
+
+TEST_F(OnRanks, AnotherNumberOfThemGoesOnFromACheckpoint)
+{
+  write("scene.yaml", thrown().text());
+  run_on(1, "run scene.yaml --quiet --out alone");
+  run_on(3, "run scene.yaml --quiet --threads 1 --out again --until 40", stopped);
+  run_on(2, "run --resume again --quiet --threads 1 --until 80", stopped);
+  run_on(1, "run --resume again --quiet --threads 1 --until 120", stopped);
+  run_on(4, "run --resume again --quiet --threads 1");
+  expect_same_files("alone", "again");
+}
+
+TEST_F(OnRanks, WhatIsWrongIsSaidOnce)
+{
+  const auto times = [](const std::string& text, const std::string& what) {
+    int n = 0;
+    for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1))
+      ++n;
+    return n;
+  };
+  write("wrong.yaml", SceneParts{.law = "law: neo_hookean, youngs_modulus: -1, poisson_ratio: 0.3"}.text());
+  const Outcome scene = talus_on(3, "run wrong.yaml --quiet --out wrong");
+  EXPECT_EQ(scene.code, 2);
+  EXPECT_EQ(times(scene.err, "must be > 0 Pa"), 1) << scene.err;
+  EXPECT_FALSE(exists("wrong"));
+
+  SceneParts parts = thrown();
+  parts.boundaries = "";
+  parts.time = "time: {end: 10}\n";
+  write("lost.yaml", parts.text());
+  const Outcome alone = talus("run lost.yaml --quiet --out lost"),
+                three = talus_on(3, "run lost.yaml --quiet --threads 1 --out lost_on_three");
+  EXPECT_EQ(alone.code, 1);
+  EXPECT_EQ(three.code, 1);
+  const std::string what = alone.err.substr(0, alone.err.find("; last good output"));
+  EXPECT_THAT(what, HasSubstr("is outside the mesh"));
+  EXPECT_EQ(times(three.err, what), 1) << three.err;
+}
+
+/// Processes whose command line holds `words`, the launcher left out.
+std::vector<pid_t> ranks_running(const std::string& words)
+{
+  std::vector<pid_t> found;
+  for (const auto& entry : fs::directory_iterator("/proc")) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != name.npos)
+      continue;
+    std::ifstream file(entry.path() / "cmdline");
+    const std::string line((std::istreambuf_iterator<char>(file)), {});
+    if (line.find(words) != line.npos && line.find("talus") < line.find('\0'))
+      found.push_back(static_cast<pid_t>(std::stol(name)));
+  }
+  return found;
+}
+
+TEST_F(OnRanks, OneThatIsKilledEndsTheRunWhichCanGoOn)
+{
+  SceneParts parts = thrown();
+  parts.time = "time: {end: 100}\n";
+  parts.boundaries =
+      "boundaries: [{type: fixed, on: y_min}, {type: fixed, on: x_max}, {type: fixed, on: y_max}, {type: fixed, on: x_min}]\n";
+  write("scene.yaml", parts.text());
+  const std::string out = (folder_ / "killed").string();
+  std::thread run([&] { EXPECT_NE(talus_on(3, "run scene.yaml --quiet --threads 1 --out " + out).code, 0); });
+  const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  const auto checkpoints = [&] { return exists("killed/checkpoints") ? files_in(folder_ / "killed/checkpoints", ".h5").size() : 0; };
+  while (checkpoints() < 3 && std::chrono::steady_clock::now() < end)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const auto ranks = ranks_running(out);
+  ASSERT_EQ(ranks.size(), 3U);
+  kill(ranks[1], SIGKILL);
+  run.join();  // that it comes back is the test
+  EXPECT_TRUE(ranks_running(out).empty());
+  const Outcome on = talus_on(2, "run --resume killed --quiet --threads 1 --until 400");
+  EXPECT_EQ(on.code, 4) << on.err;
+  EXPECT_THAT(on.err, HasSubstr("stopped as asked"));
+}
+
+}  // namespace
+}  // namespace talus

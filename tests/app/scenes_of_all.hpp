@@ -1,0 +1,143 @@
+#pragma once
+// Small scenes that together have all that a run can have, for tests of what must hold for each.
+#include <ostream>
+#include <string>
+#include <vector>
+
+namespace talus {
+
+/// Two bodies that fall, bounce and slide; every line may be replaced.
+struct SceneParts {
+  std::string dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}}\n";
+  std::string more = "";  ///< kernel, transfer, precision
+  std::string law = "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3";
+  std::string bodies = "";  ///< replaces both
+  std::string boundaries =
+      "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: x_min}, {type: fixed, on: x_max}, {type: fixed, on: "
+      "y_max}]\n";
+  std::string time = "time: {end: 0.042, max_step: 1.4e-3}\n";
+  std::string loads = "loads: [{type: gravity, acceleration: [0, -9.81]}]\n";
+  std::string outputs = "";
+
+  std::string text() const
+  {
+    const std::string usual =
+        "bodies:\n"
+        "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
+        "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [1, "
+        "-4]}\n";
+    return "title: Restart\n" + dimension + more + "materials: [{name: stuff, density: 2000, " + law + "}]\n" +
+           (bodies.empty() ? usual : bodies) + loads + boundaries + time +
+           "outputs:\n  checkpoint: {steps: 4, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
+           (outputs.empty() ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}]" : outputs) + "}\n";
+  }
+};
+
+struct SceneCase {
+  std::string name;
+  SceneParts parts;
+  friend std::ostream& operator<<(std::ostream& out, const SceneCase& c) { return out << c.name; }
+};
+
+inline const std::string metal_law =
+    "law: johnson_cook, youngs_modulus: 1.0e7, poisson_ratio: 0.3, yield_stress: 5.0e3, hardening_coefficient: 2.0e4, "
+    "hardening_exponent: "
+    "0.3, "
+    "rate_coefficient: 0.02, thermal_exponent: 1, room_temperature: 293, melting_temperature: 330, specific_heat: 0.5";
+
+/// Every law, kernel, transfer, boundary and kind of stage.
+inline std::vector<SceneCase> scenes_of_all()
+{
+  const std::string solid = "dimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [2, 2, 1], cells: [4, 4, 2]}}\n";
+  std::vector<SceneCase> all;
+  const auto law = [&](const std::string& name, const std::string& text) { all.push_back({"law_" + name, {.law = text}}); };
+  law("linear_elastic", "law: linear_elastic, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("neo_hookean", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
+  law("corotated", "law: corotated, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("hencky", "law: hencky, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("linear_first_piola", "law: linear_first_piola, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
+  law("drucker_prager",
+      "law: drucker_prager, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, match: plane_strain, "
+      "dilation_angle: 8, "
+      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
+  law("mohr_coulomb",
+      "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, dilation_angle: 8, "
+      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
+  law("modified_cam_clay",
+      "law: modified_cam_clay, shear_modulus: 4.0e5, compression_index: 0.2, swelling_index: 0.05, critical_state_slope: 1.1, "
+      "preconsolidation_pressure: 1.0e4, reference_pressure: 5.0e4");
+  law("mu_i",
+      "law: mu_i, youngs_modulus: 1.0e6, poisson_ratio: 0.3, static_friction: 0.38, limiting_friction: 0.64, inertial_number: 0.28, "
+      "grain_diameter: "
+      "5.0e-3, grain_density: 2500");
+  law("newtonian", "law: newtonian, bulk_modulus: 1.0e6, viscosity: 1");
+  law("herschel_bulkley",
+      "law: herschel_bulkley, bulk_modulus: 1.0e6, yield_stress: 50, consistency: 4, regularisation: 1, flow_index: 0.8");
+  law("von_mises", "law: von_mises, youngs_modulus: 1.0e6, poisson_ratio: 0.3, yield_stress: 3.0e3");
+  law("johnson_cook", metal_law);
+  law("johnson_cook_of_all",
+      metal_law + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
+  law("johnson_cook_heat", metal_law + ", conductivity: 300, initial_temperature: 300");
+
+  for (const std::string kernel : {"umls", "linear", "umls_projected"})
+    for (const std::string scheme : {"apic", "aflip"})
+      all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
+  for (const std::string scheme : {"flip", "tpic"})
+    all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
+  all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
+  all.push_back({"single", {.more = "precision: single\n"}});
+  all.push_back({"single_soil", {.more = "precision: single\n", .law = all[5].parts.law}});
+  all.push_back(
+      {"averaged_volume",
+       {.bodies =
+            "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [1, "
+            "-3], f_bar: true}\n"}});
+  all.push_back(
+      {"averaged_metal",
+       {.law = metal_law,
+        .bodies =
+            "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, velocity: [1, "
+            "-9], f_bar: true}\n"}});
+  all.push_back(
+      {"tractions",
+       {.bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 2]}, particles_per_cell: 3}\n",
+        .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81], table: [[0, 0], [0.03, 1], [1, 2]]}\n"
+                 "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n"}});
+  all.push_back(
+      {"moving_wall",
+       {.boundaries =
+            "boundaries: [{type: velocity, on: x_min, velocity: [2, 0], table: [[0, 0], [0.02, 1], [1, 0]]}, {type: fixed, on: y_min}, "
+            "{type: fixed, on: x_max}, {type: fixed, on: y_max}]\n"}});
+  all.push_back(
+      {"deletion",
+       {.more = "on_exit: delete\n",
+        .bodies =
+            "bodies:\n"
+            "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [-9, 0]}\n"
+            "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4, velocity: [9, "
+            "0]}\n",
+        .boundaries = "boundaries: [{type: roller, on: y_min}]\n"}});
+  all.push_back(
+      {"stages",
+       {.law = all[5].parts.law,
+        .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
+        .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
+        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
+                "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
+  SceneParts in_3d{.dimension = solid,
+                   .law = all[5].parts.law,
+                   .bodies =
+                       "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
+                       "particles_per_cell: 4, velocity: "
+                       "[2, -2, 1]}\n",
+                   .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
+                   .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
+                   .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"};
+  all.push_back({"solid", in_3d});
+  in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
+  in_3d.law = SceneParts{}.law;
+  all.push_back({"solid_umls", in_3d});
+  return all;
+}
+
+}  // namespace talus
