@@ -28,6 +28,7 @@ struct Frame {
   const Guards& guards;
   const Timings& timings;
   Real residual, crossing;
+  std::int64_t migrated;  ///< particles that came to this rank or left it so far
 };
 
 template <int D, Kernel<D> K>
@@ -35,7 +36,7 @@ Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
   return {m.mesh,  m.share,    m.particles, m.bodies, m.materials, m.order,    m.ranks,        m.nodes,
           m.walls, m.loads,    m.row_of_id, m.clock,  m.stage,     stage.name, m.stage.number, m.energy,
-          m.mass,  m.momentum, m.watched,   m.guards, m.timings,   m.residual, m.crossing};
+          m.mass,  m.momentum, m.watched,   m.guards, m.timings,   m.residual, m.crossing,     m.migration.moved()};
 }
 
 /// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.

@@ -54,6 +54,35 @@ BodySummary summary_of(const Frame<D>& frame, std::size_t b)
 
 }  // namespace
 
+namespace {
+
+/// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.
+template <int D>
+RanksSummary ranks_of(const Frame<D>& frame, const Traffic& begin, std::int64_t step_begin)
+{
+  Exchange& ranks = *frame.ranks;
+  RanksSummary summary{.count = ranks.size()};
+  if (ranks.alone())
+    return summary;
+  const Traffic now = ranks.traffic();
+  const auto steps = static_cast<Real>(std::max(frame.clock.step - step_begin, std::int64_t{1}));
+  const auto a_step = [&](std::int64_t from, std::int64_t to) { return ranks.max(static_cast<Real>(to - from) / steps); };
+  Index own = 0;
+  for (Index c = 0; c < frame.mesh.n_cells(); ++c)
+    own += frame.share.owns_cell(c) ? 1 : 0;
+  const std::int64_t here = frame.particles.size(), all = std::max(ranks.sum(here), std::int64_t{1});
+  summary.imbalance = static_cast<Real>(ranks.max(here)) * ranks.size() / static_cast<Real>(all);
+  summary.cells_held = ranks.max(own > 0 ? static_cast<Real>(frame.mesh.n_cells()) / own : Real{1});
+  summary.messages = a_step(begin.messages, now.messages);
+  summary.bytes = a_step(begin.bytes, now.bytes);
+  summary.collectives = a_step(begin.calls, now.calls);
+  summary.collective_bytes = a_step(begin.bytes_to_all, now.bytes_to_all);
+  summary.particles_moved = static_cast<Real>(ranks.sum(frame.migrated)) / 2 / steps / static_cast<Real>(all);
+  return summary;
+}
+
+}  // namespace
+
 bool Schedule::due(Real time)
 {
   constexpr Real round_off = 1e-9;
@@ -82,6 +111,7 @@ template <int D>
 void Recorder<D>::open(const Frame<D>& frame)
 {
   check_disk_space(folder_, frame, outputs_, total(stage_list_));
+  traffic_begin_ = frame.ranks->traffic();
   bytes_per_particle_ = talus::bytes_per_particle(frame);
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
     bodies_.push_back(summary_of(frame, b));
@@ -108,6 +138,7 @@ template <int D>
 void Recorder<D>::go_on(const Frame<D>& frame)
 {
   check_disk_space(folder_, frame, outputs_, total(stage_list_) - frame.clock.time);
+  traffic_begin_ = frame.ranks->traffic(), step_begin_ = frame.clock.step;
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
   progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
@@ -194,6 +225,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   last_.mass_there = totals(frame).mass;
   last_.energy = accounts_.energy(frame);
   last_.momentum = accounts_.momentum(frame);
+  ranks_ = ranks_of(frame, traffic_begin_, step_begin_);
 }
 
 /// Of what the guards see and let pass, the first time.

@@ -78,6 +78,7 @@ class Recorder {
   std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
   Real output_seconds() const noexcept { return output_seconds_; }
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
+  const RanksSummary& ranks() const noexcept { return ranks_; }  ///< as of the end of the last stage
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
   static constexpr auto fields()
   {
@@ -129,6 +130,9 @@ class Recorder {
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // of the last ones written
   Real stage_start_ = 0, done_before_ = 0;
   std::optional<Mesh<D>> whole_mesh_;
+  RanksSummary ranks_;
+  Traffic traffic_begin_;  // when the first step was begun
+  std::int64_t step_begin_ = 0;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
   std::vector<std::string> files_;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/exchange.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "io/memory.hpp"
@@ -148,7 +149,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
                            setup.transfer.musl ? ", musl" : "");
   s.precision = words(scene.precision)[static_cast<std::size_t>(scene.precision)];
-  s.ranks = world().size();
+  s.ranks.count = world().size();
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
   s.mesh_cells = mesh.n_cells();
@@ -191,6 +192,7 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   const Real in_steps = t.locate + t.scatter + t.nodes + t.gather + t.stress;
   s.particle_steps_per_second = in_steps > 0 ? t.particle_steps / in_steps : 0;
   s.bytes_per_particle = recorder.bytes_per_particle();
+  s.ranks = recorder.ranks();
   s.peak_memory_bytes = static_cast<std::int64_t>(peak_memory());
   if (!recorder.stages().empty()) {
     s.energy = audit(recorder);

@@ -39,14 +39,13 @@ Places find_places(const std::vector<std::vector<std::int64_t>>& ids, const std:
 }
 
 /// The rows of a column, which may be empty on ranks without particles.
-template <class T>
-std::vector<T> put(const std::vector<std::vector<T>>& rows, const std::vector<std::vector<Index>>& places, std::size_t n)
+template <class T, class Column>
+void put(const std::vector<std::vector<T>>& rows, const std::vector<std::vector<Index>>& places, std::size_t n, Column& column)
 {
-  std::vector<T> column(n);
+  column.resize(n);
   for (std::size_t r = 0; r < rows.size(); ++r)
     for (std::size_t i = 0; i < rows[r].size(); ++i)
       column[static_cast<std::size_t>(places[r][i])] = rows[r][i];
-  return column;
 }
 
 }  // namespace
@@ -62,29 +61,25 @@ WholeParticles<D> gather_particles(const Frame<D>& frame)
   const auto ids = gather_rows<std::int64_t>(ranks, frame.particles.id);
   const Places places = ranks.is_root() ? find_places(ids, all_sizes, frame.bodies.size()) : Places{};
 
-  // Columns by their names: the same on all ranks.
-  std::vector<std::vector<std::byte>> columns;  // of the root
-  frame.particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
-    using Row = std::decay_t<decltype(column[0])>;
-    std::vector<Row> rows(column.begin(), column.end());
-    if constexpr (std::is_same_v<Row, Index>)
-      if (name == "cell")
-        for (Index& cell : rows)
-          cell = frame.share.whole_cell(cell);
-    const auto all = gather_rows<Row>(ranks, rows);
-    const bool kept = std::any_of(all.begin(), all.end(), [](const auto& of_rank) { return !of_rank.empty(); });
-    const std::vector<Row> whole = put(all, places.of_row, kept ? static_cast<std::size_t>(places.begin.back()) : 0);
-    const auto bytes = std::as_bytes(std::span(whole));
-    columns.emplace_back(bytes.begin(), bytes.end());
-  });
   WholeParticles<D> whole;
   whole.particles.keep_in(frame.particles.precision());
-  std::size_t number = 0;
-  whole.particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
-    const std::vector<std::byte>& bytes = columns[number++];
-    column.resize(bytes.size() / sizeof(column[0]));
-    if (!bytes.empty())
-      std::memcpy(static_cast<void*>(column.data()), bytes.data(), bytes.size());
+  frame.particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
+    using Row = std::decay_t<decltype(column[0])>;
+    std::vector<std::vector<Row>> all;
+    if (name == "cell") {
+      std::vector<Index> cells;
+      for (const Index cell : frame.particles.cell)
+        cells.push_back(frame.share.whole_cell(cell));
+      all = rows_of<Row>(ranks.gather(std::as_bytes(std::span(cells))));
+    } else {
+      all = rows_of<Row>(ranks.gather(std::as_bytes(std::span(column.data(), column.size()))));
+    }
+    const bool kept = std::any_of(all.begin(), all.end(), [](const auto& of_rank) { return !of_rank.empty(); });
+    whole.particles.for_each_column([&](std::string_view other, std::string_view, auto& to) {
+      if constexpr (std::is_same_v<std::decay_t<decltype(to[0])>, Row>)
+        if (other == name && kept)
+          put(all, places.of_row, static_cast<std::size_t>(places.begin.back()), to);
+    });
   });
   whole.bodies = frame.bodies;
   for (std::size_t b = 0; b < whole.bodies.size(); ++b) {
@@ -104,8 +99,8 @@ WholeParticles<D> gather_particles(const Frame<D>& frame)
             for (Index& place : here.back())
               place -= body.begin;
           }
-          const std::vector<State> history = put(all, here, ranks.is_root() ? static_cast<std::size_t>(body.size()) : 0);
-          batch.history.assign(history.begin(), history.end());
+          batch.history.clear();
+          put(all, here, ranks.is_root() ? static_cast<std::size_t>(body.size()) : 0, batch.history);
           batch.begin = body.begin, batch.end = body.end;
         },
         whole.materials.back());

@@ -34,7 +34,7 @@ void on_root(const Frame<D>& frame, F&& f)
     f(Frame<D>{frame.mesh,    frame.share,      whole.particles,    whole.bodies,   whole.materials, no_order,
                frame.ranks,   frame.nodes,      frame.walls,        frame.loads,    frame.row_of_id, frame.clock,
                frame.stage,   frame.stage_name, frame.stage_number, frame.energy,   frame.mass,      frame.momentum,
-               frame.watched, frame.guards,     frame.timings,      frame.residual, frame.crossing});
+               frame.watched, frame.guards,     frame.timings,      frame.residual, frame.crossing,  frame.migrated});
   });
 }
 

@@ -126,4 +126,34 @@ void ExactSum::add(std::span<const std::int64_t> from) noexcept
     normalise();
 }
 
+void add_each(std::span<const Real> x, std::span<ExactSum> sums) noexcept
+{
+  for (std::size_t i = 0; i < x.size(); ++i)
+    sums[i].add(x[i]);
+}
+
+void values_of(std::span<const ExactSum> sums, std::span<Real> x) noexcept
+{
+  for (std::size_t i = 0; i < x.size(); ++i)
+    x[i] = sums[i].value();
+}
+
+void clear_each(std::span<ExactSum> sums) noexcept
+{
+  for (ExactSum& sum : sums)
+    sum.clear();
+}
+
+void write_each(std::span<const ExactSum> sums, std::span<std::int64_t> to) noexcept
+{
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    sums[i].write(to.subspan(i * ExactSum::words, ExactSum::words));
+}
+
+void add_written(std::span<const std::int64_t> from, std::span<ExactSum> sums) noexcept
+{
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    sums[i].add(from.subspan(i * ExactSum::words, ExactSum::words));
+}
+
 }  // namespace talus

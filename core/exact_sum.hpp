@@ -73,6 +73,13 @@ class ExactSum {
   int weight_ = 0;                            ///< no word is larger than weight_ 2^52
 };
 
+/// Adds x[i] to sums[i]; the values; and so on: what all ExactSums share, compiled once.
+void add_each(std::span<const Real> x, std::span<ExactSum> sums) noexcept;
+void values_of(std::span<const ExactSum> sums, std::span<Real> x) noexcept;
+void clear_each(std::span<ExactSum> sums) noexcept;
+void write_each(std::span<const ExactSum> sums, std::span<std::int64_t> to) noexcept;
+void add_written(std::span<const std::int64_t> from, std::span<ExactSum> sums) noexcept;
+
 /// Exact sums of every entry of T: a Real, a Vec, or a plain struct of such, which in memory is so many doubles in a row.
 template <class T>
 class ExactSums {
@@ -86,8 +93,7 @@ class ExactSums {
   {
     std::array<Real, entries> x;
     std::memcpy(x.data(), static_cast<const void*>(&summand), sizeof(T));
-    for (std::size_t i = 0; i < entries; ++i)
-      sum_[i].add(x[i]);
+    add_each(x, sum_);
   }
   void add(const ExactSums& other) noexcept
   {
@@ -97,29 +103,16 @@ class ExactSums {
   T value() const noexcept
   {
     std::array<Real, entries> x;
-    for (std::size_t i = 0; i < entries; ++i)
-      x[i] = sum_[i].value();
+    values_of(sum_, x);
     T sum;
     std::memcpy(static_cast<void*>(&sum), x.data(), sizeof(T));
     return sum;
   }
-  void clear() noexcept
-  {
-    for (ExactSum& sum : sum_)
-      sum.clear();
-  }
+  void clear() noexcept { clear_each(sum_); }
 
   /// As ExactSum's, entry after entry: `words` words in all.
-  void write(std::span<std::int64_t> to) const noexcept
-  {
-    for (std::size_t i = 0; i < entries; ++i)
-      sum_[i].write(to.subspan(i * ExactSum::words, ExactSum::words));
-  }
-  void add(std::span<const std::int64_t> from) noexcept
-  {
-    for (std::size_t i = 0; i < entries; ++i)
-      sum_[i].add(from.subspan(i * ExactSum::words, ExactSum::words));
-  }
+  void write(std::span<std::int64_t> to) const noexcept { write_each(sum_, to); }
+  void add(std::span<const std::int64_t> from) noexcept { add_written(from, sum_); }
   void read(std::span<const std::int64_t> from) noexcept
   {
     clear();

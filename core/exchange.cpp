@@ -255,6 +255,16 @@ void Talk::wait()
   }
 }
 
+void Exchange::count(int tag, int bytes) noexcept
+{
+  if (tag >= tags) {  // part of a collective
+    traffic_.bytes_gathered += bytes;
+    return;
+  }
+  traffic_.messages += 1;
+  traffic_.bytes += bytes;
+}
+
 void Exchange::start(std::span<const Parcel> out, std::span<const Parcel> in, int tag, Talk& talk)
 {
   assert(tag >= 0 && tag < tags);
@@ -298,8 +308,7 @@ void Exchange::post(std::span<const Parcel> out, std::span<const Parcel> in, int
       MPI_Request one = MPI_REQUEST_NULL;
       check(MPI_Isend(piece.data(), bytes, MPI_BYTE, rank, tag, group_->comm, &one), "MPI_Isend");
       requests.request.push_back(one);
-      traffic_.messages += 1;
-      traffic_.bytes += bytes;
+      count(tag, bytes);
     });
 }
 
@@ -322,8 +331,7 @@ std::vector<std::vector<std::byte>> Exchange::neighbours(std::span<const int> ra
       MPI_Request one = MPI_REQUEST_NULL;
       check(MPI_Isend(out[i].data() + begin, bytes, MPI_BYTE, ranks[i], tag, group_->comm, &one), "MPI_Isend");
       talk.requests_->request.push_back(one);
-      traffic_.messages += 1;
-      traffic_.bytes += bytes;
+      count(tag, bytes);
     }
   std::vector<std::vector<std::byte>> in(ranks.size());
   for (std::size_t i = 0; i < ranks.size(); ++i)
@@ -351,8 +359,8 @@ void Exchange::reduce(std::span<std::int64_t> numbers, Reduction reduction)
     const auto count = static_cast<int>(std::min(most, numbers.size()));
     check(MPI_Allreduce(MPI_IN_PLACE, numbers.data(), count, MPI_INT64_T, reduction == Reduction::sum ? MPI_SUM : MPI_MIN, group_->comm),
           "MPI_Allreduce");
-    traffic_.messages += 1;
-    traffic_.bytes += std::int64_t{count} * static_cast<std::int64_t>(sizeof(std::int64_t));
+    traffic_.calls += 1;
+    traffic_.bytes_to_all += std::int64_t{count} * static_cast<std::int64_t>(sizeof(std::int64_t));
   }
 }
 
@@ -389,8 +397,8 @@ void Exchange::spread(Bytes& bytes, int from)
     check(MPI_Bcast(bytes.data() + begin, count, MPI_BYTE, from, group_->comm), "MPI_Bcast");
   }
   if (rank() == from) {
-    traffic_.messages += 1;
-    traffic_.bytes += length;
+    traffic_.calls += 1;
+    traffic_.bytes_to_all += length;
   }
 }
 

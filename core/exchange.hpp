@@ -21,10 +21,11 @@ bool launched_as_ranks();
 /// How many ranks the launcher has started on this machine, by the environment; 1 where it does not say.
 int ranks_on_this_machine();
 
-/// What this rank has sent.  A collective counts as one message of what this rank gave into it.
+/// What this rank has sent so far.
 struct Traffic {
-  std::int64_t messages = 0;
-  std::int64_t bytes = 0;
+  std::int64_t messages = 0, bytes = 0;      ///< to single ranks
+  std::int64_t calls = 0, bytes_to_all = 0;  ///< sums, minima and broadcasts, and what it gave into them
+  std::int64_t bytes_gathered = 0;           ///< for gather() and all_to_all(), at set-up and for files
 };
 
 /// Bytes for or from a rank.  What is sent is not changed.
@@ -175,6 +176,7 @@ class Exchange {
   void reduce(std::span<std::int64_t> numbers, Reduction reduction);
   template <class Bytes>
   void spread(Bytes& bytes, int from);
+  void count(int tag, int bytes) noexcept;
   void post(std::span<const Parcel> out, std::span<const Parcel> in, int tag, Talk& talk);
 
   std::unique_ptr<Group> group_;  ///< MPI's; of a rank alone there may be none

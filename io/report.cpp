@@ -59,9 +59,23 @@ Json to_object(const OriginSummary& origin)
 
 Json program(const RunSummary& s) { return {{"version", s.version}, {"commit", s.commit}, {"compiler", s.compiler}, {"build", s.build}}; }
 
+Json to_object(const RanksSummary& ranks)
+{
+  Json object{{"count", ranks.count}};
+  if (ranks.count > 1)
+    object.update({{"particles_of_the_busiest_over_mean", ranks.imbalance},
+                   {"cells_held_over_own", ranks.cells_held},
+                   {"messages_per_step", ranks.messages},
+                   {"bytes_per_step [B]", ranks.bytes},
+                   {"collectives_per_step", ranks.collectives},
+                   {"collective_bytes_per_step [B]", ranks.collective_bytes},
+                   {"share_of_particles_moved_per_step", ranks.particles_moved}});
+  return object;
+}
+
 Json cost(const RunSummary& s)
 {
-  return {{"ranks", s.ranks},
+  return {{"ranks", to_object(s.ranks)},
           {"threads", s.threads},
           {"wall [s]", s.wall_total},
           {"wall_by_phase", to_object(s.wall_seconds)},

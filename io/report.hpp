@@ -86,6 +86,18 @@ struct OriginSummary {
   std::vector<Taken> bodies;
 };
 
+/// How a run was shared out, and what that took; a step's numbers are those of the rank that has most of it.
+struct RanksSummary {
+  int count = 1;
+  Real imbalance = 1;   ///< particles of the rank with most, over their mean, at the end
+  Real cells_held = 1;  ///< over own cells
+  Real messages{};      ///< to single ranks in a step
+  Real bytes{};         ///< of these
+  Real collectives{};   ///< in a step
+  Real collective_bytes{};
+  Real particles_moved{};  ///< of all ranks in a step, over the particles
+};
+
 /// Everything summary.json holds.  Optional parts that are empty are left out of the file.
 struct RunSummary {
   std::string title;
@@ -99,7 +111,7 @@ struct RunSummary {
   int dimension{};
   std::string kernel, transfer, precision;
   int threads{};
-  int ranks = 1;
+  RanksSummary ranks;
 
   std::int64_t mesh_nodes{}, mesh_cells{};
   std::string scene_digest;  ///< of the text and of what changed it

@@ -330,13 +330,13 @@ void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, s
 template <class What, int D, class Sum, class F>
 void for_each_own_block(BlockRows<D, Sum>& blocks, Halo<Sum>& halo, F&& f)
 {
-  const auto run = [&](std::span<const Index> list) {
-    parallel_for_uneven(static_cast<Index>(list.size()), [&](Index i) { f(list[static_cast<std::size_t>(i)]); });
-  };
-  if (!halo.outer_blocks().empty())
-    run(halo.outer_blocks());
-  halo.template send_rows<What>(blocks);
-  run(halo.inner_blocks());
+  for (const bool outer : {true, false}) {  // one loop, compiled once
+    const std::span<const Index> list = outer ? halo.outer_blocks() : halo.inner_blocks();
+    if (!list.empty())
+      parallel_for_uneven(static_cast<Index>(list.size()), [&](Index i) { f(list[static_cast<std::size_t>(i)]); });
+    if (outer)
+      halo.template send_rows<What>(blocks);
+  }
 }
 
 }  // namespace talus

@@ -106,9 +106,19 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
 {
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
+  Index pushing = none;  // a wall that has pushed, and by how much up to now
+  Vec<D> pushed = Vec<D>::Zero();
+  const auto note = [&] {
+    if (rule.counted && pushing != none)
+      pushed_[static_cast<std::size_t>(pushing)].add({mass * pushed, mass * moment<D>(rule.place, pushed)});
+  };
   const auto push = [&](Index wall, const Vec<D>& by) {
-    if (rule.counted)
-      pushed_[static_cast<std::size_t>(wall)].add({mass * by, mass * moment<D>(rule.place, by)});
+    if (wall != pushing) {
+      note();
+      pushing = wall;
+      pushed.setZero();
+    }
+    pushed += by;
     v += by;
   };
   rubs = false;
@@ -134,6 +144,7 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
         break;
     }
   }
+  note();
   const Vec<D> v_mid = 0.5 * (v_old + v);
   const Real friction = mass * rubbed.dot(v_mid);
   change = v - v_old;

@@ -127,7 +127,7 @@ struct SmallRun {
   Frame<2> frame() const
   {
     return {mesh,  share,      particles, bodies, materials, order,    &one_rank(), nodes,  walls,   loads,    row_of_id, clock,
-            stage, "the only", 0,         energy, mass,      momentum, watched,     guards, timings, residual, crossing};
+            stage, "the only", 0,         energy, mass,      momentum, watched,     guards, timings, residual, crossing,  0};
   }
   State<2> state()
   {

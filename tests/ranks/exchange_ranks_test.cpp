@@ -237,13 +237,15 @@ TEST_F(World, CountsWhatItSends)
   talk.wait();
   std::vector<std::int64_t> numbers(5);
   exchange.sum(numbers);
-  std::int64_t bytes = size > 1 ? 40 : 0, messages = size > 1 ? 1 : 0;
+  std::int64_t bytes = 0, messages = 0;
   for (const Parcel& parcel : post.out) {
     bytes += static_cast<std::int64_t>(parcel.bytes.size());
     messages += parcel.bytes.empty() ? 0 : 1;
   }
   EXPECT_EQ(exchange.traffic().bytes - before.bytes, bytes);
   EXPECT_EQ(exchange.traffic().messages - before.messages, messages);
+  EXPECT_EQ(exchange.traffic().calls - before.calls, size > 1 ? 1 : 0);
+  EXPECT_EQ(exchange.traffic().bytes_to_all - before.bytes_to_all, size > 1 ? 40 : 0);
 }
 
 /// The message of the exception, of just that type, that comes out of agree() when the ranks from `first` on have one.
