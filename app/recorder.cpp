@@ -52,10 +52,6 @@ BodySummary summary_of(const Frame<D>& frame, std::size_t b)
           std::string(law_name(frame.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
 }
 
-}  // namespace
-
-namespace {
-
 /// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.
 template <int D>
 RanksSummary ranks_of(const Frame<D>& frame, const Traffic& begin, std::int64_t step_begin)

@@ -141,7 +141,7 @@ class Run {
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
     audience.ready = [&](const Frame<D>& frame) {
       world().together([&] { prepare(frame); });
-      began_ = true;
+      began_ = true;  // for the other ranks too
       if (whole_ && scene_.outputs.mesh)
         recorder.keep_mesh(std::move(*whole_));
       whole_.reset();
@@ -270,6 +270,7 @@ class Run {
     } else {
       lock_ = prepare_results(folder_);
     }
+    began_ = true;
     write_summary(folder_ / "summary.json", summary_);
     write_whole(folder_ / "scene.yaml", with_changes(scene_));
     const Mesh<D>& mesh = whole_ ? *whole_ : frame.mesh;
