@@ -41,7 +41,7 @@ Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   options_of(scene, options);
   Share share;
   if (!world().alone()) {
-    Part<D> part = part_of(mesh, setup.particles, rings_held<D, K>);
+    Part<D> part = part_of(mesh, setup.particles, rings_held);
     share = std::move(part.share);
     mesh = std::move(part.mesh);
     restrict_to(share, setup);

@@ -64,12 +64,13 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   apply(m.loads, time + dt, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.nodes);                       //  5
+  m.slaves.lump(m.mesh, m.own, m.nodes);                //  5
   integrate(gravity, dt, m.nodes);                      //  6
   m.walls.apply(time + dt, m.nodes, m.tally.at_nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);
-  m.slaves.follow(m.mesh, m.nodes, time + dt, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
+  m.slaves.follow(m.mesh, m.own, time + dt, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
+  m.copies.motion.send(m.nodes.motion, Whole{});
   count(m, gravity, dt);
   add_work(m.loads, time + dt, ramp, dt, m.own, m.nodes, m.tally.work_on_mesh);
   watch.lap(m.timings.nodes);
@@ -107,10 +108,10 @@ template <int D, Kernel<D> K>
 void sum_on_nodes(Model<D, K>& m)
 {
   if constexpr (HasNodePart<K, D>) {
-    assemble<Whole>(m.blocks, m.own, m.halo, m.hats.sum);
-    collect(m.kernel.node_part(), m.mesh, m.hats.sum, !HasOwnValues<K, D>, m.nodes.sum);
+    assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.hats.sum);
+    collect(m.kernel.node_part(), m.mesh, m.own, m.hats.sum, !HasOwnValues<K, D>, m.nodes.sum);
   } else {
-    assemble<Whole>(m.blocks, m.own, m.halo, m.nodes.sum);
+    assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.nodes.sum);
   }
 }
 
@@ -119,8 +120,11 @@ template <int D, Kernel<D> K>
 void settle(Model<D, K>& m, Real dt)
 {
   find_net_acceleration(dt, m.nodes);
-  if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>)
-    feel(m.kernel.node_part(), m.hats, m.nodes.felt);
+  if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>) {
+    m.copies.felt.send(m.nodes.felt, Numbers{});
+    feel(
+        m.kernel.node_part(), m.own, [&] { m.copies.felt.take(m.nodes.felt, Numbers{}); }, m.hats, m.nodes.felt);
+  }
   if (m.stage.damping > 0)
     damp(m.stage.damping, dt, m.nodes);
 }
@@ -130,7 +134,8 @@ template <int D, Kernel<D> K>
 void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt)
 {
   if constexpr (HasNodePart<K, D>) {
-    spread(m.kernel.node_part(), m.nodes.motion, m.hats);
+    spread(
+        m.kernel.node_part(), m.nodes.motion, [&] { m.copies.motion.take(m.nodes.motion, Whole{}); }, m.hats);
     if constexpr (!HasOwnValues<K, D>)
       m.walls.apply(m.clock.time + dt, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
   }
@@ -142,24 +147,27 @@ template <int D, Kernel<D> K, class Then>
 void remap(Model<D, K>& m, Real dt, Then&& then)
 {
   if constexpr (HasNodePart<K, D>) {
-    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.hats.sum);
-    collect_momentum(m.kernel.node_part(), m.mesh, m.hats.sum, m.nodes.sum);
+    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.copies.sums, m.hats.sum);
+    collect_momentum(m.kernel.node_part(), m.mesh, m.own, m.hats.sum, m.nodes.sum);
   } else {
-    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.nodes.sum);
+    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.copies.sums, m.nodes.sum);
   }
-  m.slaves.lump_momentum(m.mesh, m.nodes);
+  m.slaves.lump_momentum(m.mesh, m.own, m.nodes);
   parallel_for(static_cast<Index>(m.remapped.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     const Vec<D> v = m.nodes.active[i] ? Vec<D>(m.nodes.sum[i].momentum / m.nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
     m.remapped[i] = {v, m.nodes.motion[i].v};
   });
   m.walls.hold(m.clock.time + dt, m.remapped);
-  m.slaves.follow_velocity(m.mesh, m.nodes, m.walls, m.clock.time + dt, m.remapped);
+  m.slaves.follow_velocity(m.mesh, m.own, m.walls, m.clock.time + dt, m.remapped);
+  m.copies.motion.send(m.remapped, Whole{});
+  const auto arrive = [&] { m.copies.motion.take(m.remapped, Whole{}); };
   if constexpr (HasNodePart<K, D>) {
-    spread_gradient(m.kernel.node_part(), m.remapped, m.hats);
-    gather_gradient(m, m.hats.motion, dt, then);
+    spread_gradient(m.kernel.node_part(), m.remapped, arrive, m.hats);
+    gather_gradient(
+        m, m.hats.motion, [] {}, dt, then);
   } else {
-    gather_gradient(m, m.remapped, dt, then);
+    gather_gradient(m, m.remapped, arrive, dt, then);
   }
 }
 

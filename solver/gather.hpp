@@ -58,28 +58,39 @@ void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typen
   }
 }
 
+/// What own particles read of nodes of other ranks; hats have it by now.
+template <int D, Kernel<D> K>
+void take_motion([[maybe_unused]] Model<D, K>& m)
+{
+  if constexpr (!HasNodePart<K, D>)
+    m.copies.motion.take(m.nodes.motion, Whole{});
+}
+
 template <class S, bool increments, int D, Kernel<D> K, class Then>
 void gather(Model<D, K>& m, Real dt, Then&& then)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
-  parallel_for_uneven(m.order.blocks, [&](Index b) {
-    for_each_reading_run(
-        m, b, m.motion(), [&](std::size_t p) { AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.L); },
-        [&](Index, std::span<const Index> run, auto& through) {
-          for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
-            through.place(bunch, x);
-            const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, bunch, m.particles);
-            move(bunch, x, seen.v, dt, m.particles);
-          });
-        },
-        [&](Index body) { then(body, b); });
-  });
+  for_each_reading_block(
+      m.halo, [&] { take_motion(m); },
+      [&](Index b) {
+        for_each_reading_run(
+            m, b, m.motion(), [&](std::size_t p) { AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.L); },
+            [&](Index, std::span<const Index> run, auto& through) {
+              for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
+                through.place(bunch, x);
+                const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, bunch, m.particles);
+                move(bunch, x, seen.v, dt, m.particles);
+              });
+            },
+            [&](Index body) { then(body, b); });
+      });
 }
 
 template <class S, bool increments, bool affine, int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D, K>& m, Real dt)
 {
   const Real pic = m.transfer.pic_share(dt, m.crossing);
+  take_motion(m);  // blocks that read nodes of others have rows for them, which must be on their way first
   for_each_own_block<MomentumAlone>(m.blocks, m.halo, [&](Index b) {
     if (!m.blocks.occupied[static_cast<std::size_t>(b)])
       return;
@@ -129,12 +140,12 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
 }
 
 /// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
-/// What they read holds the remapped velocity, or its gradient, and the step's own velocity in `change`.
-template <int D, Kernel<D> K, class Then>
-void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Real dt, Then&& then)
+/// What they read holds the remapped velocity, or its gradient, and the step's own velocity in `change`; arrive(): that of other ranks.
+template <int D, Kernel<D> K, class Arrive, class Then>
+void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Arrive&& arrive, Real dt, Then&& then)
 {
   in_numbers_of(m.particles, [&]<class S>(S) {
-    parallel_for_uneven(m.order.blocks, [&](Index b) {
+    for_each_reading_block(m.halo, arrive, [&](Index b) {
       detail::for_each_reading_run(
           m, b, remapped, [&](std::size_t p) { AskFor<S>::row(p, m.particles.L); },
           [&](Index, std::span<const Index> run, auto& through) {

@@ -2,6 +2,7 @@
 // The solver's side of a kernel with a node part: particles see the hats of their cell, operators stand between hats and unknowns.
 #include "kernels/node_operators.hpp"
 #include "solver/nodes.hpp"
+#include "solver/own_nodes.hpp"
 
 namespace talus {
 
@@ -9,6 +10,13 @@ template <int D>
 struct Hats {
   std::vector<HatSum<D>> sum;
   std::vector<HatMotion<D>> motion;
+  std::vector<std::uint8_t> late;  ///< of one of several ranks: hats that read nodes of others
+  void find_late(const Mesh<D>& mesh, const OwnNodes& own)
+  {
+    late.resize(sum.size());
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      late[static_cast<std::size_t>(n)] = std::ranges::all_of(mesh.ring_of_node()[n], [&](Index m) { return own.has(m); }) ? 0 : 1;
+  }
 };
 
 /// Hats -> unknowns, the transpose of the way back:
@@ -16,13 +24,15 @@ struct Hats {
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
 /// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
-/// linear fields are handed on as they were read, whatever S is.  `by_hats_around`: the mass of a node is to be measured by theirs.
+/// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  `by_hats_around`: the mass of a node is to be measured by theirs.
 template <int D>
-void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::vector<HatSum<D>>& hats, bool by_hats_around,
-             std::vector<NodeSum<D>>& sum)
+void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<HatSum<D>>& hats,
+             bool by_hats_around, std::vector<NodeSum<D>>& sum)
 {
   for_each_node(std::span(sum), [&](Index v) {
     NodeSum<D> total;
+    if (!own.has(v))
+      return total;
     Real around = 0;
     int ring = 0;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
@@ -45,10 +55,12 @@ void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::
 
 /// The same for momentum alone.
 template <int D>
-void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const std::vector<HatSum<D>>& hats,
+void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<HatSum<D>>& hats,
                       std::vector<NodeSum<D>>& sum)
 {
   parallel_for(operators.n_nodes(), [&](Index v) {
+    if (!own.has(v))
+      return;
     Vec<D> momentum = Vec<D>::Zero();
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
       const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
@@ -59,28 +71,39 @@ void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
   });
 }
 
-/// f(n, hat) for the hats that particles see, in parallel; what f leaves in `hat` is read.
-template <int D, class F>
-void for_each_seen_hat(Hats<D>& hats, F&& f)
+/// f(n, hat) for the hats that particles see, in parallel; what f leaves in `hat` is read.  Those that read nodes of other ranks have to wait until
+/// arrive() returns.
+template <int D, class Arrive, class F>
+void for_each_seen_hat(Hats<D>& hats, Arrive&& arrive, F&& f)
 {
-  parallel_for(static_cast<Index>(hats.sum.size()), [&](Index n) {
-    if (hats.sum[static_cast<std::size_t>(n)].is_seen())
-      f(n, hats.motion[static_cast<std::size_t>(n)]);
-  });
+  for (const bool late : {false, true}) {
+    if (late)
+      arrive();
+    if (late && hats.late.empty())
+      break;
+    parallel_for(static_cast<Index>(hats.sum.size()), [&](Index n) {
+      const auto i = static_cast<std::size_t>(n);
+      if (hats.sum[i].is_seen() && (hats.late.empty() || (hats.late[i] != 0) == late))
+        f(n, hats.motion[i]);
+    });
+  }
 }
 
 /// The part of accelerations of the unknowns that particles feel, handed back to the unknowns: M^-1 S^T m S a.  S hardly sees
 /// checkerboards of the unknowns: what is left of them moves no particle, and must not count where a body is to come to rest.
-template <int D>
-void feel(const NodeOperators<D>& operators, Hats<D>& hats, std::vector<Vec<D>>& a)
+/// arrive(): accelerations of nodes of other ranks.
+template <int D, class Arrive>
+void feel(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, Hats<D>& hats, std::vector<Vec<D>>& a)
 {
-  for_each_seen_hat(hats, [&](Index n, HatMotion<D>& hat) {
+  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& hat) {
     hat.change.setZero();
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { hat.change += S * a[static_cast<std::size_t>(v)]; });
   });
   for_each_node(std::span(a), [&](Index v) {
     Real mass = 0;
     Vec<D> sum = Vec<D>::Zero();
+    if (!own.has(v))
+      return sum;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
       const Real share = S * hats.sum[static_cast<std::size_t>(n)].mass;
       mass += share;
@@ -91,10 +114,11 @@ void feel(const NodeOperators<D>& operators, Hats<D>& hats, std::vector<Vec<D>>&
 }
 
 /// Unknowns -> hats that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
-template <int D>
-void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Hats<D>& hats)
+/// arrive(): the motion of nodes of other ranks.
+template <int D, class Arrive>
+void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive, Hats<D>& hats)
 {
-  for_each_seen_hat(hats, [&](Index n, HatMotion<D>& row) {
+  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& row) {
     HatMotion<D> hat;
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
       const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
@@ -107,10 +131,10 @@ void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>&
 }
 
 /// The gradient of remapped velocities; the step's own velocity goes to `change`.
-template <int D>
-void spread_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Hats<D>& hats)
+template <int D, class Arrive>
+void spread_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive, Hats<D>& hats)
 {
-  for_each_seen_hat(hats, [&](Index n, HatMotion<D>& hat) {
+  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& hat) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
         n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });

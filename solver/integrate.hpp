@@ -1,5 +1,5 @@
 #pragma once
-// The nodes' equation of motion, and what happens to nodes with next to no mass.
+// The nodes' equation of motion.
 #include "core/parallel.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/walls.hpp"
@@ -20,36 +20,6 @@ struct NodeWork {
     return *this;
   }
 };
-
-/// Nodes that particles see with next to no mass, or none, become slaves: their mass, momentum and force go to the active nodes of
-/// their ring, in proportion to the masters' masses, and they move with the mean of these.  The map back is the transpose of the map
-/// there, so momentum is neither made nor lost, and a uniform motion stays one.  Nodes with negative mass (weights of moving least
-/// squares turn negative at the boundary of a mesh) are treated alike.
-template <int D>
-class Slaves {
- public:
-  /// Finds the slaves, sets the active flags, hands on mass, momentum and force.
-  void lump(const Mesh<D>& mesh, Nodes<D>& nodes);
-  /// Hands on momentum alone, after it was summed anew.
-  void lump_momentum(const Mesh<D>& mesh, Nodes<D>& nodes) const;
-  /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own; their
-  /// work is added.
-  void follow(const Mesh<D>& mesh, const Nodes<D>& nodes, Real end, Walls<D>& walls, std::span<NodeMotion<D>> motion,
-              ExactSums<WallWork>& work) const;
-  /// The same for `v` alone.
-  void follow_velocity(const Mesh<D>& mesh, const Nodes<D>& nodes, const Walls<D>& walls, Real time, std::span<NodeMotion<D>> motion) const;
-  Index size() const noexcept { return static_cast<Index>(slaves_.size()); }
-
- private:
-  /// f(master, share) for the active nodes a slave hangs on; nothing if there are none within two rings.
-  template <class F>
-  void for_each_master(const Mesh<D>& mesh, const Nodes<D>& nodes, Index slave, F&& f) const;
-  std::vector<Index> slaves_;
-  std::vector<Real> mass_;  ///< of every node before anything was handed on: shares must be the same there and back
-};
-
-extern template class Slaves<2>;
-extern template class Slaves<3>;
 
 /// Local non-viscous damping [Cundall 1987]: a force against the motion of a node, componentwise the share `damping` of its net
 /// force.  Nodes under a wall condition are left out.  `net` is force or acceleration, the result the same.

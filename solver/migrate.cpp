@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "solver/letters.hpp"
 #include "solver/relocate.hpp"
 
 namespace talus {
 
 namespace {
-
-constexpr int tag_of_particles = 3;
 
 template <class T>
 void append_bytes(const T& value, std::vector<std::byte>& to)
@@ -161,7 +160,7 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
       }
     std::sort(turnovers[b].leaving.begin(), turnovers[b].leaving.end());
   }
-  const auto in = ranks_->neighbours(neighbours_, out_, tag_of_particles);
+  const auto in = ranks_->neighbours(neighbours_, out_, static_cast<int>(Topic::particles));
 
   // How long a record is depends on its body alone.
   std::size_t columns = 2 * sizeof(Index);

@@ -8,6 +8,7 @@
 #include "solver/loads.hpp"
 #include "solver/migrate.hpp"
 #include "solver/relocate.hpp"
+#include "solver/slaves.hpp"
 #include "solver/sums.hpp"
 #include "solver/tally.hpp"
 #include "solver/through_both.hpp"
@@ -90,14 +91,16 @@ struct Watched {
   }
 };
 
-/// How far from the nodes that particles read others have a say in what they read: two rings for a slave to find its masters, four for
-/// these to have got what is theirs, of other slaves and by the masses of all their masters; and with a node part one ring from hats to
-/// unknowns and one back, and two for what is felt of accelerations.
-template <int D, Kernel<D> K>
-inline constexpr int rings_beyond_stencils = HasNodePart<K, D> ? 10 : 6;
-/// Rings of cells to be held around own ones: stencils reach two rings, and operators and sizes of nodes are made from two more.
-template <int D, Kernel<D> K>
-inline constexpr int rings_held = rings_beyond_stencils<D, K> + 4;
+/// Rings of cells to be held around own ones.  Stencils and the rows of operators reach one ring, what operators are made from one more; and the
+/// slaves of other ranks that may hang on own nodes are two rings away, with all the cells around them.
+inline constexpr int rings_held = 3;
+
+/// What is to be known here of nodes that other ranks own.
+struct Copies {
+  Letters sums;    ///< of hats, where unknowns of own nodes collect from them
+  Letters motion;  ///< that own particles read, or the hats that they read
+  Letters felt;    ///< accelerations, where hats stand between
+};
 
 template <int D, Kernel<D> K>
 struct Model {
@@ -109,6 +112,7 @@ struct Model {
   Exchange* ranks = &one_rank();  ///< that share the run
   Share share;
   Halo<typename Through<D, K>::Sum> halo;
+  Copies copies;
   Migration<D> migration;
   OwnNodes own;
 
@@ -165,9 +169,23 @@ struct Model {
   {
     ranks = &others;
     share = std::move(part);
-    halo = make_halo(*ranks, mesh, share, blocks, rings_beyond_stencils<D, K>);
+    halo = Halo(*ranks, mesh, share, blocks);
     migration = Migration<D>(*ranks, share);
     own = own_nodes(mesh, share);
+    slaves = Slaves<D>(*ranks, mesh, share, own);
+    const auto copy = [&](Topic topic, const std::vector<std::uint8_t>& wanted) { return copies_of_nodes(*ranks, share, topic, wanted); };
+    std::vector<std::uint8_t> read = nodes_read(share, blocks);
+    if constexpr (HasNodePart<K, D>) {
+      std::vector<std::uint8_t> collected = spread_by_rings(mesh, own.owned, 1);
+      for (std::size_t n = 0; n < read.size(); ++n)
+        collected[n] |= read[n];
+      copies.sums = copy(Topic::sums, collected);
+      copies.motion = copy(Topic::motion, spread_by_rings(mesh, read, 1));
+      copies.felt = copy(Topic::felt, spread_by_rings(mesh, own.owned, 2));
+      hats.find_late(mesh, own);
+    } else {
+      copies.motion = copy(Topic::motion, read);
+    }
   }
   Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
   /// What particles read.

@@ -1,9 +1,9 @@
 #pragma once
 // Nodal rows: what particles deposit, and what they read back.
 #include <algorithm>
-#include <cstddef>
-#include <cstring>
+#include <cmath>
 #include <limits>
+#include <tuple>
 #include <vector>
 
 #include "core/types.hpp"
@@ -22,9 +22,17 @@ struct alignas(64) NodeSum {
   void clear_momentum() noexcept { momentum.setZero(); }
   void add_momentum(const NodeSum& other) noexcept { momentum += other.momentum; }
   bool has_momentum() const noexcept { return !momentum.isZero(0); }
-  static constexpr std::size_t momentum_bytes = sizeof(Vec<D>);
-  void write_momentum(std::byte* to) const noexcept { std::memcpy(to, momentum.data(), sizeof(momentum)); }
-  void read_momentum(const std::byte* from) noexcept { std::memcpy(momentum.data(), from, sizeof(momentum)); }
+  /// For messages, without padding.
+  template <class Self>
+  static auto parts(Self& sum) noexcept
+  {
+    return std::tie(sum.mass, sum.lightest, sum.gross, sum.momentum, sum.force);
+  }
+  template <class Self>
+  static auto momentum_parts(Self& sum) noexcept
+  {
+    return std::tie(sum.momentum);
+  }
   static constexpr float unseen = std::numeric_limits<float>::infinity();
   bool is_seen() const noexcept { return lightest < unseen; }
   NodeSum& operator+=(const NodeSum& other) noexcept
@@ -56,16 +64,15 @@ struct HatSum : NodeSum<D> {
     affine += other.affine;
   }
   bool has_momentum() const noexcept { return NodeSum<D>::has_momentum() || !affine.isZero(0); }
-  static constexpr std::size_t momentum_bytes = NodeSum<D>::momentum_bytes + sizeof(Mat<D>);
-  void write_momentum(std::byte* to) const noexcept
+  template <class Self>
+  static auto parts(Self& sum) noexcept
   {
-    NodeSum<D>::write_momentum(to);
-    std::memcpy(to + NodeSum<D>::momentum_bytes, affine.data(), sizeof(affine));
+    return std::tuple_cat(NodeSum<D>::parts(sum), std::tie(sum.affine, sum.tension));
   }
-  void read_momentum(const std::byte* from) noexcept
+  template <class Self>
+  static auto momentum_parts(Self& sum) noexcept
   {
-    NodeSum<D>::read_momentum(from);
-    std::memcpy(affine.data(), from + NodeSum<D>::momentum_bytes, sizeof(affine));
+    return std::tie(sum.momentum, sum.affine);
   }
   HatSum& operator+=(const HatSum& other) noexcept
   {
@@ -82,6 +89,19 @@ template <int D>
 struct alignas(64) NodeMotion {
   Vec<D> v = Vec<D>::Zero();       ///< velocity at the end of the step [m/s]
   Vec<D> change = Vec<D>::Zero();  ///< v minus the velocity at its beginning [m/s]
+  /// Any bit of it.
+  bool is_seen() const noexcept
+  {
+    const auto all_clear = [](const Vec<D>& a) {
+      return std::all_of(a.begin(), a.end(), [](Real x) { return x == 0 && !std::signbit(x); });
+    };
+    return !all_clear(v) || !all_clear(change);
+  }
+  template <class Self>
+  static auto parts(Self& motion) noexcept
+  {
+    return std::tie(motion.v, motion.change);
+  }
 };
 
 /// What particles read on the hat of a node, where the kernel has a node part.

@@ -31,6 +31,11 @@ struct StarRow {
   {
     return std::any_of(sum.begin(), sum.end(), [](Real entry) { return entry != 0; });
   }
+  template <class Self>
+  static auto parts(Self& row) noexcept
+  {
+    return std::tie(row.sum);
+  }
   StarRow& operator+=(const StarRow& other) noexcept
   {
     for (std::size_t k = 0; k < K; ++k)
@@ -50,7 +55,8 @@ class StarSums {
   explicit StarSums(const Mesh<D>& mesh) : StarSums(mesh, all_nodes(mesh)) { halo_ = Halo<Row>(blocks_.size()); }
   StarSums(Exchange& ranks, const Mesh<D>& mesh, const Share& share) : StarSums(mesh, own_nodes(mesh, share))
   {
-    halo_ = make_halo(ranks, mesh, share, blocks_, 0);
+    halo_ = Halo<Row>(ranks, mesh, share, blocks_);
+    copies_ = copies_of_nodes(ranks, share, Topic::sums, nodes_read(share, blocks_));
   }
 
   /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
@@ -68,7 +74,7 @@ class StarSums {
       });
       blocks_.occupied[static_cast<std::size_t>(block)] = order.rows(body, block).empty() ? 0 : 1;
     });
-    assemble<Whole>(blocks_, own_, halo_, of_node_);
+    assemble<Whole>(blocks_, own_, halo_, copies_, of_node_);
   }
 
   const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
@@ -83,6 +89,7 @@ class StarSums {
   BlockRows<D, Row> blocks_;
   OwnNodes own_;
   Halo<Row> halo_;
+  Letters copies_;
   std::vector<Row> of_node_;
 };
 

@@ -26,7 +26,7 @@ TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
     before += nodes.sum[i];
   }
   Slaves<2> slaves;
-  slaves.lump(mesh, nodes);
+  slaves.lump(mesh, all_nodes(mesh), nodes);
   EXPECT_GT(slaves.size(), 2);
   NodeSum<2> after;
   for (std::size_t i = 0; i < n; ++i)
@@ -40,7 +40,7 @@ TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
     row = {Vec<2>(3, -2), Vec<2>(0.5, 0)};
   Walls<2> none_at_all;
   ExactSums<WallWork> work;
-  slaves.follow(mesh, nodes, 0, none_at_all, nodes.motion, work);
+  slaves.follow(mesh, all_nodes(mesh), 0, none_at_all, nodes.motion, work);
   for (const auto& row : nodes.motion)
     EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
 }
@@ -95,7 +95,7 @@ TEST(Slaves, AreNodesWhoseCellsCancel)
     sum = gets;
   nodes.sum[5] += loses;
   Slaves<2> slaves;
-  slaves.lump(mesh, nodes);
+  slaves.lump(mesh, all_nodes(mesh), nodes);
   EXPECT_EQ(slaves.size(), 1);
   EXPECT_FALSE(nodes.active[5]);
 }
