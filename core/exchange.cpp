@@ -374,14 +374,67 @@ std::int64_t Exchange::min(std::int64_t number)
 
 Real Exchange::min(Real number) { return alone() ? number : number_of(min(ordered(number))); }
 
-void Exchange::least(std::span<Real> numbers)
+void Exchange::least(std::span<Real> numbers, std::int64_t& word)
 {
   if (alone())
     return;
-  words_.resize(numbers.size());
+  words_.resize(numbers.size() + 1);
   std::ranges::transform(numbers, words_.begin(), ordered);
+  words_.back() = word;
   reduce(words_, Reduction::min);
-  std::ranges::transform(words_, numbers.begin(), number_of);
+  word = words_.back();
+  std::transform(words_.begin(), words_.end() - 1, numbers.begin(), number_of);
+}
+
+void Exchange::sum_in_use(Digits& digits)
+{
+  constexpr auto each = static_cast<std::int64_t>(ExactSum::words);
+  const std::size_t n = words_.size() / ExactSum::words;
+  digits.of_sum_.resize(n, {each, 0});
+  const auto words_of = [&](std::size_t i) { return std::span(words_).subspan(i * ExactSum::words, ExactSum::words); };
+
+  // First how many ranks have something beyond the digits that were in use up to now.
+  std::vector<std::int64_t>& packed = digits.packed_;
+  packed.assign(1, 0);
+  const auto is_zero = [](std::int64_t word) { return word == 0; };
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto words = words_of(i);
+    const auto [lowest, behind] = digits.of_sum_[i];
+    const auto first = words.begin() + std::min(lowest, behind), last = words.begin() + behind;
+    if (!std::all_of(words.begin(), first, is_zero) || !std::all_of(last, words.end(), is_zero))
+      packed.front() = 1;
+    packed.insert(packed.end(), first, last);
+  }
+  reduce(packed, Reduction::sum);
+  if (packed.front() == 0) {
+    auto from = packed.begin() + 1;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto words = words_of(i);
+      std::fill(words.begin(), words.end(), 0);
+      const auto [lowest, behind] = digits.of_sum_[i];
+      if (const std::int64_t count = behind - lowest; count > 0)
+        std::copy_n(std::exchange(from, from + count), count, words.begin() + lowest);
+    }
+    return;
+  }
+
+  // Some have: all words, and from now on the digits that any rank has used, and one more at either end.
+  std::vector<std::int64_t> ends;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto words = words_of(i);
+    const auto first = std::find_if_not(words.begin(), words.end(), is_zero);
+    const auto last = std::find_if_not(words.rbegin(), std::make_reverse_iterator(first), is_zero).base();
+    const bool any = first != words.end();
+    ends.push_back(any ? first - words.begin() : each);
+    ends.push_back(any ? words.begin() - last : 0);
+  }
+  reduce(ends, Reduction::min);
+  for (std::size_t i = 0; i < n; ++i)
+    if (auto& [lowest, behind] = digits.of_sum_[i]; ends[2 * i] < each) {
+      lowest = std::min(lowest, std::max<std::int64_t>(ends[2 * i] - 1, 0));
+      behind = std::max(behind, std::min(-ends[2 * i + 1] + 1, each));
+    }
+  reduce(words_, Reduction::sum);
 }
 
 template <class Bytes>

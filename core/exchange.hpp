@@ -28,6 +28,51 @@ struct Traffic {
   std::int64_t bytes_gathered = 0;           ///< for gather() and all_to_all(), at set-up and for files
 };
 
+/// Which digits of sums are in use that are asked for again and again: most of an ExactSum's are not, and need not be sent.  The same on all
+/// ranks, and never fewer than before.
+class Digits {
+  friend class Exchange;
+  struct Range {
+    std::int64_t lowest, behind;  ///< words of an ExactSum; none are if the second is not the larger
+  };
+  std::vector<Range> of_sum_;
+  std::vector<std::int64_t> packed_;
+};
+
+/// ExactSums, and spans of them, as words.
+template <class T>
+std::size_t words_in(const ExactSums<T>&) noexcept
+{
+  return ExactSums<T>::words;
+}
+template <class T>
+std::size_t words_in(std::span<ExactSums<T>> sums) noexcept
+{
+  return sums.size() * ExactSums<T>::words;
+}
+template <class T>
+void write_words(const ExactSums<T>& sum, std::span<std::int64_t> to)
+{
+  sum.write(to);
+}
+template <class T>
+void write_words(std::span<ExactSums<T>> sums, std::span<std::int64_t> to)
+{
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    sums[i].write(to.subspan(i * ExactSums<T>::words, ExactSums<T>::words));
+}
+template <class T>
+void read_words(ExactSums<T>& sum, std::span<const std::int64_t> from)
+{
+  sum.read(from);
+}
+template <class T>
+void read_words(std::span<ExactSums<T>> sums, std::span<const std::int64_t> from)
+{
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    sums[i].read(from.subspan(i * ExactSums<T>::words, ExactSums<T>::words));
+}
+
 /// Bytes for or from a rank.  What is sent is not changed.
 struct Parcel {
   int rank;
@@ -80,34 +125,15 @@ class Exchange {
     sum(std::span(&number, 1));
     return number;
   }
-  /// Every rank's sums become those of all ranks, in one message for all of them.
-  template <class... T>
-  void sum(ExactSums<T>&... sums)
+  /// Every rank's sums become those of all ranks, in one message for all of them: ExactSums, or spans of as many as every rank has.
+  template <class... Sums>
+  requires requires(const Sums&... sums) { (words_in(sums) + ...); }
+  void sum(Sums&&... sums) { sum_words(nullptr, sums...); }
+  /// The same for sums that are asked for again and again.
+  template <class... Sums>
+  void sum(Digits& digits, Sums&&... sums)
   {
-    if (alone())
-      return;
-    words_.resize((ExactSums<T>::words + ...));
-    std::span<std::int64_t> rest = words_;
-    ((sums.write(rest.first(ExactSums<T>::words)), rest = rest.subspan(ExactSums<T>::words)), ...);
-    sum(words_);
-    rest = words_;
-    ((sums.read(rest.first(ExactSums<T>::words)), rest = rest.subspan(ExactSums<T>::words)), ...);
-  }
-
-  /// The same of as many sums as every rank has.
-  template <class T>
-  void sum(std::span<ExactSums<T>> sums)
-  {
-    if (alone() || sums.empty())
-      return;
-    constexpr std::size_t each = ExactSums<T>::words;
-    words_.resize(each * sums.size());
-    const auto words_of = [&](std::size_t i) { return std::span(words_).subspan(i * each, each); };
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      sums[i].write(words_of(i));
-    sum(words_);
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      sums[i].read(words_of(i));
+    sum_words(&digits, sums...);
   }
 
   /// Of all ranks, on all ranks.  NaN on one of them is NaN on all, and -0 is less than 0: the bits do not depend on the order.
@@ -115,8 +141,8 @@ class Exchange {
   Real max(Real number) { return -min(-number); }
   std::int64_t min(std::int64_t number);
   std::int64_t max(std::int64_t number) { return ~min(~number); }
-  /// The same for several at once, in place.
-  void least(std::span<Real> numbers);
+  /// The same for several at once, in place; and of a word.
+  void least(std::span<Real> numbers, std::int64_t& word);
 
   /// What the rank `from` has, of whatever length, to all.
   void broadcast(std::vector<std::byte>& bytes, int from);
@@ -174,6 +200,24 @@ class Exchange {
   explicit Exchange(std::unique_ptr<Group> group) noexcept;
   enum class Reduction { sum, min };
   void reduce(std::span<std::int64_t> numbers, Reduction reduction);
+  template <class... Sums>
+  void sum_words(Digits* digits, Sums&... sums)
+  {
+    if (alone())
+      return;
+    words_.resize((words_in(sums) + ...));
+    std::span<std::int64_t> rest = words_;
+    const auto next = [&](std::size_t words) {
+      const auto here = rest.first(words);
+      rest = rest.subspan(words);
+      return here;
+    };
+    (write_words(sums, next(words_in(sums))), ...);
+    digits == nullptr ? sum(std::span(words_)) : sum_in_use(*digits);
+    rest = words_;
+    (read_words(sums, next(words_in(sums))), ...);
+  }
+  void sum_in_use(Digits& digits);  // words_
   template <class Bytes>
   void spread(Bytes& bytes, int from);
   void count(int tag, int bytes) noexcept;

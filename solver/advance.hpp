@@ -235,12 +235,13 @@ void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
 {
   Tally<D>& t = m.tally;
   t.particles.add(static_cast<Real>(m.particles.size()));
-  m.ranks->sum(t.departed, t.on_particles, t.on_mesh, t.at_nodes, t.beyond_nodes, t.nodes, t.balance, t.work_on_mesh, t.work_on_particles,
-               t.internal, t.particles);
-  m.walls.keep_impulses(*m.ranks);
+  m.ranks->sum(t.digits, t.departed, t.on_particles, t.on_mesh, t.at_nodes, t.beyond_nodes, t.nodes, t.balance, t.work_on_mesh,
+               t.work_on_particles, t.internal, t.particles, m.walls.pushed());
+  m.walls.keep_impulses();
   std::array<Real, 3> extremes{m.crossing, -m.watched.speed, -t.held_most};
-  m.ranks->least(extremes);
-  m.health.take(m.ranks->min(m.health.word()));
+  std::int64_t health = m.health.word();
+  m.ranks->least(extremes, health);
+  m.health.take(health);
 
   book(t.departed.value(), m.mass, m.energy);
   const NodeWork<D> work = t.nodes.value();

@@ -1,6 +1,6 @@
 #pragma once
 // What is summed up in the course of a step, and becomes numbers at its end, once for all ranks.
-#include "core/exact_sum.hpp"
+#include "core/exchange.hpp"
 #include "solver/integrate.hpp"
 #include "solver/ledger.hpp"
 
@@ -17,6 +17,7 @@ struct Tally {
   ExactSums<Balance> balance;
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
   ExactSums<Real> particles;                                  ///< their number
+  Digits digits;                                              ///< of these and of the pushes of walls, kept from step to step
   void clear() noexcept
   {
     held_most = 0;

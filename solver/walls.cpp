@@ -183,9 +183,8 @@ void Walls<D>::apply(Index node, Real end, Real mass, NodeMotion<D>& motion, Exa
 }
 
 template <int D>
-void Walls<D>::keep_impulses(Exchange& ranks)
+void Walls<D>::keep_impulses()
 {
-  ranks.sum(std::span(pushed_));
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const Impulse by = pushed_[w].value();
     walls_[w].impulse += by.linear, walls_[w].angular += by.angular;

@@ -47,6 +47,10 @@ struct WallWork {
 template <int D>
 class Walls {
  public:
+  struct Impulse {
+    Vec<D> linear = Vec<D>::Zero();  ///< [N s]
+    Vec3 angular = Vec3::Zero();     ///< about the origin [N m s]
+  };
   /// Conditions on all components of the nodes given.
   void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nodes);
   /// Conditions with a normal: facets of one group.  Facets that meet in a node under less than 30 degrees share their mean
@@ -64,8 +68,9 @@ class Walls {
   void apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
   /// And so does a node that follows others: its own mass [kg] gets its part of the walls' pushes.
   void apply(Index node, Real end, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
-  /// The walls keep the impulses of the step that is over, those of all ranks.
-  void keep_impulses(Exchange& ranks);
+  /// The impulses of the step at hand, by wall, to be summed up over the ranks; then the walls keep them.
+  std::span<ExactSums<Impulse>> pushed() noexcept { return pushed_; }
+  void keep_impulses();
   /// The kinematic part alone, on remapped velocities (rows: remapped one in `v`, the step's own in `change`).  A node that rubs
   /// keeps the step's own: friction acted on that one, and a strain taken from any other would make energy.
   void hold(Real time, std::span<NodeMotion<D>> remapped) const;
@@ -95,10 +100,6 @@ class Walls {
     std::vector<Plane> frictions;
     bool rubs = false;    ///< the last apply() found it pressed against a friction wall
     bool counted = true;  ///< by this rank: another one keeps impulses and work of nodes that are not its own
-  };
-  struct Impulse {
-    Vec<D> linear = Vec<D>::Zero();
-    Vec3 angular = Vec3::Zero();
   };
   NodeRule& rule(const Mesh<D>& mesh, Index node);
   const NodeRule& rule_of(Index node) const noexcept  ///< of a node that is bound

@@ -49,7 +49,9 @@ TEST(ExchangeAlone, ChangesNothing)
   EXPECT_EQ(exchange.min(std::int64_t{7}), 7);
   EXPECT_EQ(exchange.max(std::int64_t{7}), 7);
   std::vector<Real> least{1, -0.0};
-  exchange.least(least);
+  std::int64_t word = -7;
+  exchange.least(least, word);
+  EXPECT_EQ(word, -7);
   EXPECT_THAT(least, testing::ElementsAre(1, 0));
   EXPECT_TRUE(std::signbit(least[1]));
 

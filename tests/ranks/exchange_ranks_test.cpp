@@ -84,6 +84,41 @@ TEST_F(World, SumsExactly)
   EXPECT_TRUE(std::isinf(mine.value().mass));
 }
 
+/// Again and again, each time with numbers of another size: small, large, none, beyond all that was there before.
+TEST_F(World, SumsExactlyWhatDigitsAreInUse)
+{
+  Digits digits;
+  for (const int exponent : {0, 0, 1, -40, -40, 300, 0, -1000, 0}) {
+    std::mt19937_64 random(2);  // the same on every rank
+    std::vector<ExactSums<Real>> all(3), mine(3);
+    ExactSums<Vec<2>> none;
+    for (int i = 0; i < 300; ++i) {
+      const Real size_of_one = std::ldexp(1.0, exponent - 63 + static_cast<int>(random() % 30));
+      const Real number = size_of_one * (static_cast<Real>(random()) - 9e18);
+      const std::size_t k = random() % 3;
+      all[k].add(number);
+      if (i % size == rank)
+        mine[k].add(number);
+    }
+    const std::int64_t before = exchange.traffic().bytes_to_all;
+    exchange.sum(digits, std::span(mine), none);
+    const std::int64_t sent = exchange.traffic().bytes_to_all - before;
+    for (std::size_t k = 0; k < 3; ++k)
+      EXPECT_EQ(mine[k].value(), all[k].value()) << exponent;
+    EXPECT_EQ(none.value(), Vec<2>::Zero());
+    if (exponent == 1 && size > 1)
+      EXPECT_LT(sent, 200) << "of 5 sums of 560 bytes";
+  }
+  ExactSums<Real> endless;
+  endless.add(rank == size - 1 ? std::numeric_limits<Real>::infinity() : 1);
+  Digits other;
+  for (int again = 0; again < 2; ++again) {
+    ExactSums<Real> sum = endless;
+    exchange.sum(other, sum);
+    EXPECT_TRUE(std::isinf(sum.value()));
+  }
+}
+
 TEST_F(World, FindsTheLeast)
 {
   EXPECT_EQ(exchange.min(static_cast<Real>(rank) - 1), -1);
@@ -93,7 +128,9 @@ TEST_F(World, FindsTheLeast)
   const bool last = rank == size - 1;
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
   std::vector<Real> numbers{last ? -0.0 : 0.0, last ? std::nan("") : -infinity, last ? infinity : 3.0, 1e-310 * (rank + 1)};
-  exchange.least(numbers);
+  std::int64_t word = 3 - rank;
+  exchange.least(numbers, word);
+  EXPECT_EQ(word, 4 - size);
   EXPECT_TRUE(std::signbit(numbers[0]));
   EXPECT_TRUE(std::isnan(numbers[1]));
   EXPECT_EQ(numbers[2], size == 1 ? infinity : 3.0);
