@@ -29,7 +29,7 @@ class Migration {
   std::vector<Index> foreign_;          // local blocks of others
   std::vector<Index> border_of_block_;  // local block -> number of its rank among the neighbours
   std::vector<std::vector<std::byte>> out_;
-  std::vector<std::int64_t> keeps_;  // how many ranks keep each column
+  std::vector<std::int64_t> keepers_;  // how many ranks keep each column
   std::int64_t moved_ = 0;
 };
 
