@@ -16,6 +16,7 @@ struct Share {
   std::vector<int> rank_of_block;          ///< of each local block
   std::vector<Index> node;                 ///< local node -> node of the whole mesh, ascending
   std::vector<int> rank_of_node;           ///< of each local node: the rank of the lowest cell that the whole mesh has around it
+  std::vector<int> rank_of_whole_block;    ///< of each block of the whole mesh, held or not
   Index whole_cells = 0, whole_nodes = 0;  ///< how many the whole mesh has
   int rank = 0;
 
