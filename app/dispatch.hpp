@@ -23,13 +23,14 @@ inline void options_of(const Scene&, NoOptions&) {}
 inline void options_of(const Scene& scene, UmlsOptions& options) { options = scene.umls.value_or(options); }
 inline void options_of(const Scene& scene, ProjectedOptions& options) { options = scene.projected.value_or(options); }
 
-/// Blocks are shared out by their particles.
+/// Blocks are shared out by their particles, which stand in cells of the whole mesh.  Every rank has to ask.
 template <int D>
 Part<D> part_of(const Mesh<D>& mesh, const Particles<D>& particles, int rings)
 {
   std::vector<std::int64_t> weights(static_cast<std::size_t>(blocks_of(mesh.n_cells())), 0);
   for (const Index cell : particles.cell)
     ++weights[static_cast<std::size_t>(cell / block_cells)];
+  world().sum(weights);
   return cut(mesh, partition(mesh, weights, world().size()), world().rank(), rings);
 }
 
@@ -44,6 +45,7 @@ Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     Part<D> part = part_of(mesh, setup.particles, rings_held<D, K>);
     share = std::move(part.share);
     mesh = std::move(part.mesh);
+    send_home(world(), share, setup.bodies, setup.materials, setup.particles);
     restrict_to(share, setup);
   }
   std::optional<Model<D, K>> built;

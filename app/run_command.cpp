@@ -103,9 +103,9 @@ class Run {
   {
     auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
     watch_.lap(mesh_seconds_);
-    auto setup = set_up(scene_, mesh);
+    auto setup = set_up(scene_, mesh, world());
     if (quick_)
-      shorten(first_step(mesh, setup), setup.stages, scene_.outputs);
+      shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
     stages_ = setup.stages;
     if (from_)
       check_durations(*from_, stages_, options_.set);
@@ -118,7 +118,7 @@ class Run {
       compare(from_->identity(), identity);
     summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
 
-    n_particles_ = setup.particles.size(), n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
+    n_particles_ = setup.n_particles, n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
     if (!world().alone() && world().is_root())
       whole_ = mesh;
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
@@ -135,7 +135,7 @@ class Run {
                            checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
                          }};
     fs::path taken;
-    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.particles.size()};
+    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles};
     if (from_)
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.

@@ -34,7 +34,7 @@ Real total_duration(const Setup<D>& setup)
   return total;
 }
 
-/// First step and number of steps that follow from it; no kernel is asked.
+/// First step that the particles of this rank allow [s]; no kernel is asked.
 template <int D>
 Real first_step(const Mesh<D>& mesh, const Setup<D>& setup);
 
