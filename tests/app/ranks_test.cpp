@@ -114,14 +114,16 @@ TEST_F(OnRanks, AnotherNumberOfThemGoesOnFromACheckpoint)
   expect_same_files("alone", "again");
 }
 
+int times(const std::string& text, const std::string& what)
+{
+  int n = 0;
+  for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1))
+    ++n;
+  return n;
+}
+
 TEST_F(OnRanks, WhatIsWrongIsSaidOnce)
 {
-  const auto times = [](const std::string& text, const std::string& what) {
-    int n = 0;
-    for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1))
-      ++n;
-    return n;
-  };
   write("wrong.yaml", SceneParts{.law = "law: neo_hookean, youngs_modulus: -1, poisson_ratio: 0.3"}.text());
   const Outcome scene = talus_on(3, "run wrong.yaml --quiet --out wrong");
   EXPECT_EQ(scene.code, 2);
@@ -139,6 +141,37 @@ TEST_F(OnRanks, WhatIsWrongIsSaidOnce)
   const std::string what = alone.err.substr(0, alone.err.find("; last good output"));
   EXPECT_THAT(what, HasSubstr("is outside the mesh"));
   EXPECT_EQ(times(three.err, what), 1) << three.err;
+}
+
+/// Of all that set-up finds, which no rank has all the particles for.
+TEST_F(OnRanks, SetUpComplainsAndWarnsAsOneRankDoes)
+{
+  const std::string head = R"yaml(title: Wrong
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 1], cells: [20, 20]}}
+time: {end: 1.0e-4}
+materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0}]
+bodies:
+  - {name: one, material: rubber, shape: {type: box, low: [0, 0], high: [1, 0.52]}}
+  - {name: two, material: rubber, shape: {type: box, low: [0.2, 0.5], high: [0.8, 1]}}
+)yaml";
+  write("wrong.yaml", head + R"yaml(
+  - {name: none, material: rubber, shape: {type: sphere, centre: [9, 9], radius: 1}}
+  - {name: five, material: rubber, region: all, particles_per_cell: 5}
+  - {name: root, material: rubber, shape: {type: box, low: [0, 0], high: [1, 1]}, velocity: ["sin(q)", "1 / (x - x)"]}
+boundaries: [{type: roller, on: all}]
+loads: [{type: traction, on: ceiling, pressure: 1}]
+)yaml");
+  write("warned.yaml", head + "loads: [{type: traction, on: y_max, pressure: 1}]\n");
+  for (const auto& [scene, code] : {std::pair("wrong", 2), std::pair("warned", 0)}) {
+    const std::string words = std::string("run ") + scene + ".yaml --quiet --threads 1 --out " + scene;
+    const Outcome alone = talus(words), three = talus_on(3, words + "_on_three");
+    EXPECT_EQ(alone.code, code) << alone.err;
+    EXPECT_EQ(three.code, code) << three.err;
+    EXPECT_FALSE(alone.err.empty());
+    EXPECT_EQ(times(three.err, alone.err), 1) << alone.err << "\non three ranks:\n" << three.err;
+  }
+  expect_same_files("warned", "warned_on_three");
 }
 
 /// Processes whose command line holds `words`, the launcher left out.
