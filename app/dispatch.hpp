@@ -67,7 +67,7 @@ Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
   m.guards = setup.guards;
-  make_ready(m, scene.outputs.history && !scene.outputs.history->points.empty());
+  make_ready(m);
   return std::move(m);
 }
 

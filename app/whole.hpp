@@ -31,10 +31,10 @@ void on_root(const Frame<D>& frame, F&& f)
   const WholeParticles<D> whole = gather_particles(frame);
   const CellOrder no_order;
   frame.ranks->together([&] {
-    f(Frame<D>{frame.mesh,    frame.share,      whole.particles,    whole.bodies,   whole.materials, no_order,
-               frame.ranks,   frame.nodes,      frame.walls,        frame.loads,    frame.row_of_id, frame.clock,
-               frame.stage,   frame.stage_name, frame.stage_number, frame.energy,   frame.mass,      frame.momentum,
-               frame.watched, frame.guards,     frame.timings,      frame.residual, frame.crossing,  frame.migrated});
+    f(Frame<D>{frame.mesh,       frame.share,        whole.particles, whole.bodies,   whole.materials, no_order,
+               frame.ranks,      frame.nodes,        frame.walls,     frame.loads,    frame.clock,     frame.stage,
+               frame.stage_name, frame.stage_number, frame.energy,    frame.mass,     frame.momentum,  frame.watched,
+               frame.guards,     frame.timings,      frame.residual,  frame.crossing, frame.migrated});
   });
 }
 
