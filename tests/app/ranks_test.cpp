@@ -174,6 +174,24 @@ loads: [{type: traction, on: ceiling, pressure: 1}]
   expect_same_files("warned", "warned_on_three");
 }
 
+TEST_F(OnRanks, WhatTheyDoNotShareTheRootDoesAlone)
+{
+  write("scene.yaml", thrown().text());
+  const Outcome alone = talus("check scene.yaml"), two = talus_on(2, "check scene.yaml");
+  EXPECT_EQ(two.code, 0) << two.err;
+  EXPECT_EQ(two.out, alone.out);
+  EXPECT_EQ(two.err, alone.err);
+
+  write("wrong.yaml", SceneParts{.law = "law: neo_hookean, youngs_modulus: -1, poisson_ratio: 0.3"}.text());
+  for (const char* words : {"check wrong.yaml", "check", "rum scene.yaml", "run"}) {
+    const Outcome wrong = talus(words), on_two = talus_on(2, words);
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_EQ(on_two.code, 2) << on_two.err;
+    EXPECT_EQ(times(on_two.err, wrong.err), 1) << words << ":\n" << on_two.err;
+  }
+  EXPECT_EQ(talus_on(2, "--version").out, talus("--version").out);
+}
+
 /// Processes whose command line holds `words`, the launcher left out.
 std::vector<pid_t> ranks_running(const std::string& words)
 {
