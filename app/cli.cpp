@@ -77,6 +77,9 @@ class CommandLine {
     run->add_option("--set", run_.set, set_help);
     run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
         ->check(CLI::NonNegativeNumber);
+    run->add_option("--rebalance", run_.rebalance,
+                    "several ranks: share the run out anew every so many steps; 0: never; default when it pays")
+        ->check(CLI::NonNegativeNumber);
     run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");
     run->callback([this] { run_scene(run_); });

@@ -22,6 +22,8 @@ class Migration {
                   CellOrder& order);
   /// Particles that came or went so far.
   std::int64_t moved() const noexcept { return moved_; }
+  /// Goes on with the count of another model.
+  void count_from(std::int64_t moved) noexcept { moved_ = moved; }
 
  private:
   Exchange* ranks_ = nullptr;
