@@ -15,7 +15,7 @@ struct Slice {
   std::int64_t piece = rows_of_a_piece;
   std::int64_t lead = 0;  ///< rows that the first piece lacks
 
-  std::int64_t pieces() const noexcept { return (lead + of_all + piece - 1) / piece; }
+  std::int64_t pieces() const noexcept { return of_all == 0 ? 0 : (lead + of_all + piece - 1) / piece; }
   std::int64_t piece_of(std::int64_t row) const noexcept { return (lead + row) / piece; }
   std::int64_t begin_of(std::int64_t number) const noexcept { return std::clamp(number * piece - lead, std::int64_t{0}, of_all); }
   /// Whether so many rows from `first` on are whole pieces.
