@@ -78,7 +78,7 @@ Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   Part<D> part{std::move(mesh), {}};
   if (!world().alone()) {
     part = part_of<D, K>(part.mesh, particles_in_blocks(setup.particles.cell, part.mesh.n_cells()));
-    send_home(world(), part.share, setup.bodies, setup.materials, setup.particles);
+    take_own_particles(world(), part.share, setup.bodies, setup.materials, setup.particles);
     restrict_to(part.share, setup);
   }
   return build<D, K>(scene, std::move(part), std::move(setup));
@@ -256,12 +256,11 @@ class Simulation {
     const std::int64_t migrated = model_->migration.moved();
     LooseState<D> state = take_out(state_of(*model_));
     model_.reset();
-    send_home(world(), part.share, state.bodies, state.materials, state.particles);
     Setup<D> setup = rest_;
     restrict_to(part.share, setup);
     model_.emplace(build<D, K>(scene_, std::move(part), std::move(setup)));
     put_into(state_of(*model_), std::move(state));
-    adopt_own_state(*model_);
+    adopt_state(*model_);
     model_->migration.count_from(migrated);
     watch.lap(seconds);
     told.seconds = world().max(seconds);

@@ -142,8 +142,6 @@ class Run {
     audience.ready = [&](const Frame<D>& frame) {
       world().together([&] { prepare(frame); });
       began_ = true;  // for the other ranks too
-      if (whole_ && scene_.outputs.mesh)
-        recorder.keep_mesh(std::move(*whole_));
       whole_.reset();
       if (from_)
         go_on(frame, taken, recorder);
@@ -378,7 +376,7 @@ class Run {
   std::int64_t rebalances_ = 0;
   Real rebalancing_ = 0;                               // [s]
   Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
-  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts
+  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
   std::vector<Stage> stages_;
   RunSummary summary_;               // as it begins
   std::optional<fs::path> initial_;  // what bodies begin with

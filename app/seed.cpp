@@ -48,10 +48,8 @@ struct Standing {
 
 Standing standing_of(std::int64_t here, Exchange& ranks)
 {
-  std::vector<std::int64_t> counts(static_cast<std::size_t>(ranks.size()), 0);
+  const std::vector<std::int64_t> counts = of_all_ranks(ranks, here);
   const auto mine = counts.begin() + ranks.rank();
-  *mine = here;
-  ranks.sum(counts);
   return {std::accumulate(counts.begin(), mine, std::int64_t{0}), std::accumulate(counts.begin(), counts.end(), std::int64_t{0})};
 }
 

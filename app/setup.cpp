@@ -9,7 +9,6 @@
 #include "app/seed.hpp"
 #include "io/history_columns.hpp"
 #include "io/scene_rules.hpp"
-#include "solver/deal.hpp"
 
 namespace talus {
 
@@ -358,22 +357,8 @@ void restrict_to(const Share& share, Setup<D>& setup)
     restrict_to(share, load);
 }
 
-template <int D>
-void send_home(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
-{
-  std::vector<int> rank_of_row;
-  rank_of_row.reserve(particles.cell.size());
-  for (const Index cell : particles.cell)
-    rank_of_row.push_back(share.rank_of_whole_block[static_cast<std::size_t>(cell / block_cells)]);
-  deal_out<D>(ranks, rank_of_row, bodies, materials, particles);
-  for (Index& cell : particles.cell)
-    cell = share.local_cell(cell);
-}
-
 template void restrict_to<2>(const Share&, Setup<2>&);
 template void restrict_to<3>(const Share&, Setup<3>&);
-template void send_home<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void send_home<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
 template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
 

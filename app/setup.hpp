@@ -37,10 +37,6 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks = one_r
 template <int D>
 void restrict_to(const Share& share, Setup<D>& setup);
 
-/// Particles in cells of the whole mesh go to those whose blocks these are, and stand in cells of their parts then.  Every rank has to ask.
-template <int D>
-void send_home(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
-
 /// The scheme of a scene, with the defaults that go with it.
 Transfer transfer_of(const TransferSpec& spec);
 
@@ -52,8 +48,6 @@ std::filesystem::path folder_of(const Scene& scene);
 
 extern template void restrict_to<2>(const Share&, Setup<2>&);
 extern template void restrict_to<3>(const Share&, Setup<3>&);
-extern template void send_home<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void send_home<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
 extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
 

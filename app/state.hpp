@@ -1,6 +1,7 @@
 #pragma once
 // The state of a run between two steps: all that the steps to come depend on and that set-up does not find again in the scene.
 #include "app/frame.hpp"
+#include "solver/deal.hpp"
 
 namespace talus {
 
@@ -38,24 +39,17 @@ void for_each_part(const S& state, F&& f)
   f("particles", state.particles);
 }
 
-/// Puts a model together again after its state has been replaced, by that of its own particles: what follows from the state, and what is
-/// sized by it.  Every rank has to.
-template <int D, Kernel<D> K>
-void adopt_own_state(Model<D, K>& m)
-{
-  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
-  follow_rows(m);
-  if (!m.share.alone())
-    m.migration.agree_on_columns(m.particles);
-}
-
-/// The same where the state is of all particles, in cells of the whole mesh.
+/// Puts a model together again after its state has been replaced: what follows from the state, and what is sized by it.  Where ranks share the
+/// run each has some of the particles, in cells of the whole mesh: they go to the ranks whose cells these are.
 template <int D, Kernel<D> K>
 void adopt_state(Model<D, K>& m)
 {
   if (!m.share.alone())
-    keep_own_particles(m.share, m.bodies, m.materials, m.particles);
-  adopt_own_state(m);
+    take_own_particles(*m.ranks, m.share, m.bodies, m.materials, m.particles);
+  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
+  follow_rows(m);
+  if (!m.share.alone())
+    m.migration.agree_on_columns(m.particles);
 }
 
 /// A state by itself, between two models.

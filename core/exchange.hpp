@@ -217,6 +217,15 @@ std::vector<std::vector<T>> exchange_rows(Exchange& ranks, const std::vector<std
   return rows_of<T>(ranks.all_to_all(letters));
 }
 
+/// The number of each rank, on all ranks.  The same.
+inline std::vector<std::int64_t> of_all_ranks(Exchange& ranks, std::int64_t number)
+{
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(ranks.size()), 0);
+  numbers[static_cast<std::size_t>(ranks.rank())] = number;
+  ranks.sum(numbers);
+  return numbers;
+}
+
 /// For whoever is alone, however many ranks there are.
 Exchange& one_rank();
 /// The exchange of this process: one rank alone, unless Ranks has found others.

@@ -92,14 +92,14 @@ Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, 
   for (const Index n : nodes)
     owners.push_back(rank_of_block[whole.cells_of_node()[n].front() / block_cells]);
   return {Mesh<D>(whole, cells),
-          {.block = std::move(blocks),
-           .rank_of_block = std::move(ranks),
-           .node = std::move(nodes),
-           .rank_of_node = std::move(owners),
-           .rank_of_whole_block = {rank_of_block.begin(), rank_of_block.end()},
-           .whole_cells = whole.n_cells(),
-           .whole_nodes = whole.n_nodes(),
-           .rank = rank}};
+          {std::move(blocks),
+           std::move(ranks),
+           std::move(nodes),
+           std::move(owners),
+           whole.n_cells(),
+           whole.n_nodes(),
+           rank,
+           {rank_of_block.begin(), rank_of_block.end()}}};
 }
 
 template <int D>

@@ -114,7 +114,22 @@ void deal_out(Exchange& ranks, std::span<const int> rank_of_row, std::vector<Bod
   }
 }
 
+template <int D>
+void take_own_particles(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                        Particles<D>& particles)
+{
+  std::vector<int> rank_of_row;
+  rank_of_row.reserve(particles.cell.size());
+  for (const Index cell : particles.cell)
+    rank_of_row.push_back(share.rank_of_whole_block[static_cast<std::size_t>(cell / block_cells)]);
+  deal_out(ranks, rank_of_row, bodies, materials, particles);
+  for (Index& cell : particles.cell)
+    cell = share.local_cell(cell);
+}
+
 template void deal_out<2>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
 template void deal_out<3>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void take_own_particles<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void take_own_particles<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

@@ -3,6 +3,7 @@
 #include "core/exchange.hpp"
 #include "core/particles.hpp"
 #include "materials/batch.hpp"
+#include "mesh/part.hpp"
 
 namespace talus {
 
@@ -13,7 +14,14 @@ template <int D>
 void deal_out(Exchange& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
               Particles<D>& particles);
 
+/// Gives each row, of a cell of the whole mesh, to the rank whose cell it is, and to the cell of its part.  As above.
+template <int D>
+void take_own_particles(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                        Particles<D>& particles);
+
 extern template void deal_out<2>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
 extern template void deal_out<3>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template void take_own_particles<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+extern template void take_own_particles<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

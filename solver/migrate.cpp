@@ -4,7 +4,6 @@
 #include <cstring>
 
 #include "solver/kept_columns.hpp"
-#include "solver/relocate.hpp"
 
 namespace talus {
 
@@ -194,19 +193,6 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
   return true;
 }
 
-template <int D>
-void keep_own_particles(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
-{
-  for (Index& cell : particles.cell) {
-    const Index local = share.local_cell(cell);
-    cell = local != none && share.owns_cell(local) ? local : none;
-  }
-  drop_lost(bodies, materials, particles);
-  particles.for_each_column([](std::string_view, std::string_view, auto& column) { column.shrink_to_fit(); });
-}
-
-template void keep_own_particles<2>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void keep_own_particles<3>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 template class Migration<2>;
 template class Migration<3>;
 

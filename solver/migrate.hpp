@@ -35,12 +35,6 @@ class Migration {
   std::int64_t moved_ = 0;
 };
 
-/// Of particles in cells of the whole mesh those in own blocks stay, in cells of the part.
-template <int D>
-void keep_own_particles(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
-
-extern template void keep_own_particles<2>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void keep_own_particles<3>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 extern template class Migration<2>;
 extern template class Migration<3>;
 

@@ -8,6 +8,7 @@
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
 #include "mesh/partition.hpp"
+#include "solver/deal.hpp"
 
 namespace talus {
 namespace {
@@ -101,7 +102,7 @@ TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)
   for (const Index cell : whole.particles.cell)
     ++weights[z(cell / block_cells)];
   const Part<2> here = cut(mesh, partition(mesh, weights, ranks.size()), ranks.rank(), 2);
-  send_home(ranks, here.share, part.bodies, part.materials, part.particles);
+  take_own_particles(ranks, here.share, part.bodies, part.materials, part.particles);
   expect_rows_of_the_whole();
   for (std::size_t p = 0; p < part.particles.cell.size(); ++p) {
     const Index cell = part.particles.cell[p];
