@@ -82,7 +82,8 @@ void join(Exchange& ranks, ParticleTraction<D>& load)
   std::vector<std::byte> letter(bytes.begin(), bytes.end());
   ranks.broadcast(letter, 0);
   load.id.clear(), load.area.clear();
-  for (const Loaded& one : rows_of<Loaded>({std::move(letter)}).front()) {
+  const auto letters = rows_of<Loaded>({std::move(letter)});
+  for (const Loaded& one : letters.front()) {
     load.id.push_back(one.id);
     load.area.push_back(Eigen::Map<const Vec<D>>(one.area.data()));
   }
