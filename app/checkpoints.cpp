@@ -7,8 +7,8 @@
 
 #include "app/results.hpp"
 #include "app/signals.hpp"
+#include "app/slices.hpp"
 #include "app/sound_state.hpp"
-#include "app/whole.hpp"
 #include "io/kept.hpp"
 #include "io/whole_file.hpp"
 
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 3;
+constexpr std::int64_t format = 4;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
@@ -45,22 +45,35 @@ std::vector<fs::path> checkpoints_in(const fs::path& folder)
   return files;
 }
 
-void keep_laws(ArrayWriter& file, const std::vector<AnyBatch>& materials)
+std::string history_of(std::size_t body) { return below("laws/history", body); }
+
+/// Of the rows of a file those of a body, where the rows from `rows.first` on are here, which `here` counts.
+Slice rows_of_body(const Body& in_file, const Body& here, const Slice& rows)
 {
-  for (std::size_t b = 0; b < materials.size(); ++b) {
-    keep(file, below("laws/name", b), std::string(law_name(materials[b])));
-    keep(file, below("laws/history", b), materials[b]);
+  const std::int64_t first = here.size() > 0 ? rows.first + here.begin - in_file.begin : 0;
+  return {first, in_file.size(), rows.piece, in_file.begin % rows.piece};
+}
+
+/// The rows of the file that are here, [first, end), as rows that count from 0.
+void take_slice(std::int64_t first, std::int64_t end, std::vector<Body>& bodies)
+{
+  for (Body& body : bodies) {
+    body.begin = static_cast<Index>(std::clamp<std::int64_t>(body.begin, first, end) - first);
+    body.end = static_cast<Index>(std::clamp<std::int64_t>(body.end, first, end) - first);
   }
 }
 
-void recall_laws(const ArrayReader& file, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials)
+void recall_laws(const ArrayReader& file, const std::vector<Body>& in_file, const std::vector<Body>& here, std::int64_t first,
+                 std::vector<AnyBatch>& materials)
 {
   for (std::size_t b = 0; b < materials.size(); ++b) {
+    const Body &all = in_file[b], &body = here[b];
     if (const std::string name = file.text(below("laws/name", b)); name != law_name(materials[b]))
       throw EnvironmentError(
-          fmt::format("the law of body \"{}\" is {} there and {} in the scene", bodies[b].name, name, law_name(materials[b])));
-    std::visit([&](auto& batch) { batch.begin = bodies[b].begin, batch.end = bodies[b].end; }, materials[b]);
-    recall(file, below("laws/history", b), materials[b]);
+          fmt::format("the law of body \"{}\" is {} there and {} in the scene", body.name, name, law_name(materials[b])));
+    std::visit([&](auto& batch) { batch.begin = body.begin, batch.end = body.end; }, materials[b]);
+    const Slice rows = rows_of_body(all, body, {first});
+    recall_history(file, history_of(b), static_cast<std::size_t>(rows.first), static_cast<std::size_t>(all.size()), materials[b]);
   }
 }
 
@@ -87,34 +100,45 @@ void check_count(const ArrayReader& arrays, const std::string& list, std::size_t
   must(std::cmp_equal(count, n), what);
 }
 
-/// Bodies one after the other, and as many rows in each column; those that every scene needs are there.
+/// Reads bodies, particles and histories: of the rows the slice of one of so many ranks, the bodies being those of the slice.  Bodies stand one
+/// after the other, with as many rows in each column; those that every scene needs are there.  Returns how many rows there are of all ranks.
 template <int D>
-void check_rows(const Particles<D>& particles, const std::vector<Body>& bodies)
+std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                          Particles<D>& particles)
 {
+  recall(arrays, "bodies", bodies);
   Index end = 0;
   for (const Body& body : bodies) {
     must(body.begin == end && body.end >= end, "bodies");
     end = body.end;
   }
-  must(end == particles.size(), "bodies");
-  const std::size_t n = particles.id.size();
-  particles.for_each_column(
-      [&](std::string_view, std::string_view, const auto& column) { must(column.empty() || column.size() == n, "columns"); });
+  must(std::cmp_equal(end, arrays.rows("particles/id")), "bodies");
+  const std::vector<Body> in_file = bodies;
+  const Slices slices{end, ranks};
+  const std::int64_t first = slices.begin(rank);
+  const std::size_t n = slices.size(rank);
+  take_slice(first, slices.end(rank), bodies);
+  particles.for_each_column([&](std::string_view name, std::string_view, const auto&) {
+    const std::size_t rows = arrays.rows(below("particles", name));
+    must(rows == 0 || std::cmp_equal(rows, end), "columns");
+  });
+  recall_columns(arrays, "particles", static_cast<std::size_t>(first), n, particles);
   const auto all_there = [n](const auto&... columns) { return ((columns.size() == n) && ...); };
   const Particles<D>& p = particles;
   must(all_there(p.cell, p.x, p.v, p.L, p.F, p.stress, p.mass, p.volume0, p.volume), "columns");
+  recall_laws(arrays, in_file, bodies, first, materials);
+  return end;
 }
 
 /// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
 template <int D>
-void check_fit(const State<D>& state, const std::vector<bool>& columns, const StateLimits& limits)
+void check_fit(const State<D>& state, const std::vector<bool>& columns, std::int64_t n_particles, const StateLimits& limits)
 {
   const Particles<D>& particles = state.particles;
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
   const bool known = std::find(columns.begin(), columns.end(), true) != columns.end();  // not by a rank that had no particles
   must(!known || filled_columns(particles) == columns || particles.size() == 0, "columns");
-  must(particles.size() <= limits.particles, "bodies");
-  check_rows(particles, state.bodies);
+  must(n_particles <= limits.particles, "bodies");
   const auto within = [](const auto& column, auto limit) {
     return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
   };
@@ -179,17 +203,28 @@ template <int D>
 void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
 {
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
-  on_root(frame, [&](const Frame<D>& whole) {
+  frame.ranks->together([&] {
     require_results(folder_);
     recorder.flush();  // what the checkpoint says is written is on the disk before it
-    write_whole(file, [&](const fs::path& temporary) {
-      ArrayWriter arrays(temporary);
-      keep(arrays, "format", format);
-      keep(arrays, "run", identity_);
-      for_each_part(whole, [&](const std::string& name, const auto& part) { keep(arrays, name, part); });
-      keep_laws(arrays, whole.materials);
-      keep(arrays, "recorder", recorder);
-      arrays.close();
+  });
+  on_slices(frame, [&](const Frame<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
+    std::vector<SharedArray> arrays;
+    share_columns("particles", slice.particles, rows, arrays);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      share_history(history_of(b), slice.materials[b], rows_of_body(bodies[b], slice.bodies[b], rows), arrays);
+    write_arrays(*frame.ranks, file, arrays, [&](ArrayWriter& rest) {
+      keep(rest, "format", format);
+      keep(rest, "run", identity_);
+      for_each_part(slice, [&](const std::string& name, const auto& part) {
+        using Part = std::decay_t<decltype(part)>;
+        if constexpr (std::is_same_v<Part, std::vector<Body>>)
+          keep(rest, name, bodies);
+        else if constexpr (!std::is_same_v<Part, Particles<D>>)
+          keep(rest, name, part);
+      });
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        keep(rest, below("laws/name", b), std::string(law_name(slice.materials[b])));
+      keep(rest, "recorder", recorder);
     });
   });
   last_ = file;
@@ -273,7 +308,7 @@ CheckpointList::Read CheckpointList::newest(F&& f) const
   std::string reasons;
   for (const fs::path& file : files_) {
     try {
-      f(ArrayReader(file), file);
+      f(file);
       return {file, reasons};
     } catch (const EnvironmentError& e) {
       reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
@@ -284,13 +319,14 @@ CheckpointList::Read CheckpointList::newest(F&& f) const
 
 namespace {
 
-/// Names the file in what check() throws.
+/// Names the file in what check() throws, unless it is named there.
 template <class Check>
 void check_in(const fs::path& file, Check&& check)
 try {
   check();
 } catch (const EnvironmentError& e) {
-  throw EnvironmentError(fmt::format("{}: {}", file.string(), e.what()));
+  const std::string what = e.what();
+  throw EnvironmentError(what.find(file.string()) != what.npos ? what : fmt::format("{}: {}", file.string(), what));
 }
 
 }  // namespace
@@ -298,25 +334,32 @@ try {
 template <int D>
 fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
 {
+  Exchange& ranks = world();
   const auto columns = filled_columns(state.particles);
-  const auto [from, reasons] = newest([&](const ArrayReader& arrays, const fs::path& file) {
-    check_in(file, [&] {
-      check_count(arrays, "bodies", state.bodies.size(), "bodies");
-      check_count(arrays, "walls/wall", state.walls.walls().size(), "walls");
+  const auto read_all = [&](const ArrayReader& arrays) {
+    check_count(arrays, "bodies", state.bodies.size(), "bodies");
+    check_count(arrays, "walls/wall", state.walls.walls().size(), "walls");
+    for_each_part(state, [&](const std::string& name, auto& part) {
+      using Part = std::decay_t<decltype(part)>;
+      if constexpr (!std::is_same_v<Part, std::vector<Body>> && !std::is_same_v<Part, Particles<D>>)
+        recall(arrays, name, part);
     });
-    for_each_part(state, [&](const std::string& name, auto& part) { recall(arrays, name, part); });
-    check_in(file, [&] { check_fit(state, columns, limits); });
-    recall_laws(arrays, state.bodies, state.materials);
-    check_in(file, [&] {
-      std::vector<std::string> faults;
-      find_faults(state.clock, faults);
-      find_faults(state.stage, state.clock, faults);
-      find_faults(state.particles, state.bodies, state.materials, faults);
-      refuse_if_any(faults);
-    });
+    const std::int64_t n = recall_slice(arrays, ranks.rank(), ranks.size(), state.bodies, state.materials, state.particles);
+    check_fit(state, columns, n, limits);
+    std::vector<std::string> faults;
+    find_faults(state.clock, faults);
+    find_faults(state.stage, state.clock, faults);
+    find_faults(state.particles, state.bodies, state.materials, faults);
+    refuse_if_any(faults);
     recall(arrays, "recorder", recorder);
+  };
+  const auto [from, reasons] = newest([&](const fs::path& file) {
+    // Each rank looks at its slice; what one of them finds wrong is wrong for all.
+    ranks.agree(Exchange::caught([&] { check_in(file, [&] { read_all(ArrayReader(file)); }); }));
+    if (const auto twice = ranks.alone() ? std::nullopt : doubled_id(ranks, state.particles.id))
+      throw EnvironmentError(fmt::format("{}: there is more than one particle {}", file.string(), *twice));
   });
-  if (!reasons.empty() && world().is_root())
+  if (!reasons.empty() && ranks.is_root())
     fmt::print(stderr, "warning: {}; going on from {}\n", reasons, from.string());
   return from;
 }
@@ -324,15 +367,13 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
 template <int D>
 CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
 {
-  return newest([&](const ArrayReader& arrays, const fs::path& file) {
-    check_in(file, [&] { check_count(arrays, "bodies", kept.bodies.size(), "bodies"); });
-    recall(arrays, "clock", kept.clock);
-    recall(arrays, "stage", kept.stage);
-    recall(arrays, "bodies", kept.bodies);
-    recall(arrays, "particles", kept.particles);
-    check_in(file, [&] { check_rows(kept.particles, kept.bodies); });
-    recall_laws(arrays, kept.bodies, kept.materials);
+  return newest([&](const fs::path& file) {
     check_in(file, [&] {
+      const ArrayReader arrays(file);
+      check_count(arrays, "bodies", kept.bodies.size(), "bodies");
+      recall(arrays, "clock", kept.clock);
+      recall(arrays, "stage", kept.stage);
+      recall_slice(arrays, 0, 1, kept.bodies, kept.materials, kept.particles);
       std::vector<std::string> faults;
       find_faults(kept.clock, faults);
       find_faults(kept.particles, kept.bodies, kept.materials, faults);

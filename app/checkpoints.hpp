@@ -87,7 +87,8 @@ class CheckpointList {
   /// Folder of the run, where they lie in one.
   const std::optional<std::filesystem::path>& folder() const noexcept { return folder_; }
   /// Puts the newest state that is whole in the place of what is there, and says which file had it.  One that is damaged is named on standard
-  /// error, and the one before it is taken.  EnvironmentError: none is whole and fits.
+  /// error, and the one before it is taken.  Of several ranks each takes a slice of the particles, whose cells are of the whole mesh: see
+  /// adopt_state().  EnvironmentError: none is whole and fits.
   template <int D>
   std::filesystem::path take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
   /// Which file was read, and why newer ones were not.
@@ -101,7 +102,7 @@ class CheckpointList {
   Read read(KeptBodies<D>& kept) const;
 
  private:
-  /// f(arrays, file) for the newest one for which it throws no EnvironmentError.
+  /// f(file) for the newest one for which it throws no EnvironmentError.
   template <class F>
   Read newest(F&& f) const;
 

@@ -3,7 +3,11 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
+#include <array>
+
 #include "app/commands.hpp"
+#include "core/exchange.hpp"
 #include "core/version.hpp"
 #include "core/words.hpp"
 #include "materials/laboratory.hpp"
@@ -15,6 +19,8 @@ namespace {
 constexpr int usage_error = 2, results_differ = 1;
 constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
 constexpr int most_steps = 10'000'000;
+/// Commands that all ranks do together; any other is the root's.
+constexpr std::array<std::string_view, 1> shared_by_ranks{"run"};
 
 /// Commands and the options they fill; lives as long as the parse.
 class CommandLine {
@@ -37,6 +43,7 @@ class CommandLine {
     manual->add_flag("--schema", schema_, "as JSON Schema, for editors");
     manual->callback([this] { print_manual(schema_); });
     app_.add_subcommand("info", "version, laws, kernels, licence")->callback([] { print_info(); });
+    app_.parse_complete_callback([this] { leave_to_root(*app_.get_subcommands().front()); });
   }
 
   int parse(int argc, const char* const* argv)
@@ -45,11 +52,19 @@ class CommandLine {
       app_.parse(argc, argv);
       return status_;
     } catch (const CLI::ParseError& e) {
-      return app_.exit(e) == 0 ? 0 : usage_error;
+      const int code = world().is_root() ? app_.exit(e) : e.get_exit_code();
+      return code == 0 ? 0 : usage_error;
     }
   }
 
  private:
+  /// Before the command does its work, on each rank: on all but the root it does none, unless they share it.
+  static void leave_to_root(CLI::App& command)
+  {
+    if (std::find(shared_by_ranks.begin(), shared_by_ranks.end(), command.get_name()) == shared_by_ranks.end() && !goes_on_as_root())
+      command.callback(nullptr);
+  }
+
   void add_run()
   {
     CLI::App* run = app_.add_subcommand("run", "run a scene");
@@ -61,6 +76,9 @@ class CommandLine {
     run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
     run->add_option("--set", run_.set, set_help);
     run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
+        ->check(CLI::NonNegativeNumber);
+    run->add_option("--rebalance", run_.rebalance,
+                    "several ranks: share the run out anew every so many steps; 0: never; default when it pays")
         ->check(CLI::NonNegativeNumber);
     run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");

@@ -16,6 +16,7 @@ struct RunOptions {
   std::optional<std::filesystem::path> resume;  ///< a checkpoint, or the folder of a run, instead of the scene
   std::optional<std::int64_t> until;            ///< stop before the step after this one, with a checkpoint
   std::optional<int> threads;
+  std::optional<std::int64_t> rebalance;  ///< ranks share the run out anew every so many steps; 0: never; default: when it pays
   std::vector<std::string> set;
   bool quick = false, quiet = false;
 };

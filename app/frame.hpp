@@ -16,7 +16,6 @@ struct Frame {
   const Nodes<D>& nodes;
   const Walls<D>& walls;
   const Loads<D>& loads;
-  std::span<const Index> row_of_id;  ///< where a particle stands now, or `none`
   const Clock& clock;
   const StageState& stage;
   std::string_view stage_name;
@@ -34,9 +33,9 @@ struct Frame {
 template <int D, Kernel<D> K>
 Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
-  return {m.mesh,  m.share,    m.particles, m.bodies, m.materials, m.order,    m.ranks,        m.nodes,
-          m.walls, m.loads,    m.row_of_id, m.clock,  m.stage,     stage.name, m.stage.number, m.energy,
-          m.mass,  m.momentum, m.watched,   m.guards, m.timings,   m.residual, m.crossing,     m.migration.moved()};
+  return {m.mesh,   m.share,   m.particles, m.bodies,   m.materials,        m.order,  m.ranks, m.nodes,    m.walls,
+          m.loads,  m.clock,   m.stage,     stage.name, m.stage.number,     m.energy, m.mass,  m.momentum, m.watched,
+          m.guards, m.timings, m.residual,  m.crossing, m.migration.moved()};
 }
 
 /// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.

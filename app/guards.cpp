@@ -17,33 +17,34 @@ Real largest_factor(const Table& table)
 /// Speeds of waves, and the energy of all particles if they moved with the speed of theirs.
 struct Waves {
   Real fastest = 0, energy = 0;  ///< [m/s], [J]
-  Waves& operator+=(const Waves& other) noexcept
-  {
-    fastest = std::max(fastest, other.fastest), energy += other.energy;
-    return *this;
-  }
 };
 
 template <int D>
-Waves waves_in(const Setup<D>& setup)
+Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
 {
-  Waves all;
-  for (const AnyBatch& material : setup.materials)
+  const Particles<D>& particles = setup.particles;
+  CellOrder order;
+  sort_by_cell(particles.cell, particles.id, setup.bodies, mesh.n_cells(), order);
+  Real least = std::numeric_limits<Real>::infinity();  // minus the speed of the fastest
+  ExactSums<Real> energy;
+  for (Index b = 0; b < static_cast<Index>(setup.materials.size()); ++b)
     std::visit(
         [&](const auto& batch) {
-          all += parallel_sum<Waves>(batch.size(), [&](Index i) {
-            const auto p = static_cast<std::size_t>(batch.begin + i);
-            const Real c = batch.wave_speed(i, setup.particles.F[p]);
-            return Waves{c, 0.5 * setup.particles.mass[p] * c * c};
+          const auto speed = [&](Index i) { return batch.wave_speed(i, particles.F[static_cast<std::size_t>(batch.begin + i)]); };
+          least = parallel_min(batch.size(), least, [&](Index i) { return -speed(i); });
+          add_particles(order, {b, b + 1}, energy, [&](Index row) {
+            const Real c = speed(row - batch.begin);
+            return 0.5 * particles.mass[static_cast<std::size_t>(row)] * c * c;
           });
         },
-        material);
-  return all;
+        setup.materials[static_cast<std::size_t>(b)]);
+  ranks.sum(energy);
+  return {std::max(Real{0}, -ranks.min(least)), energy.value()};
 }
 
 /// What loads and walls can make of a particle within the mesh [m/s]; infinite where that cannot be told.
 template <int D>
-Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup)
+Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
 {
   if (!setup.loads.of_place.empty())
     return std::numeric_limits<Real>::infinity();
@@ -64,7 +65,7 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup)
       const auto p = static_cast<std::size_t>(row);
       layer = std::min(layer, setup.particles.mass[p] / setup.particles.volume0[p] * mesh.altitude(setup.particles.cell[p]));
     }
-    speed += std::sqrt(2 * pressure * size / layer);
+    speed += std::sqrt(2 * pressure * size / ranks.min(layer));
   }
   return speed;
 }
@@ -72,18 +73,19 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup)
 }  // namespace
 
 template <int D>
-Guards guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup)
+Guards guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
 {
   constexpr Real far_beyond = 10;
   constexpr Real least_strain = 1e-6;  // waves of less are not looked at
   const WatchSpec& spec = scene.watch;
-  const Waves waves = waves_in(setup);
+  const Waves waves = waves_in(mesh, setup, ranks);
   Real start = 0;
   for (Index row = 0; row < setup.particles.size(); ++row)
     start = std::max(start, setup.particles.v[static_cast<std::size_t>(row)].norm());
+  start = ranks.max(start);
   Guards guards;
   if (spec.on_speed != OnAlarm::ignore)
-    guards.speed = spec.speed.value_or(far_beyond * (waves.fastest + start + driven_speed(mesh, setup)));
+    guards.speed = spec.speed.value_or(far_beyond * (waves.fastest + start + driven_speed(mesh, setup, ranks)));
   if (spec.on_energy_gain != OnAlarm::ignore)
     guards.gain = spec.energy_gain;
   if (spec.on_failure == OnFailure::remove)
@@ -94,7 +96,7 @@ Guards guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup)
   return guards;
 }
 
-template Guards guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&);
-template Guards guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&);
+template Guards guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Exchange&);
+template Guards guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Exchange&);
 
 }  // namespace talus

@@ -94,7 +94,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
     : spec_(std::move(spec)), state_(std::move(state))
 {
   now.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.clock.time)); });
-  const auto known = [&](std::int64_t id) { return id >= 0 && static_cast<std::size_t>(id) < now.row_of_id.size(); };
+  const auto known = [](std::int64_t id) { return id >= 0; };  // one that is not there any more has no values
   if (state_.impulse.size() != now.walls.walls().size() || state_.followed.size() != spec_.points.size() ||
       !std::all_of(state_.followed.begin(), state_.followed.end(), known))
     throw EnvironmentError("the walls or points of the checkpoint do not fit the scene");
@@ -119,8 +119,10 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
     put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
     state_.impulse[w] = impulse;
   }
+  FollowedRows followed(state_.followed);
+  followed.find(frame.particles.id);
   for (const std::int64_t id : state_.followed)
-    add_point(frame, id, row);
+    add_point(frame, followed.row(id), row);
   for (const FrontSpec& spec : spec_.fronts)
     row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
   frame.ranks->together([&] { file_->append(row); });
@@ -128,9 +130,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
 }
 
 template <int D>
-void HistoryWriter<D>::add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row)
+void HistoryWriter<D>::add_point(const Frame<D>& frame, Index at, std::vector<Real>& row)
 {
-  const Index at = frame.row_of_id[static_cast<std::size_t>(id)];
   std::vector<Real> here;
   if (at != none) {
     const auto p = static_cast<std::size_t>(at);

@@ -44,7 +44,7 @@ class HistoryWriter {
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
-  static void add_point(const Frame<D>& frame, std::int64_t id, std::vector<Real>& row);
+  static void add_point(const Frame<D>& frame, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;

@@ -5,7 +5,7 @@
 #include "app/disk_space.hpp"
 #include "app/fields.hpp"
 #include "app/results.hpp"
-#include "app/whole.hpp"
+#include "app/slices.hpp"
 
 namespace talus {
 
@@ -267,18 +267,18 @@ template <int D>
 void Recorder<D>::write_particles_file(const Frame<D>& frame)
 {
   const auto file = particle_file(particle_files_++);
-  on_root(frame, [&](const Frame<D>& whole) {
-    const auto rows = rows_by_id(whole.particles);
+  on_slices(frame, [&](const Frame<D>& slice, const std::vector<Body>&, const Slice& of_file) {
+    const auto rows = rows_by_id(slice.particles);
     std::vector<Column> columns;
     for (const std::string& name : particle_fields_of(outputs_))
-      columns.push_back(particle_column(whole, rows, name));
+      columns.push_back(particle_column(slice, rows, name));
     std::vector<std::int64_t> ids;
     ids.reserve(rows.size());
     for (const Index row : rows)
-      ids.push_back(whole.particles.id[static_cast<std::size_t>(row)]);
-    write_particles(file, whole.clock.time, positions(whole.particles, rows), ids, columns, made_by_);
-    particle_series_.append(whole.clock.time, file);
+      ids.push_back(slice.particles.id[static_cast<std::size_t>(row)]);
+    write_particles(*frame.ranks, file, frame.clock.time, of_file, positions(slice.particles, rows), ids, columns, made_by_);
   });
+  frame.ranks->together([&] { particle_series_.append(frame.clock.time, file); });
   particle_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
   last_output_ = files_.back();
@@ -289,12 +289,10 @@ void Recorder<D>::write_mesh_file(const Frame<D>& frame)
 {
   std::vector<Column> columns;
   for (const std::string& name : outputs_.mesh->fields_wanted)
-    columns.push_back(whole_column(frame, node_column(frame, name)));
+    columns.push_back(slice_of_column(frame, node_column(frame, name)));
   const auto file = mesh_file(mesh_files_++);
-  frame.ranks->together([&] {
-    write_mesh<D>(file, frame.clock.time, whole_mesh_ ? *whole_mesh_ : frame.mesh, columns, {}, made_by_);
-    mesh_series_.append(frame.clock.time, file);
-  });
+  write_mesh(*frame.ranks, file, frame.clock.time, slice_of_mesh(frame), columns, {}, made_by_);
+  frame.ranks->together([&] { mesh_series_.append(frame.clock.time, file); });
   mesh_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
 }

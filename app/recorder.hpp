@@ -60,8 +60,6 @@ class Recorder {
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
   void watch(const Frame<D>& frame, Moment moment);
-  /// The mesh to be written where this rank, the root, holds only a part of it.
-  void keep_mesh(Mesh<D> whole) { whole_mesh_ = std::move(whole); }
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
   /// the frame is dropped.  Says in words what should be there and is not, on the root.
   std::vector<std::string> resume(const Frame<D>& frame);
@@ -129,7 +127,6 @@ class Recorder {
   int particle_files_ = 0, mesh_files_ = 0;
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // of the last ones written
   Real stage_start_ = 0, done_before_ = 0;
-  std::optional<Mesh<D>> whole_mesh_;
   RanksSummary ranks_;
   Traffic traffic_begin_;  // when the first step was begun
   std::int64_t step_begin_ = 0;

@@ -103,9 +103,9 @@ class Run {
   {
     auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
     watch_.lap(mesh_seconds_);
-    auto setup = set_up(scene_, mesh);
+    auto setup = set_up(scene_, mesh, world());
     if (quick_)
-      shorten(first_step(mesh, setup), setup.stages, scene_.outputs);
+      shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
     stages_ = setup.stages;
     if (from_)
       check_durations(*from_, stages_, options_.set);
@@ -118,7 +118,7 @@ class Run {
       compare(from_->identity(), identity);
     summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
 
-    n_particles_ = setup.particles.size(), n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
+    n_particles_ = setup.n_particles, n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
     if (!world().alone() && world().is_root())
       whole_ = mesh;
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
@@ -135,15 +135,13 @@ class Run {
                            checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
                          }};
     fs::path taken;
-    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.particles.size()};
+    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles};
     if (from_)
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
     audience.ready = [&](const Frame<D>& frame) {
       world().together([&] { prepare(frame); });
       began_ = true;  // for the other ranks too
-      if (whole_ && scene_.outputs.mesh)
-        recorder.keep_mesh(std::move(*whole_));
       whole_.reset();
       if (from_)
         go_on(frame, taken, recorder);
@@ -166,8 +164,8 @@ class Run {
     };
     const StopRequests requests;  // until the summary is written
     try {
-      const FloatingPointTraps traps;
-      simulate(scene_, std::move(mesh), std::move(setup), audience);
+      std::optional<FloatingPointTraps> traps(std::in_place);
+      simulate(scene_, std::move(mesh), std::move(setup), audience, moves_of_shares(mesh_digest, traps));
       finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {
       const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), shell_word(folder_));
@@ -317,6 +315,36 @@ class Run {
                  frame.clock.step, frame.clock.time);
   }
 
+  Moves<D> moves_of_shares(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
+  {
+    const auto whole_mesh = [this, mesh_digest, &traps] {
+      traps.reset();  // whoever makes meshes is not looked at
+      Mesh<D> again = load_mesh<D>(scene_.mesh, folder_of(scene_));
+      traps.emplace();
+      if (digest(again) != mesh_digest)
+        throw EnvironmentError("the mesh is not the one that the run began with: its file has changed since");
+      return again;
+    };
+    const auto stayed = [this](const std::string& why) {
+      summary_.warnings.push_back("the ranks cannot share the run out anew, and go on as they are: " + why);
+      if (world().is_root())
+        fmt::print(stderr, "warning: {}\n", summary_.warnings.back());
+    };
+    return {options_.rebalance, whole_mesh, mesh_seconds_, [this](const SharesMoved& by) { note(by); }, stayed};
+  }
+
+  void note(const SharesMoved& by)
+  {
+    ++rebalances_;
+    rebalancing_ += by.seconds;
+    if (options_.quiet || !world().is_root())
+      return;
+    fmt::print(
+        "step {}, t = {:.6g} s: shared out anew in {:.2g} s, the busiest rank has {:.3g} times the mean of the work, before {:.3g}\n",
+        by.clock.step, by.clock.time, by.seconds, by.after, by.before);
+    std::fflush(stdout);
+  }
+
   void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
   {
     if (!world().is_root())
@@ -330,6 +358,7 @@ class Run {
     summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
     summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
     complete(recorder, quick_, summary);
+    summary.ranks.rebalances = rebalances_, summary.ranks.rebalancing = rebalancing_;
     summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
     if (summary.origin)
       summary.files.emplace_back(initial_file);
@@ -344,8 +373,10 @@ class Run {
   std::optional<std::int64_t> resumed_after_;  // steps
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
+  std::int64_t rebalances_ = 0;
+  Real rebalancing_ = 0;                               // [s]
   Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
-  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts
+  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
   std::vector<Stage> stages_;
   RunSummary summary_;               // as it begins
   std::optional<fs::path> initial_;  // what bodies begin with

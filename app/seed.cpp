@@ -41,11 +41,24 @@ void make_room(std::size_t n, Particles<D>& p)
   resize(p.id, p.cell, p.x, p.v, p.L, p.F, p.stress, p.mass, p.volume0, p.volume);
 }
 
-/// Fills one body after the other.
+/// Where the particles stand that a rank has counted, among those that all have.
+struct Standing {
+  std::int64_t before, all;  ///< of lower ranks; of all
+};
+
+Standing standing_of(std::int64_t here, Exchange& ranks)
+{
+  const std::vector<std::int64_t> counts = of_all_ranks(ranks, here);
+  const auto mine = counts.begin() + ranks.rank();
+  return {std::accumulate(counts.begin(), mine, std::int64_t{0}), std::accumulate(counts.begin(), counts.end(), std::int64_t{0})};
+}
+
+/// Fills one body after the other.  Bodies of another run are taken whole by every rank, until settle().
 template <int D>
 class Seeder {
  public:
-  Seeder(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints) : scene_(scene), mesh_(mesh), complaints_(complaints)
+  Seeder(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints)
+      : scene_(scene), mesh_(mesh), ranks_(ranks), mine_(cells_to_fill(mesh, ranks)), complaints_(complaints)
   {
     seeds_.particles.keep_in(scene.precision);  // while they are none: never more memory than the run needs
   }
@@ -61,11 +74,13 @@ class Seeder {
       return;
     const Index begin = seeds_.particles.size();
     const std::vector<std::int64_t> first = count(*cells, *points, spec);
-    if (const std::string why = too_many_particles(first.back(), material->law); !why.empty())
+    const Standing standing = standing_of(first.back() - begin, ranks_);
+    if (const std::string why = too_many_particles(standing.all, material->law); !why.empty())
       return complaints_.add(spec.where, "particles_per_cell", why);
-    fill(*cells, *points, spec, density_of(*material), first);
+    fill(*cells, *points, spec, density_of(*material), first, seeds_.n_particles + standing.before);
+    seeds_.n_particles += static_cast<Index>(standing.all);
     const Index end = seeds_.particles.size();
-    if (begin == end)
+    if (standing.all == 0)
       complaints_.add(spec.where, "",
                       fmt::format("the body has no particles: {}",
                                   spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
@@ -88,7 +103,8 @@ class Seeder {
       complaints_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
     const Body body{spec.name, begin, end, spec.where};
     AnyBatch batch = batch_of(*material, spec, begin, end);
-    copy(initial.there.particles, rows, density_of(*material) / density(law_there), begin);
+    copy(initial.there.particles, rows, density_of(*material) / density(law_there), begin, seeds_.n_particles);
+    seeds_.n_particles += source.size();
     find_cells(body, source);
     if (law_name(batch) == law_name(law_there)) {
       std::vector<Index> of_body(rows);
@@ -106,13 +122,18 @@ class Seeder {
     seeds_.materials.push_back(std::move(batch));
   }
 
-  /// What concerns all bodies together, once they are all there.
+  /// What concerns all bodies of another run together, once they are all there.
   void settle(const InitialState<D>& initial, std::vector<std::string>& warnings)
   {
     carry_columns(initial.there.particles);
     for (const Taken& taken : taken_)
       settle_stress(taken, initial.there.clock.dt, warnings);
     seeds_.origin = initial.origin;
+    if (ranks_.alone())
+      return;
+    for (Index& cell : seeds_.particles.cell)
+      cell = is_mine(cell) ? cell : none;
+    drop_lost(seeds_.bodies, seeds_.materials, seeds_.particles);
   }
 
   Seeds<D> take() { return std::move(seeds_); }
@@ -128,17 +149,21 @@ class Seeder {
                                 D == 2 ? "triangle" : "tetrahedron", or_list(known)));
   }
 
+  bool is_mine(Index cell) const noexcept { return mine_.begin <= cell && cell < mine_.end; }
+
+  /// Those to be filled here.
   std::optional<std::vector<Index>> cells_of(const BodySpec& spec)
   {
     if (spec.shape) {
-      std::vector<Index> all(static_cast<std::size_t>(mesh_.n_cells()));
-      for (std::size_t c = 0; c < all.size(); ++c)
-        all[c] = static_cast<Index>(c);
+      std::vector<Index> all(static_cast<std::size_t>(mine_.end - mine_.begin));
+      std::iota(all.begin(), all.end(), mine_.begin);
       return all;
     }
     auto cells = mesh_.cell_set(spec.region);
     if (!cells)
       complaints_.unknown_group(spec.where, "region", "cell", spec.region, mesh_.cell_set_names());
+    else
+      std::erase_if(*cells, [&](Index c) { return !is_mine(c); });
     return cells;
   }
 
@@ -175,22 +200,23 @@ class Seeder {
     return first;
   }
 
-  /// Why there cannot be so many, with those of bodies before; empty if they can.
-  std::string too_many_particles(std::int64_t all, const AnyLaw& law) const
+  /// Why there cannot be so many more on all ranks; empty if there can.
+  std::string too_many_particles(std::int64_t more, const AnyLaw& law) const
   {
-    if (all > std::numeric_limits<Index>::max())
-      return fmt::format("{} particles are more than can be numbered", all);
+    if (seeds_.n_particles + more > std::numeric_limits<Index>::max())
+      return fmt::format("{} particles are more than can be numbered", seeds_.n_particles + more);
     Particles<D> one;
     one.keep_in(scene_.precision);
     make_room(1, one);
     std::size_t bytes = std::visit([]<class L>(const L&) { return sizeof(typename L::State); }, law);
     one.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
-    return too_many(static_cast<Real>(all - seeds_.particles.size()), "particles", static_cast<Real>(bytes));
+    const Real on_this_machine = static_cast<Real>(std::min(ranks_on_this_machine(), ranks_.size())) / ranks_.size();
+    return ranks_.first(too_many(static_cast<Real>(more) * on_this_machine, "particles", static_cast<Real>(bytes)));
   }
 
   /// Rows for the particles of cells.
   void fill(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density,
-            const std::vector<std::int64_t>& first)
+            const std::vector<std::int64_t>& first, std::int64_t first_id)
   {
     Particles<D>& p = seeds_.particles;
     const auto all = static_cast<std::size_t>(first.back());
@@ -200,7 +226,7 @@ class Seeder {
       const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
       auto row = static_cast<std::size_t>(first[i]);
       for_each_place(cell, points, spec, [&](const Vec<D>& x) {
-        p.id[row] = static_cast<std::int64_t>(row);
+        p.id[row] = first_id + static_cast<std::int64_t>(row) - first.front();
         p.cell[row] = cell;
         p.x[row] = x;
         p.v.set(row, Vec<D>::Zero());
@@ -227,7 +253,8 @@ class Seeder {
       places[p].template head<D>() = particles.x[first + p];
       sizes[p] = std::pow(mesh_.volume(particles.cell[first + p]), Real{1} / D);
     }
-    for (int d = 0; d < D; ++d)
+    for (int d = 0; d < D; ++d) {
+      std::string wrong;
       try {
         const std::string& formula = spec.velocity[static_cast<std::size_t>(d)];
         const auto values = evaluate(formula, places);
@@ -241,8 +268,11 @@ class Seeder {
           particles.L.set(first + p, L);
         }
       } catch (const std::invalid_argument& e) {
-        complaints_.add(spec.where, fmt::format("velocity[{}]", d), e.what());
+        wrong = e.what();
       }
+      if (wrong = ranks_.first(wrong); !wrong.empty())
+        complaints_.add(spec.where, fmt::format("velocity[{}]", d), wrong);
+    }
   }
 
   static std::vector<Index> rows_by_id(const Particles<D>& particles, const Body& body)
@@ -263,13 +293,13 @@ class Seeder {
   }
 
   /// Rows behind those there are; masses change as the density of the material does.
-  void copy(const Particles<D>& from, const std::vector<Index>& rows, Real heavier, Index begin)
+  void copy(const Particles<D>& from, const std::vector<Index>& rows, Real heavier, Index begin, std::int64_t first_id)
   {
     Particles<D>& p = seeds_.particles;
     make_room(static_cast<std::size_t>(begin) + rows.size(), p);
     const bool moves = scene_.initial->velocity == Carried::keep;
     for_each_pair(begin, rows, [&](std::size_t row, std::size_t there) {
-      p.id[row] = static_cast<std::int64_t>(row);
+      p.id[row] = first_id + static_cast<std::int64_t>(row) - begin;
       p.x[row] = from.x[there];
       p.v.set(row, moves ? Vec<D>(from.v[there]) : Vec<D>(Vec<D>::Zero()));
       p.L.set(row, moves ? Mat<D>(from.L[there]) : Mat<D>(Mat<D>::Zero()));
@@ -370,6 +400,8 @@ class Seeder {
 
   const Scene& scene_;
   const Mesh<D>& mesh_;
+  Exchange& ranks_;
+  IndexRange mine_;  // cells
   Complaints& complaints_;
   Seeds<D> seeds_;
   std::vector<Taken> taken_;
@@ -377,11 +409,11 @@ class Seeder {
 
 /// Cells that hold particles of two bodies: material there is counted twice, unless the shapes only touch.
 template <int D>
-void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, std::vector<std::string>& warnings)
+void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, Exchange& ranks, std::vector<std::string>& warnings)
 {
   std::vector<Index> owner(static_cast<std::size_t>(n_cells), none), counted(owner);
   for (std::size_t b = 0; b < seeds.bodies.size(); ++b) {
-    std::vector<Index> shared(seeds.bodies.size(), 0);
+    std::vector<std::int64_t> shared(seeds.bodies.size(), 0);
     for (Index row = seeds.bodies[b].begin; row < seeds.bodies[b].end; ++row) {
       const auto cell = static_cast<std::size_t>(seeds.particles.cell[static_cast<std::size_t>(row)]);
       const Index body = static_cast<Index>(b), holds = owner[cell];
@@ -390,6 +422,7 @@ void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, std::vector<std:
       else if (holds != body && std::exchange(counted[cell], body) != body)
         ++shared[static_cast<std::size_t>(holds)];
     }
+    ranks.sum(shared);  // no cell is filled by two ranks
     for (std::size_t other = 0; other < b; ++other)
       if (shared[other] > 0)
         warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(seeds.bodies[b].where),
@@ -400,9 +433,19 @@ void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, std::vector<std:
 }  // namespace
 
 template <int D>
-Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, std::vector<std::string>& warnings)
+IndexRange cells_to_fill(const Mesh<D>& mesh, const Exchange& ranks)
 {
-  Seeder<D> seeder(scene, mesh, complaints);
+  const std::int64_t blocks = blocks_of(mesh.n_cells());
+  const auto begin_of = [&](int rank) {
+    return static_cast<Index>(std::min<std::int64_t>(blocks * rank / ranks.size() * block_cells, mesh.n_cells()));
+  };
+  return {begin_of(ranks.rank()), begin_of(ranks.rank() + 1)};
+}
+
+template <int D>
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints, std::vector<std::string>& warnings)
+{
+  Seeder<D> seeder(scene, mesh, ranks, complaints);
   auto initial = find_initial_state<D>(scene, complaints, warnings);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (initial && initial->source[b] != none)
@@ -417,11 +460,13 @@ Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, s
         complaints.add(scene.bodies[i].where, "region",
                        fmt::format("body \"{}\" fills the cell group \"{}\" already", scene.bodies[j].name, scene.bodies[i].region));
   Seeds<D> seeds = seeder.take();
-  warn_of_shared_cells(seeds, mesh.n_cells(), warnings);
+  warn_of_shared_cells(seeds, mesh.n_cells(), ranks, warnings);
   return seeds;
 }
 
-template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Complaints&, std::vector<std::string>&);
-template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Complaints&, std::vector<std::string>&);
+template IndexRange cells_to_fill<2>(const Mesh<2>&, const Exchange&);
+template IndexRange cells_to_fill<3>(const Mesh<3>&, const Exchange&);
+template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Exchange&, Complaints&, std::vector<std::string>&);
+template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Exchange&, Complaints&, std::vector<std::string>&);
 
 }  // namespace talus

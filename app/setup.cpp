@@ -20,16 +20,18 @@ Vec<D> vector_of(const std::vector<Real>& numbers)
   return numbers.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(Eigen::Map<const Vec<D>>(numbers.data()));
 }
 
-/// Which cells have material at the start.
+/// Which cells have material at the start, on any rank.  Every rank has to ask.
 template <int D>
 class Filled {
  public:
-  Filled(const Mesh<D>& mesh, const Particles<D>& particles) : mesh_(mesh), filled_(static_cast<std::size_t>(mesh.n_cells()), 0)
+  Filled(const Mesh<D>& mesh, const Particles<D>& particles, Exchange& ranks)
+      : mesh_(mesh), filled_(static_cast<std::size_t>(mesh.n_cells() / cells_in_word + 1), 0)
   {
     for (const Index c : particles.cell)
-      filled_[static_cast<std::size_t>(c)] = 1;
+      filled_[word_of(c)] |= bit_of(c);
+    ranks.sum(filled_);  // no cell is filled by two ranks
   }
-  bool operator()(Index cell) const { return filled_[static_cast<std::size_t>(cell)] != 0; }
+  bool operator()(Index cell) const { return (filled_[word_of(cell)] & bit_of(cell)) != 0; }
   /// A facet inside the mesh belongs to the side that has material, if only one has.
   Facet seen_from_material(Facet facet) const
   {
@@ -47,9 +49,45 @@ class Filled {
   }
 
  private:
+  static constexpr Index cells_in_word = 32;
+  static std::size_t word_of(Index cell) { return static_cast<std::size_t>(cell / cells_in_word); }
+  static std::int64_t bit_of(Index cell) { return std::int64_t{1} << (cell % cells_in_word); }
+
   const Mesh<D>& mesh_;
-  std::vector<std::uint8_t> filled_;
+  std::vector<std::int64_t> filled_;
 };
+
+/// What each rank has found behind facets, its own particles, becomes that of all.  Every rank has to ask.
+template <int D>
+void join(Exchange& ranks, ParticleTraction<D>& load)
+{
+  struct Loaded {
+    std::int64_t id;
+    std::array<Real, D> area;
+  };
+  if (ranks.alone())
+    return;
+  std::vector<Loaded> all;
+  for (std::size_t k = 0; k < load.id.size(); ++k) {
+    Loaded& one = all.emplace_back();
+    one.id = load.id[k];
+    std::copy(load.area[k].begin(), load.area[k].end(), one.area.begin());
+  }
+  const auto of_ranks = gather_rows<Loaded>(ranks, all);
+  all.clear();
+  for (const std::vector<Loaded>& of_rank : of_ranks)
+    all.insert(all.end(), of_rank.begin(), of_rank.end());
+  std::sort(all.begin(), all.end(), [](const Loaded& a, const Loaded& b) { return a.id < b.id; });
+  const auto bytes = std::as_bytes(std::span(all));
+  std::vector<std::byte> letter(bytes.begin(), bytes.end());
+  ranks.broadcast(letter, 0);
+  load.id.clear(), load.area.clear();
+  const auto letters = rows_of<Loaded>({std::move(letter)});
+  for (const Loaded& one : letters.front()) {
+    load.id.push_back(one.id);
+    load.area.push_back(Eigen::Map<const Vec<D>>(one.area.data()));
+  }
+}
 
 /// Boundaries, one after the other -> walls.
 template <int D>
@@ -113,8 +151,8 @@ class WallBuilder {
 template <int D>
 class LoadBuilder {
  public:
-  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Complaints& complaints, Setup<D>& setup)
-      : mesh_(mesh), has_particles_(has_particles), complaints_(complaints), setup_(setup)
+  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, Complaints& complaints, Setup<D>& setup)
+      : mesh_(mesh), has_particles_(has_particles), ranks_(ranks), complaints_(complaints), setup_(setup)
   {}
 
   void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
@@ -156,10 +194,13 @@ class LoadBuilder {
     if (loaded < area * (1 - 1e-9))  // sums of the same areas differ by round-off only
       setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
                                             to_string(spec.where), 100 * (1 - loaded / area), spec.on));
-    if (spec.carried_by == Carrier::particles)
-      setup_.loads.on_particles.push_back(filled(carried_by_particles<D>(mesh_, facets, setup_.particles), spec));
-    else
+    if (spec.carried_by == Carrier::particles) {
+      auto load = carried_by_particles<D>(mesh_, facets, setup_.particles);
+      join(ranks_, load);
+      setup_.loads.on_particles.push_back(filled(std::move(load), spec));
+    } else {
       setup_.loads.on_mesh.push_back(filled(carried_by_mesh<D>(mesh_, facets), spec));
+    }
   }
 
  private:
@@ -175,6 +216,7 @@ class LoadBuilder {
 
   const Mesh<D>& mesh_;
   const Filled<D>& has_particles_;
+  Exchange& ranks_;
   Complaints& complaints_;
   Setup<D>& setup_;
 };
@@ -274,25 +316,26 @@ void check_picture(const Scene& scene, Complaints& complaints)
 }  // namespace
 
 template <int D>
-Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
+Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
 {
   Complaints complaints(scene);
   Setup<D> setup;
-  Seeds<D> seeds = seed(scene, mesh, complaints, setup.warnings);
+  Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
   setup.particles = std::move(seeds.particles);
+  setup.n_particles = seeds.n_particles;
   setup.bodies = std::move(seeds.bodies);
   setup.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
-  const Filled<D> has_particles(mesh, setup.particles);
+  const Filled<D> has_particles(mesh, setup.particles, ranks);
   WallBuilder<D> walls(mesh, has_particles, wall_names(scene.boundaries), complaints, setup.walls);
   for (const BoundarySpec& boundary : scene.boundaries)
     std::visit(walls, boundary);
-  LoadBuilder<D> loads(mesh, has_particles, complaints, setup);
+  LoadBuilder<D> loads(mesh, has_particles, ranks, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);
   check_picture(scene, complaints);
-  complaints.throw_if_any();
+  ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
 
   setup.transfer = transfer_of(scene.transfer);
   setup.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
@@ -303,14 +346,13 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh)
   if (setup.particles.x0.empty() &&
       (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
     setup.particles.x0 = setup.particles.x;
-  setup.guards = guards_of(scene, mesh, setup);
+  setup.guards = guards_of(scene, mesh, setup, ranks);
   return setup;
 }
 
 template <int D>
 void restrict_to(const Share& share, Setup<D>& setup)
 {
-  keep_own_particles(share, setup.bodies, setup.materials, setup.particles);
   setup.walls.restrict_to(share);
   for (MeshTraction<D>& load : setup.loads.on_mesh)
     restrict_to(share, load);
@@ -318,7 +360,7 @@ void restrict_to(const Share& share, Setup<D>& setup)
 
 template void restrict_to<2>(const Share&, Setup<2>&);
 template void restrict_to<3>(const Share&, Setup<3>&);
-template Setup<2> set_up<2>(const Scene&, const Mesh<2>&);
-template Setup<3> set_up<3>(const Scene&, const Mesh<3>&);
+template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
+template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
 
 }  // namespace talus

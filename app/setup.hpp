@@ -11,6 +11,7 @@ namespace talus {
 template <int D>
 struct Setup {
   Particles<D> particles;
+  Index n_particles = 0;  ///< of all ranks
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
   Walls<D> walls;
@@ -26,10 +27,13 @@ struct Setup {
 
 /// Throws SceneErrors with everything that is wrong: groups the mesh does not have, bodies without particles, loads on nothing.
 /// Particles stand in the order of body and id, ids being 0, 1, 2, ...; those of a body that was filled are in the order of cells as well.
+///
+/// Every rank has to ask, with the same mesh.  Each gets the particles in an even share of the blocks of cells; all else is of the whole mesh and
+/// of all particles, and the same on all ranks, and so is what is thrown.
 template <int D>
-Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh);
+Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks = one_rank());
 
-/// Leaves what concerns the blocks, nodes and particles of one of several ranks, in the numbers of its part.
+/// Leaves what concerns the cells and nodes of one of several ranks, in the numbers of its part.  Particles are not looked at.
 template <int D>
 void restrict_to(const Share& share, Setup<D>& setup);
 
@@ -44,7 +48,7 @@ std::filesystem::path folder_of(const Scene& scene);
 
 extern template void restrict_to<2>(const Share&, Setup<2>&);
 extern template void restrict_to<3>(const Share&, Setup<3>&);
-extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&);
-extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&);
+extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
+extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
 
 }  // namespace talus

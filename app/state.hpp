@@ -1,6 +1,7 @@
 #pragma once
 // The state of a run between two steps: all that the steps to come depend on and that set-up does not find again in the scene.
 #include "app/frame.hpp"
+#include "solver/deal.hpp"
 
 namespace talus {
 
@@ -38,14 +39,65 @@ void for_each_part(const S& state, F&& f)
   f("particles", state.particles);
 }
 
-/// Puts a model together again after its state has been replaced: what follows from the state, and what is sized by it.
+/// Puts a model together again after its state has been replaced: what follows from the state, and what is sized by it.  Where ranks share the
+/// run each has some of the particles, in cells of the whole mesh: they go to the ranks whose cells these are.
 template <int D, Kernel<D> K>
 void adopt_state(Model<D, K>& m)
 {
   if (!m.share.alone())
-    keep_own_particles(m.share, m.bodies, m.materials, m.particles);
+    take_own_particles(*m.ranks, m.share, m.bodies, m.materials, m.particles);
   sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
   follow_rows(m);
+  if (!m.share.alone())
+    m.migration.agree_on_columns(m.particles);
+}
+
+/// A state by itself, between two models.
+template <int D>
+struct LooseState {
+  Particles<D> particles;
+  std::vector<Body> bodies;
+  std::vector<AnyBatch> materials;
+  Walls<D> walls;
+  Clock clock;
+  StageState stage;
+  EnergyLedger energy;
+  MassLedger<D> mass;
+  MomentumLedger<D> momentum;
+  Watched watched;
+  Timings timings;
+  Real residual = 0, crossing = 0;
+};
+
+/// Taken out of a model that is not needed any more.
+template <int D>
+LooseState<D> take_out(const State<D>& state)
+{
+  const auto& [particles, bodies, materials, walls, clock, stage, energy, mass, momentum, watched, timings, residual, crossing] = state;
+  return {std::move(particles),
+          std::move(bodies),
+          std::move(materials),
+          std::move(walls),
+          clock,
+          stage,
+          energy,
+          mass,
+          momentum,
+          std::move(watched),
+          timings,
+          residual,
+          crossing};
+}
+
+/// Put into another model of the same scene.
+template <int D>
+void put_into(const State<D>& state, LooseState<D> loose)
+{
+  const auto& [particles, bodies, materials, walls, clock, stage, energy, mass, momentum, watched, timings, residual, crossing] = state;
+  particles = std::move(loose.particles), bodies = std::move(loose.bodies), materials = std::move(loose.materials);
+  walls.go_on_from(loose.walls);
+  clock = loose.clock, stage = loose.stage, energy = loose.energy, mass = loose.mass, momentum = loose.momentum;
+  watched = std::move(loose.watched), timings = loose.timings, residual = loose.residual, crossing = loose.crossing;
 }
 
 }  // namespace talus

@@ -562,6 +562,13 @@ Exchange& world()
   return exchange;
 }
 
+bool goes_on_as_root()
+{
+  const bool is_root = world().is_root();
+  world() = Exchange();
+  return is_root;
+}
+
 Ranks::Ranks()
 {
   if (!launched_as_ranks())
@@ -599,14 +606,15 @@ int Ranks::end(int code, const char* message) noexcept
     return code;
   MPI_Request all_here = MPI_REQUEST_NULL;
   MPI_Ibarrier(MPI_COMM_WORLD, &all_here);  // not among the collectives that others may be waiting in
-  if (code == 0)
-    MPI_Wait(&all_here, MPI_STATUS_IGNORE);
-  else if (!within_patience([&](int& done) { return MPI_Test(&all_here, &done, MPI_STATUS_IGNORE); })) {
+  if (code == 0) {
+    for (int done = 0; MPI_Test(&all_here, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && done == 0;)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  } else if (!within_patience([&](int& done) { return MPI_Test(&all_here, &done, MPI_STATUS_IGNORE); })) {
     if (rank != 0)
       say();
     world().abort(code);
   }
-  if (world().group_->torn)
+  if (world().group_ && world().group_->torn)
     world().abort(code);
   world() = Exchange();
   MPI_Finalize();

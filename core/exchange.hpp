@@ -261,10 +261,22 @@ std::vector<std::vector<T>> exchange_rows(Exchange& ranks, const std::vector<std
   return rows_of<T>(ranks.all_to_all(letters));
 }
 
+/// The number of each rank, on all ranks.  The same.
+inline std::vector<std::int64_t> of_all_ranks(Exchange& ranks, std::int64_t number)
+{
+  std::vector<std::int64_t> numbers(static_cast<std::size_t>(ranks.size()), 0);
+  numbers[static_cast<std::size_t>(ranks.rank())] = number;
+  ranks.sum(numbers);
+  return numbers;
+}
+
 /// For whoever is alone, however many ranks there are.
 Exchange& one_rank();
 /// The exchange of this process: one rank alone, unless Ranks has found others.
 Exchange& world();
+/// For what ranks do not share: true on the root, which is alone in the world from here on, false on the others, for which nothing is left but
+/// to end.  Every rank has to call it.
+bool goes_on_as_root();
 
 /// Made once, first thing in main(): if the process was launched as one of several ranks world() becomes theirs until end().  Throws
 /// EnvironmentError if MPI cannot start, or finds another number of ranks than the launcher has started.
@@ -275,9 +287,10 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   ~Ranks();
 
-  /// Last thing in main(), when all has been printed: `return ranks.end(code)`.  A code of 0 waits for the other ranks.  With any other code
-  /// they have some seconds to end as well, as they do when all throw alike; one that does not, because it waits for this rank, would
-  /// wait for ever, so then the job is aborted with that code.  Without ranks it returns the code, that is all.
+  /// Last thing in main(), when all has been printed: `return ranks.end(code)`.  A code of 0 waits for the other ranks, however long, and keeps
+  /// no core busy meanwhile.  With any other code they have some seconds to end as well, as they do when all throw alike; one that does not,
+  /// because it waits for this rank, would wait for ever, so then the job is aborted with that code.  Without ranks it returns the code, that
+  /// is all.
   /// `message` goes to standard error: of the root, and of a rank that ends by itself.
   int end(int code, const char* message = nullptr) noexcept;
 

@@ -18,6 +18,8 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/exchange.hpp"
+#include "core/parallel.hpp"
 #include "io/whole_file.hpp"
 
 namespace talus {
@@ -26,8 +28,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t chunk_bytes = 1 << 20;  // as much as HDF5 keeps of one array while it is written or read
 constexpr const char* digest_name = "digest";
+constexpr const char* pieces_name = "pieces";
 constexpr const char* unit_name = "unit";
 
 /// What HDF5 has opened, closed at its end.
@@ -109,6 +111,17 @@ hid_t type_id()
   }
 }
 
+hid_t type_id(NumberKind kind)
+{
+  switch (kind) {
+    case NumberKind::float64: return type_id<double>();
+    case NumberKind::float32: return type_id<float>();
+    case NumberKind::int32: return type_id<std::int32_t>();
+    case NumberKind::int64: return type_id<std::int64_t>();
+    default: return type_id<std::uint8_t>();
+  }
+}
+
 std::string type_word(hid_t type)
 {
   const std::array<std::pair<hid_t, const char*>, 5> words{{{type_id<double>(), "double"},
@@ -125,28 +138,48 @@ std::string type_word(hid_t type)
 /// Changes with every word: each step is one to one, so a change inside one word is always noticed, any other but once in 2^64.
 std::uint64_t digest_step(std::uint64_t h, std::uint64_t word) noexcept { return std::rotl((h ^ word) * 0x9e3779b97f4a7c15U, 29); }
 
-// Fletcher32 in the file takes words 0 and 65535 for the same, and with them a lost page (zeros) for entries of -1, and HDF5's checksums do
-// not know which array they stand in.  This digest does.  Eight lanes: as fast as memory.  Files are read by it: it must not change.
+// HDF5 has checksums of chunks only, which take words 0 and 65535 for the same, and with them a lost page (zeros) for entries of -1, and do not
+// know which array they stand in.  This digest does.  Eight lanes: as fast as memory.  Files are read by it: it must not change.
+class Digest {
+ public:
+  static constexpr std::size_t lanes = 8, block = lanes * sizeof(std::uint64_t);
+  /// Of so many bytes.
+  Digest(std::uint64_t seed, std::size_t bytes) noexcept : h_(digest_step(seed, bytes))
+  {
+    for (std::size_t k = 0; k < lanes; ++k)
+      lane_[k] = digest_step(seed, k);
+  }
+  /// All but the last time whole blocks.
+  void add(std::span<const std::byte> bytes) noexcept
+  {
+    std::size_t done = 0;
+    for (; done + block <= bytes.size(); done += block) {
+      std::array<std::uint64_t, lanes> word{};
+      std::memcpy(word.data(), bytes.data() + done, block);
+      for (std::size_t k = 0; k < lanes; ++k)
+        lane_[k] = digest_step(lane_[k], word[k]);
+    }
+    if (done < bytes.size())
+      std::memcpy(rest_.data(), bytes.data() + done, bytes.size() - done);
+  }
+  std::uint64_t value() const noexcept
+  {
+    std::uint64_t h = h_;
+    for (std::size_t k = 0; k < lanes; ++k)
+      h = digest_step(digest_step(h, lane_[k]), rest_[k]);
+    return h ^ (h >> 32);
+  }
+
+ private:
+  std::uint64_t h_;
+  std::array<std::uint64_t, lanes> lane_{}, rest_{};
+};
+
 std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t seed) noexcept
 {
-  constexpr std::size_t lanes = 8, block = lanes * sizeof(std::uint64_t);
-  std::array<std::uint64_t, lanes> lane{};
-  for (std::size_t k = 0; k < lanes; ++k)
-    lane[k] = digest_step(seed, k);
-  std::array<std::uint64_t, lanes> word{};
-  std::size_t done = 0;
-  for (; done + block <= bytes.size(); done += block) {
-    std::memcpy(word.data(), bytes.data() + done, block);
-    for (std::size_t k = 0; k < lanes; ++k)
-      lane[k] = digest_step(lane[k], word[k]);
-  }
-  word = {};
-  if (done < bytes.size())
-    std::memcpy(word.data(), bytes.data() + done, bytes.size() - done);
-  std::uint64_t h = digest_step(seed, bytes.size());
-  for (std::size_t k = 0; k < lanes; ++k)
-    h = digest_step(digest_step(h, lane[k]), word[k]);
-  return h ^ (h >> 32);
+  Digest digest(seed, bytes.size());
+  digest.add(bytes);
+  return digest.value();
 }
 
 /// The file below HDF5 while it is written.  HDF5 cannot close a file that cannot be written: it keeps the descriptor, hence the space on a
@@ -272,12 +305,85 @@ struct Extents {
   friend bool operator==(const Extents&, const Extents&) = default;
 };
 
-/// Of the values and of all that says what they mean.
-std::uint64_t digest_of(const std::string& path, const std::string& type, const Extents& shape, const std::string& unit,
-                        std::span<const std::byte> values)
+/// Of all that says what values mean: it goes into the digest of each piece of them.
+std::uint64_t digest_of(const std::string& path, const std::string& type, const Extents& shape, const std::string& unit)
 {
   const std::string meaning = fmt::format("{}\n{}\n{} x {}\n{}", path, type, shape.rows, shape.columns, unit);
-  return digest_of(values, digest_of(std::as_bytes(std::span(meaning)), 0));
+  return digest_of(std::as_bytes(std::span(meaning)), 0);
+}
+
+/// The pieces of an array and their digests.
+struct Pieces {
+  Slice all;  // from row 0 on
+  std::vector<std::uint64_t> digests;
+
+  /// As they are kept; of one piece, or none, there is no more to say.
+  std::vector<std::uint64_t> words() const
+  {
+    std::vector<std::uint64_t> kept;
+    if (digests.size() > 1)
+      kept = {static_cast<std::uint64_t>(all.piece), static_cast<std::uint64_t>(all.lead)};
+    kept.insert(kept.end(), digests.begin(), digests.end());
+    return kept;
+  }
+  std::uint64_t digest(std::uint64_t meaning) const { return digest_of(std::as_bytes(std::span<const std::uint64_t>(words())), meaning); }
+};
+
+/// Copies rows of an array from the one of that number on, as many as there is room for.
+void pack(const SharedArray& array, std::size_t from, std::size_t row_bytes, std::span<std::byte> to)
+{
+  const std::byte* row = array.first + from * array.stride;
+  for (; !to.empty(); to = to.subspan(row_bytes), row += array.stride)
+    std::memcpy(to.data(), row, row_bytes);
+}
+
+/// Of the pieces that are here.
+std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t number_bytes, std::uint64_t meaning)
+{
+  if (!array.slice.is_whole(static_cast<std::int64_t>(array.rows)))
+    throw std::invalid_argument(fmt::format("{}: {} rows from {} on are no whole pieces", array.path, array.rows, array.slice.first));
+  if (array.rows == 0)
+    return {};
+  constexpr std::size_t at_once = Digest::block;  // so many rows are whole blocks, however long
+  const std::size_t row_bytes = static_cast<std::size_t>(array.columns) * number_bytes;
+  const Slice& slice = array.slice;
+  const std::int64_t begin = slice.piece_of(slice.first), end = slice.piece_of(slice.first + static_cast<std::int64_t>(array.rows) - 1) + 1;
+  std::vector<std::uint64_t> digests(static_cast<std::size_t>(end - begin));
+  const bool is_packed = array.stride == row_bytes;
+  std::vector<std::vector<std::byte>> room(std::min(static_cast<std::size_t>(threads()), digests.size()),
+                                           std::vector<std::byte>(is_packed ? 0 : at_once * row_bytes));
+  parallel_for(static_cast<Index>(room.size()), [&](Index t) {
+    const auto thread = static_cast<std::size_t>(t);
+    for (std::size_t i = thread; i < digests.size(); i += room.size()) {
+      const std::int64_t number = begin + static_cast<std::int64_t>(i);
+      auto row = static_cast<std::size_t>(slice.begin_of(number) - slice.first);
+      const auto last = static_cast<std::size_t>(slice.begin_of(number + 1) - slice.first);
+      Digest digest(meaning, (last - row) * row_bytes);
+      if (is_packed)
+        digest.add({array.first + row * row_bytes, (last - row) * row_bytes});
+      for (; !is_packed && row < last; row += at_once) {
+        const auto some = std::span(room[thread]).first(std::min(at_once, last - row) * row_bytes);
+        pack(array, row, row_bytes, some);
+        digest.add(some);
+      }
+      digests[i] = digest.value();
+    }
+  });
+  return digests;
+}
+
+/// The bytes of the rows here to their places in an array that begins at `place`.
+void put_rows(const SharedArray& array, std::size_t row_bytes, std::uint64_t place, const PutBytes& put, std::span<std::byte> room)
+{
+  place += static_cast<std::uint64_t>(array.slice.first) * row_bytes;
+  if (array.stride == row_bytes)
+    return put(place, {array.first, array.rows * row_bytes});
+  for (std::size_t row = 0; row < array.rows;) {
+    const std::size_t n = std::min(room.size() / row_bytes, array.rows - row);
+    pack(array, row, row_bytes, room.first(n * row_bytes));
+    put(place + row * row_bytes, room.first(n * row_bytes));
+    row += n;
+  }
 }
 
 Handle text_type(std::size_t size)
@@ -289,25 +395,29 @@ Handle text_type(std::size_t size)
   return type;
 }
 
-bool write_attribute(const Handle& array, const char* name, hid_t type, const void* value)
+bool write_attribute(const Handle& array, const char* name, hid_t type, const Handle& space, const void* value)
 {
-  const Handle scalar(H5Screate(H5S_SCALAR), H5Sclose);
-  Handle attribute(H5Acreate2(array.id(), name, type, scalar.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+  Handle attribute(H5Acreate2(array.id(), name, type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
   return attribute.is_open() && H5Awrite(attribute.id(), type, value) >= 0 && attribute.close();
 }
+bool write_attribute(const Handle& array, const char* name, hid_t type, const void* value)
+{
+  return write_attribute(array, name, type, Handle(H5Screate(H5S_SCALAR), H5Sclose), value);
+}
+bool write_attribute(const Handle& array, const char* name, const std::vector<std::uint64_t>& words)
+{
+  const hsize_t n = words.size();
+  return write_attribute(array, name, H5T_NATIVE_UINT64, Handle(H5Screate_simple(1, &n, nullptr), H5Sclose), words.data());
+}
 
-/// How arrays lie in the file: chunks with checksums.
-Handle array_layout(const Extents& shape, int rank, std::size_t value_bytes)
+/// How arrays lie in the file: in one piece, whose place is known at once, whoever writes it.
+Handle array_layout()
 {
   Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
   H5Pset_obj_track_times(layout.id(), false);  // the same values, the same bytes
-  // HDF5 has no chunks without rows, and nothing to check there.
-  if (shape.rows > 0) {
-    const hsize_t fit = std::max<hsize_t>(1, chunk_bytes / (shape.columns * value_bytes));
-    const std::array<hsize_t, 2> chunk{std::min(shape.rows, fit), shape.columns};
-    H5Pset_chunk(layout.id(), rank, chunk.data());
-    H5Pset_fletcher32(layout.id());
-  }
+  H5Pset_layout(layout.id(), H5D_CONTIGUOUS);
+  H5Pset_alloc_time(layout.id(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(layout.id(), H5D_FILL_TIME_NEVER);
   return layout;
 }
 
@@ -360,27 +470,44 @@ struct ArrayWriter::Opened {
         refuse_write(group);
   }
 
-  void put(const std::string& path, hid_t type, const Extents& shape, std::span<const std::byte> values, const std::string& unit) const
+  /// An array without its values.
+  Handle make(const std::string& path, hid_t type, const Extents& shape, const std::string& unit, const Pieces& pieces) const
   {
     if (!file.is_open())
       throw std::invalid_argument(fmt::format("{} is closed: {} cannot be written", name.string(), path));
     make_groups_around(path);
     if (is_taken(path))
       throw std::invalid_argument(fmt::format("{} has {} already", name.string(), path));
-    const int rank = shape.columns > 1 ? 2 : 1;
     const std::array<hsize_t, 2> dims{shape.rows, shape.columns};
-    const Handle space(H5Screate_simple(rank, dims.data(), nullptr), H5Sclose);
-    const Handle layout = array_layout(shape, rank, H5Tget_size(type));
-    Handle array(H5Dcreate2(file.id(), path.c_str(), type, space.id(), H5P_DEFAULT, layout.id(), H5P_DEFAULT), H5Dclose);
-    if (!array.is_open())
+    const Handle space(H5Screate_simple(shape.columns > 1 ? 2 : 1, dims.data(), nullptr), H5Sclose);
+    Handle array(H5Dcreate2(file.id(), path.c_str(), type, space.id(), H5P_DEFAULT, array_layout().id(), H5P_DEFAULT), H5Dclose);
+    const std::uint64_t digest = pieces.digest(digest_of(path, type_word(type), shape, unit));
+    if (!array.is_open() || (!unit.empty() && !write_attribute(array, unit_name, text_type(unit.size()).id(), unit.data())) ||
+        (pieces.digests.size() > 1 && !write_attribute(array, pieces_name, pieces.words())) ||
+        !write_attribute(array, digest_name, H5T_NATIVE_UINT64, &digest))
       refuse_write(path);
-    if (!values.empty() && H5Dwrite(array.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
+    return array;
+  }
+
+  void put(const std::string& path, hid_t type, const Extents& shape, std::span<const std::byte> values, const std::string& unit) const
+  {
+    const auto rows = static_cast<std::size_t>(shape.rows), row_bytes = values.size() / std::max<std::size_t>(rows, 1);
+    const Slice all{0, static_cast<std::int64_t>(rows)};
+    const SharedArray bytes{path, NumberKind::uint8, static_cast<int>(row_bytes), {}, values.data(), rows, row_bytes, all};
+    Handle array = make(path, type, shape, unit, {all, digests_of(bytes, 1, digest_of(path, type_word(type), shape, unit))});
+    if ((!values.empty() && H5Dwrite(array.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) || !array.close() ||
+        disk.failure() != 0)
       refuse_write(path);
-    if (!unit.empty() && !write_attribute(array, unit_name, text_type(unit.size()).id(), unit.data()))
-      refuse_write(path);
-    const std::uint64_t digest = digest_of(path, type_word(type), shape, unit, values);
-    if (!write_attribute(array, digest_name, H5T_NATIVE_UINT64, &digest) || !array.close() || disk.failure() != 0)
-      refuse_write(path);
+  }
+
+  /// Makes an array whose values are written by others.  Where they are to come in the file.
+  std::uint64_t reserve(const SharedArray& array, const Extents& shape, const Pieces& pieces) const
+  {
+    Handle made = make(array.path, type_id(array.kind), shape, array.unit, pieces);
+    const haddr_t place = shape.rows > 0 ? H5Dget_offset(made.id()) : 0;
+    if (place == HADDR_UNDEF || !made.close() || disk.failure() != 0)
+      refuse_write(array.path);
+    return place;
   }
 };
 
@@ -410,6 +537,51 @@ void ArrayWriter::close()
   opened_->disk.close();
   if (!closed || opened_->disk.failure() != 0)
     opened_->refuse_write("");
+}
+
+void write_arrays(Exchange& ranks, const fs::path& file, std::span<const SharedArray> shared, const std::function<void(ArrayWriter&)>& rest)
+{
+  // Digests first: the root lays out the file with them, and then everyone knows where its rows go.
+  const auto shape_of = [](const SharedArray& array) {
+    return Extents{static_cast<hsize_t>(array.slice.of_all), static_cast<hsize_t>(array.columns)};
+  };
+  const auto number_bytes = [](const SharedArray& array) { return H5Tget_size(type_id(array.kind)); };
+  constexpr std::size_t room_bytes = std::size_t{1} << 20;
+  std::vector<std::byte> room(room_bytes);
+  std::vector<std::uint64_t> mine;  // of each array their number, then the digests
+  for (const SharedArray& array : shared) {
+    const auto digests =
+        digests_of(array, number_bytes(array), digest_of(array.path, type_word(type_id(array.kind)), shape_of(array), array.unit));
+    mine.push_back(digests.size());
+    mine.insert(mine.end(), digests.begin(), digests.end());
+  }
+  const auto of_rank = gather_rows<std::uint64_t>(ranks, mine);
+  std::vector<std::uint64_t> places;
+  const auto lay_out = [&](const fs::path& temporary) {
+    ArrayWriter writer(temporary);
+    rest(writer);
+    std::vector<std::size_t> read(of_rank.size(), 0);  // of each rank
+    for (const SharedArray& array : shared) {
+      Pieces pieces{array.slice, {}};
+      for (std::size_t r = 0; r < of_rank.size(); ++r) {
+        const auto begin = of_rank[r].begin() + static_cast<std::ptrdiff_t>(read[r] + 1);
+        pieces.digests.insert(pieces.digests.end(), begin, begin + static_cast<std::ptrdiff_t>(of_rank[r][read[r]]));
+        read[r] += 1 + of_rank[r][read[r]];
+      }
+      if (std::cmp_not_equal(pieces.digests.size(), array.slice.pieces()))
+        throw std::invalid_argument(fmt::format("{}: {} pieces of {} are there", array.path, pieces.digests.size(), array.slice.pieces()));
+      places.push_back(writer.opened_->reserve(array, shape_of(array), pieces));
+    }
+    writer.close();
+  };
+  write_together(ranks, file, lay_out, [&](const PutBytes& put) {
+    places.resize(shared.size(), 0);
+    std::vector<std::int64_t> told(places.begin(), places.end());  // 0 but on the root
+    ranks.sum(told);
+    for (std::size_t i = 0; i < shared.size(); ++i)
+      put_rows(shared[i], static_cast<std::size_t>(shared[i].columns) * number_bytes(shared[i]), static_cast<std::uint64_t>(told[i]), put,
+               room);
+  });
 }
 
 struct ArrayReader::Opened {
@@ -491,24 +663,79 @@ struct ArrayReader::Opened {
     return unit;
   }
 
-  void check_digest(const Handle& array, std::uint64_t wanted, const std::string& path) const
+  /// The words of an attribute; none if it is not there.
+  std::vector<std::uint64_t> words_of(const Handle& array, const char* attribute_name, const std::string& path) const
   {
-    const Handle attribute(H5Aopen(array.id(), digest_name, H5P_DEFAULT), H5Aclose);
-    const Handle type(H5Aget_type(attribute.id()), H5Tclose);
-    std::uint64_t digest = 0;
-    if (!attribute.is_open() || H5Tequal(type.id(), H5T_NATIVE_UINT64) <= 0 || H5Aget_storage_size(attribute.id()) != sizeof(digest) ||
-        H5Aread(attribute.id(), type.id(), &digest) < 0)
+    const htri_t exists = H5Aexists(array.id(), attribute_name);
+    if (exists == 0)
+      return {};
+    const Handle attribute(H5Aopen(array.id(), attribute_name, H5P_DEFAULT), H5Aclose);
+    const Handle type(H5Aget_type(attribute.id()), H5Tclose), space(H5Aget_space(attribute.id()), H5Sclose);
+    const hsize_t size = attribute.is_open() ? H5Aget_storage_size(attribute.id()) : 0;
+    const hssize_t n = H5Sget_simple_extent_npoints(space.id());
+    std::vector<std::uint64_t> words(size <= bytes ? size / sizeof(std::uint64_t) : 0);
+    if (exists < 0 || words.empty() || H5Tequal(type.id(), H5T_NATIVE_UINT64) <= 0 || std::cmp_not_equal(n, words.size()) ||
+        H5Aread(attribute.id(), type.id(), words.data()) < 0)
       refuse(name, path, "has no readable digest: it is damaged, or another program wrote it");
-    if (digest != wanted)
-      refuse(name, path, "is damaged (the values do not fit their digest)");
+    return words;
   }
 
-  /// Reads what has been opened and checked so far; as many values as `shape` says.
-  void get(const Handle& array, hid_t type, const Extents& shape, std::span<std::byte> to, const std::string& path) const
+  [[noreturn]] void refuse_values(const std::string& path) const { refuse(name, path, "is damaged (the values do not fit their digest)"); }
+
+  /// Reads what has been opened and checked so far: the rows from `first` on, and the rest of their pieces to check them.
+  void get(const Handle& array, hid_t type, const Extents& shape, std::size_t first, std::span<std::byte> to, const std::string& path) const
   {
-    if (!to.empty() && H5Dread(array.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to.data()) < 0)
+    const std::uint64_t meaning = digest_of(path, type_word(type), shape, unit_of(array, path));
+    const auto digest = words_of(array, digest_name, path), words = words_of(array, pieces_name, path);
+    if (digest.size() != 1)
+      refuse(name, path, "has no readable digest: it is damaged, or another program wrote it");
+    Pieces pieces{{0, static_cast<std::int64_t>(shape.rows), std::max<std::int64_t>(static_cast<std::int64_t>(shape.rows), 1)}, {}};
+    if (!words.empty()) {
+      constexpr std::uint64_t longest = std::uint64_t{1} << 40;
+      if (words.size() < 2 || words[0] == 0 || words[0] > longest || words[1] >= words[0])
+        refuse_values(path);
+      pieces.all.piece = static_cast<std::int64_t>(words[0]), pieces.all.lead = static_cast<std::int64_t>(words[1]);
+      pieces.digests.assign(words.begin() + 2, words.end());
+      if (std::cmp_not_equal(pieces.digests.size(), pieces.all.pieces()) || pieces.digest(meaning) != digest[0])
+        refuse_values(path);
+    }
+    if (shape.rows == 0 && pieces.digest(meaning) != digest[0])
+      refuse_values(path);
+    const std::size_t row_bytes = shape.columns * H5Tget_size(type);
+    const std::size_t last = first + to.size() / row_bytes;  // one behind
+    for (std::size_t row = first; row < last;) {
+      const std::int64_t number = pieces.all.piece_of(static_cast<std::int64_t>(row));
+      const auto begin = static_cast<std::size_t>(pieces.all.begin_of(number)),
+                 end = static_cast<std::size_t>(pieces.all.begin_of(number + 1));
+      std::vector<std::byte> room;  // for a piece of which not all is wanted
+      std::span<std::byte> piece = to.subspan((row - first) * row_bytes, (std::min(end, last) - row) * row_bytes);
+      const std::span<std::byte> wanted = piece;
+      if (begin < row || end > last) {
+        room.resize((end - begin) * row_bytes);
+        piece = room;
+      }
+      read_piece(array, type, shape, begin, end - begin, piece, path);
+      if (room.size() > 0)
+        std::copy_n(room.begin() + static_cast<std::ptrdiff_t>((row - begin) * row_bytes), wanted.size(), wanted.begin());
+      const std::uint64_t found = digest_of(piece, meaning);
+      const bool fits = words.empty() ? Pieces{pieces.all, {found}}.digest(meaning) == digest[0]
+                                      : found == pieces.digests[static_cast<std::size_t>(number)];
+      if (!fits)
+        refuse_values(path);
+      row = end;
+    }
+  }
+
+  void read_piece(const Handle& array, hid_t type, const Extents& shape, std::size_t first, std::size_t rows, std::span<std::byte> to,
+                  const std::string& path) const
+  {
+    const Handle in_file(H5Dget_space(array.id()), H5Sclose);
+    const std::array<hsize_t, 2> from{first, 0}, count{rows, shape.columns};
+    const hsize_t n = rows * shape.columns;
+    const Handle in_memory(H5Screate_simple(1, &n, nullptr), H5Sclose);
+    if (H5Sselect_hyperslab(in_file.id(), H5S_SELECT_SET, from.data(), nullptr, count.data(), nullptr) < 0 ||
+        H5Dread(array.id(), type, in_memory.id(), in_file.id(), H5P_DEFAULT, to.data()) < 0)
       refuse_damaged(name, path);
-    check_digest(array, digest_of(path, type_word(type), shape, unit_of(array, path), to), path);
   }
 
   Extents check_array(const Handle& array, hid_t wanted, hsize_t columns, const std::string& path) const
@@ -579,7 +806,7 @@ std::vector<T> ArrayReader::read(const std::string& path, int columns) const
   const Handle array = opened_->open(path);
   const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   std::vector<T> values(shape.rows * shape.columns);
-  opened_->get(array, type_id<T>(), shape, std::as_writable_bytes(std::span(values)), path);
+  opened_->get(array, type_id<T>(), shape, 0, std::as_writable_bytes(std::span(values)), path);
   return values;
 }
 
@@ -590,7 +817,17 @@ void ArrayReader::read_into(const std::string& path, std::span<T> to, int column
   const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   if (shape.rows * shape.columns != to.size())
     refuse(opened_->name, path, fmt::format("has {} rows, not {}", shape.rows, to.size() / shape.columns));
-  opened_->get(array, type_id<T>(), shape, std::as_writable_bytes(to), path);
+  opened_->get(array, type_id<T>(), shape, 0, std::as_writable_bytes(to), path);
+}
+
+template <class T>
+void ArrayReader::read_rows(const std::string& path, std::size_t first, std::span<T> to, int columns) const
+{
+  const Handle array = opened_->open(path);
+  const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
+  if (first > shape.rows || to.size() / shape.columns > shape.rows - first)
+    refuse(opened_->name, path, fmt::format("has {} rows, not {}", shape.rows, first + to.size() / shape.columns));
+  opened_->get(array, type_id<T>(), shape, first, std::as_writable_bytes(to), path);
 }
 
 std::size_t ArrayReader::rows(const std::string& path) const
@@ -615,7 +852,7 @@ std::string ArrayReader::text(const std::string& path) const
   if (H5Tequal(type.id(), text_type(size).id()) <= 0 || shape.columns != 1 || shape.rows > 1)
     refuse(opened_->name, path, "is not one text of a known size");
   std::string text(shape.rows * size, '\0');
-  opened_->get(array, type.id(), shape, std::as_writable_bytes(std::span(text)), path);
+  opened_->get(array, type.id(), shape, 0, std::as_writable_bytes(std::span(text)), path);
   return text;
 }
 
@@ -630,9 +867,14 @@ template std::vector<std::int32_t> ArrayReader::read(const std::string&, int) co
 template std::vector<std::int64_t> ArrayReader::read(const std::string&, int) const;
 template std::vector<std::uint8_t> ArrayReader::read(const std::string&, int) const;
 template void ArrayReader::read_into(const std::string&, std::span<double>, int) const;
+template void ArrayReader::read_rows(const std::string&, std::size_t, std::span<double>, int) const;
 template void ArrayReader::read_into(const std::string&, std::span<float>, int) const;
+template void ArrayReader::read_rows(const std::string&, std::size_t, std::span<float>, int) const;
 template void ArrayReader::read_into(const std::string&, std::span<std::int32_t>, int) const;
+template void ArrayReader::read_rows(const std::string&, std::size_t, std::span<std::int32_t>, int) const;
 template void ArrayReader::read_into(const std::string&, std::span<std::int64_t>, int) const;
+template void ArrayReader::read_rows(const std::string&, std::size_t, std::span<std::int64_t>, int) const;
 template void ArrayReader::read_into(const std::string&, std::span<std::uint8_t>, int) const;
+template void ArrayReader::read_rows(const std::string&, std::size_t, std::span<std::uint8_t>, int) const;
 
 }  // namespace talus

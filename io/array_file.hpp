@@ -3,16 +3,51 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
+
+#include "core/slices.hpp"
 
 namespace talus {
 
+class Exchange;
+
+enum class NumberKind : std::uint8_t { float64, float32, int32, int64, uint8 };
+template <class T>
+constexpr NumberKind number_kind()
+{
+  if constexpr (std::is_same_v<T, double>)
+    return NumberKind::float64;
+  else if constexpr (std::is_same_v<T, float>)
+    return NumberKind::float32;
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return NumberKind::int32;
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return NumberKind::int64;
+  else {
+    static_assert(std::is_same_v<T, std::uint8_t>);
+    return NumberKind::uint8;
+  }
+}
+
+/// An array that ranks write together: the rows of this one, as they lie in memory.
+struct SharedArray {
+  std::string path;
+  NumberKind kind;
+  int columns;
+  std::string unit;
+  const std::byte* first;    ///< of `columns` numbers there, and at every `stride` bytes from there
+  std::size_t rows, stride;  ///< how many rows are here
+  Slice slice;               ///< which they are: whole pieces
+};
+
 /// A file while it is being written, HDF5 inside.  Other programs read it as such; every array and every text also carries a digest
-/// that ArrayReader checks.  The same calls make the same bytes.  Here and below: paths are names between single slashes, anything
+/// that ArrayReader checks, of pieces of rows (core/slices.hpp) and of all of them.  The same calls make the same bytes.  Here and below: paths are names between single slashes, anything
 /// else is std::invalid_argument; one thread at a time in the whole process, the library behind is not made for more.
 class ArrayWriter {
  public:
@@ -34,9 +69,15 @@ class ArrayWriter {
   void close();
 
  private:
+  friend void write_arrays(Exchange&, const std::filesystem::path&, std::span<const SharedArray>, const std::function<void(ArrayWriter&)>&);
   struct Opened;
   std::unique_ptr<Opened> opened_;
 };
+
+/// Writes a file by all ranks together, as in write_together(): rest(writer) on the root, and the rows of each rank at their places.  The same
+/// bytes for any number of ranks that share out the same rows, whatever the stride.
+void write_arrays(Exchange& ranks, const std::filesystem::path& file, std::span<const SharedArray> shared,
+                  const std::function<void(ArrayWriter&)>& rest);
 
 /// A file that ArrayWriter wrote.  Whatever is damaged, missing or of another kind than asked for is an EnvironmentError that names the
 /// file and the path; a wrong value is never returned.
@@ -58,6 +99,9 @@ class ArrayReader {
   /// The same to a place that has as many rows.  After an error its values are unspecified.
   template <class T>
   void read_into(const std::string& path, std::span<T> to, int columns = 1) const;
+  /// As many rows as there is room for, from `first` on: what is checked is read, hence up to a piece more at both ends.
+  template <class T>
+  void read_rows(const std::string& path, std::size_t first, std::span<T> to, int columns = 1) const;
   /// The rows of an array of any type.
   std::size_t rows(const std::string& path) const;
   /// The unit of an array, empty for a pure number.

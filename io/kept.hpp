@@ -1,9 +1,12 @@
 #pragma once
 // What is kept of a run, to the last bit: structs by their fields(), particles by their columns, laws by their histories.
+#include <fmt/format.h>
+
 #include <string>
 #include <type_traits>
 #include <vector>
 
+#include "core/particles.hpp"
 #include "io/array_file.hpp"
 #include "materials/batch.hpp"
 
@@ -82,49 +85,59 @@ void recall(const ArrayReader& file, const std::string& path, T& value)
   }
 }
 
-/// Every column, in the numbers it is kept in.
+/// Every column, in the numbers it is kept in: `rows` tells which of the file are here.  Of arrays without rows there are none in the file
+/// either.
 template <int D>
-void keep(ArrayWriter& file, const std::string& path, const Particles<D>& particles)
+void share_columns(const std::string& path, const Particles<D>& particles, const Slice& rows, std::vector<SharedArray>& arrays)
 {
-  particles.for_each_column([&](std::string_view name, std::string_view unit, const auto& rows) {
-    using Row = detail::RowOf<std::decay_t<decltype(rows[0])>>;
-    const auto* const first = reinterpret_cast<const typename Row::Number*>(rows.data());
-    file.write(below(path, name), std::span(first, rows.size() * Row::columns), Row::columns, std::string(unit));
+  particles.for_each_column([&](std::string_view name, std::string_view unit, const auto& column) {
+    using Row = std::decay_t<decltype(column[0])>;
+    using Kept = detail::RowOf<Row>;
+    Slice slice = rows;
+    if (column.empty())
+      slice.of_all = 0;
+    arrays.push_back({below(path, name), number_kind<typename Kept::Number>(), Kept::columns, std::string(unit),
+                      reinterpret_cast<const std::byte*>(column.data()), column.size(), sizeof(Row), slice});
   });
 }
+/// Back from the rows from `first` on, `n` of them; columns without any in the file have none here.  EnvironmentError.
 template <int D>
-void recall(const ArrayReader& file, const std::string& path, Particles<D>& particles)
+void recall_columns(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, Particles<D>& particles)
 {
-  particles.for_each_column([&](std::string_view name, std::string_view, auto& rows) {
-    using Row = detail::RowOf<std::decay_t<decltype(rows[0])>>;
+  particles.for_each_column([&](std::string_view name, std::string_view, auto& column) {
+    using Kept = detail::RowOf<std::decay_t<decltype(column[0])>>;
     const std::string at = below(path, name);
-    rows.resize(file.rows(at));
-    auto* const first = reinterpret_cast<typename Row::Number*>(rows.data());
-    file.read_into(at, std::span(first, rows.size() * Row::columns), Row::columns);
+    column.resize(file.rows(at) > 0 ? n : 0);
+    auto* const numbers = reinterpret_cast<typename Kept::Number*>(column.data());
+    file.read_rows(at, column.empty() ? 0 : first, std::span(numbers, column.size() * Kept::columns), Kept::columns);
   });
 }
 
-/// Histories of a law, one array a variable.
-inline void keep(ArrayWriter& file, const std::string& path, const AnyBatch& batch)
+/// The history of a law, one array a variable.  `rows` as above.
+inline void share_history(const std::string& path, const AnyBatch& batch, const Slice& rows, std::vector<SharedArray>& arrays)
 {
-  for_each_history(batch, [&](std::string_view key, std::string_view unit, std::string_view, const auto& column) {
-    constexpr int columns = std::decay_t<decltype(column)>::components;
-    std::vector<Real> values(static_cast<std::size_t>(column.size() * columns));
-    parallel_for(column.size(), [&](Index i) {
-      for (int c = 0; c < columns; ++c)
-        values[static_cast<std::size_t>(i * columns + c)] = column.component(i, c);
-    });
-    file.write<Real>(below(path, key), values, columns, std::string(unit));
-  });
+  std::visit(
+      [&](const auto& typed) {
+        for_each_history(typed, [&](std::string_view key, std::string_view unit, std::string_view, const auto& column) {
+          constexpr int columns = std::decay_t<decltype(column)>::components;
+          const std::byte* const first = column.size() > 0 ? reinterpret_cast<const std::byte*>(&column[0]) : nullptr;
+          arrays.push_back({below(path, key), NumberKind::float64, columns, std::string(unit), first,
+                            static_cast<std::size_t>(column.size()), sizeof(typed.history[0]), rows});
+        });
+      },
+      batch);
 }
-/// Of a batch whose range is right already.
-inline void recall(const ArrayReader& file, const std::string& path, AnyBatch& batch)
+/// Back from the rows from `first` on, of a batch whose range is right already, where the file has `n` of all ranks.
+inline void recall_history(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, AnyBatch& batch)
 {
   std::visit([](auto& typed) { typed.history.resize(static_cast<std::size_t>(typed.size())); }, batch);
   for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
     constexpr int columns = std::decay_t<decltype(column)>::components;
+    const std::string at = below(path, key);
+    if (const std::size_t there = file.rows(at); there != n)
+      throw EnvironmentError(fmt::format("{} has {} rows, not {}", at, there, n));
     std::vector<Real> values(static_cast<std::size_t>(column.size() * columns));
-    file.read_into<Real>(below(path, key), values, columns);
+    file.read_rows<Real>(at, first, values, columns);
     parallel_for(column.size(), [&](Index i) {
       for (int c = 0; c < columns; ++c)
         column.component(i, c) = values[static_cast<std::size_t>(i * columns + c)];

@@ -69,7 +69,9 @@ Json to_object(const RanksSummary& ranks)
                    {"bytes_per_step [B]", ranks.bytes},
                    {"collectives_per_step", ranks.collectives},
                    {"collective_bytes_per_step [B]", ranks.collective_bytes},
-                   {"share_of_particles_moved_per_step", ranks.particles_moved}});
+                   {"share_of_particles_moved_per_step", ranks.particles_moved},
+                   {"rebalances", ranks.rebalances},
+                   {"rebalancing [s]", ranks.rebalancing}});
   return object;
 }
 

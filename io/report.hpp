@@ -95,7 +95,9 @@ struct RanksSummary {
   Real bytes{};         ///< of these
   Real collectives{};   ///< in a step
   Real collective_bytes{};
-  Real particles_moved{};  ///< of all ranks in a step, over the particles
+  Real particles_moved{};     ///< of all ranks in a step, over the particles
+  std::int64_t rebalances{};  ///< times that the run was shared out anew
+  Real rebalancing{};         ///< what that took, all in all [s]
 };
 
 /// Everything summary.json holds.  Optional parts that are empty are left out of the file.

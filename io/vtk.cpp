@@ -1,20 +1,16 @@
-// The only file of this library that knows VTK.  Arrays are lent to VTK, not copied, wherever the layouts agree.
+// The only file of this library that knows VTK.  VTK reads; files are written here, as VTK's own writers lay them out, so that several ranks
+// can write one together.
 #include "io/vtk.hpp"
 
 #include <fmt/format.h>
-#include <vtkCallbackCommand.h>
-#include <vtkCellArray.h>
 #include <vtkCellData.h>
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
-#include <vtkExecutive.h>
 #include <vtkFieldData.h>
-#include <vtkFloatArray.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
-#include <vtkIntArray.h>
+#include <vtkLZ4DataCompressor.h>
 #include <vtkLogger.h>
-#include <vtkLongArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -25,18 +21,17 @@
 #include <vtkUnstructuredGrid.h>
 #include <vtkXMLDataElement.h>
 #include <vtkXMLPolyDataReader.h>
-#include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridReader.h>
-#include <vtkXMLUnstructuredGridWriter.h>
 #include <vtkXMLUtilities.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cstring>
-#include <numeric>
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "core/exchange.hpp"
+#include "core/parallel.hpp"
 #include "io/whole_file.hpp"
 
 namespace talus {
@@ -46,85 +41,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view id_name = "id", origin_name = "MadeBy";
-
-/// An array that shows `values` to VTK.  VTK's interface is not const; writers only read, and `save` = 1 keeps the memory ours.
-template <class Array, class T>
-vtkSmartPointer<Array> lend(std::span<const T> values, int components, const char* name)
-{
-  auto array = vtkSmartPointer<Array>::New();
-  array->SetName(name);
-  array->SetNumberOfComponents(components);
-  array->SetArray(const_cast<T*>(values.data()), static_cast<vtkIdType>(values.size()), 1);
-  return array;
-}
-
-void add_columns(vtkFieldData* data, std::span<const Column> columns, std::size_t items, const fs::path& file)
-{
-  for (const Column& column : columns) {
-    if (column.components < 1 || column.values.size() != items * static_cast<std::size_t>(column.components))
-      throw std::invalid_argument(fmt::format("{}: column \"{}\" has {} values, {} items of {} components were expected", file.string(),
-                                              column.name, column.values.size(), items, column.components));
-    const auto array = lend<vtkFloatArray>(std::span<const float>(column.values), column.components, column.name.c_str());
-    if (!column.unit.empty())
-      array->GetInformation()->Set(vtkDataArray::UNITS_LABEL(), column.unit.c_str());
-    data->AddArray(array);
-  }
-}
-
-void add_origin(vtkDataObject* object, Real time, const std::string& made_by)
-{
-  vtkNew<vtkDoubleArray> array;
-  array->SetName("TimeValue");  // the name ParaView looks for
-  array->InsertNextValue(time);
-  object->GetFieldData()->AddArray(array);
-  if (made_by.empty())
-    return;
-  vtkNew<vtkStringArray> text;
-  text->SetName(origin_name.data());
-  text->InsertNextValue(made_by);
-  object->GetFieldData()->AddArray(text);
-}
-
-/// VTK prints errors and goes on; this keeps the first one instead.
-void keep_message(vtkObject*, unsigned long, void* kept, void* message)
-{
-  auto& text = *static_cast<std::string*>(kept);
-  if (text.empty() && message != nullptr)
-    text = static_cast<const char*>(message);
-}
-
-template <class Writer>
-void write(const fs::path& file, vtkDataObject* object)
-{
-  write_whole(file, [&](const fs::path& temporary) {
-    std::string message;
-    vtkNew<vtkCallbackCommand> observer;
-    observer->SetCallback(keep_message);
-    observer->SetClientData(&message);
-    vtkNew<Writer> writer;
-    writer->AddObserver(vtkCommand::ErrorEvent, observer);
-    writer->GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
-    writer->SetFileName(temporary.c_str());
-    writer->SetInputDataObject(object);
-    writer->SetDataModeToAppended();
-    writer->EncodeAppendedDataOff();
-    writer->SetHeaderTypeToUInt64();
-    writer->SetCompressorTypeToLZ4();
-    if (writer->Write() != 1 || writer->GetErrorCode() != 0 || !message.empty())
-      throw EnvironmentError(fmt::format("cannot write {}: {}", file.string(), message.empty() ? "the disk may be full" : message));
-  });
-}
-
-vtkSmartPointer<vtkCellArray> cell_array(vtkSmartPointer<vtkIntArray> nodes, vtkIdType cells, int nodes_per_cell)
-{
-  vtkNew<vtkIntArray> offsets;
-  offsets->SetNumberOfValues(cells + 1);
-  for (vtkIdType c = 0; c <= cells; ++c)
-    offsets->SetValue(c, static_cast<int>(c * nodes_per_cell));
-  auto array = vtkSmartPointer<vtkCellArray>::New();
-  array->SetData(offsets, nodes);
-  return array;
-}
 
 /// While this lives, VTK's complaints come here instead of to the screen: observers do not reach the parsers inside its readers.
 class VtkComplaints {
@@ -254,6 +170,58 @@ std::vector<StoredField> stored_fields(vtkFieldData& data, vtkPoints* points)
   return fields;
 }
 
+/// An array of which every rank has some rows, or the root all of the bytes.
+struct PartOfArray {
+  std::span<const std::byte> bytes;
+  std::uint64_t first, of_all;  ///< where they begin, how many all ranks have [bytes]
+};
+
+/// The blocks of this rank, packed, one after the other.
+struct PackedBlocks {
+  std::vector<std::uint64_t> sizes;
+  std::vector<std::byte> bytes;
+};
+
+PackedBlocks pack_blocks(std::span<const std::byte> bytes, std::uint64_t block_bytes)
+{
+  vtkNew<vtkLZ4DataCompressor> compressor;  // it keeps nothing from block to block
+  const std::size_t room = compressor->GetMaximumCompressionSpace(block_bytes);
+  const std::size_t n = (bytes.size() + block_bytes - 1) / block_bytes;
+  PackedBlocks blocks{std::vector<std::uint64_t>(n), std::vector<std::byte>(n * room)};
+  parallel_for(static_cast<Index>(n), [&](Index i) {
+    const auto block = static_cast<std::size_t>(i);
+    const auto from = bytes.subspan(block * block_bytes, std::min<std::size_t>(block_bytes, bytes.size() - block * block_bytes));
+    blocks.sizes[block] = compressor->Compress(reinterpret_cast<const unsigned char*>(from.data()), from.size(),
+                                               reinterpret_cast<unsigned char*>(blocks.bytes.data() + block * room), room);
+  });
+  std::size_t end = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::memmove(blocks.bytes.data() + end, blocks.bytes.data() + i * room, blocks.sizes[i]);
+    end += blocks.sizes[i];
+  }
+  blocks.bytes.resize(end);
+  return blocks;
+}
+
+/// Puts an array at its place: its header, the sizes of all blocks when packed, the blocks.  Returns where it ends.
+std::uint64_t put_array(Exchange& ranks, const PutBytes& put, std::uint64_t at, const PartOfArray& array, std::uint64_t block_bytes)
+{
+  const PackedBlocks mine = pack_blocks(array.bytes, block_bytes);
+  const BlockHeader header{(array.of_all + block_bytes - 1) / block_bytes, block_bytes, array.of_all % block_bytes};
+  if (ranks.is_root())
+    put(at, std::as_bytes(std::span(&header, 1)));
+  const std::uint64_t sizes = at + sizeof header;
+  put(sizes + array.first / block_bytes * sizeof(std::uint64_t), std::as_bytes(std::span(mine.sizes)));
+  std::uint64_t here = sizes + header.blocks * sizeof(std::uint64_t), end = here;
+  const auto all = of_all_ranks(ranks, static_cast<std::int64_t>(mine.bytes.size()));
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    here += std::cmp_less(r, ranks.rank()) ? static_cast<std::uint64_t>(all[r]) : 0;
+    end += static_cast<std::uint64_t>(all[r]);
+  }
+  put(here, mine.bytes);
+  return end;
+}
+
 std::string escaped(const std::string& text)
 {
   std::string out;
@@ -262,58 +230,234 @@ std::string escaped(const std::string& text)
   return out;
 }
 
+template <class T>
+constexpr std::string_view vtk_type()
+{
+  if constexpr (std::is_same_v<T, double>)
+    return "Float64";
+  else if constexpr (std::is_same_v<T, float>)
+    return "Float32";
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return "Int64";
+  else if constexpr (std::is_same_v<T, std::int32_t>)
+    return "Int32";
+  else {
+    static_assert(std::is_same_v<T, std::uint8_t>);
+    return "UInt8";
+  }
+}
+
+/// A VTK file in XML as all ranks write it: lines of text and, named in them, arrays that follow behind them in blocks, packed with LZ4.
+/// Every rank says the same, of arrays its slice.
+class XmlFile {
+ public:
+  explicit XmlFile(Exchange& ranks, std::string_view kind, std::int64_t block_bytes)
+      : ranks_(ranks), kind_(kind), block_bytes_(static_cast<std::uint64_t>(block_bytes))
+  {
+    line(0, fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+                        "compressor=\"vtkLZ4DataCompressor\">",
+                        kind));
+    line(2, fmt::format("<{}>", kind));
+  }
+
+  void line(std::size_t indent, std::string_view text) { head_ += std::string(indent, ' ') + std::string(text) + '\n'; }
+
+  /// Of which `slice` tells the rows here.  `values` have to stay until the file is written.
+  template <class T>
+  void array(std::string_view name, std::span<const T> values, int components, const Slice& slice, const std::string& unit = {})
+  {
+    std::string words = fmt::format("<DataArray type=\"{}\" Name=\"{}\"", vtk_type<T>(), escaped(std::string(name)));
+    if (components > 1)
+      words += fmt::format(" NumberOfComponents=\"{}\"", components);
+    const auto row_bytes = static_cast<std::uint64_t>(components) * sizeof(T);
+    add(words,
+        {std::as_bytes(values), static_cast<std::uint64_t>(slice.first) * row_bytes, static_cast<std::uint64_t>(slice.of_all) * row_bytes});
+    if (unit.empty()) {
+      head_ += "/>\n";
+      return;
+    }
+    head_ += ">\n";
+    line(10, "<InformationKey name=\"UNITS_LABEL\" location=\"vtkDataArray\">");
+    line(12, escaped(unit));
+    line(10, "</InformationKey>");
+    line(8, "</DataArray>");
+  }
+  template <class T>
+  void array(std::string_view name, const std::vector<T>& values, int components, const Slice& slice, const std::string& unit = {})
+  {
+    array(name, std::span<const T>(values), components, slice, unit);
+  }
+
+  /// When and by whom.  Both have to stay as well.
+  void origin(const Real& time, const std::string& made_by)
+  {
+    line(4, "<FieldData>");
+    of_root("<DataArray type=\"Float64\" Name=\"TimeValue\"", std::as_bytes(std::span(&time, 1)));  // the name ParaView looks for
+    if (!made_by.empty())
+      of_root(fmt::format("<Array type=\"String\" Name=\"{}\"", origin_name),
+              std::as_bytes(std::span(made_by.c_str(), made_by.size() + 1)));
+    line(4, "</FieldData>");
+  }
+
+  void columns(std::string_view section, std::span<const Column> columns, const Slice& slice)
+  {
+    for (const Column& column : columns)
+      array(column.name, column.values, column.components, slice, column.unit);
+    line(6, fmt::format("</{}>", section));
+  }
+
+  void write(const fs::path& file)
+  {
+    line(4, "</Piece>");
+    line(2, fmt::format("</{}>", kind_));
+    line(2, "<AppendedData encoding=\"raw\">");
+    head_ += "   _";
+    write_together(
+        ranks_, file, [](const fs::path&) {},
+        [&](const PutBytes& put) {
+          const std::uint64_t begin = head_.size();
+          std::uint64_t at = begin;
+          for (const auto& [place, part] : arrays_) {
+            const std::string offset = std::to_string(at - begin) + '"';
+            std::copy(offset.begin(), offset.end(), head_.begin() + static_cast<std::ptrdiff_t>(place));
+            at = put_array(ranks_, put, at, part, block_bytes_);
+          }
+          if (!ranks_.is_root())
+            return;
+          put(0, std::as_bytes(std::span(head_)));
+          put(at, std::as_bytes(std::span(std::string_view("\n  </AppendedData>\n</VTKFile>\n"))));
+        });
+  }
+
+ private:
+  void add(std::string_view words, const PartOfArray& part)
+  {
+    constexpr std::size_t room = 21;  // for the digits of any number, and a quote
+    head_ += fmt::format("        {} format=\"appended\" offset=\"", words);
+    arrays_.emplace_back(head_.size(), part);
+    head_ += std::string(room, ' ');
+  }
+  void of_root(std::string_view words, std::span<const std::byte> bytes)
+  {
+    add(fmt::format("{} NumberOfTuples=\"1\"", words), {ranks_.is_root() ? bytes : std::span<const std::byte>(), 0, bytes.size()});
+    head_ += "/>\n";
+  }
+
+  Exchange& ranks_;
+  std::string_view kind_;
+  std::uint64_t block_bytes_;
+  std::string head_;
+  std::vector<std::pair<std::size_t, PartOfArray>> arrays_;  // with the place of their offset in the head
+};
+
+void check_columns(std::span<const Column> columns, std::size_t items, const fs::path& file)
+{
+  for (const Column& column : columns)
+    if (column.components < 1 || column.values.size() != items * static_cast<std::size_t>(column.components))
+      throw std::invalid_argument(fmt::format("{}: column \"{}\" has {} values, {} items of {} components were expected", file.string(),
+                                              column.name, column.values.size(), items, column.components));
+}
+
+void check_slice(const Slice& slice, std::size_t items, const fs::path& file)
+{
+  if (slice.lead != 0 || !slice.is_whole(static_cast<std::int64_t>(items)))
+    throw std::invalid_argument(fmt::format("{}: {} of {} items from {} on are no whole pieces of {}", file.string(), items, slice.of_all,
+                                            slice.first, slice.piece));
+}
+
+/// from, from + step, ..., as many as there are items here: Index as VTK has its numbers of points in these files.
+std::vector<Index> numbers_from(std::int64_t from, std::size_t count, Index step = 1)
+{
+  std::vector<Index> all(count);
+  for (std::size_t i = 0; i < count; ++i)
+    all[i] = static_cast<Index>((from + static_cast<std::int64_t>(i)) * step);
+  return all;
+}
+
 }  // namespace
 
-void write_particles(const fs::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
-                     std::span<const Column> columns, const std::string& made_by)
+void write_particles(Exchange& ranks, const fs::path& file, Real time, const Slice& slice, std::span<const Real> positions,
+                     std::span<const std::int64_t> ids, std::span<const Column> columns, const std::string& made_by)
 {
   const std::size_t n = ids.size();
   if (positions.size() != 3 * n)
     throw std::invalid_argument(fmt::format("{}: {} coordinates for {} particles", file.string(), positions.size(), n));
-  vtkNew<vtkPoints> points;
-  points->SetData(lend<vtkDoubleArray>(positions, 3, "Points"));
-  auto vertices = vtkSmartPointer<vtkIntArray>::New();
-  vertices->SetNumberOfValues(static_cast<vtkIdType>(n));
-  std::iota(vertices->GetPointer(0), vertices->GetPointer(0) + n, 0);
+  check_slice(slice, n, file);
+  check_columns(columns, n, file);
+  const std::vector<Index> vertices = numbers_from(slice.first, n), ends = numbers_from(slice.first + 1, n);
+  XmlFile xml(ranks, "PolyData", slice.piece);
+  xml.origin(time, made_by);
+  xml.line(4,
+           fmt::format("<Piece NumberOfPoints=\"{0}\" NumberOfVerts=\"{0}\" NumberOfLines=\"0\" NumberOfStrips=\"0\" NumberOfPolys=\"0\">",
+                       slice.of_all));
+  xml.line(6, "<PointData>");
+  xml.array(id_name, ids, 1, slice);
+  xml.columns("PointData", columns, slice);
+  xml.line(6, "<CellData>");
+  xml.columns("CellData", {}, slice);
+  xml.line(6, "<Points>");
+  xml.array("Points", positions, 3, slice);
+  xml.line(6, "</Points>");
+  xml.line(6, "<Verts>");
+  xml.array("connectivity", vertices, 1, slice);
+  xml.array("offsets", ends, 1, slice);
+  xml.line(6, "</Verts>");
+  for (const std::string_view none_of_it : {"Lines", "Strips", "Polys"}) {
+    xml.line(6, fmt::format("<{}>", none_of_it));
+    xml.array<std::int64_t>("connectivity", std::span<const std::int64_t>(), 1, {});
+    xml.array<std::int64_t>("offsets", std::span<const std::int64_t>(), 1, {});
+    xml.line(6, fmt::format("</{}>", none_of_it));
+  }
+  xml.write(file);
+}
 
-  vtkNew<vtkPolyData> cloud;
-  cloud->SetPoints(points);
-  cloud->SetVerts(cell_array(vertices, static_cast<vtkIdType>(n), 1));
-  static_assert(std::is_same_v<std::int64_t, long>);
-  cloud->GetPointData()->AddArray(lend<vtkLongArray>(ids, 1, id_name.data()));
-  add_columns(cloud->GetPointData(), columns, n, file);
-  add_origin(cloud, time, made_by);
-  write<vtkXMLPolyDataWriter>(file, cloud);
+void write_particles(const fs::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
+                     std::span<const Column> columns, const std::string& made_by)
+{
+  write_particles(one_rank(), file, time, {0, static_cast<std::int64_t>(ids.size())}, positions, ids, columns, made_by);
+}
+
+void write_mesh(Exchange& ranks, const fs::path& file, Real time, const MeshSlice& mesh, std::span<const Column> node_columns,
+                std::span<const Column> cell_columns, const std::string& made_by)
+{
+  const auto corners_of_cell = static_cast<std::size_t>(mesh.dimension) + 1;
+  const std::size_t n_nodes = mesh.positions.size() / 3, n_cells = mesh.corners.size() / corners_of_cell;
+  check_slice(mesh.nodes, n_nodes, file);
+  check_slice(mesh.cells, n_cells, file);
+  check_columns(node_columns, n_nodes, file);
+  check_columns(cell_columns, n_cells, file);
+  const Index width = mesh.dimension + 1;
+  const std::vector<Index> ends = numbers_from(mesh.cells.first + 1, n_cells, width);
+  const std::vector<std::uint8_t> types(n_cells, mesh.dimension == 2 ? VTK_TRIANGLE : VTK_TETRA);
+  XmlFile xml(ranks, "UnstructuredGrid", mesh.nodes.piece);
+  xml.origin(time, made_by);
+  xml.line(4, fmt::format("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", mesh.nodes.of_all, mesh.cells.of_all));
+  xml.line(6, "<PointData>");
+  xml.columns("PointData", node_columns, mesh.nodes);
+  xml.line(6, "<CellData>");
+  xml.columns("CellData", cell_columns, mesh.cells);
+  xml.line(6, "<Points>");
+  xml.array("Points", mesh.positions, 3, mesh.nodes);
+  xml.line(6, "</Points>");
+  xml.line(6, "<Cells>");
+  xml.array("connectivity", mesh.corners, 1, {mesh.cells.first * width, mesh.cells.of_all * width, mesh.cells.piece * width});
+  xml.array("offsets", ends, 1, mesh.cells);
+  xml.array("types", types, 1, mesh.cells);
+  xml.line(6, "</Cells>");
+  xml.write(file);
 }
 
 template <int D>
 void write_mesh(const fs::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
                 std::span<const Column> cell_columns, const std::string& made_by)
 {
-  const auto nodes = mesh.nodes();
-  vtkNew<vtkDoubleArray> coordinates;
-  coordinates->SetNumberOfComponents(3);
-  coordinates->SetNumberOfTuples(mesh.n_nodes());
-  double* place = coordinates->GetPointer(0);
-  for (const auto& x : nodes)
+  MeshSlice whole{D, {0, mesh.n_nodes()}, {}, {0, mesh.n_cells()}, {}};
+  for (const auto& x : mesh.nodes())
     for (int d = 0; d < 3; ++d)
-      *place++ = d < D ? x[std::min(d, D - 1)] : 0.0;
-  vtkNew<vtkPoints> points;
-  points->SetData(coordinates);
-
-  auto corners = vtkSmartPointer<vtkIntArray>::New();
-  corners->SetNumberOfValues(mesh.n_cells() * vtkIdType{D + 1});
-  int* corner = corners->GetPointer(0);
+      whole.positions.push_back(d < D ? x[std::min(d, D - 1)] : 0.0);
   for (const auto& cell : mesh.cells())
-    corner = std::copy(cell.begin(), cell.end(), corner);
-
-  vtkNew<vtkUnstructuredGrid> grid;
-  grid->SetPoints(points);
-  grid->SetCells(D == 2 ? VTK_TRIANGLE : VTK_TETRA, cell_array(corners, mesh.n_cells(), D + 1));
-  add_columns(grid->GetPointData(), node_columns, nodes.size(), file);
-  add_columns(grid->GetCellData(), cell_columns, mesh.cells().size(), file);
-  add_origin(grid, time, made_by);
-  write<vtkXMLUnstructuredGridWriter>(file, grid);
+    whole.corners.insert(whole.corners.end(), cell.begin(), cell.end());
+  write_mesh(one_rank(), file, time, whole, node_columns, cell_columns, made_by);
 }
 
 template void write_mesh<2>(const fs::path&, Real, const Mesh<2>&, std::span<const Column>, std::span<const Column>, const std::string&);

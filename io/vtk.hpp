@@ -7,9 +7,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/slices.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
+
+class Exchange;
 
 /// One field, item after item, in single precision: it is for viewing, not for restarting.
 struct Column {
@@ -26,9 +29,25 @@ struct Column {
 void write_particles(const std::filesystem::path& file, Real time, std::span<const Real> positions, std::span<const std::int64_t> ids,
                      std::span<const Column> columns, const std::string& made_by = {});
 
+/// The same file written by all ranks together, each its slice of the particles: the same bytes for any number of them.
+void write_particles(Exchange& ranks, const std::filesystem::path& file, Real time, const Slice& slice, std::span<const Real> positions,
+                     std::span<const std::int64_t> ids, std::span<const Column> columns, const std::string& made_by = {});
+
 /// Writes a .vtu of the mesh with fields per node and per cell, in the numbering of `mesh`.  Errors as above.
 template <int D>
 void write_mesh(const std::filesystem::path& file, Real time, const Mesh<D>& mesh, std::span<const Column> node_columns,
+                std::span<const Column> cell_columns, const std::string& made_by = {});
+
+/// What a rank writes of a mesh: nodes and cells in the numbers of the whole.
+struct MeshSlice {
+  int dimension;
+  Slice nodes;
+  std::vector<Real> positions;  ///< 3 numbers per node [m]
+  Slice cells;                  ///< in pieces as large as those of the nodes
+  std::vector<Index> corners;   ///< dimension + 1 per cell, nodes of the whole mesh
+};
+/// The same by all ranks together.
+void write_mesh(Exchange& ranks, const std::filesystem::path& file, Real time, const MeshSlice& mesh, std::span<const Column> node_columns,
                 std::span<const Column> cell_columns, const std::string& made_by = {});
 
 /// One field as a file holds it, item after item; single precision is widened without loss.

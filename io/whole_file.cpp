@@ -10,6 +10,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "core/exchange.hpp"
 
 namespace talus {
 
@@ -47,10 +48,13 @@ void sync(const fs::path& path, int flags, const fs::path& file)
     fail(file, "write", errno);
 }
 
+fs::path temporary_of(const fs::path& file) { return file.string() + ".tmp"; }
+fs::path folder_of_file(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
+
 /// Removes the temporary unless it has become the file.
 class Temporary {
  public:
-  explicit Temporary(const fs::path& file) : path_(file.string() + ".tmp") {}
+  explicit Temporary(const fs::path& file) : path_(temporary_of(file)) {}
   ~Temporary()
   {
     std::error_code ignored;
@@ -65,6 +69,60 @@ class Temporary {
  private:
   fs::path path_;
   bool kept_ = false;
+};
+
+/// If it is missing.
+void make_folder_of(const fs::path& file)
+{
+  const fs::path folder = folder_of_file(file);
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed)
+    fail(folder, "make the folder", failed.value());
+}
+
+/// What is on the disk already becomes the file.
+void put_in_place(Temporary& temporary, const fs::path& file)
+{
+  if (::rename(temporary.path().c_str(), file.c_str()) != 0)
+    fail(file, "write", errno);
+  temporary.keep();
+  sync(folder_of_file(file), O_RDONLY | O_DIRECTORY, file);
+}
+
+/// The part of a rank in a file that all write.
+class Shared {
+ public:
+  Shared(const fs::path& path, const fs::path& file) : file_(file), opened_(path, O_WRONLY)
+  {
+    if (!opened_.is_open())
+      fail(file, "write", errno);
+  }
+  void put(std::uint64_t at, std::span<const std::byte> bytes) noexcept
+  {
+    while (failure_ == 0 && !bytes.empty()) {
+      const ssize_t written = ::pwrite(opened_.number(), bytes.data(), bytes.size(), static_cast<off_t>(at));
+      if (written == 0 || (written < 0 && errno != EINTR))
+        failure_ = written == 0 ? EIO : errno;
+      if (written > 0) {
+        bytes = bytes.subspan(static_cast<std::size_t>(written));
+        at += static_cast<std::uint64_t>(written);
+      }
+    }
+  }
+  /// What this rank has written is on the disk when it returns.
+  void finish() const
+  {
+    if (failure_ != 0)
+      fail(file_, "write", failure_);
+    if (::fsync(opened_.number()) != 0 && errno != EINVAL)
+      fail(file_, "write", errno);
+  }
+
+ private:
+  const fs::path& file_;
+  Descriptor opened_;
+  int failure_ = 0;
 };
 
 void write_text(const fs::path& path, std::string_view text, const fs::path& file)
@@ -85,23 +143,34 @@ void write_text(const fs::path& path, std::string_view text, const fs::path& fil
 
 void write_whole(const fs::path& file, const std::function<void(const fs::path&)>& write)
 {
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed)
-    fail(folder, "make the folder", failed.value());
+  make_folder_of(file);
   Temporary temporary(file);
   write(temporary.path());
   sync(temporary.path(), O_RDONLY, file);
-  if (::rename(temporary.path().c_str(), file.c_str()) != 0)
-    fail(file, "write", errno);
-  temporary.keep();
-  sync(folder, O_RDONLY | O_DIRECTORY, file);
+  put_in_place(temporary, file);
 }
 
 void write_whole(const fs::path& file, std::string_view text)
 {
   write_whole(file, [&](const fs::path& temporary) { write_text(temporary, text, file); });
+}
+
+void write_together(Exchange& ranks, const fs::path& file, const std::function<void(const fs::path&)>& begin,
+                    const std::function<void(const PutBytes&)>& write)
+{
+  std::optional<Temporary> temporary;  // of the root
+  ranks.together([&] {
+    make_folder_of(file);
+    temporary.emplace(file);
+    write_text(temporary->path(), "", file);
+    begin(temporary->path());
+  });
+  std::optional<Shared> shared;
+  ranks.agree(Exchange::caught([&] { shared.emplace(temporary_of(file), file); }));
+  write([&](std::uint64_t at, std::span<const std::byte> bytes) { shared->put(at, bytes); });
+  ranks.agree(Exchange::caught([&] { shared->finish(); }));
+  shared.reset();
+  ranks.together([&] { put_in_place(*temporary, file); });
 }
 
 std::optional<std::string> not_ordinary(const fs::path& file)

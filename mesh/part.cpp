@@ -92,7 +92,14 @@ Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, 
   for (const Index n : nodes)
     owners.push_back(rank_of_block[whole.cells_of_node()[n].front() / block_cells]);
   return {Mesh<D>(whole, cells),
-          {std::move(blocks), std::move(ranks), std::move(nodes), std::move(owners), whole.n_cells(), whole.n_nodes(), rank}};
+          {std::move(blocks),
+           std::move(ranks),
+           std::move(nodes),
+           std::move(owners),
+           whole.n_cells(),
+           whole.n_nodes(),
+           rank,
+           {rank_of_block.begin(), rank_of_block.end()}}};
 }
 
 template <int D>

@@ -18,6 +18,7 @@ struct Share {
   std::vector<int> rank_of_node;           ///< of each local node: the rank of the lowest cell that the whole mesh has around it
   Index whole_cells = 0, whole_nodes = 0;  ///< how many the whole mesh has
   int rank = 0;
+  std::vector<int> rank_of_whole_block;  ///< of all blocks of the whole mesh
 
   bool alone() const noexcept { return whole_cells == 0; }
   bool owns_block(Index local) const noexcept { return rank_of_block[static_cast<std::size_t>(local)] == rank; }

@@ -33,25 +33,11 @@ struct BlockGraph {
   idx_t size() const { return static_cast<idx_t>(cost.size()); }
 };
 
-std::vector<std::int64_t> costs(std::span<const std::int64_t> weights, Index n_cells)
-{
-  std::vector<std::int64_t> cost(weights.size());
-  std::int64_t total = 0;
-  for (std::size_t b = 0; b < cost.size(); ++b) {
-    const std::int64_t first = static_cast<std::int64_t>(b) * block_cells;
-    total += cost[b] = cells_per_particle * weights[b] + std::min<std::int64_t>(block_cells, n_cells - first);
-  }
-  const std::int64_t unit = total / largest_total + 1;
-  for (std::int64_t& c : cost)
-    c = std::max<std::int64_t>(c / unit, 1);
-  return cost;
-}
-
 template <int D>
 BlockGraph graph_of(const Mesh<D>& mesh, std::span<const std::int64_t> weights)
 {
   BlockGraph graph;
-  graph.cost = costs(weights, mesh.n_cells());
+  graph.cost = costs_of_blocks(weights, mesh.n_cells());
   graph.total = std::accumulate(graph.cost.begin(), graph.cost.end(), std::int64_t{0});
   std::vector<std::vector<std::pair<Index, idx_t>>> around(graph.cost.size());  // block, facets shared
   parallel_for(graph.size(), [&](Index b) {
@@ -79,12 +65,13 @@ BlockGraph graph_of(const Mesh<D>& mesh, std::span<const std::int64_t> weights)
 }
 
 /// Ranges of blocks in their order, as even as whole blocks allow.
-std::vector<int> along_the_curve(const BlockGraph& graph, int parts)
+std::vector<int> along_the_curve(std::span<const std::int64_t> cost_of_block, int parts)
 {
+  const std::int64_t total = std::accumulate(cost_of_block.begin(), cost_of_block.end(), std::int64_t{0});
   std::vector<int> rank;
   std::int64_t before = 0;
-  for (const std::int64_t cost : graph.cost) {
-    rank.push_back(static_cast<int>((2 * before + cost) * parts / (2 * graph.total)));  // by the middle of the block
+  for (const std::int64_t cost : cost_of_block) {
+    rank.push_back(static_cast<int>((2 * before + cost) * parts / (2 * total)));  // by the middle of the block
     before += cost;
   }
   return rank;
@@ -141,13 +128,32 @@ std::vector<int> partition(const Mesh<D>& mesh, std::span<const std::int64_t> we
   const auto badness = [&](const std::vector<int>& rank) {
     return std::pair(std::max(even_enough, imbalance(graph.cost, rank, parts)), cut_of(graph, rank));
   };
-  best = along_the_curve(graph, parts);
+  best = along_the_curve(graph.cost, parts);
   if (enough_blocks * parts * *std::max_element(graph.cost.begin(), graph.cost.end()) > graph.total)
     return best;
   for (const auto method : {&METIS_PartGraphRecursive, &METIS_PartGraphKway})
     if (auto rank = by_metis(graph, parts, *method); badness(rank) < badness(best))
       best = std::move(rank);
   return best;
+}
+
+std::vector<std::int64_t> costs_of_blocks(std::span<const std::int64_t> weight_of_block, Index n_cells)
+{
+  std::vector<std::int64_t> cost(weight_of_block.size());
+  std::int64_t total = 0;
+  for (std::size_t b = 0; b < cost.size(); ++b) {
+    const std::int64_t first = static_cast<std::int64_t>(b) * block_cells;
+    total += cost[b] = cells_per_particle * weight_of_block[b] + std::min<std::int64_t>(block_cells, n_cells - first);
+  }
+  const std::int64_t unit = total / largest_total + 1;
+  for (std::int64_t& c : cost)
+    c = std::max<std::int64_t>(c / unit, 1);
+  return cost;
+}
+
+Real imbalance_in_reach(std::span<const std::int64_t> cost_of_block, int parts)
+{
+  return std::max(even_enough, imbalance(cost_of_block, along_the_curve(cost_of_block, parts), parts));
 }
 
 Real imbalance(std::span<const std::int64_t> weight_of_block, std::span<const int> rank_of_block, int parts)

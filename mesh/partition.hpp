@@ -22,6 +22,12 @@ inline constexpr std::int64_t cells_per_particle = 16;
 template <int D>
 std::vector<int> partition(const Mesh<D>& mesh, std::span<const std::int64_t> weight_of_block, int parts);
 
+/// What a step costs in each block, by its particles and its cells: what partition() shares out.
+std::vector<std::int64_t> costs_of_blocks(std::span<const std::int64_t> weight_of_block, Index n_cells);
+
+/// An imbalance of these costs that partition() does not exceed.  Needs no mesh.
+Real imbalance_in_reach(std::span<const std::int64_t> cost_of_block, int parts);
+
 /// Largest load of a rank over the mean of all of them: 1 is even, `parts` is everything on one.  1 if there is no load at all.
 Real imbalance(std::span<const std::int64_t> weight_of_block, std::span<const int> rank_of_block, int parts);
 

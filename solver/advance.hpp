@@ -56,7 +56,7 @@ void advance(Model<D, K>& m, Real dt)
   find_places(m);  //  1
   if (!all_well(m))
     return;
-  apply(m.loads, time + dt, ramp, m.row_of_id, m.order, m.particles, m.tally.on_particles);  //  2
+  apply(m.loads, time + dt, ramp, m.followed, m.order, m.particles, m.tally.on_particles);  //  2
   watch.lap(m.timings.locate);
 
   scatter(m);  //  3

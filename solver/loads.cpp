@@ -66,7 +66,7 @@ void restrict_to(const Share& share, MeshTraction<D>& load)
 }
 
 template <int D>
-void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, const CellOrder& order, Particles<D>& particles,
+void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
            ExactSums<Push<D>>& total)
 {
   if (particles.applied.empty())
@@ -76,7 +76,7 @@ void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> r
   for (const auto& load : loads.on_particles) {
     const Real factor = ramp * load.table(time);
     for (std::size_t k = 0; k < load.id.size(); ++k) {
-      const Index row = row_of_id[static_cast<std::size_t>(load.id[k])];
+      const Index row = followed.row(load.id[k]);
       if (row == none)
         continue;
       const auto p = static_cast<std::size_t>(row);
@@ -139,12 +139,12 @@ template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<c
 template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
 template void restrict_to<2>(const Share&, MeshTraction<2>&);
 template void restrict_to<3>(const Share&, MeshTraction<3>&);
-template void apply<2>(const Loads<2>&, Real, Real, std::span<const Index>, const CellOrder&, Particles<2>&, ExactSums<Push<2>>&);
+template void apply<2>(const Loads<2>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<2>&, ExactSums<Push<2>>&);
 template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<Push<2>>&);
 template void add_work<2>(const Loads<2>&, Real, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
-template void apply<3>(const Loads<3>&, Real, Real, std::span<const Index>, const CellOrder&, Particles<3>&, ExactSums<Push<3>>&);
+template void apply<3>(const Loads<3>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<3>&, ExactSums<Push<3>>&);
 template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<Push<3>>&);
 template void add_work<3>(const Loads<3>&, Real, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
 

@@ -7,6 +7,7 @@
 #include "core/particles.hpp"
 #include "core/table.hpp"
 #include "mesh/mesh.hpp"
+#include "solver/followed_rows.hpp"
 #include "solver/ledger.hpp"
 #include "solver/nodes.hpp"
 #include "solver/own_nodes.hpp"
@@ -74,10 +75,20 @@ ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Fa
 template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
 
-/// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `row_of_id` finds a particle, or
-/// `none` for one that was deleted.  The forces are added to `total`.
+/// Particles that carry a traction, each once for every load that it carries.
 template <int D>
-void apply(const Loads<D>& loads, Real time, Real ramp, std::span<const Index> row_of_id, const CellOrder& order, Particles<D>& particles,
+std::vector<std::int64_t> ids_of(const std::vector<ParticleTraction<D>>& loads)
+{
+  std::vector<std::int64_t> ids;
+  for (const ParticleTraction<D>& load : loads)
+    ids.insert(ids.end(), load.id.begin(), load.id.end());
+  return ids;
+}
+
+/// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `followed` finds those that carry tractions.
+/// The forces are added to `total`.
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
            ExactSums<Push<D>>& total);
 
 /// Adds the work [J] of mesh tractions over a step, from the mean velocity of the nodes that are `own`.

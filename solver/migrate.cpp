@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "solver/kept_columns.hpp"
 #include "solver/letters.hpp"
-#include "solver/relocate.hpp"
 
 namespace talus {
 
@@ -23,17 +23,6 @@ void take_bytes(std::span<const std::byte>& from, T& value)
   from = from.subspan(sizeof(T));
 }
 
-/// f(column) for every column that `keeps` says is kept.
-template <class AnyParticles, class F>
-void for_each_kept_column(AnyParticles& particles, std::span<const std::int64_t> keeps, F&& f)
-{
-  std::size_t number = 0;
-  particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
-    if (keeps[number++] > 0)
-      f(column);
-  });
-}
-
 /// How many of a body go and come.
 struct Turnover {
   std::vector<Index> leaving;  ///< rows, ascending
@@ -44,7 +33,7 @@ struct Turnover {
 /// places, as few as possible, whatever the order.
 template <int D>
 void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
-               std::span<const std::int64_t> keeps, std::vector<std::pair<Index, Index>>& moves)
+               std::span<const std::int64_t> keepers, std::vector<std::pair<Index, Index>>& moves)
 {
   moves.clear();
   // Holes are filled from the end of the body.
@@ -93,7 +82,7 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
       rotate(b, by);
     }
   const auto n = static_cast<std::size_t>(total);
-  for_each_kept_column(particles, keeps, [&](auto& column) {
+  for_each_kept_column(particles, keepers, [&](auto& column) {
     column.resize(std::max(column.size(), n));
     for (const auto& [from, to] : moves)
       column[static_cast<std::size_t>(to)] = column[static_cast<std::size_t>(from)];
@@ -132,9 +121,7 @@ Migration<D>::Migration(Exchange& ranks, const Share& share) : ranks_(&ranks), b
 template <int D>
 void Migration<D>::agree_on_columns(const Particles<D>& particles)
 {
-  keeps_.clear();
-  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { keeps_.push_back(column.empty() ? 0 : 1); });
-  ranks_->sum(keeps_);
+  keepers_ = count_keepers(*ranks_, particles);
 }
 
 template <int D>
@@ -153,7 +140,7 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
         auto& letter = out_[static_cast<std::size_t>(border_of_block_[static_cast<std::size_t>(block)])];
         append_bytes(static_cast<Index>(b), letter);
         append_bytes(share.whole_cell(particles.cell[p]), letter);
-        for_each_kept_column(particles, keeps_, [&](auto& column) { append_bytes(column[p], letter); });
+        for_each_kept_column(particles, keepers_, [&](auto& column) { append_bytes(column[p], letter); });
         std::visit([&](const auto& batch) { append_bytes(batch.history[static_cast<std::size_t>(row - batch.begin)], letter); },
                    materials[b]);
         turnovers[b].leaving.push_back(row);
@@ -164,7 +151,7 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
 
   // How long a record is depends on its body alone.
   std::size_t columns = 2 * sizeof(Index);
-  for_each_kept_column(particles, keeps_, [&](auto& column) { columns += sizeof(column[0]); });
+  for_each_kept_column(particles, keepers_, [&](auto& column) { columns += sizeof(column[0]); });
   const auto history_bytes = [&](std::size_t b) {
     return std::visit([](const auto& batch) { return sizeof(batch.history[0]); }, materials[b]);
   };
@@ -187,7 +174,7 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
     return false;
 
   std::vector<std::pair<Index, Index>> moves;
-  make_room(turnovers, bodies, materials, particles, keeps_, moves);
+  make_room(turnovers, bodies, materials, particles, keepers_, moves);
   std::vector<Index> arrived;  // rows, body by body
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     Index row = bodies[b].end - turnovers[b].arriving;
@@ -195,7 +182,7 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
       const auto p = static_cast<std::size_t>(row);
       Index body{}, cell{};
       take_bytes(record, body), take_bytes(record, cell);
-      for_each_kept_column(particles, keeps_, [&](auto& column) { take_bytes(record, column[p]); });
+      for_each_kept_column(particles, keepers_, [&](auto& column) { take_bytes(record, column[p]); });
       std::visit([&](auto& batch) { take_bytes(record, batch.history[static_cast<std::size_t>(row - batch.begin)]); }, materials[b]);
       particles.cell[p] = share.local_cell(cell);
       arrived.push_back(row++);
@@ -205,19 +192,6 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
   return true;
 }
 
-template <int D>
-void keep_own_particles(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
-{
-  for (Index& cell : particles.cell) {
-    const Index local = share.local_cell(cell);
-    cell = local != none && share.owns_cell(local) ? local : none;
-  }
-  drop_lost(bodies, materials, particles);
-  particles.for_each_column([](std::string_view, std::string_view, auto& column) { column.shrink_to_fit(); });
-}
-
-template void keep_own_particles<2>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void keep_own_particles<3>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 template class Migration<2>;
 template class Migration<3>;
 

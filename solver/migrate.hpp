@@ -22,6 +22,8 @@ class Migration {
                   CellOrder& order);
   /// Particles that came or went so far.
   std::int64_t moved() const noexcept { return moved_; }
+  /// Goes on with the count of another model.
+  void count_from(std::int64_t moved) noexcept { moved_ = moved; }
 
  private:
   Exchange* ranks_ = nullptr;
@@ -29,16 +31,10 @@ class Migration {
   std::vector<Index> foreign_;          // local blocks of others
   std::vector<Index> border_of_block_;  // local block -> number of its rank among the neighbours
   std::vector<std::vector<std::byte>> out_;
-  std::vector<std::int64_t> keeps_;  // how many ranks keep each column
+  std::vector<std::int64_t> keepers_;  // how many ranks keep each column
   std::int64_t moved_ = 0;
 };
 
-/// Of particles in cells of the whole mesh those in own blocks stay, in cells of the part.
-template <int D>
-void keep_own_particles(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
-
-extern template void keep_own_particles<2>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void keep_own_particles<3>(const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 extern template class Migration<2>;
 extern template class Migration<3>;
 

@@ -2,6 +2,7 @@
 // Everything a run is made of, by value.
 #include "core/fields.hpp"
 #include "solver/conduct_heat.hpp"
+#include "solver/followed_rows.hpp"
 #include "solver/halo.hpp"
 #include "solver/integrate.hpp"
 #include "solver/ledger.hpp"
@@ -120,7 +121,7 @@ struct Model {
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;  ///< one per body, same ranges
   CellOrder order;
-  std::vector<Index> row_of_id;  ///< kept only if somebody follows single particles; `none` when deleted
+  FollowedRows followed;  ///< particles that carry tractions
 
   Nodes<D> nodes;
   Hats<D> hats;                         ///< if the kernel has a node part
@@ -213,17 +214,13 @@ inline constexpr Real least_share_of_cells = 0.3;
 /// half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
 inline constexpr Real least_share_of_hats = 0.2;
 
-/// What goes by rows, after these have changed: where each id stands now, if anybody asks; scratch.
+/// What goes by rows, after these have changed: where those stand who are followed; scratch.
 template <int D, Kernel<D> K>
 void follow_rows(Model<D, K>& m)
 {
   if (m.stars)
     m.averaged.resize(m.particles.id.size());
-  if (m.row_of_id.empty())
-    return;
-  std::fill(m.row_of_id.begin(), m.row_of_id.end(), none);
-  for (Index p = 0; p < m.particles.size(); ++p)
-    m.row_of_id[static_cast<std::size_t>(m.particles.id[static_cast<std::size_t>(p)])] = p;
+  m.followed.find(m.particles.id);
 }
 
 /// M is a Model, or what an observer sees of it.  Every rank has to ask.
@@ -245,9 +242,8 @@ Real plastic_work(const M& m)
 
 /// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  Columns that follow from
 /// others at rest are kept where they are there: of particles that come from another run.
-/// `by_id`: single particles will be looked up by id.
 template <int D, Kernel<D> K>
-void make_ready(Model<D, K>& m, bool by_id)
+void make_ready(Model<D, K>& m)
 {
   const auto n = m.particles.id.size();
   if (m.particles.volume.empty())
@@ -267,8 +263,7 @@ void make_ready(Model<D, K>& m, bool by_id)
     m.particles.viscous.assign(n, 0);
   if (m.transfer.musl)
     m.remapped.resize(m.nodes.sum.size());
-  if (by_id || !m.loads.on_particles.empty())
-    m.row_of_id.assign(static_cast<std::size_t>(m.ranks->sum(static_cast<std::int64_t>(n))), none);
+  m.followed = FollowedRows(ids_of(m.loads.on_particles));
   m.walls.settle();
   m.nodes.bound.resize(m.nodes.sum.size());
   for (Index node = 0; node < m.mesh.n_nodes(); ++node)

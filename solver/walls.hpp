@@ -1,5 +1,6 @@
 #pragma once
 // Conditions on nodes, on slaves and on hats: held, moved, sliding, rubbing.  Each wall keeps the impulse it exerts; the work is returned.
+#include <cassert>
 #include <string>
 #include <vector>
 
@@ -79,6 +80,13 @@ class Walls {
 
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   void reset_impulses() noexcept;
+  /// What is kept of the walls becomes that of the same walls in another model of the scene.
+  void go_on_from(const Walls& earlier)
+  {
+    assert(walls_.size() == earlier.walls_.size());
+    for (std::size_t w = 0; w < walls_.size(); ++w)
+      for_each_field<Wall<D>>([&](const auto& field) { walls_[w].*field.member = earlier.walls_[w].*field.member; });
+  }
   bool binds(Index node) const noexcept
   {
     return static_cast<std::size_t>(node) < rule_of_node_.size() && rule_of_node_[static_cast<std::size_t>(node)] != none;

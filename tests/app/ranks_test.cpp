@@ -3,6 +3,8 @@
 #include <signal.h>
 
 #include <chrono>
+#include <cmath>
+#include <limits>
 #include <thread>
 
 #include "tests/app/program.hpp"
@@ -41,6 +43,14 @@ class OnRanks : public Program {
   }
 };
 
+int times_in(const std::string& text, const std::string& what)
+{
+  int n = 0;
+  for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1))
+    ++n;
+  return n;
+}
+
 /// With as many cells as some blocks have.
 std::string in_blocks(SceneParts parts)
 {
@@ -62,6 +72,8 @@ TEST_P(EverySceneOnRanks, GivesTheSameBits)
   run_on(1, "run scene.yaml --quiet --threads 2 --out alone");
   run_on(3, "run scene.yaml --quiet --threads 1 --out three");
   expect_same_files("alone", "three");
+  run_on(2, "run scene.yaml --quiet --threads 1 --rebalance 3 --out two");
+  expect_same_files("alone", "two");
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, EverySceneOnRanks, testing::ValuesIn(scenes_of_all()), [](const auto& of) { return of.param.name; });
@@ -97,8 +109,39 @@ TEST_F(OnRanks, MoreThanThereAreBlocks)
 {
   write("scene.yaml", SceneParts{}.text());
   run_on(1, "run scene.yaml --quiet --out alone");
-  run_on(4, "run scene.yaml --quiet --threads 1 --out four");
-  expect_same_files("alone", "four");
+  for (const char* rebalance : {"", " --rebalance 3"}) {
+    run_on(4, std::string("run scene.yaml --quiet --threads 1 --out four") + rebalance);
+    expect_same_files("alone", "four");
+  }
+}
+
+/// The number behind a key of the summary.
+Real number_of(const std::string& key, const std::string& summary)
+{
+  const std::string quoted = '"' + key + "\": ";
+  const auto at = summary.find(quoted);
+  return at == summary.npos ? std::numeric_limits<Real>::quiet_NaN() : std::strtod(summary.c_str() + at + quoted.size(), nullptr);
+}
+
+TEST_F(OnRanks, SharesMoveAndNothingElseDoes)
+{
+  write("scene.yaml", thrown().text());
+  run_on(1, "run scene.yaml --quiet --threads 1 --out alone");
+  const Real steps = number_of("steps", read("alone/summary.json"));
+  for (const int ranks : {2, 3}) {
+    const std::string out = "ranks_" + std::to_string(ranks);
+    const Outcome outcome = talus_on(ranks, "run scene.yaml --threads 1 --rebalance 5 --out " + out);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    expect_same_files("alone", out);
+    const std::string summary = read(out + "/summary.json");
+    EXPECT_EQ(number_of("rebalances", summary), std::floor((steps - 1) / 5)) << "before steps 6, 11, ...";
+    EXPECT_GT(number_of("rebalancing [s]", summary), 0);
+    EXPECT_LT(number_of("particles_of_the_busiest_over_mean", summary), 0.9 * ranks) << "the ball has gone from one end to the other";
+    EXPECT_EQ(times_in(outcome.out, "shared out anew"), number_of("rebalances", summary)) << outcome.out;
+  }
+  run_on(2, "run scene.yaml --quiet --threads 1 --rebalance 0 --out never");
+  EXPECT_EQ(number_of("rebalances", read("never/summary.json")), 0);
+  expect_same_files("alone", "never");
 }
 
 constexpr int stopped = 4;
@@ -114,18 +157,23 @@ TEST_F(OnRanks, AnotherNumberOfThemGoesOnFromACheckpoint)
   expect_same_files("alone", "again");
 }
 
+TEST_F(OnRanks, CheckpointsDoNotKnowWhoseTheSharesWere)
+{
+  write("scene.yaml", thrown().text());
+  run_on(1, "run scene.yaml --quiet --out alone");
+  run_on(3, "run scene.yaml --quiet --threads 1 --out again --rebalance 10 --until 40", stopped);
+  run_on(2, "run --resume again --quiet --threads 1 --rebalance 7 --until 83", stopped);
+  run_on(4, "run --resume again --quiet --threads 1 --rebalance 9 --until 120", stopped);
+  run_on(1, "run --resume again --quiet --threads 1 --rebalance 9");
+  expect_same_files("alone", "again");
+}
+
 TEST_F(OnRanks, WhatIsWrongIsSaidOnce)
 {
-  const auto times = [](const std::string& text, const std::string& what) {
-    int n = 0;
-    for (auto at = text.find(what); at != text.npos; at = text.find(what, at + 1))
-      ++n;
-    return n;
-  };
   write("wrong.yaml", SceneParts{.law = "law: neo_hookean, youngs_modulus: -1, poisson_ratio: 0.3"}.text());
   const Outcome scene = talus_on(3, "run wrong.yaml --quiet --out wrong");
   EXPECT_EQ(scene.code, 2);
-  EXPECT_EQ(times(scene.err, "must be > 0 Pa"), 1) << scene.err;
+  EXPECT_EQ(times_in(scene.err, "must be > 0 Pa"), 1) << scene.err;
   EXPECT_FALSE(exists("wrong"));
 
   SceneParts parts = thrown();
@@ -138,7 +186,55 @@ TEST_F(OnRanks, WhatIsWrongIsSaidOnce)
   EXPECT_EQ(three.code, 1);
   const std::string what = alone.err.substr(0, alone.err.find("; last good output"));
   EXPECT_THAT(what, HasSubstr("is outside the mesh"));
-  EXPECT_EQ(times(three.err, what), 1) << three.err;
+  EXPECT_EQ(times_in(three.err, what), 1) << three.err;
+}
+
+/// Of all that set-up finds, which no rank has all the particles for.
+TEST_F(OnRanks, SetUpComplainsAndWarnsAsOneRankDoes)
+{
+  const std::string head = R"yaml(title: Wrong
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 1], cells: [20, 20]}}
+time: {end: 1.0e-4}
+materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0}]
+bodies:
+  - {name: one, material: rubber, shape: {type: box, low: [0, 0], high: [1, 0.52]}}
+  - {name: two, material: rubber, shape: {type: box, low: [0.2, 0.5], high: [0.8, 1]}}
+)yaml";
+  write("wrong.yaml", head + R"yaml(
+  - {name: none, material: rubber, shape: {type: sphere, centre: [9, 9], radius: 1}}
+  - {name: five, material: rubber, region: all, particles_per_cell: 5}
+  - {name: root, material: rubber, shape: {type: box, low: [0, 0], high: [1, 1]}, velocity: ["sin(q)", "1 / (x - x)"]}
+boundaries: [{type: roller, on: all}]
+loads: [{type: traction, on: ceiling, pressure: 1}]
+)yaml");
+  write("warned.yaml", head + "loads: [{type: traction, on: y_max, pressure: 1}]\n");
+  for (const auto& [scene, code] : {std::pair("wrong", 2), std::pair("warned", 0)}) {
+    const std::string words = std::string("run ") + scene + ".yaml --quiet --threads 1 --out " + scene;
+    const Outcome alone = talus(words), three = talus_on(3, words + "_on_three");
+    EXPECT_EQ(alone.code, code) << alone.err;
+    EXPECT_EQ(three.code, code) << three.err;
+    EXPECT_FALSE(alone.err.empty());
+    EXPECT_EQ(times_in(three.err, alone.err), 1) << alone.err << "\non three ranks:\n" << three.err;
+  }
+  expect_same_files("warned", "warned_on_three");
+}
+
+TEST_F(OnRanks, WhatTheyDoNotShareTheRootDoesAlone)
+{
+  write("scene.yaml", thrown().text());
+  const Outcome alone = talus("check scene.yaml"), two = talus_on(2, "check scene.yaml");
+  EXPECT_EQ(two.code, 0) << two.err;
+  EXPECT_EQ(two.out, alone.out);
+
+  write("wrong.yaml", SceneParts{.law = "law: neo_hookean, youngs_modulus: -1, poisson_ratio: 0.3"}.text());
+  for (const char* words : {"check wrong.yaml", "check", "rum scene.yaml", "run"}) {
+    const Outcome wrong = talus(words), on_two = talus_on(2, words);
+    EXPECT_EQ(wrong.code, 2);
+    EXPECT_EQ(on_two.code, 2) << on_two.err;
+    EXPECT_EQ(times_in(on_two.err, wrong.err), 1) << words << ":\n" << on_two.err;
+  }
+  EXPECT_EQ(talus_on(2, "--version").out, talus("--version").out);
 }
 
 /// Processes whose command line holds `words`, the launcher left out.

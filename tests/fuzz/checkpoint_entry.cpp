@@ -91,7 +91,6 @@ struct SmallRun {
   OutputSpec outputs = small_outputs();
   std::vector<Stage> stages = small_stages();
   Recorder<2> recorder{run_folder(), outputs, stages, true, ""};
-  std::vector<Index> row_of_id;
   StateLimits limits{mesh.n_cells(), 1, n_particles};
 
   SmallRun()
@@ -110,24 +109,18 @@ struct SmallRun {
       p.volume0[row] = p.volume[row] = 0.1;
       p.mass.set(row, 100);
     }
-    index_particles();
+    sort();
     const std::vector<Index> held{0, 1};
     Wall<2> floor;
     floor.name = "floor";
     floor.kind = WallKind::fixed;
     walls.add(std::move(floor), mesh, held);
   }
-  void index_particles()
-  {
-    row_of_id.assign(n_particles, none);
-    for (Index row = 0; row < particles.size(); ++row)
-      row_of_id[static_cast<std::size_t>(particles.id[static_cast<std::size_t>(row)])] = row;
-    sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
-  }
+  void sort() { sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order); }
   Frame<2> frame() const
   {
-    return {mesh,  share,      particles, bodies, materials, order,    &one_rank(), nodes,  walls,   loads,    row_of_id, clock,
-            stage, "the only", 0,         energy, mass,      momentum, watched,     guards, timings, residual, crossing,  0};
+    return {mesh,       share, particles, bodies, materials, order,   &one_rank(), nodes,   walls,    loads,    clock, stage,
+            "the only", 0,     energy,    mass,   momentum,  watched, guards,      timings, residual, crossing, 0};
   }
   State<2> state()
   {
@@ -140,7 +133,7 @@ void go_on(const CheckpointList& checkpoints)
 {
   SmallRun run;
   checkpoints.take_over(run.state(), run.recorder, run.limits);
-  run.index_particles();
+  run.sort();
   run.recorder.resume(run.frame());
 }
 

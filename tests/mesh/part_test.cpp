@@ -67,6 +67,7 @@ TYPED_TEST(PartOf, EveryBlockCellAndNodeHasOneOwner)
   for (const Part<D>& part : shared.parts) {
     EXPECT_EQ(part.share.whole_cells, shared.whole.n_cells());
     EXPECT_EQ(part.share.whole_nodes, shared.whole.n_nodes());
+    EXPECT_EQ(part.share.rank_of_whole_block, shared.ranks);
     for (Index b = 0; b < static_cast<Index>(part.share.block.size()); ++b) {
       EXPECT_EQ(part.share.rank_of_block[z(b)], shared.ranks[z(part.share.block[z(b)])]);
       block_owners[z(part.share.block[z(b)])] += part.share.owns_block(b) ? 1 : 0;

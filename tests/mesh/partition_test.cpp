@@ -116,6 +116,8 @@ TEST(Partition, AnyWeightsAndNumberOfRanksWillDo)
       EXPECT_EQ(ranks.size(), weights.size());
       EXPECT_TRUE(all_within(ranks, parts));
       EXPECT_GE(imbalance(weights, ranks, parts), 1);
+      const auto costs = costs_of_blocks(weights, mesh.n_cells());
+      EXPECT_LE(imbalance(costs, ranks, parts), imbalance_in_reach(costs, parts));
       EXPECT_LE(imbalance(weights, ranks, parts), parts * (1 + 1e-12));
     }
   EXPECT_EQ(::testing::internal::GetCapturedStdout(), "") << "METIS may talk, but not in between what a run prints";

@@ -64,7 +64,7 @@ Model<C::D, typename C::K> flying_block(Precision precision = Precision::full)
   const auto inside = [](const Vec<D>& x) { return (x.array() > 0.3).all() && (x.array() < 0.7).all(); };
   add_body<D>(m, "block", rubber(1e4, 0.3, 1000), D == 2 ? 3 : 4, inside);
   m.particles.keep_in(precision);
-  make_ready(m, false);
+  make_ready(m);
   Mat<D> A = Mat<D>::Zero();
   A(0, 1) = -0.6;
   A(1, 0) = 0.4;

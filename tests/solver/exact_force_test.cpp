@@ -25,7 +25,7 @@ Model<D, Umls<D>> stressed_block(UmlsGradient gradient)
   m.transfer = {.scheme = Scheme::flip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = {}};
   const auto inside = [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.35; };
   add_body<D>(m, "block", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 4, inside);
-  make_ready(m, false);
+  make_ready(m);
   advance(m, 1e-12);
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(-1, 1);

@@ -14,7 +14,7 @@ M flying_block()
 {
   M m(unit_box<2>(8, 0.1));
   add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>& x) { return (x.array() > 0.3).all() && (x.array() < 0.7).all(); });
-  make_ready(m, false);
+  make_ready(m);
   set_velocity<2>(m, Mat<2>::Zero(), Vec<2>(1, 0.5));
   return m;
 }

@@ -46,7 +46,7 @@ Model<C::D, typename C::K> any_ball(Precision precision)
   for (auto& x : m.particles.x)
     x += 1e-3 * dice.any<Vec<D>>();
   m.particles.keep_in(precision);
-  make_ready(m, false);
+  make_ready(m);
   advance(m, 1e-12);  // sorts
   set_each(m.particles.v, [&](std::size_t) { return dice.any<Vec<D>>(); });
   set_each(m.particles.L, [&](std::size_t) { return dice.any<Mat<D>>(); });

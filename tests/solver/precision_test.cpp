@@ -15,7 +15,7 @@ Model<2, Projected<2>> far_block(Real far)
   add_body<2>(m, "block", rubber(1e7, 0.3, 1000), 4,
               [&](const Vec<2>& x) { return (x.array() > far + 3).all() && (x.array() < far + 7).all(); });
   m.particles.keep_in(Precision::single);
-  make_ready(m, false);
+  make_ready(m);
   return m;
 }
 

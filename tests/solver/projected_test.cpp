@@ -42,7 +42,7 @@ Model<S::D, typename S::K> ball()
       m.particles.x[p][d] += 1e-3 * number(random), v[d] = number(random);
     m.particles.v.set(p, v);
   }
-  make_ready(m, false);
+  make_ready(m);
   advance(m, 1e-12);
   set_each(m.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
   return m;
@@ -130,7 +130,7 @@ TEST(Projected, HoldsAFilmOnAWall)
   }
   close_off(m, "y_min", WallKind::roller);
   m.loads.gravity.acceleration = {0, -10};
-  make_ready(m, false);
+  make_ready(m);
   const Real kinetic = totals(m).kinetic;
   ASSERT_NO_THROW(run_until(m, 0.05));
   EXPECT_LT(totals(m).kinetic, kinetic);
@@ -153,7 +153,7 @@ void slide_on_a_rough_floor(Scheme scheme)
   const Real friction = 0.4;
   close_off(m, "y_min", WallKind::friction, friction);
   m.loads.gravity.acceleration = {1, -10};
-  make_ready(m, false);
+  make_ready(m);
   const Totals<2> start = totals(m);
   const auto floor = *m.mesh.facet_set("y_min");
   for (int step = 0; step < 60; ++step) {
@@ -192,7 +192,7 @@ Real motion_left(Index cells, int steps)
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(-1e-9, 1e-9);
   set_each(m.particles.v, [&](std::size_t) { return Vec<2>{number(random), number(random)}; });
-  make_ready(m, false);
+  make_ready(m);
   const Real start = totals(m).kinetic;
   for (int step = 0; step < steps; ++step)
     advance(m, 1e-2);
@@ -216,7 +216,7 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
   for (const char* side : {"x_min", "x_max", "y_min"})
     close_off(m, side, WallKind::roller);
   m.loads.gravity.acceleration = {0, -10};
-  make_ready(m, false);
+  make_ready(m);
   Stage rest = test_stage(6);  // 17 periods of the column
   rest.damping = 0.8;
   rest.residual = 1e-3;

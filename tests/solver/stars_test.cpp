@@ -96,7 +96,7 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
   const auto stress_of = [](const auto& law) {
     auto m = block<2>(law, 3);
     std::visit([](auto& batch) { batch.averages_volume = true; }, m.materials[0]);
-    make_ready(m, false);
+    make_ready(m);
     sort(m);
     std::mt19937 bits(2);
     std::uniform_real_distribution<Real> any_rate(-10, 10);
@@ -122,7 +122,7 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
 {
   const auto stretched = [] {
     auto m = block<2>(rubber(1e6, 0.3, 1000), 2);
-    make_ready(m, false);
+    make_ready(m);
     for (std::size_t p = 0; p < m.particles.L.size(); ++p)
       m.particles.L.set(p, (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}});
     return m;
@@ -159,8 +159,8 @@ TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
   auto plain = block<2>(law, 2, 0), viscous = block<2>(law, 2, 0);
   const BulkViscosity viscosity{.linear = 0.3, .quadratic = 2};
   std::visit([&](auto& batch) { batch.viscosity = viscosity; }, viscous.materials[0]);
-  make_ready(plain, false);
-  make_ready(viscous, false);
+  make_ready(plain);
+  make_ready(viscous);
   constexpr Real dt = 1e-4, rate = 3;
   for (const Real sign : {-1.0, -1.0, 1.0, 0.0}) {
     for (auto* m : {&plain, &viscous}) {
@@ -179,7 +179,7 @@ TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
 TEST(BulkViscosity, ShortensTheStep)
 {
   auto m = block<2>(rubber(1e6, 0, 1000), 2, 0);
-  make_ready(m, false);
+  make_ready(m);
   m.particles.L.assign(m.particles.L.size(), -Mat<2>::Identity());
   const Real without = shortest_crossing(m.mesh, m.materials, m.particles);
   std::visit([](auto& batch) { batch.viscosity = BulkViscosity{.linear = 1, .quadratic = 0}; }, m.materials[0]);
@@ -201,7 +201,7 @@ TEST(ConductHeat, DecaysAsTheHeatEquationSaysAndKeepsTheHeat)
 {
   const JohnsonCook law = metal(200);
   auto m = block<2>(law, 20);
-  make_ready(m, false);
+  make_ready(m);
   sort(m);
   auto& batch = std::get<Batch<JohnsonCookOf<false, false>>>(m.materials[0]);
   for (std::size_t p = 0; p < batch.history.size(); ++p)
@@ -226,7 +226,7 @@ TEST(ConductHeat, NeedsAConductivity)
   EXPECT_TRUE(conducts_heat(make_any_batch(metal(200), 0, 1, "rod")));
   EXPECT_FALSE(conducts_heat(make_any_batch(metal(std::nullopt), 0, 1, "rod")));
   auto m = block<2>(metal(std::nullopt), 2);
-  make_ready(m, false);
+  make_ready(m);
   EXPECT_FALSE(m.heat.has_value());
 }
 
@@ -237,7 +237,7 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
   auto load = carried_by_particles<2>(m.mesh, *m.mesh.facet_set("x_max"), m.particles);
   load.traction = {-100, 0};
   m.loads.on_particles.push_back(std::move(load));
-  make_ready(m, false);
+  make_ready(m);
   Stage stage = testing::test_stage(10);
   stage.damping = 0.5;
   stage.residual = 1e-3;

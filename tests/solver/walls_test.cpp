@@ -106,7 +106,7 @@ struct Incline {
                 [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
     m.walls.add(wall<2>(WallKind::friction, "floor", mu), m.mesh, *m.mesh.facet_set("y_min"));
     m.loads.gravity.acceleration = {0, -10};
-    make_ready(m, false);
+    make_ready(m);
     return m;
   }
   Vec<2> centre(const Model<2, Umls<2>>& m) const

@@ -24,7 +24,7 @@ Model<3, K> swirl(const Transfer& transfer)
     wall.kind = WallKind::roller;
     m.walls.add(wall, m.mesh, *m.mesh.facet_set(name));
   }
-  make_ready(m, false);
+  make_ready(m);
   return m;
 }
 

@@ -1,0 +1,115 @@
+// What ranks set up by parts is together what one sets up alone, to the last bit.  A test that leaves early on one rank makes the others
+// wait: EXPECT, not ASSERT.
+#include <gtest/gtest.h>
+
+#include "app/seed.hpp"
+#include "app/setup.hpp"
+#include "core/exchange.hpp"
+#include "io/gmsh_mesh.hpp"
+#include "io/reader.hpp"
+#include "mesh/partition.hpp"
+#include "solver/deal.hpp"
+
+namespace talus {
+namespace {
+
+std::size_t z(std::int64_t i) { return static_cast<std::size_t>(i); }
+
+/// Some blocks of cells; two bodies share cells, a third lies in a corner; a load hangs on single particles, a wall has two sides.
+Scene three_bodies()
+{
+  return read_scene_text("three.yaml", R"yaml(title: Three bodies
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [2, 1], cells: [40, 20]}}
+time: {end: 1}
+materials:
+  - {name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}
+  - {name: steel, law: von_mises, density: 7800, youngs_modulus: 2.0e8, poisson_ratio: 0.3, yield_stress: 1.0e5}
+bodies:
+  - {name: low, material: rubber, shape: {type: box, low: [0, 0], high: [2, 0.51]}, particles_per_cell: 3, velocity: ["2 * x", "-y"]}
+  - {name: high, material: steel, shape: {type: box, low: [0.2, 0.49], high: [1.8, 0.8]}, particles_per_cell: 4}
+  - {name: corner, material: rubber, shape: {type: box, low: [1.9, 0.9], high: [2, 1]}, particles_per_cell: 1, velocity: [3, 4]}
+boundaries: [{type: roller, on: x_min}, {type: friction, on: y_min, coefficient: 0.2}]
+loads:
+  - {type: gravity, acceleration: [0, -9.81]}
+  - {type: traction, on: y_max, pressure: 10, carried_by: particles}
+  - {type: traction, on: x_min, pressure: 20, carried_by: particles}
+)yaml");
+}
+
+class SetUpOnRanks : public testing::Test {
+ protected:
+  Exchange& ranks = world();
+  Scene scene = three_bodies();
+  Mesh<2> mesh = load_mesh<2>(scene.mesh, ".");
+  talus::Setup<2> whole = set_up(scene, mesh, one_rank()), part = set_up(scene, mesh, ranks);
+
+  /// Each row here is that of its id in the whole, where rows are ids.
+  void expect_rows_of_the_whole() const
+  {
+    for (std::size_t b = 0; b < whole.bodies.size(); ++b) {
+      const Body &mine = part.bodies[b], &all = whole.bodies[b];
+      EXPECT_EQ(mine.name, all.name);
+      EXPECT_EQ(ranks.sum(std::int64_t{mine.size()}), all.size());
+      EXPECT_EQ(std::visit([](const auto& batch) { return std::pair(batch.begin, batch.end); }, part.materials[b]),
+                std::pair(mine.begin, mine.end));
+      for (Index row = mine.begin; row < mine.end; ++row) {
+        const std::size_t p = z(row), id = z(part.particles.id[p]);
+        EXPECT_TRUE(row == mine.begin || part.particles.id[p - 1] < part.particles.id[p]);
+        EXPECT_TRUE(static_cast<Index>(id) >= all.begin && static_cast<Index>(id) < all.end);
+        EXPECT_EQ(part.particles.x[p], whole.particles.x[id]);
+        EXPECT_EQ(part.particles.v[p], whole.particles.v[id]);
+        EXPECT_EQ(part.particles.L[p], whole.particles.L[id]);
+        EXPECT_EQ(part.particles.mass[p], whole.particles.mass[id]);
+        EXPECT_EQ(part.particles.volume0[p], whole.particles.volume0[id]);
+      }
+    }
+    EXPECT_EQ(ranks.sum(std::int64_t{part.particles.size()}), whole.particles.size());
+  }
+};
+
+TEST_F(SetUpOnRanks, EachFillsItsBlocksAndAllTogetherTheWhole)
+{
+  const IndexRange mine = cells_to_fill(mesh, ranks);
+  EXPECT_EQ(mine.begin % block_cells, 0);
+  EXPECT_EQ(ranks.sum(std::int64_t{mine.end - mine.begin}), mesh.n_cells());
+  EXPECT_EQ(part.n_particles, whole.particles.size());
+  expect_rows_of_the_whole();
+  for (std::size_t p = 0; p < part.particles.cell.size(); ++p) {
+    EXPECT_EQ(part.particles.cell[p], whole.particles.cell[z(part.particles.id[p])]);
+    EXPECT_TRUE(mine.begin <= part.particles.cell[p] && part.particles.cell[p] < mine.end);
+  }
+}
+
+TEST_F(SetUpOnRanks, WhatIsOfAllParticlesIsTheSameOnEachRank)
+{
+  EXPECT_EQ(whole.warnings.size(), 3U) << "cells shared by two bodies, two areas without particles behind a part of them";
+  EXPECT_EQ(part.warnings, whole.warnings);
+  EXPECT_EQ(part.guards.speed, whole.guards.speed);
+  EXPECT_EQ(part.guards.least_energy, whole.guards.least_energy);
+  EXPECT_EQ(part.loads.on_particles.size(), 2U);
+  for (std::size_t k = 0; k < part.loads.on_particles.size(); ++k) {
+    EXPECT_FALSE(whole.loads.on_particles[k].id.empty());
+    EXPECT_EQ(part.loads.on_particles[k].id, whole.loads.on_particles[k].id);
+    EXPECT_EQ(part.loads.on_particles[k].area, whole.loads.on_particles[k].area);
+  }
+  EXPECT_EQ(part.walls.closed_facets(mesh), whole.walls.closed_facets(mesh));
+}
+
+TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)
+{
+  std::vector<std::int64_t> weights(z(blocks_of(mesh.n_cells())), 0);
+  for (const Index cell : whole.particles.cell)
+    ++weights[z(cell / block_cells)];
+  const Part<2> here = cut(mesh, partition(mesh, weights, ranks.size()), ranks.rank(), 2);
+  take_own_particles(ranks, here.share, part.bodies, part.materials, part.particles);
+  expect_rows_of_the_whole();
+  for (std::size_t p = 0; p < part.particles.cell.size(); ++p) {
+    const Index cell = part.particles.cell[p];
+    EXPECT_TRUE(cell != none && here.share.owns_cell(cell));
+    EXPECT_EQ(here.share.whole_cell(cell), whole.particles.cell[z(part.particles.id[p])]);
+  }
+}
+
+}  // namespace
+}  // namespace talus
