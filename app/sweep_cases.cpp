@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is wrong with scenes, each thing once: at the value of the study that is wrong; or in the scene, with the first case that has it unless
+/// What is wrong with scenes, each thing once: at the value of the study that made it so; or in the scene, with the first case that has it unless
 /// all do.
 class CaseErrors {
  public:
@@ -40,7 +40,7 @@ class CaseErrors {
       const std::string key = fmt::format("{}: {}: {}", to_string(here.where), here.where.path, here.message);
       const auto [found, is_new] = number_of_.emplace(key, all_.size());
       if (is_new)
-        all_.push_back({std::move(here), of_value, {}, in_words(one)});
+        all_.push_back({std::move(here), of_value, {}, one});
       all_[found->second].cases.push_back(one.number);
     }
   }
@@ -50,8 +50,14 @@ class CaseErrors {
     std::vector<Problem> problems;
     for (const Entry& entry : all_) {
       problems.push_back(entry.problem);
-      if (!entry.of_value && entry.cases.size() < n_cases)
-        problems.back().message += fmt::format(" (case {}: {})", entry.cases.front(), entry.first);
+      if (entry.of_value || entry.cases.size() == n_cases)
+        continue;
+      if (const auto k = only_change_within(entry)) {
+        problems.back() = entry.first.values[*k].problem(entry.problem.message);
+        problems.back().where.path = entry.problem.where.path;
+      } else {
+        problems.back().message += fmt::format(" (case {}: {})", entry.cases.front(), in_words(entry.first));
+      }
     }
     if (!problems.empty())
       throw SceneErrors(std::move(problems));
@@ -62,8 +68,31 @@ class CaseErrors {
     Problem problem;
     bool of_value;
     std::vector<int> cases;
-    std::string first;  // of them, in words
+    SweepCase first;  // of them
   };
+  /// The one change of what the problem is about, or of a part of it.
+  static std::optional<std::size_t> only_change_within(const Entry& entry)
+  {
+    std::string path;  // without the names of entries: bodies[0] "block".shape
+    bool in_name = false;
+    for (const char c : entry.problem.where.path) {
+      in_name = c == '"' ? !in_name : in_name;
+      if (!in_name && c != '"' && c != ' ')
+        path += c;
+    }
+    std::optional<std::size_t> found;
+    for (std::size_t k = 0; k < entry.first.changes.size(); ++k) {
+      const std::string& change = entry.first.changes[k];
+      const std::string_view key = std::string_view(change).substr(0, change.find('='));
+      if (path.empty() || !(is_within(key, path) || is_within(path, key)))
+        continue;
+      if (found)
+        return std::nullopt;
+      found = k;
+    }
+    return found;
+  }
+
   std::vector<Entry> all_;
   std::map<std::string, std::size_t> number_of_;
 };
@@ -104,7 +133,7 @@ void check_on_mesh(const SweepPlan& plan, const std::vector<SweepCase*>& cases, 
   for (SweepCase* one : cases) {
     one->mesh_digest = mesh_digest;
     const CaseStatus status = status_of(*one, plan.quick);
-    if (depth == CheckDepth::mesh || status.state == CaseState::done || status.goes_on)
+    if (depth == CheckDepth::mesh || status.state == CaseState::done || status.goes_on_from)
       continue;  // it was checked when it began
     try {
       const Scene scene = scene_of_case(plan, *one);
@@ -115,16 +144,18 @@ void check_on_mesh(const SweepPlan& plan, const std::vector<SweepCase*>& cases, 
   }
 }
 
-/// A checkpoint of this case is there.
-bool can_go_on(const SweepCase& one, bool quick)
+/// Time that the newest checkpoint of this case has reached [s]; nothing where there is none.
+std::optional<Real> time_kept(const SweepCase& one, bool quick)
 {
   try {
-    const RunIdentity run = CheckpointList(one.folder).identity();
-    return run.quick == quick && run.set == one.changes &&
-           (one.mesh_digest.empty() || digest_text(static_cast<std::uint64_t>(run.mesh)) == one.mesh_digest);
+    const CheckpointList kept(one.folder);
+    const RunIdentity& run = kept.identity();
+    const bool same_mesh = one.mesh_digest.empty() || digest_text(static_cast<std::uint64_t>(run.mesh)) == one.mesh_digest;
+    if (run.quick == quick && run.set == one.changes && same_mesh)
+      return kept.clock().time;
   } catch (const EnvironmentError&) {
-    return false;
   }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -190,12 +221,11 @@ CaseStatus status_of(const SweepCase& one, bool quick)
     status.summary = {};
     return status;
   }
-  status.time = summary.simulated_time;
   if (ended) {
     status.state = CaseState::done;
   } else if (summary.status == "stopped" || summary.message == not_ended) {
     status.state = summary.status == "stopped" ? CaseState::stopped : CaseState::not_ended;
-    status.goes_on = can_go_on(one, quick);
+    status.goes_on_from = time_kept(one, quick);
   } else {
     status.state = CaseState::failed;
     status.why = summary.message;

@@ -1,6 +1,7 @@
 #pragma once
 // The cases of a study: their scenes, what is wrong with them before anything runs, and how far each has come.
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,10 +36,9 @@ constexpr std::array<std::string_view, 5> words(CaseState) { return {"to be run"
 /// What the folder of a case says of it.
 struct CaseStatus {
   CaseState state = CaseState::to_run;
-  std::string why;       ///< results there are not of this case; a run failed with this message
-  bool goes_on = false;  ///< there is a checkpoint of this case
-  Real time = 0;         ///< reached [s]
-  SummaryBack summary;   ///< of this case only
+  std::string why;                   ///< results there are not of this case; or a run failed with this message
+  std::optional<Real> goes_on_from;  ///< time of the newest checkpoint of this case [s]
+  SummaryBack summary;               ///< of this case only
 };
 
 /// Results that were made from another text, other changes or another mesh (where its digest is known) are not those of the case.

@@ -89,7 +89,9 @@ class Sweep {
   /// Until all have ended, or a signal asks for the end.
   void operator()(const std::vector<std::size_t>& chosen)
   {
-    std::deque<std::size_t> waiting(chosen.begin(), chosen.end());
+    std::deque<std::size_t> waiting;
+    std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(waiting),
+                 [&](std::size_t i) { return table_.status(i).state != CaseState::done; });
     const StopRequests requests;
     while (!running_.empty() || (!waiting.empty() && StopRequests::received().empty())) {
       while (!waiting.empty() && running_.size() < side_.jobs && StopRequests::received().empty()) {
@@ -134,7 +136,7 @@ class Sweep {
       return say(i, "another process is at work on it");
     std::vector<std::string> words = split_at_blanks(options_.launcher.value_or(""));
     words.insert(words.end(), {fs::read_symlink("/proc/self/exe").string(), "run"});
-    if (status.goes_on) {
+    if (status.goes_on_from) {
       words.insert(words.end(), {"--resume", one.folder.string()});
     } else {
       words.insert(words.end(), {scene_of(plan_.study).string(), "--out", one.folder.string()});
@@ -156,13 +158,13 @@ class Sweep {
       throw;
     }
     ::close(log);
-    say(i, fmt::format("{} ({}{})", status.goes_on ? fmt::format("goes on after t = {:.6g} s", status.time) : "begins", in_words(one),
-                       remark(status)));
+    say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins",
+                       in_words(one), remark(status)));
   }
   /// Why what is there does not count.
   static std::string remark(const CaseStatus& status)
   {
-    const bool without = !status.goes_on && (status.state == CaseState::stopped || status.state == CaseState::not_ended);
+    const bool without = !status.goes_on_from && (status.state == CaseState::stopped || status.state == CaseState::not_ended);
     if (without)
       return "; what is there has no checkpoint to go on from";
     return status.state == CaseState::to_run && !status.why.empty() ? "; " + status.why : "";
@@ -194,9 +196,10 @@ class Sweep {
     const bool before_its_first_step =
         told_to_end_ && (code == ChildProcess::of_signal + SIGTERM || code == ChildProcess::of_signal + SIGINT);
     if (code == run_was_stopped || before_its_first_step)
-      return say(i, before_its_first_step ? "ended before its first step" : fmt::format("stopped at t = {:.6g} s", status.time));
+      return say(i, before_its_first_step ? "ended before its first step"
+                                          : fmt::format("stopped at t = {:.6g} s", status.goes_on_from.value_or(0)));
     failures_[i] = reason(i, code, status);
-    say(i, "FAILED: " + failures_[i]);
+    say(i, "FAILED, see below");
   }
 
   std::string reason(std::size_t i, int code, const CaseStatus& status) const
@@ -209,7 +212,7 @@ class Sweep {
     if (code > ChildProcess::of_signal)
       return fmt::format("ended by signal {}{}{}", code - ChildProcess::of_signal,
                          code == ChildProcess::of_signal + SIGKILL ? " (where memory runs out the system kills; --jobs 1 needs less)" : "",
-                         status.goes_on ? "; it goes on from its last checkpoint when the sweep is run again" : "");
+                         status.goes_on_from ? "; it goes on from its last checkpoint when the sweep is run again" : "");
     const std::string said = last_lines(log_of(i));
     if (code == ChildProcess::not_started)
       return fmt::format("cannot be started{}{}", options_.launcher ? ": is there no " + *options_.launcher + "?" : "",

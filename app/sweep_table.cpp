@@ -177,7 +177,7 @@ std::string SweepTable::print() const
     lines.push_back(words_of_case(i));
     const CaseStatus& status = status_[i];
     if (status.state == CaseState::stopped || status.state == CaseState::not_ended)
-      lines.back().back() += status.goes_on ? fmt::format(" at t = {:.6g} s", status.time) : ", no checkpoint";
+      lines.back().back() += status.goes_on_from ? fmt::format(" at t = {:.6g} s", *status.goes_on_from) : ", no checkpoint";
     for (const auto& number : rows_[i].numbers)
       lines.back().push_back(number ? fmt::format("{:.6g}", number->value) : "-");
   }

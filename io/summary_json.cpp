@@ -62,8 +62,6 @@ SummaryBack read_summary(const std::filesystem::path& file)
     for (const SummaryJson& stage : json.at("stages"))
       back.quick = back.quick || text_behind(stage, "result") == "quick";
     add_numbers(json, "", "", back.numbers);
-    if (const NamedValue* time = find_number(back.numbers, "simulated_time"))
-      back.simulated_time = time->value;
     return back;
   } catch (const SummaryJson::exception& e) {
     throw EnvironmentError(fmt::format("{} is not the summary of a run: {}", file.string(), e.what()));

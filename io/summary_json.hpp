@@ -11,7 +11,6 @@ namespace talus {
 struct SummaryBack {
   std::string status, message, commit, scene_digest, mesh_digest;  ///< empty where the file does not say
   bool quick = false;                                              ///< ended as a quick run
-  Real simulated_time = 0;                                         ///< s
   std::vector<NamedValue> numbers;  ///< by the path of their keys without units, such as "balances.energy.terms.plastic"
 };
 
