@@ -189,14 +189,17 @@ class CommandLine {
     list("--threads", bench_.threads, "numbers of threads")->check(CLI::Range(1, 1024));
     list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(CLI::Range(1, 100));
     CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, precision, dimension: hours");
-    bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
+    CLI::Option* options =
+        bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
+    CLI::Option* mpi = bench->add_flag("--mpi", bench_.ranks, "one case on the ranks of mpirun: what each holds, sends and waits for");
+    mpi->excludes(all)->excludes(options);
     bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(CLI::Range(1000, most_particles));
     bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(CLI::Range(1, most_steps));
     bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(CLI::Range(1, 1000));
     bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(CLI::Range(1, most_steps));
     bench->add_option("--json", bench_.json, "write all of it to this file");
-    bench->add_option("--from", bench_.from, "measure nothing, show such a file");
-    bench->add_option("--compare", bench_.compare, "print times over those of such a file");
+    bench->add_option("--from", bench_.from, "measure nothing, show such a file")->excludes(mpi);
+    bench->add_option("--compare", bench_.compare, "print times over those of such a file")->excludes(mpi);
     bench->callback([this] { talus::bench(bench_); });
   }
 

@@ -97,6 +97,7 @@ struct BenchOptions {
   std::vector<int> dimensions, threads, per_cell;
   bool all = false;      ///< the whole product
   bool options = false;  ///< what one case costs with each option of a scene
+  bool ranks = false;    ///< one case on the ranks that this process is one of
   Index particles = 1'000'000;
   int warm_up = 10, repeats = 3, steps = 5;
   std::optional<std::filesystem::path> json, from, compare;
