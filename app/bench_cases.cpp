@@ -105,12 +105,17 @@ std::vector<BenchSetting> bench_settings(const BenchOptions& o, int all_threads)
   return list;
 }
 
+BenchSetting one_setting(const BenchOptions& o)
+{
+  BenchSetting setting = product(axes_of(o, 1), false).front();
+  if (o.transfers.empty())
+    setting.transfer = "aflip";
+  return setting;
+}
+
 std::vector<BenchSetting> option_settings(const BenchOptions& o)
 {
-  const Axes axes = axes_of(o, 1);
-  BenchSetting base = product(axes, false).front();
-  if (o.transfers.empty())
-    base.transfer = "aflip";
+  const BenchSetting base = one_setting(o);
   std::vector<BenchSetting> list;
   for (const std::string_view option : bench_options::each)
     list.push_back(base), list.back().option = option;

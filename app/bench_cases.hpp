@@ -9,6 +9,9 @@ namespace talus {
 /// keeps its usual values, or has all it can have (`all`).  SceneErrors naming words that mean nothing.
 std::vector<BenchSetting> bench_settings(const BenchOptions& options, int all_threads);
 
+/// The first word of each axis, or the most usual one.  SceneErrors as above.
+BenchSetting one_setting(const BenchOptions& options);
+
 /// One setting alone, twice, then with each option.
 std::vector<BenchSetting> option_settings(const BenchOptions& options);
 

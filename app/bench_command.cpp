@@ -6,6 +6,7 @@
 
 #include "app/bench_cases.hpp"
 #include "app/bench_machine.hpp"
+#include "app/bench_ranks.hpp"
 #include "app/bench_table.hpp"
 #include "app/bench_yardstick.hpp"
 #include "core/parallel.hpp"
@@ -83,6 +84,8 @@ BenchReport measured_report(const BenchOptions& options)
 
 void bench(const BenchOptions& options)
 {
+  if (options.ranks)
+    return bench_ranks(options);
   const auto then = options.compare ? std::optional(read_bench(*options.compare)) : std::nullopt;
   const BenchReport report = options.from ? read_bench(*options.from) : measured_report(options);
   const bool of_options =

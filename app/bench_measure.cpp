@@ -10,19 +10,6 @@ namespace talus {
 
 namespace {
 
-/// The phases of a step, in order: the only place of the bench that names them.
-Laps::Totals phases_of(const Timings& t)
-{
-  return {{"locate", t.locate}, {"scatter", t.scatter}, {"nodes", t.nodes}, {"gather", t.gather}, {"stress", t.stress}};
-}
-
-Measured measured(std::vector<Real> values)
-{
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
-}
-
 /// A folder that is gone afterwards.
 class Scratch {
  public:
@@ -77,6 +64,18 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
 }
 
 }  // namespace
+
+Measured measured(std::vector<Real> values)
+{
+  std::sort(values.begin(), values.end());
+  const std::size_t n = values.size();
+  return {(values[(n - 1) / 2] + values[n / 2]) / 2, values.front(), values.back()};
+}
+
+Laps::Totals phases_of(const Timings& t)
+{
+  return {{"locate", t.locate}, {"scatter", t.scatter}, {"nodes", t.nodes}, {"gather", t.gather}, {"stress", t.stress}};
+}
 
 void Laps::step_done(Real particle_steps, const Totals& phases)
 {

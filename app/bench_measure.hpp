@@ -14,6 +14,9 @@ struct BenchPlan {
   int all_steps() const noexcept { return warm_up + repeats * steps; }
 };
 
+/// Median, least and most of some values.
+Measured measured(std::vector<Real> values);
+
 /// Times between marks -> medians of the repeats.
 class Laps {
  public:
@@ -36,6 +39,9 @@ class Laps {
   int steps_ = 0;
   std::vector<Mark> marks_;
 };
+
+/// The phases of a step, in order: the only place of the bench that names them.
+Laps::Totals phases_of(const Timings& timings);
 
 /// Runs one setting.  RunError if it does not stay sound.
 BenchResult measure(const BenchSetting& setting, const BenchPlan& plan);

@@ -36,6 +36,7 @@ class CommandLine {
     add_drive();
     add_render();
     add_diff();
+    add_sweep();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
     add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
     add_bench();
@@ -151,6 +152,24 @@ class CommandLine {
     diff->callback([this] { status_ = same_results(diff_) ? 0 : results_differ; });
   }
 
+  void add_sweep()
+  {
+    CLI::App* sweep = app_.add_subcommand("sweep", "run a scene with several values of its keys, and put their results into a table");
+    sweep->add_option("study", sweep_.study, "study (.yaml): scene, what varies, what is told")->required();
+    sweep->add_option("--out", sweep_.out, "folder of cases and table; default runs/<name of the study>");
+    CLI::Option* jobs =
+        sweep->add_option("--jobs", sweep_.jobs, "cases at a time; default as many as there are cores for")->check(CLI::Range(1, 1024));
+    sweep->add_option("--threads", sweep_.threads, "threads of each; default the cores over the cases at a time")
+        ->check(CLI::Range(1, 1024));
+    CLI::Option* only = sweep->add_option("--case", sweep_.only, "run this case alone, counted from 1: for the jobs of an array");
+    only->check(CLI::PositiveNumber)->excludes(jobs);
+    sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
+    sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
+    sweep->add_flag("--quick", sweep_.quick, "each case coarse and short: only to see that they run");
+    sweep->add_flag("--quiet", sweep_.quiet, "no progress and no table");
+    sweep->callback([this] { talus::sweep(sweep_); });
+  }
+
   void add_suite(const std::string& name, const std::string& help, SuiteOptions& options)
   {
     const bool verify = name == "verify";
@@ -188,14 +207,17 @@ class CommandLine {
     list("--threads", bench_.threads, "numbers of threads")->check(CLI::Range(1, 1024));
     list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(CLI::Range(1, 100));
     CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, precision, dimension: hours");
-    bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
+    CLI::Option* options =
+        bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
+    CLI::Option* mpi = bench->add_flag("--mpi", bench_.ranks, "one case on the ranks of mpirun: what each holds, sends and waits for");
+    mpi->excludes(all)->excludes(options);
     bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(CLI::Range(1000, most_particles));
     bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(CLI::Range(1, most_steps));
     bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(CLI::Range(1, 1000));
     bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(CLI::Range(1, most_steps));
     bench->add_option("--json", bench_.json, "write all of it to this file");
-    bench->add_option("--from", bench_.from, "measure nothing, show such a file");
-    bench->add_option("--compare", bench_.compare, "print times over those of such a file");
+    bench->add_option("--from", bench_.from, "measure nothing, show such a file")->excludes(mpi);
+    bench->add_option("--compare", bench_.compare, "print times over those of such a file")->excludes(mpi);
     bench->callback([this] { talus::bench(bench_); });
   }
 
@@ -207,6 +229,7 @@ class CommandLine {
   MeshOptions mesh_;
   RenderOptions render_;
   DiffOptions diff_;
+  SweepOptions sweep_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
   bool schema_ = false;

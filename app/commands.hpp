@@ -80,11 +80,25 @@ struct SuiteOptions {
 /// Replaces this process by the suite of benchmarks/, which runs this program.  EnvironmentError.
 [[noreturn]] void run_suite(const SuiteOptions& options);
 
+struct SweepOptions {
+  std::filesystem::path study;
+  std::optional<std::filesystem::path> out;
+  std::optional<int> jobs, threads;     ///< runs at a time; threads of each
+  std::optional<int> only;              ///< number of the one case to run
+  std::optional<std::string> launcher;  ///< words before the program, such as "mpirun -n 4"
+  bool list = false;                    ///< run nothing
+  bool quick = false, quiet = false;
+};
+/// Runs the cases of a study that are not done yet, each as a process of its own in a folder of its own, and keeps a table of them.  SceneErrors
+/// with all that is wrong with any case, before anything runs; RunError if some failed; Stopped by a signal, or because cases were; EnvironmentError.
+void sweep(const SweepOptions& options);
+
 struct BenchOptions {
   std::vector<std::string> kernels, transfers, laws, precisions;
   std::vector<int> dimensions, threads, per_cell;
   bool all = false;      ///< the whole product
   bool options = false;  ///< what one case costs with each option of a scene
+  bool ranks = false;    ///< one case on the ranks that this process is one of
   Index particles = 1'000'000;
   int warm_up = 10, repeats = 3, steps = 5;
   std::optional<std::filesystem::path> json, from, compare;

@@ -131,6 +131,16 @@ std::string in_words(std::string_view what, const Closure& closure)
 
 }  // namespace
 
+std::string scene_digest(const Scene& scene)
+{
+  std::string inputs = scene.text;
+  for (const std::string& change : scene.overrides)
+    inputs += '\n' + change;
+  return digest_text(digest(inputs));
+}
+
+std::string digest_text(std::uint64_t digest) { return fmt::format("{:016x}", digest); }
+
 template <int D>
 RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t mesh_digest, const Setup<D>& setup)
 {
@@ -143,7 +153,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.version = v.number, s.commit = v.commit, s.compiler = v.compiler;
   s.build = build_of(v);
   s.status = RunStatus::failed;
-  s.message = "the run did not end";
+  s.message = not_ended;
   s.dimension = scene.dimension;
   s.kernel = scene.kernel;
   s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
@@ -153,11 +163,8 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
   s.mesh_cells = mesh.n_cells();
-  std::string inputs = scene.text;
-  for (const std::string& change : scene.overrides)
-    inputs += '\n' + change;
-  s.scene_digest = fmt::format("{:016x}", digest(inputs));
-  s.mesh_digest = fmt::format("{:016x}", mesh_digest);
+  s.scene_digest = scene_digest(scene);
+  s.mesh_digest = digest_text(mesh_digest);
   s.mesh_quality = named(quality(mesh));
   s.watch.speed_limit = setup.guards.speed;
   s.watch.gain_limit = setup.guards.gain;

@@ -4,6 +4,14 @@
 
 namespace talus {
 
+/// What a summary says of a run that has not ended, or was killed.
+inline constexpr auto not_ended = "the run did not end";
+
+/// A digest as summaries write it.
+std::string digest_text(std::uint64_t digest);
+/// Of the text of a scene and what --set changed of it.
+std::string scene_digest(const Scene& scene);
+
 /// What is known before the first step.  Its status is "failed" until the run has ended, so that a killed run does not look finished.
 template <int D>
 RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t mesh_digest, const Setup<D>& setup);

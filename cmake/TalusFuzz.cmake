@@ -6,7 +6,7 @@ talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINK
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
               ONLY accuracy array_file cell_count csv document field_reader gmsh_door gmsh_mesh gmsh_read history_columns memory mesh_groups msh_ reader scalars scene
-                   shape text_file vtk whole_file
+                   shape study text_file vtk whole_file
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)

@@ -62,6 +62,9 @@ void check(int result, const char* call)
   throw EnvironmentError(fmt::format("{} failed: {}", call, std::string_view(text.data(), static_cast<std::size_t>(length))));
 }
 
+/// What launchers tell each rank: Open MPI, MPICH, PMIx.
+constexpr std::array launch_variables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"};
+
 bool in_environment(const char* name)
 {
   const char* value = std::getenv(name);
@@ -189,9 +192,12 @@ std::string packed(const std::exception_ptr& error)
 
 }  // namespace
 
-bool launched_as_ranks()
+bool launched_as_ranks() { return std::ranges::any_of(launch_variables, in_environment); }
+
+void forget_launch() noexcept
 {
-  return std::ranges::any_of(std::array{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"}, in_environment);
+  for (const char* const name : launch_variables)
+    ::unsetenv(name);
 }
 
 int ranks_on_this_machine()

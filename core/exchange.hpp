@@ -18,6 +18,9 @@ namespace talus {
 /// Whether a launcher (mpirun, srun with PMI or PMIx) has started this process as one of several, to go by the environment.
 bool launched_as_ranks();
 
+/// Takes what says so out of the environment, for programs that this process starts: they are no ranks of its job.
+void forget_launch() noexcept;
+
 /// How many ranks the launcher has started on this machine, by the environment; 1 where it does not say.
 int ranks_on_this_machine();
 

@@ -22,23 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Quoted as RFC 4180 says when the text would not survive plainly; line ends become blanks, so a record stays one line.
-std::string cell_text(std::string text)
-{
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  if (text.find_first_of(",\"") == std::string::npos)
-    return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
-
 std::string header(std::span<const CsvColumn> columns)
 {
   std::string line;
-  for (const auto& [name, unit] : columns)
-    line += (line.empty() ? "" : ",") + cell_text(unit.empty() ? name : fmt::format("{} [{}]", name, unit));
+  for (const CsvColumn& column : columns)
+    line += (line.empty() ? "" : ",") + csv_cell(csv_heading(column));
   return line + '\n';
 }
 
@@ -90,6 +78,22 @@ Real number(const std::string& cell, const fs::path& file, std::size_t line)
 }
 
 }  // namespace
+
+std::string csv_cell(std::string text)
+{
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.find_first_of(",\"") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
+std::string csv_heading(const CsvColumn& column)
+{
+  return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
+}
 
 HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns, std::string_view rows)
     : path_(std::move(file)), columns_(std::move(columns))

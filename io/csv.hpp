@@ -20,6 +20,11 @@ struct CsvColumn {
   friend bool operator==(const CsvColumn&, const CsvColumn&) = default;
 };
 
+/// A text as one cell: quoted as RFC 4180 says where it would not survive plainly; line ends become blanks, so a record stays one line.
+std::string csv_cell(std::string text);
+/// "name [unit]"
+std::string csv_heading(const CsvColumn& column);
+
 /// A history while it is being written.  The first column is the time [s], and times increase.
 /// Every row reaches the file before append() returns; numbers read back as the same bits.  NaN is an empty entry, which spreadsheets and
 /// readers of tables know as "no value".  Disk errors are EnvironmentError.

@@ -1,6 +1,7 @@
 #include "io/document.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
@@ -70,17 +71,56 @@ Where to_where(const Place& place, std::string path)
   return where;
 }
 
+Problem problem_at(const Place& place, std::string path, std::string message)
+{
+  std::string source_line;
+  const auto line = static_cast<std::size_t>(place.line);
+  if (place.source != nullptr && line > 0 && line <= place.source->lines.size())
+    source_line = shown_line(place.source->lines[line - 1]);
+  return {to_where(place, std::move(path)), std::move(message), std::move(source_line)};
+}
+
+namespace {
+
+/// In double quotes, which can hold any character.
+std::string quoted_text(std::string_view text)
+{
+  std::string out = "\"";
+  for (const char c : text)
+    if (const auto code = static_cast<unsigned char>(c); code < 0x20 || code == 0x7f)
+      out += fmt::format("\\x{:02x}", code);
+    else
+      out += c == '"' || c == '\\' ? std::string{'\\', c} : std::string(1, c);
+  return out + '"';
+}
+
+/// `inside` brackets some more characters mean something.
+std::string one_line_of(const Node& value, bool inside)
+{
+  std::vector<std::string> items;
+  for (const Node& item : value.items)
+    items.push_back(one_line_of(item, true));
+  switch (value.kind) {
+    case Node::Kind::list: return fmt::format("[{}]", fmt::join(items, ", "));
+    case Node::Kind::mapping:
+      for (std::size_t i = 0; i < items.size(); ++i)
+        items[i] = fmt::format("{}: {}", quoted_text(value.keys[i].text), items[i]);
+      return fmt::format("{{{}}}", fmt::join(items, ", "));
+    default: return value.quoted || (inside && value.text.find_first_of(",[]{}") != value.text.npos) ? quoted_text(value.text) : value.text;
+  }
+}
+
+}  // namespace
+
+std::string in_one_line(const Node& value) { return one_line_of(value, false); }
+
 void Problems::add(const Place& place, std::string path, std::string message)
 {
   if (list_.size() > most_problems)
     return;
   if (list_.size() == most_problems)
     message = "more errors follow; these are enough for now";
-  std::string source_line;
-  const auto line = static_cast<std::size_t>(place.line);
-  if (place.source != nullptr && line > 0 && line <= place.source->lines.size())
-    source_line = shown_line(place.source->lines[line - 1]);
-  list_.push_back({to_where(place, std::move(path)), std::move(message), std::move(source_line)});
+  list_.push_back(problem_at(place, std::move(path), std::move(message)));
 }
 
 void Problems::throw_if_any() const

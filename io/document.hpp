@@ -61,6 +61,12 @@ std::string path_to(const std::string& parent, std::string_view key);
 /// `parent[i]`, followed by the name in quotes if the entry has one: `materials[1] "clay"`.
 std::string path_to(const std::string& parent, std::size_t i, const Node& entry);
 
+/// What is wrong at a place, with the line that stands there.
+Problem problem_at(const Place& place, std::string path, std::string message);
+
+/// A value in one line of YAML, as --set takes it.
+std::string in_one_line(const Node& value);
+
 /// Collects what is wrong.  Keeps the first hundred: more would help nobody, and a damaged file has millions.
 class Problems {
  public:

@@ -41,6 +41,12 @@ void FieldReader::read(const Node& node, const std::string& path, const Asked&, 
       problems_.add(node.items[i].place, path_to(path, i, node.items[i]), fmt::format("time {} s does not come after {} s", t1, t0));
 }
 
+void FieldReader::read(const Node& node, const std::string& path, const Asked&, Node& value)
+{
+  if (is(node.kind == Node::Kind::empty ? Node::Kind::scalar : node.kind, node, path, "a value"))
+    value = node;
+}
+
 bool FieldReader::is(Node::Kind kind, const Node& node, const std::string& path, std::string_view expected)
 {
   if (node.kind == kind)

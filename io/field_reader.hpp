@@ -113,6 +113,9 @@ class FieldReader {
 
   void read(const Node& node, const std::string& path, const Asked& asked, Table& table);
 
+  /// Whatever stands there.
+  void read(const Node& node, const std::string& path, const Asked& asked, Node& value);
+
   /// Number, whole number, switch, text, word of an enum.
   template <class T>
   requires requires(const Node& node, T& value) { read_scalar(node, Asked{}, value); }

@@ -1,9 +1,8 @@
-// fork and exec with one pipe for standard output and standard error of the child.
+// One pipe for standard output and standard error of the program.
 #include "io/launch_render.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -11,10 +10,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "io/child_process.hpp"
 
 namespace talus {
 
@@ -24,7 +25,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view picture_mark = "picture: ";  // how talus-render announces a file; xvfb-run may merge its two outputs
 constexpr int refused = 2;                              // its exit code for arguments that do not fit the results
-constexpr int not_started = 127;
 
 bool on_path(const std::string& program)
 {
@@ -63,7 +63,7 @@ std::vector<std::string> command_line(const fs::path& talus_render, const std::v
 
 struct Ending {
   std::string output;
-  int status;  ///< as waitpid gives it
+  int code;  ///< as ChildProcess gives it
 };
 
 std::string read_all(int descriptor)
@@ -81,40 +81,30 @@ std::string read_all(int descriptor)
 
 Ending run(std::vector<std::string> words)
 {
-  std::vector<char*> argv;
-  for (std::string& word : words)
-    argv.push_back(word.data());
-  argv.push_back(nullptr);
   std::array<int, 2> ends;
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw EnvironmentError(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
-  const pid_t child = ::fork();
-  if (child == 0) {  // only calls that are safe after fork in a program with threads
-    ::dup2(ends[1], STDOUT_FILENO);
-    ::dup2(ends[1], STDERR_FILENO);
-    ::execvp(argv.front(), argv.data());
-    ::_exit(not_started);
+  std::optional<ChildProcess> child;
+  try {
+    child.emplace(std::move(words), ends[1]);
+  } catch (const EnvironmentError&) {
+    ::close(ends[0]), ::close(ends[1]);
+    throw;
   }
   ::close(ends[1]);
-  if (child < 0) {
-    ::close(ends[0]);
-    throw EnvironmentError(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
-  }
   Ending ending{read_all(ends[0]), 0};
   ::close(ends[0]);
-  while (::waitpid(child, &ending.status, 0) < 0 && errno == EINTR)
-    continue;
+  ending.code = child->wait();
   return ending;
 }
 
 /// An abort shows as a signal, or as 128 + its number when a shell (xvfb-run) stands between.
-[[noreturn]] void explain(const fs::path& talus_render, int status, const std::string& messages)
+[[noreturn]] void explain(const fs::path& talus_render, int code, const std::string& messages)
 {
-  const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   if (code == refused)
     throw Error(messages);
-  if (code > 128)
-    throw EnvironmentError(fmt::format("{} was ended by signal {}. {}\n{}", talus_render.string(), code - 128,
+  if (code > ChildProcess::of_signal)
+    throw EnvironmentError(fmt::format("{} was ended by signal {}. {}\n{}", talus_render.string(), code - ChildProcess::of_signal,
                                        has_display()
                                            ? "DISPLAY is set; without it, xvfb-run draws in memory: try env -u DISPLAY talus render ..."
                                            : "Is software OpenGL there (Debian: libgl1-mesa-dri)?",
@@ -136,8 +126,8 @@ std::vector<fs::path> launch_render(const fs::path& talus_render, const std::vec
     else
       messages += (messages.empty() ? "" : "\n") + line;
   }
-  if (ending.status != 0)
-    explain(talus_render, ending.status, messages);
+  if (ending.code != 0)
+    explain(talus_render, ending.code, messages);
   if (!messages.empty())
     fmt::print(stderr, "{}\n", messages);
   if (pictures.empty())

@@ -6,6 +6,7 @@
 
 #include "io/point_test.hpp"
 #include "io/scene.hpp"
+#include "io/study.hpp"
 
 namespace talus {
 
@@ -20,5 +21,8 @@ Scene read_scene_text(const std::filesystem::path& file, const std::string& text
 
 /// The file of `talus drive`, read in the same way.
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+
+/// The file of `talus sweep`.  That each case is a sound scene is seen when its scene is read with the changes.
+Study read_study(const std::filesystem::path& file);
 
 }  // namespace talus

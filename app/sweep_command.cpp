@@ -1,0 +1,329 @@
+// talus sweep
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <deque>
+#include <map>
+#include <numeric>
+#include <sstream>
+#include <thread>
+
+#include "app/commands.hpp"
+#include "app/signals.hpp"
+#include "app/sweep_table.hpp"
+#include "core/exchange.hpp"
+#include "core/parallel.hpp"
+#include "core/version.hpp"
+#include "io/child_process.hpp"
+#include "io/reader.hpp"
+#include "io/whole_file.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int run_was_stopped = 4;
+
+/// runs/<name>: of the file, or of the folder of a study.yaml.
+fs::path default_sweep_folder(const fs::path& study)
+{
+  const fs::path folder = fs::absolute(study).lexically_normal().parent_path().filename();
+  return fs::path("runs") / (study.filename() == "study.yaml" && !folder.empty() ? folder.string() + "_study" : study.stem().string());
+}
+
+std::vector<std::string> split_at_blanks(const std::string& text)
+{
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;)
+    words.push_back(word);
+  return words;
+}
+
+/// The end of what a run has said.
+std::string last_lines(const fs::path& log)
+{
+  constexpr std::ptrdiff_t most = 12;
+  std::istringstream stream(read_whole(log));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);)
+    lines.push_back(line);
+  if (std::ssize(lines) > most)
+    lines.erase(lines.begin(), lines.end() - most);
+  return fmt::format("{}", fmt::join(lines, "\n    "));
+}
+
+/// How many cases run side by side, and with how many threads each.
+struct SideBySide {
+  std::size_t jobs;
+  std::optional<int> threads;  ///< nothing: the launcher's business
+};
+
+SideBySide side_by_side(const SweepOptions& options, std::size_t n_cases)
+{
+  const int cores = std::max(1, threads());
+  const int jobs =
+      options.only ? 1 : options.jobs.value_or(std::max(1, std::min(static_cast<int>(n_cases), cores / options.threads.value_or(1))));
+  SideBySide side{static_cast<std::size_t>(jobs), options.threads};
+  if (!options.threads && !options.launcher)
+    side.threads = std::max(1, cores / jobs);
+  return side;
+}
+
+/// Cases on their way from "to be run" to their end.
+class Sweep {
+ public:
+  Sweep(const SweepOptions& options, const SweepPlan& plan, const SideBySide& side, SweepTable& table)
+      : options_(options), plan_(plan), side_(side), table_(table)
+  {}
+
+  /// Until all have ended, or a signal asks for the end.
+  void operator()(const std::vector<std::size_t>& chosen)
+  {
+    std::deque<std::size_t> waiting;
+    std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(waiting),
+                 [&](std::size_t i) { return table_.status(i).state != CaseState::done; });
+    const StopRequests requests;
+    while (!running_.empty() || (!waiting.empty() && StopRequests::received().empty())) {
+      while (!waiting.empty() && running_.size() < side_.jobs && StopRequests::received().empty()) {
+        start(waiting.front());
+        waiting.pop_front();
+      }
+      if (!StopRequests::received().empty() && !std::exchange(told_to_end_, true))
+        for (const Running& run : running_)
+          run.process.ask_to_end();
+      look_after();
+    }
+    table_.update();
+    signal_ = StopRequests::received();
+  }
+
+  const std::map<std::size_t, std::string>& failures() const noexcept { return failures_; }
+  const std::string& signal() const noexcept { return signal_; }
+
+ private:
+  struct Running {
+    std::size_t of;
+    ChildProcess process;
+    std::chrono::steady_clock::time_point begun;
+  };
+
+  fs::path log_of(std::size_t i) const { return plan_.cases[i].folder.string() + ".log"; }
+  void say(std::size_t i, const std::string& what) const
+  {
+    if (options_.quiet)
+      return;
+    fmt::print("case {}: {}\n", plan_.cases[i].number, what);
+    std::fflush(stdout);
+  }
+
+  void start(std::size_t i)
+  {
+    const SweepCase& one = plan_.cases[i];
+    const CaseStatus status = status_of(one, plan_.quick);  // another process may have been here meanwhile
+    if (status.state == CaseState::done)
+      return say(i, "is done");
+    if (status.state == CaseState::not_ended && is_at_work(one))
+      return say(i, "another process is at work on it");
+    std::vector<std::string> words = split_at_blanks(options_.launcher.value_or(""));
+    words.insert(words.end(), {fs::read_symlink("/proc/self/exe").string(), "run"});
+    if (status.goes_on_from) {
+      words.insert(words.end(), {"--resume", one.folder.string()});
+    } else {
+      words.insert(words.end(), {scene_of(plan_.study).string(), "--out", one.folder.string()});
+      for (const std::string& change : one.changes)
+        words.insert(words.end(), {"--set", change});
+      if (plan_.quick)
+        words.emplace_back("--quick");
+    }
+    words.emplace_back("--quiet");
+    if (side_.threads)
+      words.insert(words.end(), {"--threads", std::to_string(*side_.threads)});
+    const int log = ::open(log_of(i).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (log < 0)
+      throw EnvironmentError(fmt::format("cannot write {}: {}", log_of(i).string(), std::strerror(errno)));
+    try {
+      running_.push_back({i, ChildProcess(std::move(words), log), std::chrono::steady_clock::now()});
+    } catch (const EnvironmentError&) {
+      ::close(log);
+      throw;
+    }
+    ::close(log);
+    say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins",
+                       in_words(one), remark(status)));
+  }
+  /// Why what is there does not count.
+  static std::string remark(const CaseStatus& status)
+  {
+    const bool without = !status.goes_on_from && (status.state == CaseState::stopped || status.state == CaseState::not_ended);
+    if (without)
+      return "; what is there has no checkpoint to go on from";
+    return status.state == CaseState::to_run && !status.why.empty() ? "; " + status.why : "";
+  }
+
+  /// Waits a little; sees to those that have ended.
+  void look_after()
+  {
+    constexpr std::chrono::milliseconds a_little{30};
+    std::this_thread::sleep_for(a_little);
+    for (std::size_t k = 0; k < running_.size();) {
+      const auto code = running_[k].process.ended();
+      if (!code) {
+        ++k;
+        continue;
+      }
+      const auto [i, begun] = std::pair(running_[k].of, running_[k].begun);
+      running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(k));
+      table_.update();
+      end_of(i, *code, std::chrono::duration<Real>(std::chrono::steady_clock::now() - begun).count());
+    }
+  }
+
+  void end_of(std::size_t i, int code, Real seconds)
+  {
+    const CaseStatus& status = table_.status(i);
+    if (code == 0 && status.state == CaseState::done)
+      return say(i, fmt::format("done after {:.1f} s", seconds));
+    const bool before_its_first_step =
+        told_to_end_ && (code == ChildProcess::of_signal + SIGTERM || code == ChildProcess::of_signal + SIGINT);
+    if (code == run_was_stopped || before_its_first_step)
+      return say(i, before_its_first_step ? "ended before its first step"
+                                          : fmt::format("stopped at t = {:.6g} s", status.goes_on_from.value_or(0)));
+    failures_[i] = reason(i, code, status);
+    say(i, "FAILED, see below");
+  }
+
+  std::string reason(std::size_t i, int code, const CaseStatus& status) const
+  {
+    if (code == 0)
+      return fmt::format("it ran to its end, but {}: was the scene changed meanwhile?",
+                         status.why.empty() ? "its summary says otherwise" : status.why);
+    if (status.state == CaseState::failed)
+      return status.why;
+    if (code > ChildProcess::of_signal)
+      return fmt::format("ended by signal {}{}{}", code - ChildProcess::of_signal,
+                         code == ChildProcess::of_signal + SIGKILL ? " (where memory runs out the system kills; --jobs 1 needs less)" : "",
+                         status.goes_on_from ? "; it goes on from its last checkpoint when the sweep is run again" : "");
+    const std::string said = last_lines(log_of(i));
+    if (code == ChildProcess::not_started)
+      return fmt::format("cannot be started{}{}", options_.launcher ? ": is there no " + *options_.launcher + "?" : "",
+                         said.empty() ? "" : "\n    " + said);
+    return said.empty() ? fmt::format("ended with {}", code) : said;
+  }
+
+  const SweepOptions& options_;
+  const SweepPlan& plan_;
+  SideBySide side_;
+  SweepTable& table_;
+  std::vector<Running> running_;
+  std::map<std::size_t, std::string> failures_;
+  bool told_to_end_ = false;
+  std::string signal_;
+};
+
+/// The cases that the words ask for.
+std::vector<std::size_t> chosen_cases(const SweepOptions& options, const SweepPlan& plan)
+{
+  const auto n = static_cast<int>(plan.cases.size());
+  if (options.only && *options.only > n)
+    throw Error(fmt::format("there is no case {}: {} has {}", *options.only, plan.study.file, n));
+  std::vector<std::size_t> chosen(options.only ? 1 : plan.cases.size());
+  std::iota(chosen.begin(), chosen.end(), options.only ? static_cast<std::size_t>(*options.only - 1) : 0);
+  return chosen;
+}
+
+/// What the reader of the table has to know besides.
+void print_remarks(const SweepPlan& plan, const SweepTable& table)
+{
+  std::map<std::string, std::vector<int>> by_other_commit;
+  for (std::size_t i = 0; i < plan.cases.size(); ++i)
+    if (const CaseStatus& status = table.status(i); status.state == CaseState::done && status.summary.commit != version().commit)
+      by_other_commit[status.summary.commit].push_back(plan.cases[i].number);
+  for (const auto& [commit, numbers] : by_other_commit)
+    fmt::print(stderr, "warning: this program is of commit {}; case {} by commit {}: remove their folders to run them again\n",
+               version().commit, fmt::join(numbers, ", "), commit);
+  for (const std::string& complaint : table.unknown_names())
+    fmt::print(stderr, "warning: {}\n", complaint);
+  std::error_code unreadable;
+  for (const auto& entry : fs::directory_iterator(plan.folder, unreadable)) {
+    const fs::path place = entry.path();
+    const bool of_case = std::any_of(plan.cases.begin(), plan.cases.end(), [&](const SweepCase& one) { return one.folder == place; });
+    if (!of_case && fs::is_directory(place, unreadable) && place.filename().string().starts_with("case_"))
+      fmt::print(stderr, "warning: {} is of no case of this study\n", place.string());
+  }
+}
+
+void list_cases(const SweepPlan& plan, const SweepTable& table)
+{
+  fmt::print("{}", table.print());
+  for (std::size_t i = 0; i < plan.cases.size(); ++i) {
+    const CaseStatus& status = table.status(i);
+    const bool at_work = status.state == CaseState::not_ended && is_at_work(plan.cases[i]);
+    if (at_work || !status.why.empty())
+      fmt::print("case {}: {}\n", plan.cases[i].number, at_work ? "is running" : status.why);
+  }
+}
+
+/// RunError, Stopped: not all chosen cases are done.
+void conclude(const SweepPlan& plan, const Sweep& sweep, const SweepTable& table, const std::vector<std::size_t>& chosen)
+{
+  const auto count = [&](CaseState state) {
+    return std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state == state; });
+  };
+  if (!sweep.signal().empty() && count(CaseState::done) < std::ssize(chosen))
+    throw Stopped(fmt::format("stopped by {}: of {} cases {} done, {} stopped with a checkpoint; go on by running the sweep again",
+                              sweep.signal(), chosen.size(), count(CaseState::done), count(CaseState::stopped)));
+  if (!sweep.failures().empty()) {
+    std::string text = fmt::format("{} of {} cases failed; running the sweep again repeats them", sweep.failures().size(), chosen.size());
+    for (const auto& [i, message] : sweep.failures())
+      text += fmt::format("\n  case {} ({}): {}", plan.cases[i].number, in_words(plan.cases[i]), message);
+    throw RunError(text);
+  }
+  if (const auto stopped = count(CaseState::stopped); stopped > 0)
+    throw Stopped(fmt::format("of {} cases {} done, {} stopped with a checkpoint; go on by running the sweep again", chosen.size(),
+                              count(CaseState::done), stopped));
+}
+
+}  // namespace
+
+void sweep(const SweepOptions& options)
+{
+  if (!world().alone())
+    throw Error("talus sweep starts runs of its own and is started once: to have each on several ranks, --launcher \"mpirun -n 4\"");
+  forget_launch();
+  SweepPlan plan = plan_sweep(read_study(options.study), options.out.value_or(default_sweep_folder(options.study)), options.quick);
+  if (fs::exists(plan.folder / "summary.json"))
+    throw EnvironmentError(fmt::format("{} holds the results of a run: choose another folder with --out", plan.folder.string()));
+  const std::vector<std::size_t> chosen = chosen_cases(options, plan);
+  check_cases(plan, chosen, options.list ? CheckDepth::mesh : CheckDepth::all);
+  SweepTable table(plan);
+  if (!options.list || fs::exists(plan.folder))
+    table.update();
+  if (options.list) {
+    list_cases(plan, table);
+    return print_remarks(plan, table);
+  }
+  const auto left = std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state != CaseState::done; });
+  const SideBySide side = side_by_side(options, static_cast<std::size_t>(left));
+  if (!options.quiet)
+    fmt::print("{}: {} of {} case{} of {} to be run in {}, {} at a time{}\n", plan.study.file, left, chosen.size(),
+               chosen.size() == 1 ? "" : "s", scene_of(plan.study).string(), plan.folder.string(), side.jobs,
+               side.threads ? fmt::format(" with {} thread{} each", *side.threads, *side.threads == 1 ? "" : "s") : "");
+  Sweep all(options, plan, side, table);
+  all(chosen);
+  if (!options.quiet)
+    fmt::print("{}table in {}\n", table.print(), (plan.folder / "sweep.csv").string());
+  print_remarks(plan, table);
+  conclude(plan, all, table, chosen);
+}
+
+}  // namespace talus

@@ -1,0 +1,68 @@
+#pragma once
+// The file of `talus sweep`: a scene, what is varied of it, and which numbers are told of each case.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/fields.hpp"
+#include "io/document.hpp"
+
+namespace talus {
+
+/// Which values of several keys meet: each with each of the others, or the first with the first, the second with the second.
+enum class Combine : std::uint8_t { grid, rows };
+constexpr std::array<std::string_view, 2> words(Combine) { return {"grid", "rows"}; }
+
+/// A text of the file, and where it stands.
+struct Written {
+  std::string text;
+  Problem at;  ///< without a message
+  Problem problem(std::string message) const { return {at.where, std::move(message), at.source_line}; }
+};
+
+/// A key of the scene as --set takes it, and its values.
+struct Varied {
+  std::string key;
+  std::vector<Written> values;
+};
+
+struct Study {
+  std::string file;  ///< path as given
+  Written scene;     ///< path of its file, relative to the study
+  std::vector<Varied> vary;
+  Combine combine = Combine::grid;
+  std::vector<Written> collect;  ///< names of numbers; empty: the usual ones
+};
+
+/// A value of each key, in the order of Study::vary.
+using StudyCase = std::vector<Written>;
+
+/// Grid: the last key varies fastest.
+std::vector<StudyCase> cases_of(const Study& study);
+
+/// "key=value" for each key, as --set takes it.
+std::vector<std::string> changes_of(const Study& study, const StudyCase& values);
+
+/// Path of the scene as seen from here.
+std::filesystem::path scene_of(const Study& study);
+
+/// What the file holds before it is looked at as a whole.
+struct StudySpec {
+  std::string scene;
+  Node vary;
+  Combine combine = Combine::grid;
+  std::vector<std::string> collect;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("scene", &StudySpec::scene, any, "-", "file of the scene, relative to this file"),
+        required("vary", &StudySpec::vary, any, "-", "keys of the scene, each with a list of values"),
+        optional_choice("combine", &StudySpec::combine, "grid: each value with each; rows: the first with the first, and so on"),
+        optional("collect", &StudySpec::collect, any, "-", "numbers of summary.json and history.csv for the table")};
+  }
+};
+
+/// The study in `file`, whose tree is `root`; what is wrong goes to `problems`.
+Study study_of(const std::filesystem::path& file, const Node& root, const StudySpec& spec, Problems& problems);
+
+}  // namespace talus

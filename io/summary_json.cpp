@@ -1,0 +1,87 @@
+#include "io/summary_json.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "core/error.hpp"
+#include "io/whole_file.hpp"
+
+namespace talus {
+
+namespace {
+
+using SummaryJson = nlohmann::ordered_json;
+
+/// The text behind a key, if there is one.
+std::string text_behind(const SummaryJson& json, const char* key)
+{
+  const auto found = json.find(key);
+  return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+/// "kinetic [J]" -> "kinetic", "J"
+std::pair<std::string, std::string> name_and_unit(const std::string& key)
+{
+  const auto open = key.rfind(" [");
+  if (open == key.npos || key.back() != ']')
+    return {key, ""};
+  return {key.substr(0, open), key.substr(open + 2, key.size() - open - 3)};
+}
+
+/// All numbers below; null is one that was not finite.
+void add_numbers(const SummaryJson& json, const std::string& path, const std::string& unit, std::vector<NamedValue>& numbers)
+{
+  if (json.is_object()) {
+    for (const auto& [key, value] : json.items()) {
+      const auto [name, own_unit] = name_and_unit(key);
+      add_numbers(value, path.empty() ? name : path + '.' + name, own_unit, numbers);
+    }
+  } else if (json.is_array()) {
+    for (std::size_t i = 0; i < json.size(); ++i)
+      add_numbers(json[i], fmt::format("{}[{}]", path, i), unit, numbers);
+  } else if (json.is_number() || json.is_null()) {
+    numbers.push_back({path, json.is_null() ? std::numeric_limits<Real>::quiet_NaN() : json.get<Real>(), unit});
+  }
+}
+
+}  // namespace
+
+SummaryBack read_summary(const std::filesystem::path& file)
+{
+  const std::string text = read_whole(file);
+  try {
+    const SummaryJson json = SummaryJson::parse(text);
+    SummaryBack back;
+    back.status = text_behind(json, "status");
+    back.message = text_behind(json, "message");
+    back.commit = text_behind(json.at("program"), "commit");
+    back.scene_digest = text_behind(json.at("scene"), "digest");
+    back.mesh_digest = text_behind(json.at("mesh"), "digest");
+    for (const SummaryJson& stage : json.at("stages"))
+      back.quick = back.quick || text_behind(stage, "result") == "quick";
+    add_numbers(json, "", "", back.numbers);
+    return back;
+  } catch (const SummaryJson::exception& e) {
+    throw EnvironmentError(fmt::format("{} is not the summary of a run: {}", file.string(), e.what()));
+  }
+}
+
+const NamedValue* find_number(const std::vector<NamedValue>& numbers, std::string_view name)
+{
+  const NamedValue* found = nullptr;
+  const std::string end = fmt::format(".{}", name);
+  for (const NamedValue& number : numbers)
+    if (number.name == name)
+      return &number;
+  for (const NamedValue& number : numbers)
+    if (number.name.ends_with(end)) {
+      if (found != nullptr)
+        return nullptr;
+      found = &number;
+    }
+  return found;
+}
+
+}  // namespace talus
