@@ -168,6 +168,28 @@ TEST_F(OnRanks, CheckpointsDoNotKnowWhoseTheSharesWere)
   expect_same_files("alone", "again");
 }
 
+/// Each rank takes those in its cells of what another run has left, behind a body that it fills.
+TEST_F(OnRanks, BodiesOfAnotherRunComeByParts)
+{
+  write("first.yaml", thrown().text());
+  run_on(1, "run first.yaml --quiet --out first");
+  SceneParts parts = thrown();
+  parts.bodies =
+      "bodies:\n"
+      "  - {name: floor, material: stuff, shape: {type: box, low: [0, 0], high: [4, 0.2]}, particles_per_cell: 3}\n"
+      "  - {name: ball, material: stuff}\n"
+      "initial: {from: first}\n";
+  parts.time = "time: {end: 0.01}\n";
+  write("scene.yaml", parts.text());
+  const Outcome alone = talus("run scene.yaml --quiet --out alone"),
+                three = talus_on(3, "run scene.yaml --quiet --threads 1 --out three --rebalance 10");
+  ASSERT_EQ(alone.code, 0) << alone.err;
+  EXPECT_EQ(three.code, 0) << three.err;
+  EXPECT_THAT(alone.err, HasSubstr("before its stage was over"));
+  EXPECT_EQ(times_in(three.err, alone.err), 1) << alone.err << "\non three ranks:\n" << three.err;
+  expect_same_files("alone", "three");
+}
+
 TEST_F(OnRanks, WhatIsWrongIsSaidOnce)
 {
   write("wrong.yaml", SceneParts{.law = "law: neo_hookean, youngs_modulus: -1, poisson_ratio: 0.3"}.text());
