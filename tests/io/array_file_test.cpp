@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "core/exchange.hpp"
 #include "io/whole_file.hpp"
 #include "tests/io/bytes.hpp"
 #include "tests/io/full_disk.hpp"
@@ -66,10 +67,10 @@ TEST(ArrayFile, EveryTypeComesBackAsTheSameBits)
   expect_same_bits<std::uint8_t>(folder, {0, 1, 127, 128, 255});
 }
 
-TEST(ArrayFile, ArraysOfManyChunksComeBack)
+TEST(ArrayFile, ArraysOfManyPiecesComeBack)
 {
   const ScratchFolder folder;
-  std::vector<double> values(3 * 150'001);  // 3.6 MB, the last chunk is not full
+  std::vector<double> values(3 * 150'001);  // 3.6 MB, the last piece is not full
   std::iota(values.begin(), values.end(), 0.5);
   ArrayWriter writer(folder / "a.h5");
   writer.write<double>("x", values, 3, "m");
@@ -77,6 +78,39 @@ TEST(ArrayFile, ArraysOfManyChunksComeBack)
   const ArrayReader reader(folder / "a.h5");
   EXPECT_EQ(reader.rows("x"), 150'001U);
   EXPECT_EQ(reader.read<double>("x", 3), values);
+}
+
+/// More digests than HDF5 keeps beside an array, of rows that do not lie one behind the other.
+TEST(ArrayFile, AnArrayOfThousandsOfPiecesComesBackInAnyPart)
+{
+  struct Row {
+    std::int32_t other;
+    float values[2];
+  };
+  constexpr std::size_t n = 100'000;
+  std::vector<Row> rows(n);
+  std::vector<float> values;
+  for (std::size_t i = 0; i < n; ++i) {
+    rows[i] = {-1, {static_cast<float>(i), 0.5F}};
+    values.insert(values.end(), {static_cast<float>(i), 0.5F});
+  }
+  const ScratchFolder folder;
+  const auto write_rows = [&](const std::filesystem::path& file, const void* first, std::size_t stride) {
+    const Slice all{0, n, 10, 7};
+    const SharedArray array{"x", NumberKind::float32, 2, "m", static_cast<const std::byte*>(first), n, stride, all};
+    write_arrays(one_rank(), file, std::span(&array, 1), [](ArrayWriter& rest) { rest.write("text", "words"); });
+  };
+  write_rows(folder / "a.h5", rows.data()->values, sizeof(Row));
+  write_rows(folder / "b.h5", values.data(), 2 * sizeof(float));
+  EXPECT_TRUE(bytes_of(folder / "a.h5") == bytes_of(folder / "b.h5"));
+  const ArrayReader reader(folder / "a.h5");
+  EXPECT_EQ(reader.text("text"), "words");
+  EXPECT_EQ(reader.read<float>("x", 2), values);
+  for (const std::size_t first : {0, 2, 3, 4, 13, 50'000, 99'999}) {
+    std::vector<float> some(2 * std::min<std::size_t>(25, n - first));
+    reader.read_rows<float>("x", first, some, 2);
+    EXPECT_TRUE(std::equal(some.begin(), some.end(), values.begin() + static_cast<std::ptrdiff_t>(2 * first))) << first;
+  }
 }
 
 TEST(ArrayFile, EmptyArraysAndTextsAreThere)
