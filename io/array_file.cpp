@@ -302,7 +302,6 @@ H5FD_class_t Disk::driver() noexcept
 struct Extents {
   hsize_t rows = 0;
   hsize_t columns = 1;
-  friend bool operator==(const Extents&, const Extents&) = default;
 };
 
 /// Of all that says what values mean: it goes into the digest of each piece of them.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <thread>
 
+#include "io/vtk.hpp"
 #include "tests/app/program.hpp"
 #include "tests/app/same_state.hpp"
 #include "tests/app/scenes_of_all.hpp"
@@ -166,6 +167,52 @@ TEST_F(OnRanks, CheckpointsDoNotKnowWhoseTheSharesWere)
   run_on(4, "run --resume again --quiet --threads 1 --rebalance 9 --until 120", stopped);
   run_on(1, "run --resume again --quiet --threads 1 --rebalance 9");
   expect_same_files("alone", "again");
+}
+
+/// Each rank takes those in its cells of what another run has left, behind a body that it fills.
+TEST_F(OnRanks, BodiesOfAnotherRunComeByParts)
+{
+  write("first.yaml", thrown().text());
+  run_on(1, "run first.yaml --quiet --out first");
+  SceneParts parts = thrown();
+  parts.bodies =
+      "bodies:\n"
+      "  - {name: floor, material: stuff, shape: {type: box, low: [0, 0], high: [4, 0.2]}, particles_per_cell: 3}\n"
+      "  - {name: ball, material: stuff}\n"
+      "initial: {from: first}\n";
+  parts.time = "time: {end: 0.01}\n";
+  write("scene.yaml", parts.text());
+  const Outcome alone = talus("run scene.yaml --quiet --out alone"),
+                three = talus_on(3, "run scene.yaml --quiet --threads 1 --out three --rebalance 10");
+  ASSERT_EQ(alone.code, 0) << alone.err;
+  EXPECT_EQ(three.code, 0) << three.err;
+  EXPECT_THAT(alone.err, HasSubstr("before its stage was over"));
+  EXPECT_EQ(times_in(three.err, alone.err), 1) << alone.err << "\non three ranks:\n" << three.err;
+  expect_same_files("alone", "three");
+}
+
+/// More particles, nodes and cells than a file has in a piece, so that all ranks write some of each, and read some when they go on.
+TEST_F(OnRanks, LargeFilesAreWrittenByAllOfThem)
+{
+  SceneParts parts;
+  parts.dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [200, 200]}}\n";
+  parts.bodies =
+      "bodies:\n"
+      "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 0.4]}, particles_per_cell: 3, velocity: [0, -1]}\n"
+      "  - {name: high, material: stuff, shape: {type: box, low: [0, 0.5], high: [2, 0.9]}, particles_per_cell: 3, velocity: [0, -2]}\n";
+  parts.time = "time: {end: 1.0e-3}\n";
+  parts.outputs = "";
+  std::string text = parts.text();
+  const std::string rare = "checkpoint: {steps: 4,";
+  text.replace(text.find(rare), rare.size(), "checkpoint: {steps: 1000000,");
+  write("scene.yaml", text);
+  run_on(1, "run scene.yaml --quiet --threads 2 --out alone");
+  run_on(3, "run scene.yaml --quiet --threads 1 --out three --until 2", stopped);
+  run_on(2, "run --resume three --quiet --threads 1");
+  expect_same_files("alone", "three");
+  const StoredParticles particles = read_particles(folder_ / "alone/particles_0001.vtp");
+  EXPECT_GT(particles.ids.size(), 2U * rows_of_a_piece);
+  EXPECT_TRUE(std::is_sorted(particles.ids.begin(), particles.ids.end()));
 }
 
 TEST_F(OnRanks, WhatIsWrongIsSaidOnce)

@@ -106,7 +106,7 @@ TEST(ArrayFile, AnArrayOfThousandsOfPiecesComesBackInAnyPart)
   const ArrayReader reader(folder / "a.h5");
   EXPECT_EQ(reader.text("text"), "words");
   EXPECT_EQ(reader.read<float>("x", 2), values);
-  for (const std::size_t first : {0, 2, 3, 4, 13, 50'000, 99'999}) {
+  for (const std::size_t first : {0U, 2U, 3U, 4U, 13U, 50'000U, 99'999U}) {
     std::vector<float> some(2 * std::min<std::size_t>(25, n - first));
     reader.read_rows<float>("x", first, some, 2);
     EXPECT_TRUE(std::equal(some.begin(), some.end(), values.begin() + static_cast<std::ptrdiff_t>(2 * first))) << first;

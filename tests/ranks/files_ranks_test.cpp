@@ -122,7 +122,6 @@ struct RankOfRun {
   Nodes<2> nodes;
   Walls<2> walls;
   Loads<2> loads;
-  std::vector<Index> row_of_id;
   Clock clock{};
   StageState stage;
   EnergyLedger energy{};
@@ -149,9 +148,8 @@ struct RankOfRun {
   }
   Frame<2> frame() const
   {
-    return {mesh,  share,    mine.particles, mine.bodies, mine.materials, order,      &ranks,   nodes,
-            walls, loads,    row_of_id,      clock,       stage,          "the only", 0,        energy,
-            mass,  momentum, watched,        guards,      timings,        residual,   crossing, 0};
+    return {mesh,       share, mine.particles, mine.bodies, mine.materials, order,   &ranks, nodes,   walls,    loads,    clock, stage,
+            "the only", 0,     energy,         mass,        momentum,       watched, guards, timings, residual, crossing, 0};
   }
   State<2> state()
   {
@@ -339,8 +337,8 @@ TEST_F(Files, ArraysAreWrittenAsByOneRankAndReadInSlices)
     const ArrayReader arrays(folder / "all.h5");
     EXPECT_EQ(arrays.text("words"), "of the root");
     EXPECT_EQ(arrays.read<std::int64_t>("particles/id"), run.ids(0, 1000));
-    for (const std::size_t first : {0, 15, 16, 500, 999, 1000})
-      for (const std::size_t n : {0, 1, 16, 17, 300, 1000}) {
+    for (const std::size_t first : {0U, 15U, 16U, 500U, 999U, 1000U})
+      for (const std::size_t n : {0U, 1U, 16U, 17U, 300U, 1000U}) {
         if (first + n > 1000)
           continue;
         std::vector<Real> x(2 * n);
