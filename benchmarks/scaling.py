@@ -237,7 +237,7 @@ def draw(model, network, file):
     """Where the time of a step goes on the left, efficiency of several sizes on the right."""
     figure = matplotlib.figure.Figure(figsize=(9, 3.6))
     left, right = figure.subplots(1, 2)
-    ranks = np.unique(np.logspace(0, 5.5, 60).astype(int))
+    ranks = np.unique(np.logspace(1.5, 5.5, 60).astype(int))  # enough for an inner rank
     curve = [predict(model, network, PARTICLES, int(r)) for r in ranks]
     for reason in curve[0]["seconds"]:
         left.loglog(ranks, [max(p["seconds"][reason], 1e-12) for p in curve], label=reason, linewidth=1)
@@ -296,6 +296,7 @@ def main():
     blocks = {"measured": measured_table(runs, model), "model": model_table(model, network), "predicted": predicted_table(predictions)}
     draw(model, network, PICTURE if given.write_docs else given.out / "scaling.png")
     if given.write_docs:
+        blocks["predicted"] += f"\n\n![Time of a step by reason, and efficiency, over ranks]({PICTURE.relative_to(PAGE.parent)})"
         write_page(blocks)
     else:
         print("\n\n".join(blocks.values()))
