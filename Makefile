@@ -8,7 +8,7 @@ SCENE       ?= scenes/slope_failure_3d/scene.yaml
 RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build portable run test fuzz check format bench verify docs clean
+.PHONY: help setup build portable run test fuzz check format bench scaling verify docs clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
@@ -48,6 +48,9 @@ bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus
 	@cmake --build build/release --target talus_speed -j $(JOBS)
 	@build/release/talus_speed
 	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
+
+scaling: build  ## what sharing a run over ranks costs: measure, fit, write docs/scaling.md (some minutes)
+	@/usr/bin/python3 benchmarks/scaling.py --write-docs
 
 verify: build  ## run the benchmarks against their references, quick level (about 9 minutes)
 	@tools/verify.sh --level quick --jobs 2 --regression

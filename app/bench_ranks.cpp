@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <thread>
-#include <utility>
 
 #include "app/bench_cases.hpp"
 #include "app/bench_machine.hpp"
@@ -21,7 +20,7 @@ namespace {
 
 /// What stands in a row of each rank, before the times.
 constexpr std::array rank_columns{
-    "particles",        "cells",           "cells_held",          "nodes",           "nodes_foreign",  "messages", "bytes", "collectives",
+    "particles",        "cells",           "cells_held",          "nodes",           "nodes_shared",   "messages", "bytes", "collectives",
     "collective_bytes", "particles_moved", "particle_memory [B]", "mesh_memory [B]", "node_memory [B]"};
 
 struct RankMark {
@@ -51,26 +50,22 @@ template <int D>
 std::vector<Real> holdings(const Frame<D>& frame, const RankMark& from, const RankMark& to, int steps, const Estimate& memory)
 {
   const bool alone = frame.share.alone();
-  const auto owns_node = [&](Index n) { return alone || frame.share.owns_node(n); };
-  Index cells = 0, nodes = 0, foreign = 0;
-  std::vector<std::uint8_t> counted(static_cast<std::size_t>(frame.mesh.n_nodes()), 0);
-  for (Index c = 0; c < frame.mesh.n_cells(); ++c) {
-    if (!alone && !frame.share.owns_cell(c))
-      continue;
-    ++cells;
-    for (const Index n : frame.mesh.cells()[static_cast<std::size_t>(c)])
-      if (!owns_node(n) && std::exchange(counted[static_cast<std::size_t>(n)], 1) == 0)
-        ++foreign;
+  const auto owns_cell = [&](Index c) { return alone || frame.share.owns_cell(c); };
+  Index cells = 0, nodes = 0, shared = 0;
+  for (Index c = 0; c < frame.mesh.n_cells(); ++c)
+    cells += owns_cell(c) ? 1 : 0;
+  for (Index n = 0; n < frame.mesh.n_nodes(); ++n) {
+    nodes += alone || frame.share.owns_node(n) ? 1 : 0;
+    const auto around = frame.mesh.cells_of_node()[n];
+    shared += std::any_of(around.begin(), around.end(), owns_cell) && !std::all_of(around.begin(), around.end(), owns_cell) ? 1 : 0;
   }
-  for (Index n = 0; n < frame.mesh.n_nodes(); ++n)
-    nodes += owns_node(n) ? 1 : 0;
   const auto a_step = [&](std::int64_t before, std::int64_t now) { return static_cast<Real>(now - before) / steps; };
   const Traffic &before = from.traffic, &now = to.traffic;
   return {static_cast<Real>(frame.particles.size()),
           static_cast<Real>(cells),
           static_cast<Real>(frame.mesh.n_cells()),
           static_cast<Real>(nodes),
-          static_cast<Real>(foreign),
+          static_cast<Real>(shared),
           a_step(before.messages, now.messages),
           a_step(before.bytes, now.bytes),
           a_step(before.calls, now.calls),
@@ -156,7 +151,7 @@ std::string ranks_table(const RanksReport& report)
     const Real cells = of("cells"), nodes = of("nodes");
     std::string line =
         fmt::format("{:>6}{:>11.0f}{:>10.0f}{:>10.2f}{:>12.3f}{:>8.1f}{:>11.1f}{:>7.1f}{:>9.2f}{:>8.1f}", name, of("particles"), cells,
-                    cells > 0 ? of("cells_held") / cells : 0, nodes > 0 ? of("nodes_foreign") / nodes : 0, of("messages"),
+                    cells > 0 ? of("cells_held") / cells : 0, nodes > 0 ? of("nodes_shared") / nodes : 0, of("messages"),
                     kilo_bytes * of("bytes"), of("collectives"), kilo_bytes * of("collective_bytes"),
                     mega_bytes * (of("particle_memory [B]") + of("mesh_memory [B]") + of("node_memory [B]")));
     for (std::size_t c = rank_columns.size(); c < report.columns.size(); ++c)
@@ -164,7 +159,7 @@ std::string ranks_table(const RanksReport& report)
     return line + '\n';
   };
   std::string text = fmt::format("{:>6}{:>11}{:>10}{:>10}{:>12}{:>8}{:>11}{:>7}{:>9}{:>8}", "rank", "particles", "cells", "held/own",
-                                 "theirs/own", "mess.", "kB sent", "coll.", "kB coll.", "MB");
+                                 "shared/own", "mess.", "kB sent", "coll.", "kB coll.", "MB");
   for (std::size_t c = rank_columns.size(); c < report.columns.size(); ++c)
     text += fmt::format("{:>9}", std::string_view(report.columns[c]).substr(0, report.columns[c].find(" [")));
   text += '\n';
@@ -191,9 +186,10 @@ std::string ranks_table(const RanksReport& report)
   return text +
          fmt::format("step {:.2f} ms ({:.2f} to {:.2f}), {:.3f} million particle-steps per second\n", milli * report.seconds.median,
                      milli * report.seconds.least, milli * report.seconds.most, 1e-6 * particles / report.seconds.median) +
-         "held, read: cells held and nodes whose sums come from other ranks, over own ones; mess., kB sent: to single ranks in a step; "
-         "coll.: sums and\n"
-         "minima over all ranks in a step; MB: particles, mesh and nodes; then ms of a step by phase, waiting for others included\n";
+         "held: cells held over own; shared: nodes of own cells that cells of other ranks use too, over own nodes; mess., kB sent: to "
+         "single ranks in a\n"
+         "step; coll.: sums and minima over all ranks in a step; MB: particles, mesh and nodes; then ms of a step by phase, waiting for "
+         "others included\n";
 }
 
 }  // namespace

@@ -19,8 +19,11 @@ namespace {
 constexpr int usage_error = 2, results_differ = 1;
 constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
 constexpr int most_steps = 10'000'000;
-/// Commands that all ranks do together; any other is the root's.
-constexpr std::array<std::string_view, 1> shared_by_ranks{"run"};
+/// What all ranks do together; any other command is the root's.
+bool is_shared_by_ranks(const CLI::App& command)
+{
+  return command.get_name() == "run" || (command.get_name() == "bench" && command.count("--mpi") > 0);
+}
 
 /// Commands and the options they fill; lives as long as the parse.
 class CommandLine {
@@ -62,7 +65,7 @@ class CommandLine {
   /// Before the command does its work, on each rank: on all but the root it does none, unless they share it.
   static void leave_to_root(CLI::App& command)
   {
-    if (std::find(shared_by_ranks.begin(), shared_by_ranks.end(), command.get_name()) == shared_by_ranks.end() && !goes_on_as_root())
+    if (!is_shared_by_ranks(command) && !goes_on_as_root())
       command.callback(nullptr);
   }
 

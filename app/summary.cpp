@@ -153,7 +153,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.version = v.number, s.commit = v.commit, s.compiler = v.compiler;
   s.build = build_of(v);
   s.status = RunStatus::failed;
-  s.message = not_ended;
+  s.message = message_before_the_end;
   s.dimension = scene.dimension;
   s.kernel = scene.kernel;
   s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],

@@ -5,7 +5,7 @@
 namespace talus {
 
 /// What a summary says of a run that has not ended, or was killed.
-inline constexpr auto not_ended = "the run did not end";
+inline constexpr auto message_before_the_end = "the run did not end";
 
 /// A digest as summaries write it.
 std::string digest_text(std::uint64_t digest);

@@ -223,7 +223,7 @@ CaseStatus status_of(const SweepCase& one, bool quick)
   }
   if (ended) {
     status.state = CaseState::done;
-  } else if (summary.status == "stopped" || summary.message == not_ended) {
+  } else if (summary.status == "stopped" || summary.message == message_before_the_end) {
     status.state = summary.status == "stopped" ? CaseState::stopped : CaseState::not_ended;
     status.goes_on_from = time_kept(one, quick);
   } else {

@@ -68,7 +68,7 @@ struct SideBySide {
   std::optional<int> threads;  ///< nothing: the launcher's business
 };
 
-SideBySide side_by_side(const SweepOptions& options, std::size_t n_cases)
+SideBySide divide_cores(const SweepOptions& options, std::size_t n_cases)
 {
   const int cores = std::max(1, threads());
   const int jobs =
@@ -255,7 +255,7 @@ void print_remarks(const SweepPlan& plan, const SweepTable& table)
     fmt::print(stderr, "warning: {}\n", complaint);
   std::error_code unreadable;
   for (const auto& entry : fs::directory_iterator(plan.folder, unreadable)) {
-    const fs::path place = entry.path();
+    const fs::path& place = entry.path();
     const bool of_case = std::any_of(plan.cases.begin(), plan.cases.end(), [&](const SweepCase& one) { return one.folder == place; });
     if (!of_case && fs::is_directory(place, unreadable) && place.filename().string().starts_with("case_"))
       fmt::print(stderr, "warning: {} is of no case of this study\n", place.string());
@@ -313,7 +313,7 @@ void sweep(const SweepOptions& options)
     return print_remarks(plan, table);
   }
   const auto left = std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state != CaseState::done; });
-  const SideBySide side = side_by_side(options, static_cast<std::size_t>(left));
+  const SideBySide side = divide_cores(options, static_cast<std::size_t>(left));
   if (!options.quiet)
     fmt::print("{}: {} of {} case{} of {} to be run in {}, {} at a time{}\n", plan.study.file, left, chosen.size(),
                chosen.size() == 1 ? "" : "s", scene_of(plan.study).string(), plan.folder.string(), side.jobs,

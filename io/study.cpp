@@ -46,8 +46,8 @@ void check_cases(const Study& study, const Node& vary, Problems& problems)
   const auto place_of = [&](std::size_t k) { return vary.items[k].place; };
   std::size_t count = 1;
   for (std::size_t k = 0; k < study.vary.size(); ++k) {
-    const auto& [key, values] = study.vary[k];
-    const std::string path = path_to("vary", key);
+    const std::vector<Written>& values = study.vary[k].values;
+    const std::string path = path_to("vary", study.vary[k].key);
     if (study.combine == Combine::rows) {
       if (values.size() != study.vary.front().values.size())
         problems.add(place_of(k), path,

@@ -106,6 +106,24 @@ TEST_F(Bench, OptionsStandBesideTheSameBlockWithoutAny)
   EXPECT_EQ(bytes("bulk_viscosity"), bytes("") + sizeof(Real)) << "a column more";
 }
 
+TEST_F(Bench, OnRanksTellsWhatEachHoldsAndSends)
+{
+  const Outcome alone = talus("bench --mpi --particles 20000 --repeats 1 --steps 2 --warm-up 1 --json alone.json");
+  ASSERT_EQ(alone.code, 0) << alone.err;
+  EXPECT_THAT(alone.out, testing::AllOf(HasSubstr("on 1 rank\n"), HasSubstr("imbalance 1.000"), HasSubstr("particle-steps per second")));
+  const Outcome three =
+      talus("bench --mpi --particles 20000 --repeats 2 --steps 2 --warm-up 1 --json three.json",
+            "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 '" TALUS_MPIEXEC "' -n 3 --oversubscribe --bind-to none");
+  ASSERT_EQ(three.code, 0) << three.err;
+  EXPECT_THAT(three.out, HasSubstr("on 3 ranks\n"));
+  const std::string file = read("three.json");
+  EXPECT_THAT(file, HasSubstr("\"format\": \"talus bench ranks 1\""));
+  EXPECT_EQ(times("\"cells_held\": ", file), 3u);
+  EXPECT_EQ(times("\"bytes\": 0.0", file), 0u) << "each sends";
+  EXPECT_EQ(times("\"bytes\": 0.0", read("alone.json")), 1u);
+  EXPECT_EQ(times("\"stress [s]\": ", file), 3u);
+}
+
 TEST_F(Bench, ComparesSettingBySetting)
 {
   write_report("now.json", 1);
@@ -137,6 +155,8 @@ TEST_F(Bench, WhatMeansNothingEndsWithTwo)
                                                        {"--threads 0", ""},
                                                        {"--particles 0", ""},
                                                        {"--all --options", ""},
+                                                       {"--all --mpi", ""},
+                                                       {"--mpi --kernel projcted", "did you mean \"projected\"?"},
                                                        {"--compare missing.json", "there is no such file"},
                                                        {"--compare other.json", "not what `talus bench --json` writes"},
                                                        {"--compare broken.json", "not what `talus bench --json` writes"},

@@ -83,12 +83,12 @@ TEST_F(StudyFile, KnowsWhereValuesAndNamesStand)
 
 TEST_F(StudyFile, SaysAllThatIsWrongAtOnce)
 {
-  const std::string shown = message("scene: other.yaml\nvary:\n  a=b: [1]\n  time.end: 3\n  time.cfl: []\ncombine: gird\ncolect: [a]\n");
+  const std::string shown = message("scene: other.yaml\nvary:\n  a=b: [1]\n  time.end: 3\n  time.cfl: []\ncombine: gridd\ncolect: [a]\n");
   for (const char* line :
        {"study.yaml:1:8: error: scene: there is no file other.yaml", "study.yaml:3:3: error: vary.a=b: \"a=b\" is no path of keys",
         "study.yaml:4:13: error: vary.time.end: expected a list [..., ...], found a single value",
         "study.yaml:5:13: error: vary.time.cfl: the list is empty",
-        "study.yaml:6:10: error: combine: unknown word \"gird\" — did you mean \"grid\"?",
+        "study.yaml:6:10: error: combine: unknown word \"gridd\" — did you mean \"grid\"?",
         "study.yaml:7:1: error: unknown key \"colect\" — did you mean \"collect\"?", "6 errors"})
     EXPECT_THAT(shown, HasSubstr(line));
 }

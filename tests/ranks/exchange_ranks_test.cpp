@@ -106,8 +106,9 @@ TEST_F(World, SumsExactlyWhatDigitsAreInUse)
     for (std::size_t k = 0; k < 3; ++k)
       EXPECT_EQ(mine[k].value(), all[k].value()) << exponent;
     EXPECT_EQ(none.value(), Vec<2>::Zero());
-    if (exponent == 1 && size > 1)
+    if (exponent == 1 && size > 1) {
       EXPECT_LT(sent, 200) << "of 5 sums of 560 bytes";
+    }
   }
   ExactSums<Real> endless;
   endless.add(rank == size - 1 ? std::numeric_limits<Real>::infinity() : 1);
