@@ -94,10 +94,6 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
     : spec_(std::move(spec)), state_(std::move(state))
 {
   now.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.clock.time)); });
-  const auto known = [](std::int64_t id) { return id >= 0; };  // one that is not there any more has no values
-  if (state_.impulse.size() != now.walls.walls().size() || state_.followed.size() != spec_.points.size() ||
-      !std::all_of(state_.followed.begin(), state_.followed.end(), known))
-    throw EnvironmentError("the walls or points of the checkpoint do not fit the scene");
 }
 
 template <int D>

@@ -35,7 +35,7 @@ template <int D>
 class HistoryWriter {
  public:
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start);
-  /// Goes on in a file that is there, behind the time of `now`.  EnvironmentError: the state is that of other walls or points.
+  /// Goes on in a file that is there, behind the time of `now`.
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
   void append(const Frame<D>& frame, const Accounts<D>& accounts);

@@ -185,6 +185,16 @@ void Recorder<D>::begin_again(const Frame<D>& frame)
 }
 
 template <int D>
+bool Recorder<D>::fits(std::size_t walls, Index particles) const
+{
+  if (!outputs_.history)
+    return true;
+  const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may not be there any more
+  return history_state_.impulse.size() == walls && history_state_.followed.size() == outputs_.history->points.size() &&
+         std::ranges::all_of(history_state_.followed, known);
+}
+
+template <int D>
 void Recorder<D>::flush() const
 {
   if (history_)

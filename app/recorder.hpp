@@ -63,6 +63,8 @@ class Recorder {
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
   /// the frame is dropped.  Says in words what should be there and is not, on the root.
   std::vector<std::string> resume(const Frame<D>& frame);
+  /// Whether fields() that were taken over may be those of a run with so many walls, and particles at the start.
+  bool fits(std::size_t walls, Index particles) const;
   /// Goes on from such a state with files of its own, in another folder.
   void begin_again(const Frame<D>& frame);
   /// What has been written is on the disk when it returns.
