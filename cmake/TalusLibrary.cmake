@@ -11,14 +11,27 @@ function(talus_choose list exclude only)
   set(${list} ${chosen} PARENT_SCOPE)
 endfunction()
 
-# talus_library(name [APART] [FOLDER folder] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
+# TALUS_UNITY: the sources of the target are compiled `size` at a time, once what their headers declare and what several of them instantiate.
+# Batches are small enough to keep two cores busy to the end.
+function(talus_in_batches target size)
+  if(TALUS_UNITY)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE ${size})
+    # A source that is included looks like a header to gcc, where anonymous namespaces would be wrong.
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+  endif()
+endfunction()
+
+# talus_library(name [APART] [FOLDER folder] [BATCH size] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
 # makes the library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
 # render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library. APART:
-# never some sources at a time (TALUS_UNITY), where there is little to gain.
+# never some sources at a time (TALUS_UNITY), where there is little to gain; else BATCH of them, 12 unless told.
 function(talus_library name)
-  cmake_parse_arguments(arg "APART" "FOLDER" "EXCLUDE;ONLY;LINKS;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "APART" "FOLDER;BATCH" "EXCLUDE;ONLY;LINKS;PRIVATE" ${ARGN})
   if(NOT arg_FOLDER)
     set(arg_FOLDER ${name})
+  endif()
+  if(NOT arg_BATCH)
+    set(arg_BATCH 12)
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_FOLDER}/*.cpp)
   talus_choose(sources "${arg_EXCLUDE}" "${arg_ONLY}")
@@ -27,10 +40,8 @@ function(talus_library name)
     add_library(talus_${name} ${TALUS_LIBRARY_KIND} ${sources})
     target_link_libraries(talus_${name} PUBLIC ${arg_LINKS} PRIVATE ${arg_PRIVATE})
     talus_use_pch(talus_${name} talus_pch)
-    if(TALUS_UNITY AND NOT arg_APART)   # batches small enough to keep two cores busy to the end
-      set_target_properties(talus_${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 6)
-      # A source that is included looks like a header to gcc, where anonymous namespaces would be wrong.
-      target_compile_options(talus_${name} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-subobject-linkage>)
+    if(NOT arg_APART)
+      talus_in_batches(talus_${name} ${arg_BATCH})
     endif()
   else()
     add_library(talus_${name} INTERFACE)

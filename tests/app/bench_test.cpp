@@ -3,7 +3,7 @@
 #include "io/bench_json.hpp"
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::bench_test {
 
 namespace {
 
@@ -171,4 +171,4 @@ TEST_F(Bench, WhatMeansNothingEndsWithTwo)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::bench_test

@@ -2,7 +2,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::check_test {
 
 namespace {
 
@@ -89,4 +89,4 @@ TEST_F(Check, WarnsOfBodiesThatShareCells)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::check_test

@@ -2,7 +2,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::cli_test {
 
 namespace {
 
@@ -114,4 +114,4 @@ TEST_F(CommandLine, RenderNeedsResults)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::cli_test

@@ -5,7 +5,7 @@
 #include "app/differences.hpp"
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::diff_test {
 
 namespace {
 
@@ -228,4 +228,4 @@ TEST_F(Diff, WhatCannotBeReadEndsWithTwo)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::diff_test

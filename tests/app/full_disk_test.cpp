@@ -5,7 +5,7 @@
 #include "tests/app/program.hpp"
 #include "tests/app/same_state.hpp"
 
-namespace talus {
+namespace talus::full_disk_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -198,4 +198,4 @@ TEST_F(TakenAway, AFolderThatIsRemovedEndsTheRun)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::full_disk_test

@@ -5,7 +5,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::hostile_test {
 namespace {
 
 using testing::HasSubstr;
@@ -106,4 +106,4 @@ TEST_F(Hostile, MoreThanTheMemoryHoldsIsRefusedBeforeItIsTaken)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::hostile_test

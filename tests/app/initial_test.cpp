@@ -10,7 +10,7 @@
 #include "tests/app/forged.hpp"
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::initial_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -580,4 +580,4 @@ TEST_F(Initial, ARunThatIsOverHasNothingLeftToDo)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::initial_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace talus {
+namespace talus::move_rule_test {
 namespace {
 
 /// A run of so many steps whose shares become uneven by `growth` a step and are even once they have moved.
@@ -110,4 +110,4 @@ TEST(MoveRule, CostsNoMoreThanTwiceTheBest)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::move_rule_test

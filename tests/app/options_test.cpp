@@ -8,7 +8,7 @@
 #include "io/reader.hpp"
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::options_test {
 namespace {
 
 class Options : public Program {
@@ -48,4 +48,4 @@ TEST_F(Options, BulkViscosityBelongsToTheMaterial)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::options_test

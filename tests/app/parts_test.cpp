@@ -10,7 +10,7 @@
 #include "app/recorder.hpp"
 #include "app/results.hpp"
 
-namespace talus {
+namespace talus::parts_test {
 
 namespace {
 
@@ -153,4 +153,4 @@ TEST(Quick, CutsStagesInProportion)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::parts_test

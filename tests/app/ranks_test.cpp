@@ -12,7 +12,7 @@
 #include "tests/app/same_state.hpp"
 #include "tests/app/scenes_of_all.hpp"
 
-namespace talus {
+namespace talus::ranks_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -324,4 +324,4 @@ TEST_F(OnRanks, OneThatIsKilledEndsTheRunWhichCanGoOn)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::ranks_test

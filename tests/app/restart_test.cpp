@@ -9,7 +9,7 @@
 #include "tests/app/same_state.hpp"
 #include "tests/app/scenes_of_all.hpp"
 
-namespace talus {
+namespace talus::restart_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -365,4 +365,4 @@ TEST_F(Checkpoint, NothingToGoOnFromIsSaid)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::restart_test

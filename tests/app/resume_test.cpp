@@ -7,7 +7,7 @@
 #include "tests/app/program.hpp"
 #include "tests/app/same_state.hpp"
 
-namespace talus {
+namespace talus::resume_test {
 
 namespace {
 
@@ -203,4 +203,4 @@ TEST_F(Resume, ManySignalsAreOne)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::resume_test

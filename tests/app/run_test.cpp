@@ -5,7 +5,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::run_test {
 
 namespace {
 
@@ -394,4 +394,4 @@ TEST_F(Run, MomentumOfAClosedSystemIsAccountedFor)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::run_test

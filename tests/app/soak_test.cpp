@@ -5,7 +5,7 @@
 #include "tests/app/program.hpp"
 #include "tests/app/same_state.hpp"
 
-namespace talus {
+namespace talus::soak_test {
 namespace {
 
 using Soak = Program;
@@ -78,4 +78,4 @@ outputs:
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::soak_test

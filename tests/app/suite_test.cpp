@@ -3,7 +3,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::suite_test {
 
 namespace {
 
@@ -67,4 +67,4 @@ TEST_F(Suite, OfTheSourcesIsFoundWithoutBeingNamed)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::suite_test

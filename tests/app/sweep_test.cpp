@@ -3,7 +3,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::sweep_test {
 
 namespace {
 
@@ -164,4 +164,4 @@ TEST_F(SweepProgram, TheExampleIsInOrder)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::sweep_test

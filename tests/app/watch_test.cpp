@@ -3,7 +3,7 @@
 
 #include "tests/app/program.hpp"
 
-namespace talus {
+namespace talus::watch_test {
 namespace {
 
 using ::testing::ContainsRegex;
@@ -211,4 +211,4 @@ TEST_F(Watch, TheStateBeforeAFailedStepCanBeHad)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::watch_test

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::column_test {
 namespace {
 
 const Mat3 strained = Mat3::Identity() + 1e-6 * Mat3{{1, 2, 3}, {0, -1, 4}, {0.5, 0, 0.1}};
@@ -71,4 +71,4 @@ TEST(Rows, LieInWholeLargePagesWhereTheyFillSome)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::column_test

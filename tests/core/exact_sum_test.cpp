@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-namespace talus {
+namespace talus::exact_sum_test {
 namespace {
 
 constexpr Real infinity = std::numeric_limits<Real>::infinity(), not_a_number = std::numeric_limits<Real>::quiet_NaN();
@@ -242,4 +242,4 @@ TEST(ExactSums, AddEveryEntry)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::exact_sum_test

@@ -12,7 +12,7 @@
 
 #include "core/error.hpp"
 
-namespace talus {
+namespace talus::exchange_test {
 namespace {
 
 std::vector<std::byte> bytes_of(std::string_view text)
@@ -127,4 +127,4 @@ TEST(RanksAlone, AreNoneWithoutALauncher)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::exchange_test

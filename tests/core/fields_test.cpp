@@ -8,7 +8,7 @@
 
 #include "core/type_list.hpp"
 
-namespace talus {
+namespace talus::fields_test {
 namespace {
 
 struct Inner {
@@ -61,4 +61,4 @@ TEST(TypeList, IsFoldedInOrder)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::fields_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::health_test {
 namespace {
 
 TEST(Health, TellsTheCauseBeforeWhatFollowsFromIt)
@@ -20,4 +20,4 @@ TEST(Health, TellsTheCauseBeforeWhatFollowsFromIt)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::health_test

@@ -8,7 +8,7 @@
 
 #include "core/tensor.hpp"
 
-namespace talus {
+namespace talus::lanes_test {
 namespace {
 
 /// Units of the last place between f of lanes and its exact value, the worst of random arguments sign * 10^[low, high].
@@ -158,4 +158,4 @@ TEST(Lanes, RowsBecomeLanesAndLanesRows)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::lanes_test

@@ -9,7 +9,7 @@
 #include "core/table.hpp"
 #include "core/tensor.hpp"
 
-namespace talus {
+namespace talus::numbers_test {
 namespace {
 
 TEST(Table, IsLinearBetweenPointsAndConstantOutside)
@@ -151,4 +151,4 @@ TEST_F(Threads, MinimumStopsAtTheStart)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::numbers_test

@@ -7,7 +7,7 @@
 #include "core/fields.hpp"
 #include "core/words.hpp"
 
-namespace talus {
+namespace talus::text_test {
 namespace {
 
 const std::vector<std::string> keys{"density", "friction_angle", "dilation_angle", "cohesion"};
@@ -112,4 +112,4 @@ TEST(SceneErrors, OneProblemWithoutAPlace)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::text_test

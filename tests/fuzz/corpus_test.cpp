@@ -6,7 +6,7 @@
 #include "io/whole_file.hpp"
 #include "tests/fuzz/entries.hpp"
 
-namespace talus {
+namespace talus::corpus_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,4 +29,4 @@ TEST(Corpus, OfMeshesIsReadOrRefused) { replay("msh", 4, fuzz_msh); }
 TEST(Corpus, OfCheckpointsIsTakenOverOrRefused) { replay("checkpoint", 4, fuzz_checkpoint); }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::corpus_test

@@ -19,7 +19,7 @@
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::array_file_test {
 namespace {
 
 using testing::AllOf;
@@ -419,4 +419,4 @@ TEST(ArrayFile, FullDiskIsAnEnvironmentErrorThatNamesTheFile)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::array_file_test

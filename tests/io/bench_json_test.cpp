@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::bench_json_test {
 
 namespace {
 
@@ -63,4 +63,4 @@ TEST(BenchJson, RefusesWhatIsSomethingElse)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::bench_json_test

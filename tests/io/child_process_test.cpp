@@ -12,7 +12,7 @@
 #include "io/whole_file.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::child_process_test {
 
 namespace {
 
@@ -60,4 +60,4 @@ TEST_F(Child, IsToldToEndByWhoLetsGoOfIt)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::child_process_test

@@ -14,7 +14,7 @@
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::csv_test {
 namespace {
 
 using testing::ElementsAre;
@@ -151,4 +151,4 @@ TEST(Csv, FolderThatCannotBeMadeIsAnEnvironmentError)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::csv_test

@@ -10,7 +10,7 @@
 #include "tests/io/bytes.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::gmsh_broken_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -326,4 +326,4 @@ TEST(GmshRead, ReversedBytesAreTurned)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::gmsh_broken_test

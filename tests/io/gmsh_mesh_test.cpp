@@ -11,7 +11,7 @@
 #include "core/parallel.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::gmsh_mesh_test {
 namespace {
 
 using ::testing::Contains;
@@ -402,4 +402,4 @@ TEST_F(GmshGeometry, SyntaxErrorIsRefusedWithTheWordsOfGmsh)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::gmsh_mesh_test

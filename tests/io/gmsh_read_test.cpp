@@ -13,7 +13,7 @@
 #include "tests/io/bytes.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::gmsh_read_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -250,4 +250,4 @@ TEST(GmshRead, NightlyManyMutantsEndInAMeshOrAComplaint)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::gmsh_read_test

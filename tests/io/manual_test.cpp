@@ -11,7 +11,7 @@
 
 #include "io/scene_rules.hpp"
 
-namespace talus {
+namespace talus::manual_test {
 
 namespace {
 
@@ -146,4 +146,4 @@ TEST(Schema, KnowsGroupsOfLawsAndOptionsOfBodies)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::manual_test

@@ -9,7 +9,7 @@
 
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::memory_test {
 namespace {
 
 class Memory : public testing::Test {
@@ -81,4 +81,4 @@ TEST(TooMany, NamesWhatIsNeededAndWhatIsThere)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::memory_test

@@ -12,7 +12,7 @@
 
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::reader_test {
 
 namespace {
 
@@ -276,4 +276,4 @@ TEST(Reader, AnswersEveryDamagedSceneWithASceneOrWithErrors)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::reader_test

@@ -15,7 +15,7 @@
 #include "io/whole_file.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::render_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -209,4 +209,4 @@ TEST(LaunchRender, ArgumentsArriveAsTheyWereGiven)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::render_test

@@ -12,7 +12,7 @@
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::report_test {
 namespace {
 
 using nlohmann::json;
@@ -114,4 +114,4 @@ TEST(Report, FullDiskIsAnEnvironmentErrorThatNamesTheFile)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::report_test

@@ -10,7 +10,7 @@
 
 #include "io/reader.hpp"
 
-namespace talus {
+namespace talus::scene_test {
 
 namespace {
 
@@ -398,4 +398,4 @@ TEST(Shape, PolygonOfManyCornersIsCheckedQuickly)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::scene_test

@@ -7,7 +7,7 @@
 #include "io/reader.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::study_test {
 
 namespace {
 
@@ -117,4 +117,4 @@ TEST_F(StudyFile, RefusesRowsOfUnequalLengthAndCasesTwice)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::study_test

@@ -9,7 +9,7 @@
 #include "core/error.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::summary_json_test {
 
 namespace {
 
@@ -66,4 +66,4 @@ TEST(SummaryJson, RefusesWhatIsSomethingElse)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::summary_json_test

@@ -8,7 +8,7 @@
 #include "io/whole_file.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::vtk_read_test {
 
 namespace {
 
@@ -132,4 +132,4 @@ TEST(VtkRead, FieldsOfAMeshAreReadByNodeAndByCell)
 
 }  // namespace
 
-}  // namespace talus
+}  // namespace talus::vtk_read_test

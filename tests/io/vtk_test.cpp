@@ -26,7 +26,7 @@
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::vtk_test {
 namespace {
 
 using testing::ElementsAre;
@@ -247,4 +247,4 @@ TEST(Pvd, FileThatIsNoListIsNamed)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::vtk_test

@@ -10,7 +10,7 @@
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 
-namespace talus {
+namespace talus::whole_file_test {
 namespace {
 
 std::vector<std::string> names(const ScratchFolder& folder)
@@ -59,4 +59,4 @@ TEST(WholeFile, MissingFileIsNamed)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::whole_file_test

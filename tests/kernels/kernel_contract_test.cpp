@@ -5,7 +5,7 @@
 
 #include "tests/kernels/defects.hpp"
 
-namespace talus::test {
+namespace talus::test::kernel_contract_test {
 namespace {
 
 template <class Kernel_, int Dimension>
@@ -246,4 +246,4 @@ TYPED_TEST(KernelContract, WallsAreClosedIfClaimed)
 }
 
 }  // namespace
-}  // namespace talus::test
+}  // namespace talus::test::kernel_contract_test

@@ -7,7 +7,7 @@
 #include "kernels/projected.hpp"
 #include "tests/kernels/defects.hpp"
 
-namespace talus::test {
+namespace talus::test::node_operators_test {
 namespace {
 
 template <int D>
@@ -170,4 +170,4 @@ TYPED_TEST(NodeOperatorsIn, SmallerWeightsOfNeighboursDrawTheMassToTheNode)
 }
 
 }  // namespace
-}  // namespace talus::test
+}  // namespace talus::test::node_operators_test

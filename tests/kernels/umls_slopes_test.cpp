@@ -3,7 +3,7 @@
 
 #include "tests/kernels/defects.hpp"
 
-namespace talus::test {
+namespace talus::test::umls_slopes_test {
 namespace {
 
 template <class T>
@@ -161,4 +161,4 @@ TYPED_TEST(UmlsSlopesIn, AreThoseOfHatsWhereNoSecondMomentIsUsable)
 }
 
 }  // namespace
-}  // namespace talus::test
+}  // namespace talus::test::umls_slopes_test

@@ -7,7 +7,7 @@
 
 #include "tests/kernels/defects.hpp"
 
-namespace talus::test {
+namespace talus::test::umls_test {
 namespace {
 
 Real spline(Real q) { return q <= 0.5 ? 0.75 - q * q : q <= 1.5 ? 0.5 * (1.5 - q) * (1.5 - q) : 0; }
@@ -224,4 +224,4 @@ TEST(Umls, WallsLeaveAPercentOrTwoOfWeightToNodesOffTheWall)
 }
 
 }  // namespace
-}  // namespace talus::test
+}  // namespace talus::test::umls_test

@@ -4,7 +4,7 @@
 
 #include "tests/materials/soil.hpp"
 
-namespace talus {
+namespace talus::drucker_prager_test {
 namespace {
 
 using testing::Dice;
@@ -312,4 +312,4 @@ TEST(DruckerPragerRules, ContradictionsAreToldInWords)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::drucker_prager_test

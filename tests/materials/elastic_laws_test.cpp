@@ -3,7 +3,7 @@
 
 #include "tests/materials/samples.hpp"
 
-namespace talus {
+namespace talus::elastic_laws_test {
 namespace {
 
 using testing::Dice;
@@ -135,4 +135,4 @@ TEST(ElasticLaws, AgreeForSmallStrains)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::elastic_laws_test

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-namespace talus {
+namespace talus::elasticity_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -108,4 +108,4 @@ TEST(ElasticityRules, UnstablePairsAreToldWithTheirPoissonRatio)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::elasticity_test

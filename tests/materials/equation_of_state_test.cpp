@@ -6,7 +6,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/metals.hpp"
 
-namespace talus {
+namespace talus::equation_of_state_test {
 namespace {
 
 using testing::Dice;
@@ -185,4 +185,4 @@ TEST(MieGruneisen, ElasticLimitOfAShockIsThatOfUniaxialStrain)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::equation_of_state_test

@@ -5,7 +5,7 @@
 #include "materials/newtonian.hpp"
 #include "tests/materials/samples.hpp"
 
-namespace talus {
+namespace talus::fluids_test {
 namespace {
 
 using testing::Dice;
@@ -300,4 +300,4 @@ TEST(Newtonian, DissipatesAndDoesNotPullOnRandomPaths)
 TEST(HerschelBulkley, DissipatesAndDoesNotPullOnRandomPaths) { expect_dissipation(mud(20, 4, 0.4)); }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::fluids_test

@@ -4,7 +4,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/metals.hpp"
 
-namespace talus {
+namespace talus::johnson_cook_failure_test {
 namespace {
 
 using testing::Dice;
@@ -168,4 +168,4 @@ TEST(JohnsonCookDamageRules, ConstantsThatCannotBeMeantAreToldInWords)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::johnson_cook_failure_test

@@ -3,7 +3,7 @@
 
 #include "tests/materials/metals.hpp"
 
-namespace talus {
+namespace talus::johnson_cook_kinds_test {
 namespace {
 
 using testing::copper;
@@ -102,4 +102,4 @@ TEST(JohnsonCookRules, ContradictionsAreToldInWords)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::johnson_cook_kinds_test

@@ -6,7 +6,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/metals.hpp"
 
-namespace talus {
+namespace talus::johnson_cook_test {
 namespace {
 
 using testing::copper;
@@ -259,4 +259,4 @@ TEST(JohnsonCook, ElasticSimpleShearToTenDoesNotOscillate)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::johnson_cook_test

@@ -5,7 +5,7 @@
 
 #include "tests/materials/soil.hpp"
 
-namespace talus {
+namespace talus::laboratory_test {
 namespace {
 
 using testing::radians;
@@ -202,4 +202,4 @@ TEST(Laboratory, ElasticSolidsHaveNoStrengthButCanBeDriven)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::laboratory_test

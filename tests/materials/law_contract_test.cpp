@@ -6,7 +6,7 @@
 
 #include "tests/materials/samples.hpp"
 
-namespace talus {
+namespace talus::law_contract_test {
 namespace {
 
 using testing::Dice;
@@ -526,4 +526,4 @@ TYPED_TEST(LawContract, AnswersExtremeButRegularDeformations)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::law_contract_test

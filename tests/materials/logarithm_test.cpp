@@ -7,7 +7,7 @@
 
 #include "tests/materials/samples.hpp"
 
-namespace talus {
+namespace talus::logarithm_test {
 namespace {
 
 using testing::Dice;
@@ -128,4 +128,4 @@ TEST(LargestEigenvalueBound, IsNeverBelowTheEigenvalues)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::logarithm_test

@@ -6,7 +6,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/samples.hpp"
 
-namespace talus {
+namespace talus::modified_cam_clay_test {
 namespace {
 
 using testing::Dice;
@@ -370,4 +370,4 @@ TEST(ModifiedCamClayRules, ContradictionsAreToldInWords)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::modified_cam_clay_test

@@ -9,7 +9,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/soil.hpp"
 
-namespace talus {
+namespace talus::mohr_coulomb_test {
 namespace {
 
 using testing::Dice;
@@ -512,4 +512,4 @@ TEST(MohrCoulombRules, ContradictionsAreToldInWords)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::mohr_coulomb_test

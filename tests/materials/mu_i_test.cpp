@@ -6,7 +6,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/soil.hpp"
 
-namespace talus {
+namespace talus::mu_i_test {
 namespace {
 
 using testing::Dice;
@@ -192,4 +192,4 @@ TEST(MuIRules, ContradictionsAreToldInWords)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::mu_i_test

@@ -9,7 +9,7 @@
 
 #include "tests/materials/soil.hpp"
 
-namespace talus {
+namespace talus::point_path_test {
 namespace {
 
 using testing::radians;
@@ -210,4 +210,4 @@ TEST(PointPath, RefusesAStartFromStressWhereTheLawHasNone)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::point_path_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace talus {
+namespace talus::scalar_root_test {
 namespace {
 
 /// r - x - b x^n, which falls infinitely steeply at zero, and how often it was asked.
@@ -63,4 +63,4 @@ TEST(PositiveRoot, EndsWhereRoundingHidesTheSign)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::scalar_root_test

@@ -5,7 +5,7 @@
 #include "materials/point_path.hpp"
 #include "tests/materials/metals.hpp"
 
-namespace talus {
+namespace talus::von_mises_test {
 namespace {
 
 using testing::Dice;
@@ -242,4 +242,4 @@ TEST(VonMises, SimpleShearToTenDoesNotOscillate)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::von_mises_test

@@ -8,7 +8,7 @@
 #include "mesh/generate.hpp"
 #include "mesh/mesh.hpp"
 
-namespace talus {
+namespace talus::bad_mesh_test {
 namespace {
 
 template <int D>
@@ -133,4 +133,4 @@ TEST(BadMesh, GroupsThatPointNowhere)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::bad_mesh_test

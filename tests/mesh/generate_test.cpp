@@ -8,7 +8,7 @@
 
 #include "mesh/quality.hpp"
 
-namespace talus {
+namespace talus::generate_test {
 namespace {
 
 constexpr Real degree = 0.017453292519943295;
@@ -173,4 +173,4 @@ TEST(Slivered, SaysWhenThereIsNoRoom)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::generate_test

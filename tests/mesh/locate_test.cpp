@@ -9,7 +9,7 @@
 #include "mesh/generate.hpp"
 #include "mesh/simplex.hpp"
 
-namespace talus {
+namespace talus::locate_test {
 namespace {
 
 class Random {
@@ -281,4 +281,4 @@ TEST(Locator, NearestPointOfABoxIsTheProjection)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::locate_test

@@ -12,7 +12,7 @@
 #include "mesh/generate.hpp"
 #include "mesh/simplex.hpp"
 
-namespace talus {
+namespace talus::mesh_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -305,4 +305,4 @@ TEST(Mesh, NamesOfSetsAreSortedAndUnique)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::mesh_test

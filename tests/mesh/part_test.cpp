@@ -14,7 +14,7 @@
 #include "mesh/simplex.hpp"
 #include "tests/mesh/rough_box.hpp"
 
-namespace talus {
+namespace talus::part_test {
 namespace {
 
 using ::testing::ElementsAreArray;
@@ -409,4 +409,4 @@ TEST(Part, NonsenseIsRefused)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::part_test

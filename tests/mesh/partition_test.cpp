@@ -10,7 +10,7 @@
 #include "core/error.hpp"
 #include "tests/mesh/rough_box.hpp"
 
-namespace talus {
+namespace talus::partition_test {
 namespace {
 
 using Weights = std::vector<std::int64_t>;
@@ -163,4 +163,4 @@ TEST(Partition, ImbalanceIsLargestOverMean)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::partition_test

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-namespace talus {
+namespace talus::quadrature_test {
 namespace {
 
 Real factorial(int n) { return n < 2 ? 1 : n * factorial(n - 1); }
@@ -122,4 +122,4 @@ TEST(SeedingPoints, OtherCountsHaveNone)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::quadrature_test

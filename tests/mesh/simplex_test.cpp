@@ -7,7 +7,7 @@
 #include "mesh/generate.hpp"
 #include "mesh/quality.hpp"
 
-namespace talus {
+namespace talus::simplex_test {
 namespace {
 
 const Real pi = std::acos(-1.0);
@@ -126,4 +126,4 @@ TEST(Quality, TextNamesTheWorstPlace)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::simplex_test

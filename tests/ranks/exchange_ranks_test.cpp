@@ -14,7 +14,7 @@
 #include "core/error.hpp"
 #include "core/exchange.hpp"
 
-namespace talus {
+namespace talus::exchange_ranks_test {
 namespace {
 
 /// Bytes that tell who has sent them, to whom and how many.
@@ -332,4 +332,4 @@ TEST_F(World, ActsTogetherOnTheRoot)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::exchange_ranks_test

@@ -10,7 +10,7 @@
 #include "mesh/partition.hpp"
 #include "solver/deal.hpp"
 
-namespace talus {
+namespace talus::set_up_ranks_test {
 namespace {
 
 std::size_t z(std::int64_t i) { return static_cast<std::size_t>(i); }
@@ -112,4 +112,4 @@ TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::set_up_ranks_test

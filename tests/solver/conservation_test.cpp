@@ -21,7 +21,7 @@ void* operator new(std::size_t size)
 void operator delete(void* block) noexcept { std::free(block); }
 void operator delete(void* block, std::size_t) noexcept { std::free(block); }
 
-namespace talus::testing {
+namespace talus::testing::conservation_test {
 namespace {
 
 template <int D_, class K_, Scheme scheme_, bool musl_>
@@ -175,4 +175,4 @@ TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalanceWhileStable)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::conservation_test

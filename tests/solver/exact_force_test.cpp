@@ -5,7 +5,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::exact_force_test {
 namespace {
 
 template <class T>
@@ -130,4 +130,4 @@ TYPED_TEST(ExactForceIn, KeepsTheMomentumOfAFreeBlock)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::exact_force_test

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <random>
 
-namespace talus {
+namespace talus::followed_rows_test {
 namespace {
 
 TEST(FollowedRows, OfNobodyHoldNothing)
@@ -49,4 +49,4 @@ TEST(FollowedRows, AreThoseOfASearchThroughAll)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::followed_rows_test

@@ -4,7 +4,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::guards_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -149,4 +149,4 @@ TEST(Guards, NoMoreMayFailThanIsAllowed)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::guards_test

@@ -5,7 +5,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::nodes_test {
 namespace {
 
 TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
@@ -339,4 +339,4 @@ TEST(Loads, PressureOnParticlesIsTheStressBelow)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::nodes_test

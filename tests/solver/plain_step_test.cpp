@@ -7,7 +7,7 @@
 #include "tests/kernels/probe.hpp"
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::plain_step_test {
 namespace {
 
 using test::Probe;
@@ -154,4 +154,4 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticlesInBothPrecisi
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::plain_step_test

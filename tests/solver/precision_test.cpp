@@ -3,7 +3,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::precision_test {
 namespace {
 
 /// A block in the middle of a box of 10 m that lies a thousand kilometres from the origin.
@@ -56,4 +56,4 @@ TEST(SinglePrecision, AddsUpStrainsBelowItsRounding)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::precision_test

@@ -5,7 +5,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::projected_test {
 namespace {
 
 template <int D_, class K_, ValueStencil values = ValueStencil::maxent>
@@ -226,4 +226,4 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::projected_test

@@ -7,7 +7,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus {
+namespace talus::stars_test {
 namespace {
 
 using testing::add_body;
@@ -255,4 +255,4 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
 }
 
 }  // namespace
-}  // namespace talus
+}  // namespace talus::stars_test

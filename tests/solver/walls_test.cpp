@@ -5,7 +5,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::testing {
+namespace talus::testing::walls_test {
 namespace {
 
 template <int D>
@@ -146,4 +146,4 @@ TEST(RestingBlock, DoesNotCreepBelowTheFrictionAngle)
 }
 
 }  // namespace
-}  // namespace talus::testing
+}  // namespace talus::testing::walls_test
