@@ -714,7 +714,7 @@ struct ArrayReader::Opened {
         piece = room;
       }
       read_piece(array, type, shape, begin, end - begin, piece, path);
-      if (room.size() > 0)
+      if (!room.empty())
         std::copy_n(room.begin() + static_cast<std::ptrdiff_t>((row - begin) * row_bytes), wanted.size(), wanted.begin());
       const std::uint64_t found = digest_of(piece, meaning);
       const bool fits = words.empty() ? Pieces{pieces.all, {found}}.digest(meaning) == digest[0]
