@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "app/setup.hpp"
+#include "core/parallel.hpp"
 #include "io/reader.hpp"
 
 namespace talus {

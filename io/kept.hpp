@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/parallel.hpp"
 #include "core/particles.hpp"
 #include "io/array_file.hpp"
 #include "materials/batch.hpp"

@@ -1,13 +1,11 @@
 #pragma once
 // One law and its history over the particles of one body, and the questions a solver asks without knowing which law it is.
-#include <cassert>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/pages.hpp"
-#include "core/parallel.hpp"
 #include "materials/laws.hpp"
 
 namespace talus {
@@ -152,20 +150,7 @@ void for_each_history(const AnyBatch& batch, F&& f)
 }
 
 /// Re-orders the history: afterwards particle i is the former particle order[i].  Allocates at its first call only.
-template <class L>
-void permute(Batch<L>& batch, std::span<const Index> order)
-{
-  assert(order.size() == batch.history.size());
-  batch.scratch.resize(batch.history.size());
-  parallel_for(static_cast<Index>(order.size()), [&](Index i) {
-    batch.scratch[static_cast<std::size_t>(i)] = batch.history[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])];
-  });
-  std::swap(batch.history, batch.scratch);
-}
-inline void permute(AnyBatch& batch, std::span<const Index> order)
-{
-  std::visit([&](auto& typed) { permute(typed, order); }, batch);
-}
+void permute(AnyBatch& batch, std::span<const Index> order);
 
 /// Makes `stress` [Pa] the stress of particle i at F = I.  False if the law cannot start from a stress.
 template <class L>
@@ -178,52 +163,16 @@ bool prestress(Batch<L>& batch, Index i, const Mat3& stress) noexcept
   }
   return false;
 }
-inline bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept
-{
-  return std::visit([&](auto& typed) { return prestress(typed, i, stress); }, batch);
-}
+bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept;
 
 /// Energy [J] dissipated so far in particle i of a body, whose volume was `volume0` [m^3].  0 for a law without "plastic_work".
-inline Real plastic_work(const AnyBatch& batch, Index i, Real volume0)
-{
-  Real work = 0;
-  for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
-    if constexpr (std::decay_t<decltype(column)>::components == 1)
-      if (key == "plastic_work")
-        work = volume0 * column[i];
-  });
-  return work;
-}
+Real plastic_work(const AnyBatch& batch, Index i, Real volume0);
 
-inline Real density(const AnyBatch& batch) noexcept
-{
-  return std::visit([](const auto& typed) { return typed.law.density; }, batch);
-}
-inline Real wave_speed(const AnyBatch& batch, const Mat3& F) noexcept
-{
-  return std::visit([&](const auto& typed) { return typed.law.wave_speed(F, typed.constants); }, batch);
-}
-inline bool averages_volume(const AnyBatch& batch) noexcept
-{
-  return std::visit([](const auto& typed) { return typed.averages_volume; }, batch);
-}
-inline bool has_bulk_viscosity(const AnyBatch& batch) noexcept
-{
-  return std::visit([](const auto& typed) { return typed.viscosity.has_value(); }, batch);
-}
-inline bool conducts_heat(const AnyBatch& batch) noexcept
-{
-  return std::visit(
-      [](const auto& typed) {
-        if constexpr (requires { typed.law.conductivity; })
-          return typed.law.conductivity.has_value();
-        return false;
-      },
-      batch);
-}
-inline std::string_view law_name(const AnyBatch& batch) noexcept
-{
-  return std::visit([](const auto& typed) { return std::string_view{std::decay_t<decltype(typed.law)>::name}; }, batch);
-}
+Real density(const AnyBatch& batch) noexcept;
+Real wave_speed(const AnyBatch& batch, const Mat3& F) noexcept;
+bool averages_volume(const AnyBatch& batch) noexcept;
+bool has_bulk_viscosity(const AnyBatch& batch) noexcept;
+bool conducts_heat(const AnyBatch& batch) noexcept;
+std::string_view law_name(const AnyBatch& batch) noexcept;
 
 }  // namespace talus

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "core/parallel.hpp"
+
 namespace talus {
 
 namespace {
