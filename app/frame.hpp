@@ -33,9 +33,29 @@ struct Frame {
 template <int D, Kernel<D> K>
 Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
-  return {m.mesh,   m.share,   m.particles, m.bodies,   m.materials,        m.order,  m.ranks, m.nodes,    m.walls,
-          m.loads,  m.clock,   m.stage,     stage.name, m.stage.number,     m.energy, m.mass,  m.momentum, m.watched,
-          m.guards, m.timings, m.residual,  m.crossing, m.migration.moved()};
+  return {.mesh = m.mesh,
+          .share = m.share,
+          .particles = m.particles,
+          .bodies = m.bodies,
+          .materials = m.materials,
+          .order = m.order,
+          .ranks = m.ranks,
+          .nodes = m.nodes,
+          .walls = m.walls,
+          .loads = m.loads,
+          .clock = m.clock,
+          .stage = m.stage,
+          .stage_name = stage.name,
+          .stage_number = m.stage.number,
+          .energy = m.energy,
+          .mass = m.mass,
+          .momentum = m.momentum,
+          .watched = m.watched,
+          .guards = m.guards,
+          .timings = m.timings,
+          .residual = m.residual,
+          .crossing = m.crossing,
+          .migrated = m.migration.moved()};
 }
 
 /// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.

@@ -29,10 +29,29 @@ void on_slices(const Frame<D>& frame, F&& f)
     return f(frame, frame.bodies, Slice{0, frame.particles.size()});
   const ParticleSlice<D> slice = slice_of_particles(frame);
   const CellOrder no_order;
-  f(Frame<D>{frame.mesh,       frame.share,        slice.particles, slice.bodies,   slice.materials, no_order,
-             frame.ranks,      frame.nodes,        frame.walls,     frame.loads,    frame.clock,     frame.stage,
-             frame.stage_name, frame.stage_number, frame.energy,    frame.mass,     frame.momentum,  frame.watched,
-             frame.guards,     frame.timings,      frame.residual,  frame.crossing, frame.migrated},
+  f(Frame<D>{.mesh = frame.mesh,
+             .share = frame.share,
+             .particles = slice.particles,
+             .bodies = slice.bodies,
+             .materials = slice.materials,
+             .order = no_order,
+             .ranks = frame.ranks,
+             .nodes = frame.nodes,
+             .walls = frame.walls,
+             .loads = frame.loads,
+             .clock = frame.clock,
+             .stage = frame.stage,
+             .stage_name = frame.stage_name,
+             .stage_number = frame.stage_number,
+             .energy = frame.energy,
+             .mass = frame.mass,
+             .momentum = frame.momentum,
+             .watched = frame.watched,
+             .guards = frame.guards,
+             .timings = frame.timings,
+             .residual = frame.residual,
+             .crossing = frame.crossing,
+             .migrated = frame.migrated},
     slice.whole_bodies, slice.rows);
 }
 

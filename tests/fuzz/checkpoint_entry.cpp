@@ -119,8 +119,29 @@ struct SmallRun {
   void sort() { sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order); }
   Frame<2> frame() const
   {
-    return {mesh,       share, particles, bodies, materials, order,   &one_rank(), nodes,   walls,    loads,    clock, stage,
-            "the only", 0,     energy,    mass,   momentum,  watched, guards,      timings, residual, crossing, 0};
+    return {.mesh = mesh,
+            .share = share,
+            .particles = particles,
+            .bodies = bodies,
+            .materials = materials,
+            .order = order,
+            .ranks = &one_rank(),
+            .nodes = nodes,
+            .walls = walls,
+            .loads = loads,
+            .clock = clock,
+            .stage = stage,
+            .stage_name = "the only",
+            .stage_number = 0,
+            .energy = energy,
+            .mass = mass,
+            .momentum = momentum,
+            .watched = watched,
+            .guards = guards,
+            .timings = timings,
+            .residual = residual,
+            .crossing = crossing,
+            .migrated = 0};
   }
   State<2> state()
   {
