@@ -9,6 +9,7 @@
 #include "app/bench_cases.hpp"
 #include "app/bench_machine.hpp"
 #include "app/bench_measure.hpp"
+#include "app/seed.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
@@ -102,11 +103,24 @@ void add_rows(const std::vector<std::vector<Real>>& held, const std::vector<std:
   }
 }
 
+/// Particles in the cells that this rank fills of a scene: ranks set a run up by parts.
+template <int D>
+void keep_part(const Mesh<D>& mesh, Setup<D>& setup)
+{
+  const IndexRange filled = cells_to_fill(mesh, world());
+  setup.n_particles = setup.particles.size();
+  for (Index& cell : setup.particles.cell)
+    if (cell < filled.begin || cell >= filled.end)
+      cell = none;
+  drop_lost(setup.bodies, setup.materials, setup.particles);
+}
+
 template <int D>
 void measure_ranks(const BenchSetting& setting, const BenchPlan& plan, RanksReport& report)
 {
   auto block = bench_block<D>(setting, plan.particles, plan.all_steps());
   report.particles = block.setup.particles.size();
+  keep_part(block.mesh, block.setup);
   report.cells = block.mesh.n_cells(), report.nodes = block.mesh.n_nodes();
   const Estimate memory = estimate<D>(block.scene, block.mesh, block.setup);  // of the part of this rank
   std::vector<RankMark> marks;
