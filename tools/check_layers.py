@@ -32,7 +32,7 @@ THIRD_PARTY = [
     ("gmsh.h*", ["io/gmsh_*.cpp"]),
     ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),
     ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp"]),
-    ("hdf5*", ["io/array_file.cpp"]),
+    ("hdf5.h", ["io/hdf5*", "io/array_*.cpp"]),
     ("CLI/*", ["app/cli.cpp"]),
     ("muParser*", ["app/expression.cpp"]),
     ("gtest/*", ["tests/*"]),

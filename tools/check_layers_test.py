@@ -32,7 +32,7 @@ class Layers(unittest.TestCase):
         for path, header in [("io/reader.cpp", "yaml-cpp/yaml.h"), ("io/gmsh_read.cpp", "gmsh.h"), ("io/vtk.cpp", "vtkNew.h"),
                              ("io/render_scene.cpp", "vtkNew.h"), ("io/report.cpp", "nlohmann/json.hpp"), ("app/cli.cpp", "CLI/CLI.hpp"),
                              ("app/expression.cpp", "muParser.h"), ("core/lanes.hpp", "immintrin.h"), ("core/exchange.cpp", "mpi.h"),
-                             ("io/array_file.cpp", "hdf5.h"), ("mesh/partition.cpp", "metis.h")]:
+                             ("io/hdf5_disk.cpp", "hdf5.h"), ("mesh/partition.cpp", "metis.h")]:
             self.passes(path, f"#include <{header}>")
             self.fails("solver/run.hpp", f"#include <{header}>")
         self.passes("tests/io/report_test.cpp", "#include <nlohmann/json.hpp>")
