@@ -33,6 +33,8 @@ THIRD_PARTY = [
     ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),
     ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp"]),
     ("hdf5*", ["io/array_file.cpp"]),
+    ("zlib.h", ["io/page_block.cpp"]),
+    ("httplib.h", ["io/http_server.cpp"]),
     ("CLI/*", ["app/cli.cpp"]),
     ("muParser*", ["app/expression.cpp"]),
     ("gtest/*", ["tests/*"]),
