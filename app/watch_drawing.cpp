@@ -41,9 +41,9 @@ struct Dot {
 };
 
 /// A sheet of dots, the lowest row last.
-class Sheet {
+class DotSheet {
  public:
-  Sheet(int columns, int rows) : across_(columns * dots_across), down_(rows * dots_down), dots_(static_cast<std::size_t>(across_ * down_))
+  DotSheet(int columns, int rows) : across_(columns * dots_across), down_(rows * dots_down), dots_(static_cast<std::size_t>(across_ * down_))
   {}
 
   void put(int i, int j, Real depth, Real value)
@@ -152,7 +152,7 @@ std::vector<std::string> drawn(const Cloud& cloud, const DrawingStyle& style)
   const Vec3 extent = high - low + Vec3::Constant(2 * radius);
   const Real scale = std::min(style.columns * dots_across / extent[0], style.rows * dots_down / extent[1]);  // dots per metre
   const auto letters = [&](Real metres, int dots) { return std::max(1, static_cast<int>(std::ceil(metres * scale / dots - 1e-9))); };
-  Sheet sheet(letters(extent[0], dots_across), letters(extent[1], dots_down));
+  DotSheet sheet(letters(extent[0], dots_across), letters(extent[1], dots_down));
   for (std::size_t p = 0; p < n; ++p) {
     const Real u = (on_screen[p][0] - low[0] + radius) * scale, v = (high[1] + radius - on_screen[p][1]) * scale, r = radius * scale;
     const int around = static_cast<int>(r);
