@@ -71,7 +71,7 @@ std::optional<MovedMass> moved_mass(const std::vector<Vec3>& then, const std::ve
 }
 
 /// Of the rows that belong to body `b`, or of all.
-MassSurvey survey_of(const Looked& looked, const Pairs& pairs, std::span<const Real> start, std::optional<std::size_t> b, const Vec3& up)
+MassSurvey survey_of(const Looked& looked, const Pairs& common, std::span<const Real> start, std::optional<std::size_t> b, const Vec3& up)
 {
   const auto belongs = [&](std::size_t row) { return !b || (row < looked.body.size() && looked.body[row] == static_cast<Real>(*b)); };
   MassSurvey mass;
@@ -96,7 +96,7 @@ MassSurvey survey_of(const Looked& looked, const Pairs& pairs, std::span<const R
     mass.speed = speed;
   std::vector<Vec3> then, now;
   Real furthest = 0;
-  for (const auto& [first, row] : pairs.both)
+  for (const auto& [first, row] : common.both)
     if (belongs(row)) {
       then.push_back(place(start, first));
       now.push_back(place(looked.places, row));
@@ -137,10 +137,10 @@ FrameSurvey survey_of(Real time, const fs::path& file, const SurveyTask& task, R
   Looked looked{particles.fields.front().values, stored_field(particles, "velocity"), {}};
   if (const StoredField* body = stored_field(particles, "body"))
     looked.body = body->values;
-  const Pairs pairs = match_ids(survey.ids, particles.ids);
-  frame.masses.push_back(survey_of(looked, pairs, survey.places, std::nullopt, task.up));
+  const Pairs common = match_ids(survey.ids, particles.ids);
+  frame.masses.push_back(survey_of(looked, common, survey.places, std::nullopt, task.up));
   for (std::size_t b = 0; task.bodies > 1 && b < task.bodies; ++b)
-    frame.masses.push_back(survey_of(looked, pairs, survey.places, b, task.up));
+    frame.masses.push_back(survey_of(looked, common, survey.places, b, task.up));
   return frame;
 }
 

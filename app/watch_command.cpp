@@ -64,6 +64,7 @@ class Follower {
     if (look_.state == RunState::at_work && !options_.once) {
       serve();
       follow();
+      give_last_page();
     }
     show_all();
     switch (look_.state) {
@@ -104,6 +105,16 @@ class Follower {
       std::this_thread::sleep_for(std::chrono::duration<Real>(options_.interval));
       look();
     }
+  }
+
+  /// A browser that shows the page sees how the run ended before the server goes.
+  void give_last_page()
+  {
+    constexpr std::chrono::milliseconds between(50);
+    constexpr std::chrono::seconds most(20);
+    const auto until = std::chrono::steady_clock::now() + most;
+    while (pages_ && pages_->is_waited_for() && std::chrono::steady_clock::now() < until)
+      std::this_thread::sleep_for(between);
   }
 
   /// A run that is begun again in the folder takes its summary away for a moment.

@@ -43,7 +43,8 @@ struct Dot {
 /// A sheet of dots, the lowest row last.
 class DotSheet {
  public:
-  DotSheet(int columns, int rows) : across_(columns * dots_across), down_(rows * dots_down), dots_(static_cast<std::size_t>(across_ * down_))
+  DotSheet(int columns, int rows)
+      : across_(columns * dots_across), down_(rows * dots_down), dots_(static_cast<std::size_t>(across_ * down_))
   {}
 
   void put(int i, int j, Real depth, Real value)

@@ -41,11 +41,13 @@ std::optional<fs::path> picture_at(const fs::path& folder, const std::string& pa
 std::optional<HttpAnswer> WatchPages::answer(const std::string& path)
 {
   const std::scoped_lock lock(readers_);
+  asked_at_ = Watch::now();
   if (path == "/stamp")
     return text_answer("text/plain", stamp());
   if (path == "/") {
     if (const std::string now = stamp(); page_ == nullptr || now != stamp_of_page_)
       make_page();
+    last_is_given_ = page_is_last_;
     return HttpAnswer{"text/html; charset=utf-8", page_};
   }
   if (const auto picture = picture_at(folder_, path))
@@ -53,15 +55,20 @@ std::optional<HttpAnswer> WatchPages::answer(const std::string& path)
   return std::nullopt;
 }
 
+bool WatchPages::is_waited_for()
+{
+  constexpr int questions = 3;  // not heard of for so long: the browser is closed
+  const std::scoped_lock lock(readers_);
+  return asked_at_ && !last_is_given_ && Watch::now() - *asked_at_ < std::chrono::duration<Real>(questions * interval_ + 1);
+}
+
 std::string WatchPages::stamp()
 {
-  const auto now = Watch::now();
-  if (!stamp_.empty() && now - stamped_at_ < rest_)
-    return stamp_;
-  stamped_at_ = now;
-  stamp_.clear();
-  for (const char* file : {"summary.json", "particles.pvd", "history.csv"})
-    stamp_ += state_of(folder_ / file) + ' ';
+  if (const auto now = Watch::now(); outputs_.empty() || now - stamped_at_ >= rest_) {
+    stamped_at_ = now;
+    outputs_ = state_of(folder_ / "particles.pvd") + ' ' + state_of(folder_ / "history.csv");
+  }
+  stamp_ = state_of(folder_ / "summary.json") + ' ' + outputs_;  // that the run has ended is told at once
   return stamp_;
 }
 
@@ -75,6 +82,7 @@ void WatchPages::make_page()
   std::vector<std::string> notes;
   page_ = std::make_shared<const std::string>(page_of(run, wishes, template_file_, survey_, notes));
   stamp_of_page_ = stamp_;
+  page_is_last_ = run.state != RunState::at_work;
   rest_ = rests_per_page * (Watch::now() - begin);
 }
 

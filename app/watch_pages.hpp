@@ -17,6 +17,8 @@ class WatchPages {
       : folder_(std::move(folder)), template_file_(std::move(template_file)), interval_(interval), readers_(readers)
   {}
   std::optional<HttpAnswer> answer(const std::string& path);
+  /// Whether somebody has asked lately, and has not had the page of the run as it ended.
+  bool is_waited_for();
 
  private:
   using Watch = std::chrono::steady_clock;
@@ -27,7 +29,10 @@ class WatchPages {
   Real interval_;
   std::mutex& readers_;
   RunSurvey survey_;
-  std::string stamp_, stamp_of_page_;
+  std::string stamp_, stamp_of_page_;  // of summary, then of outputs
+  std::string outputs_;                // of the stamp
+  bool page_is_last_ = false, last_is_given_ = false;
+  std::optional<Watch::time_point> asked_at_;
   std::shared_ptr<const std::string> page_;
   Watch::time_point stamped_at_;
   Watch::duration rest_{};  ///< until the results are looked at again

@@ -12,7 +12,7 @@ namespace talus {
 
 namespace {
 
-constexpr auto here = "127.0.0.1";
+constexpr auto loopback = "127.0.0.1";
 constexpr std::size_t threads_of_server = 8;  // a browser keeps several connections open
 constexpr std::time_t patience = 5;           // s, for a request that has begun, and between two of one connection
 
@@ -43,7 +43,7 @@ struct HttpServer::Inside {
 
   bool is_ours(const std::string& host) const
   {
-    return host == fmt::format("{}:{}", here, port) || host == fmt::format("localhost:{}", port);
+    return host == fmt::format("{}:{}", loopback, port) || host == fmt::format("localhost:{}", port);
   }
 
   void respond(const httplib::Request& request, httplib::Response& response) const
@@ -85,10 +85,10 @@ HttpServer::HttpServer(int port, Answer answer) : inside_(std::make_unique<Insid
     inside.respond(request, response);
     return httplib::Server::HandlerResponse::Handled;
   });
-  inside.port = port == 0 ? server.bind_to_any_port(here) : server.bind_to_port(here, port) ? port : -1;
+  inside.port = port == 0 ? server.bind_to_any_port(loopback) : server.bind_to_port(loopback, port) ? port : -1;
   if (inside.port <= 0)
     throw EnvironmentError(port == 0
-                               ? fmt::format("no port of {} is free", here)
+                               ? fmt::format("no port of {} is free", loopback)
                                : fmt::format("--port {}: another program has it, or it is not allowed: choose another, or leave it out for "
                                              "any that is free",
                                              port));

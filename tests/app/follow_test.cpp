@@ -67,7 +67,9 @@ TEST_F(Follow, ARunAtWorkSaysHowFarItIs)
   const FolderLock lock(folder_ / "out");
   const Outcome outcome = talus("watch out --once");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ContainsRegex("\nat work +\\[####################                    \\] 50 %  t = 0.01 s, 0.01 of 0.02 s done, 1:00 left\n"));
+  EXPECT_THAT(
+      outcome.out,
+      ContainsRegex("\nat work +\\[####################                    \\] 50 %  t = 0.01 s, 0.01 of 0.02 s done, 1:00 left\n"));
   EXPECT_THAT(outcome.out, ContainsRegex("\n +step 123, dt = 0.0001 s, .* stage \"run\", at it for 1:00\n"));
 }
 
@@ -84,7 +86,9 @@ TEST_F(Follow, EndsWhenTheRunDoes)
   const Outcome outcome = talus("watch out --interval 0.1 --page page.html");
   run.join();
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, ContainsRegex("^page: http://127.0.0.1:[0-9]+/\nat work   50 %  t = 0.01 s  step 123 .*  1:00 left  [34] frames\nBlock\ndone "))
+  EXPECT_THAT(
+      outcome.out,
+      ContainsRegex("^page: http://127.0.0.1:[0-9]+/\nat work   50 %  t = 0.01 s  step 123 .*  1:00 left  [34] frames\nBlock\ndone "))
       << "one line as long as nothing changes, then all of it";
 }
 
@@ -107,8 +111,9 @@ TEST_F(Follow, ThePageAnswersForTheRunAndNothingElseOfTheDisk)
   EXPECT_EQ(*pages.answer("/stamp")->body, stamp);
   EXPECT_EQ(pages.answer("/")->body, page->body) << "not made again";
   EXPECT_EQ(*pages.answer("/pictures/velocity_0001.png")->body, "a picture");
-  for (const char* path : {"/pictures/link.png", "/pictures/../secret.png", "/pictures/..%2fsecret.png", "/pictures/none.png", "/pictures/.png",
-                           "/pictures/", "/summary.json", "/pictures/velocity_0001.png/", "//", "/pictures//velocity_0001.png"})
+  for (const char* path :
+       {"/pictures/link.png", "/pictures/../secret.png", "/pictures/..%2fsecret.png", "/pictures/none.png", "/pictures/.png", "/pictures/",
+        "/summary.json", "/pictures/velocity_0001.png/", "//", "/pictures//velocity_0001.png"})
     EXPECT_FALSE(pages.answer(path)) << path;
 }
 

@@ -105,7 +105,8 @@ class Report : public Program {
   /// What the script says that is in the page.
   std::string told(const std::string& words) const
   {
-    const std::string script = std::string("/usr/bin/python3 " TALUS_SOURCE_DIR "/tests/app/read_page.py '") + folder_.path().string() + "/";
+    const std::string script =
+        std::string("/usr/bin/python3 " TALUS_SOURCE_DIR "/tests/app/read_page.py '") + folder_.path().string() + "/";
     const std::string command = script + words + " > '" + (folder_ / "told.txt").string() + "' 2>&1";
     EXPECT_EQ(std::system(command.c_str()), 0) << read("told.txt");
     return read("told.txt");

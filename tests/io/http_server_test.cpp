@@ -57,7 +57,8 @@ TEST(HttpServer, AForeignNameIsRefused)
   EXPECT_EQ(status("evil.example:" + std::to_string(server.port())), 403);
   EXPECT_EQ(status("127.0.0.1.evil.example"), 403);
   EXPECT_EQ(status("127.0.0.1"), 403) << "of another server";
-  EXPECT_EQ(client.Get("/", httplib::Headers{{"Host", "evil.example"}})->body, "this page is for http://127.0.0.1 and http://localhost only\n");
+  EXPECT_EQ(client.Get("/", httplib::Headers{{"Host", "evil.example"}})->body,
+            "this page is for http://127.0.0.1 and http://localhost only\n");
 }
 
 TEST(HttpServer, APortThatIsTakenIsToldAndOneThatIsFreedIsFree)

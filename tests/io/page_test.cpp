@@ -108,7 +108,8 @@ TEST(Page, TablesKeepTheirLastRowWhenTheyAreThinned)
     values[1].push_back(r % 7 == 0 ? std::numeric_limits<Real>::quiet_NaN() : r);
   }
   Page page;
-  const PageTable whole = table_of({{"time", "s"}, {"toe", "m"}}, values, 1000, page), thin = table_of({{"time", "s"}}, {values[0]}, 90, page);
+  const PageTable whole = table_of({{"time", "s"}, {"toe", "m"}}, values, 1000, page),
+                  thin = table_of({{"time", "s"}}, {values[0]}, 90, page);
   EXPECT_EQ(whole.thinned, 1);
   EXPECT_EQ(whole.rows, 1000);
   const auto numbers = decoded<float>(page.blocks[whole.values]);
