@@ -157,7 +157,9 @@ std::string state_of(const fs::path& file)
 void look_over(const fs::path& folder, const SurveyTask& task, RunSurvey& survey)
 {
   survey.left_out.clear();
-  const auto listed = fs::exists(folder / "particles.pvd") ? read_pvd(folder / "particles.pvd") : decltype(read_pvd({})){};
+  std::vector<std::pair<Real, fs::path>> listed;
+  if (fs::exists(folder / "particles.pvd"))
+    listed = read_pvd(folder / "particles.pvd");
   std::vector<FrameSurvey> known = std::move(survey.frames);
   survey.frames.clear();
   if (known.empty() || listed.empty() || known.front().file != listed.front().second ||
@@ -165,7 +167,9 @@ void look_over(const fs::path& folder, const SurveyTask& task, RunSurvey& survey
     survey = {};  // another run than before
     known.clear();
   }
-  for (const auto& [time, file] : listed) {
+  for (const auto& entry : listed) {
+    const Real time = entry.first;
+    const fs::path& file = entry.second;
     const auto same = [&](const FrameSurvey& frame) { return frame.file == file && frame.state == state_of(file); };
     if (const auto before = std::find_if(known.begin(), known.end(), same); before != known.end()) {
       survey.frames.push_back(std::move(*before));

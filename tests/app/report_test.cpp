@@ -75,7 +75,7 @@ TEST(PagePlanning, ASampleIsFairAndLargerOnesHoldSmallerOnes)
 TEST(ReportWarning, ItsLineIsTheOneItNamesOrThatOfItsKey)
 {
   const std::string scene = "title: x\nwatch:\n  # speed: 1\n  speed: 2\nbodies:\n  - {name: a}\n";
-  EXPECT_EQ(line_of_warning("run/slope.yaml:12:5: bodies share cells", "/home/slope.yaml", scene), 12);
+  EXPECT_EQ(line_of_warning("run/slope.yaml:12:5: bodies share cells", "elsewhere/slope.yaml", scene), 12);
   EXPECT_EQ(line_of_warning("moved at 3 m/s, beyond watch.speed = 2 m/s", "slope.yaml", scene), 4);
   EXPECT_EQ(line_of_warning("beyond watch.energy_gain = 2", "slope.yaml", scene), std::nullopt);
   EXPECT_EQ(line_of_warning("particles were set back 3 times", "", scene), std::nullopt);
