@@ -25,9 +25,10 @@ build: setup  ## compile build/talus and build/talus-render, at full speed
 portable: setup  ## compile build/portable/talus, which runs on any x86-64 processor and uses what it has (two builds)
 	@tools/build_portable.sh
 
-run: build  ## build, run SCENE into RUN, draw its pictures
+run: build  ## build, run SCENE into RUN, draw its pictures, make its page
 	build/talus run $(SCENE) --out $(RUN)
 	build/talus render $(RUN)
+	build/talus report $(RUN)
 	@echo; echo "Results in $(RUN):"; find $(RUN) \( -name '*.png' -o -name 'summary.json' -o -name 'report.html' \) | sort | sed 's/^/  /'
 
 test: setup  ## compile with all warnings and asserts, run every test but the nightly ones

@@ -38,6 +38,8 @@ class CommandLine {
     add_mesh();
     add_drive();
     add_render();
+    add_report();
+    add_watch();
     add_diff();
     add_sweep();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
@@ -140,6 +142,33 @@ class CommandLine {
     render->callback([this] { render_results(render_); });
   }
 
+  void add_report()
+  {
+    CLI::App* report = app_.add_subcommand("report", "make one page for the browser of a run: particles, history, numbers");
+    report->add_option("folder", report_.folder, "results of a run, ended or not")->required();
+    report->add_option("--out", report_.out, "a .html; default DIR/report.html");
+    report->add_option("--fields", report_.fields, "particle fields, such as plastic_strain,stress:xy; default that of the pictures, then all")
+        ->delimiter(',');
+    report->add_option("--frames", report_.frames, "so many, evenly spread; default as many as there is room for")
+        ->check(CLI::Range(1, most_steps));
+    report->add_option("--size", report_.size, "of the page at most [MB]; default 28")->check(CLI::PositiveNumber);
+    report->add_option("--page", report_.page, "page to fill instead of the one that was built with the program");
+    report->callback([this] { write_report(report_); });
+  }
+
+  void add_watch()
+  {
+    constexpr int most_port = 65535;
+    CLI::App* watch = app_.add_subcommand("watch", "follow a run in the terminal and in the browser until it ends");
+    watch->add_option("folder", watch_.folder, "where a run leaves its results")->required();
+    watch->add_option("--interval", watch_.interval, "seconds between looks; default 2")->check(CLI::Range(0.1, 3600.0));
+    watch->add_option("--port", watch_.port, "of the page, on this machine only; default any that is free")->check(CLI::Range(0, most_port));
+    watch->add_flag("!--no-serve", watch_.serve, "no page, only the terminal");
+    watch->add_flag("--once", watch_.once, "look once, serve nothing, end");
+    watch->add_option("--page", watch_.page, "page to fill instead of the one that was built with the program");
+    watch->callback([this] { status_ = watch_run(watch_); });
+  }
+
   void add_diff()
   {
     CLI::App* diff = app_.add_subcommand("diff", "compare the results of two runs, field by field");
@@ -231,6 +260,8 @@ class CommandLine {
   DriveOptions drive_;
   MeshOptions mesh_;
   RenderOptions render_;
+  ReportOptions report_;
+  WatchOptions watch_;
   DiffOptions diff_;
   SweepOptions sweep_;
   SuiteOptions verify_, tradeoff_;

@@ -59,6 +59,29 @@ struct RenderOptions {
 /// Draws the results in a folder; what is not asked for is as the scene says.
 void render_results(const RenderOptions& options);
 
+struct ReportOptions {
+  std::filesystem::path folder;
+  std::optional<std::filesystem::path> out;   ///< default DIR/report.html
+  std::optional<std::filesystem::path> page;  ///< template; default the one beside the program
+  std::vector<std::string> fields;            ///< empty: that of the pictures, then all that were written
+  std::optional<int> frames;                  ///< so many
+  std::optional<Real> size;                   ///< of the page at most [MB]
+};
+/// Makes one page for the browser of what is in the folder of a run, ended or not, and says what it leaves out.  Error: there is no run, or
+/// what was asked for; EnvironmentError.
+void write_report(const ReportOptions& options);
+
+struct WatchOptions {
+  std::filesystem::path folder;
+  Real interval = 2;  ///< s
+  int port = 0;       ///< 0: any that is free
+  bool serve = true, once = false;
+  std::optional<std::filesystem::path> page;  ///< template, as above
+};
+/// Follows a run in the terminal until it ends, and serves its page to browsers on this machine.  Returns what the run returns: 0 done (or,
+/// with `once`, at work), 1 failed, 4 stopped.  Errors as above.
+int watch_run(const WatchOptions& options);
+
 struct DiffOptions {
   std::filesystem::path a, b;       ///< folders of two runs
   Real relative = 0, absolute = 0;  ///< values differ where |a - b| > absolute + relative * largest value of their field

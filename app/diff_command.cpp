@@ -10,6 +10,7 @@
 #include "app/commands.hpp"
 #include "app/differences.hpp"
 #include "core/error.hpp"
+#include "core/viewed.hpp"
 #include "core/words.hpp"
 #include "io/csv.hpp"
 #include "io/origin_json.hpp"
@@ -116,19 +117,13 @@ void choose_lines(FieldTable& table, const RunFolders& folders, const DiffOption
   }
 }
 
+/// Behind a comma; nothing for a scalar.
 std::string component_name(int component, int components)
 {
-  static constexpr std::array<const char*, 3> vector{"x", "y", "z"};
-  static constexpr std::array<const char*, 6> symmetric{"xx", "yy", "zz", "xy", "yz", "xz"};
-  static constexpr std::array<const char*, 9> tensor{"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
-  const auto c = static_cast<std::size_t>(component);
-  switch (components) {
-    case 1: return "";
-    case 3: return fmt::format(", {}", vector[c]);
-    case 6: return fmt::format(", {}", symmetric[c]);
-    case 9: return fmt::format(", {}", tensor[c]);
-    default: return fmt::format(", component {}", component);
-  }
+  if (components == 1)
+    return "";
+  const auto names = component_names(components);
+  return names.empty() ? fmt::format(", component {}", component) : ", " + names[static_cast<std::size_t>(component)];
 }
 
 /// Adds what was found in one pair of files; `where` is asked only for a new largest difference.

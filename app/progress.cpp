@@ -4,50 +4,66 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "app/duration.hpp"
 
 namespace talus {
 
 namespace {
 
 constexpr std::chrono::milliseconds between_bars{200};
-constexpr std::chrono::seconds between_lines{5};
+constexpr std::chrono::seconds between_lines{5}, between_files{1};
 constexpr int bar_width = 30;
-
-std::string duration(Real seconds)
-{
-  const auto s = static_cast<std::int64_t>(std::lround(seconds));
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
-}
 
 }  // namespace
 
-Progress::Progress(Real total, bool quiet) : total_(total), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+Progress::Progress(Real total, bool quiet, std::filesystem::path file)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), file_(std::move(file))
+{
+  now_.total = total;
+}
 
 Progress::~Progress()
 {
   if (drawn_ && terminal_)
     fmt::print(stderr, "\n");
+  std::error_code gone;
+  if (written_at_)
+    std::filesystem::remove(file_, gone);
 }
 
-void Progress::step(Real done, Real time, std::int64_t steps, Real particle_steps)
+void Progress::step(Real done, const Clock& clock, std::string_view stage, Real particle_steps)
 {
   const auto now = Watch::now();
-  const Real share = std::clamp(done / total_, Real{0}, Real{1});
-  const bool last = share >= 1 && terminal_ && drawn_;  // so that the bar is full in the end
-  if (quiet_ || (!last && now - last_ < (terminal_ ? Watch::duration(between_bars) : Watch::duration(between_lines))))
+  const bool last = done >= now_.total && terminal_ && drawn_;  // so that the bar is full in the end
+  const bool draws = !quiet_ && (last || now - drawn_at_ >= (terminal_ ? Watch::duration(between_bars) : Watch::duration(between_lines)));
+  const bool writes = !file_.empty() && (!written_at_ || now - *written_at_ >= between_files);
+  if (!draws && !writes)
     return;
-  last_ = now;
+  now_.done = done, now_.time = clock.time, now_.dt = clock.dt, now_.step = clock.step;
+  now_.stage = stage;
+  now_.elapsed = std::chrono::duration<Real>(now - start_).count();
+  now_.particle_steps_per_second = now_.elapsed > 0 ? (particle_steps - particle_steps_before_) / now_.elapsed : 0;
+  if (writes) {
+    write_progress(file_, now_);
+    written_at_ = now;
+  }
+  if (draws) {
+    drawn_at_ = now;
+    draw(last);
+  }
+}
+
+void Progress::draw(bool last)
+{
   drawn_ = true;
-  const Real elapsed = std::chrono::duration<Real>(now - start_).count();
-  const Real share_now = share - done_before_ / total_;  // what was done since this began
-  const std::string left = share_now > 0 ? duration(elapsed * (1 - share) / share_now) : "?";
-  const std::string numbers = fmt::format("{:3.0f} %  t = {:.5g} s  step {}  {:.3g} M particle-steps/s  {} left", 100 * share, time, steps,
-                                          (particle_steps - particle_steps_before_) / elapsed / 1e6, left);
+  const auto left = now_.left();
+  const Real share = last ? 1 : now_.share();
+  const std::string numbers = fmt::format("{:3.0f} %  t = {:.5g} s  step {}  {:.3g} M particle-steps/s  {} left", 100 * share, now_.time,
+                                          now_.step, now_.particle_steps_per_second / 1e6, left ? in_minutes(*left) : "?");
   if (!terminal_)
     return fmt::print(stderr, "{}\n", numbers);
-  const auto full = static_cast<std::size_t>(share * bar_width);
-  fmt::print(stderr, "\r[{}{}] {}\033[K", std::string(full, '#'), std::string(bar_width - full, ' '), numbers);
+  fmt::print(stderr, "\r[{}] {}\033[K", bar(share, bar_width), numbers);
 }
 
 }  // namespace talus

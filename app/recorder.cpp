@@ -95,7 +95,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       made_by_(std::move(made_by)),
       outputs_(outputs),
       stage_list_(stages),
-      progress_(total(stages), quiet || !world().is_root()),
+      progress_(total(stages), quiet || !world().is_root(), world().is_root() ? folder_ / progress_file : fs::path()),
       particle_times_(every(outputs.particles)),
       mesh_times_(every(outputs.mesh)),
       history_times_(every(outputs.history)),
@@ -213,7 +213,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   if (moment == Moment::stage_begins)
     stage_start_ = frame.clock.time;
   if (moment == Moment::step_done)
-    progress_.step(done_before_ + frame.clock.time - stage_start_, frame.clock.time, frame.clock.step, frame.timings.particle_steps);
+    progress_.step(done_before_ + frame.clock.time - stage_start_, frame.clock, frame.stage_name, frame.timings.particle_steps);
 
   StopWatch watch;
   if (first || moment != Moment::stage_begins)  // the beginning of a later stage is the end of the one before

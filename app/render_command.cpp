@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "app/upright.hpp"
 #include "core/error.hpp"
 #include "io/launch_render.hpp"
 #include "io/reader.hpp"
@@ -26,17 +27,8 @@ std::vector<Real> up_of(const Scene& scene)
 {
   if (!scene.outputs.picture.up.empty() || scene.dimension == 2)
     return scene.outputs.picture.up;
-  for (const LoadSpec& load : scene.loads)
-    if (const auto* gravity = std::get_if<GravitySpec>(&load)) {
-      std::vector<Real> up;
-      Real size = 0;
-      for (const Real component : gravity->acceleration) {
-        up.push_back(-component);
-        size += std::abs(component);
-      }
-      if (size > 0)
-        return up;
-    }
+  if (const auto up = against_gravity(scene))
+    return {up->begin(), up->end()};
   return {};
 }
 

@@ -9,7 +9,9 @@
 #include <array>
 #include <cctype>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
+#include <thread>
 
 #include "core/error.hpp"
 
@@ -25,9 +27,24 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
   return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-FolderLock::FolderLock(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+namespace {
+
+/// Whether somebody else has it.
+bool is_taken(int handle, int kind) { return ::flock(handle, kind | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
+
+/// Of a folder.
+int opened(const fs::path& folder) { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
+
+}  // namespace
+
+FolderLock::FolderLock(const fs::path& folder) : handle_(opened(folder))
 {
-  if (handle_ >= 0 && ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+  bool taken = handle_ >= 0 && is_taken(handle_, LOCK_EX);
+  for (int again = 0; taken && again < 10; ++again) {  // who only looks whether a run is at work has it for a moment
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    taken = is_taken(handle_, LOCK_EX);
+  }
+  if (taken) {
     ::close(handle_);
     throw EnvironmentError(
         fmt::format("another run is writing its results to {}: wait for its end, or choose another folder with --out", folder.string()));
@@ -40,13 +57,22 @@ FolderLock::~FolderLock()
     ::close(handle_);
 }
 
+bool run_is_at_work(const fs::path& folder)
+{
+  const int handle = opened(folder);
+  const bool taken = handle >= 0 && is_taken(handle, LOCK_SH);
+  if (handle >= 0)
+    ::close(handle);
+  return taken;
+}
+
 namespace {
 
 /// Files that a run writes, and the pictures drawn of them.
 bool is_result(const fs::path& file)
 {
-  static constexpr std::array<std::string_view, 8> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd",
-                                                         "mesh.msh",     "mesh.vtu",    "scene.yaml",    initial_file};
+  static constexpr std::array<std::string_view, 10> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd",    "mesh.msh",
+                                                          "mesh.vtu",     "scene.yaml",  initial_file,    progress_file, report_file};
   const std::string name = file.filename().string();
   for (const std::string_view known : names)
     if (name == known)

@@ -12,6 +12,10 @@ inline constexpr auto checkpoint_folder = "checkpoints";
 /// There too: the state of another run that this one began with, to go on without that run.
 inline constexpr auto initial_file = "initial.h5";
 
+/// How far a run is, while it is at work; and its page, which talus report writes.
+inline constexpr auto progress_file = "progress.json";
+inline constexpr auto report_file = "report.html";
+
 /// prefix, digits, suffix.
 bool is_numbered(std::string_view name, std::string_view prefix, std::string_view suffix) noexcept;
 
@@ -33,6 +37,9 @@ class FolderLock {
  private:
   int handle_ = -1;  // of the folder itself: no file is left behind
 };
+
+/// Whether a run has the folder now.  False where the file system knows no locks.
+bool run_is_at_work(const std::filesystem::path& folder);
 
 /// Makes `folder`, or clears it if it holds the results of an earlier run (it has a summary.json).
 /// EnvironmentError: it cannot be written, another run is at work in it, or it holds something else, which is left alone.

@@ -179,7 +179,7 @@ class Run {
       throw EnvironmentError(failed("not enough memory"));
     }
     if (!options_.quiet && world().is_root())
-      fmt::print("{}results in {}\n", table(recorder), folder_.string());
+      fmt::print("{}results in {}; as one page for the browser: talus report {}\n", table(recorder), folder_.string(), shell_word(folder_));
   }
 
  private:

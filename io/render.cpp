@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "core/error.hpp"
+#include "core/spacing.hpp"
 #include "io/render_canvas.hpp"
 #include "io/render_data.hpp"
 
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int default_width = 1280, lowest = 420, highest = 960;  // pixels
-constexpr Real radius_2d = 0.85, radius_3d = 0.8;  // over the spacing: no gaps between neighbours, and a closed surface in 3-D
 
 std::vector<std::size_t> chosen(const Settings& settings, std::size_t n)
 {
@@ -82,6 +82,13 @@ void make_folder(const fs::path& file)
     throw EnvironmentError(fmt::format("cannot make the folder {}: {}", file.parent_path().string(), failed.message()));
 }
 
+/// Three a point.
+std::span<const Real> numbers_of(const std::vector<Vec3>& points)
+{
+  static_assert(sizeof(Vec3) == 3 * sizeof(Real));
+  return {points.empty() ? nullptr : points.front().data(), 3 * points.size()};
+}
+
 Picture compose(const Settings& settings, const Cloud& first, const Cloud& last, const std::vector<Vec3>& shape)
 {
   Picture picture;
@@ -89,7 +96,7 @@ Picture compose(const Settings& settings, const Cloud& first, const Cloud& last,
   picture.title = settings.title;
   picture.range = settings.range.value_or(range_of(last));
   const bool flat = picture.dimension == 2;
-  picture.radius = settings.radius.value_or((flat ? radius_2d : radius_3d) * spacing_of(first, picture.dimension));
+  picture.radius = settings.radius.value_or(drawn_radius(numbers_of(first.x), picture.dimension));
   const Vec3 view = flat ? Vec3::UnitZ() : settings.view, up = flat ? Vec3::UnitY() : settings.up;
   const Real wanted = height_for(default_width, aspect_of(shape, view, up));
   picture.size = settings.size.value_or(std::array{default_width, 2 * static_cast<int>(std::clamp<Real>(wanted, lowest, highest) / 2)});

@@ -1,10 +1,4 @@
-// Geometry of a cloud of points: how large it is, how dense, and which way its surface looks.
-#include <vtkIdList.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkStaticPointLocator.h>
-
+// Geometry of a cloud of points: how large it is, and which way its surface looks.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -15,7 +9,6 @@ namespace talus::render {
 
 namespace {
 
-constexpr std::size_t sample = 500;   // particles asked for their neighbours
 constexpr Real surface_share = 0.12;  // offset of the centre of mass over the reach from which a particle counts as surface
 
 /// Particles in cubes as wide as the reach, so neighbours are in the 27 cubes around.
@@ -66,36 +59,6 @@ std::optional<Bounds> bounds_of(const std::vector<Vec3>& x)
     bounds.high = bounds.high.cwiseMax(point);
   }
   return bounds;
-}
-
-Real spacing_of(const Cloud& cloud, int dimension)
-{
-  const int neighbours = std::min<int>(2 * dimension, static_cast<int>(cloud.x.size()) - 1);
-  if (neighbours < 1)
-    return 1;
-  vtkNew<vtkPoints> points;
-  points->SetDataTypeToDouble();
-  for (const Vec3& x : cloud.x)
-    points->InsertNextPoint(x.data());
-  vtkNew<vtkPolyData> data;
-  data->SetPoints(points);
-  vtkNew<vtkStaticPointLocator> locator;
-  locator->SetDataSet(data);
-  locator->BuildLocator();
-
-  std::vector<Real> distances;
-  vtkNew<vtkIdList> nearest;
-  const std::size_t stride = cloud.x.size() / sample + 1;
-  for (std::size_t p = 0; p < cloud.x.size(); p += stride) {
-    locator->FindClosestNPoints(neighbours + 1, cloud.x[p].data(), nearest);
-    Real sum = 0;
-    for (vtkIdType q = 0; q < nearest->GetNumberOfIds(); ++q)
-      sum += (cloud.x[static_cast<std::size_t>(nearest->GetId(q))] - cloud.x[p]).norm();
-    distances.push_back(sum / neighbours);
-  }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle > 0 ? *middle : 1;
 }
 
 std::vector<Real> facing(const Cloud& cloud, const Vec3& light, Real reach)

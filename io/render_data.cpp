@@ -2,13 +2,10 @@
 #include "io/render_data.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <vtkCallbackCommand.h>
-#include <vtkCellArray.h>
+#include <vtkCellType.h>
 #include <vtkDataArray.h>
-#include <vtkDataSetSurfaceFilter.h>
 #include <vtkExecutive.h>
-#include <vtkFeatureEdges.h>
 #include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
@@ -26,15 +23,15 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/viewed.hpp"
 #include "core/words.hpp"
+#include "mesh/outline.hpp"
 
 namespace talus::render {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double sharp_edge = 30;  // degrees between the normals of two boundary facets
 
 void keep_message(vtkObject*, unsigned long, void* kept, void* message)
 {
@@ -76,17 +73,6 @@ std::vector<ResultFile> listed(const fs::path& pvd)
   return files;
 }
 
-std::vector<std::string> component_names(int components)
-{
-  if (components == 3)
-    return {"x", "y", "z"};
-  if (components == 6)
-    return {"xx", "yy", "zz", "xy", "yz", "xz"};
-  if (components == 9)
-    return {"xx", "xy", "xz", "yx", "yy", "yz", "zx", "zy", "zz"};
-  return {};
-}
-
 std::vector<std::string> field_names(vtkPointData* data)
 {
   std::vector<std::string> names;
@@ -104,50 +90,12 @@ std::string default_field(const std::vector<std::string>& names)
   return names.empty() ? "id" : names.front();
 }
 
-Real measure(const double* entry, int components)
+vtkDataArray* find_field(vtkPointData* data, const std::string& name, const fs::path& file)
 {
-  if (components == 6) {
-    const auto square = [](double a) { return a * a; };
-    return std::sqrt(0.5 * (square(entry[0] - entry[1]) + square(entry[1] - entry[2]) + square(entry[2] - entry[0])) +
-                     3 * (square(entry[3]) + square(entry[4]) + square(entry[5])));
-  }
-  if (components == 1)
-    return entry[0];
-  Real sum = 0;
-  for (int c = 0; c < components; ++c)
-    sum += entry[c] * entry[c];
-  return std::sqrt(sum);
-}
-
-struct Wanted {
-  vtkDataArray* array;
-  std::optional<int> component;
-};
-
-Wanted find_field(vtkPointData* data, const std::string& field, const fs::path& file)
-{
-  const auto colon = field.find(':');
-  const std::string name = field.substr(0, colon);
   vtkDataArray* array = data->GetArray(name.c_str());
   if (array == nullptr)
     throw Error(fmt::format("{} has no field \"{}\"{}", file.string(), name, suggestion(name, field_names(data))));
-  if (colon == std::string::npos)
-    return {array, std::nullopt};
-  const auto components = component_names(array->GetNumberOfComponents());
-  const auto found = std::find(components.begin(), components.end(), field.substr(colon + 1));
-  if (found == components.end())
-    throw Error(
-        fmt::format("field \"{}\" has no component \"{}\"; it has: {}", name, field.substr(colon + 1), fmt::join(components, ", ")));
-  return {array, static_cast<int>(found - components.begin())};
-}
-
-std::string label_of(const std::string& field, int components, bool one_component)
-{
-  std::string label = field;
-  std::replace(label.begin(), label.end(), '_', ' ');
-  if (one_component)
-    label.replace(label.find(':'), 1, " ");
-  return components == 6 && !one_component ? label + " (von Mises)" : label;
+  return array;
 }
 
 std::vector<Vec3> points_of(vtkPointSet* data)
@@ -179,14 +127,15 @@ Cloud read_cloud(const fs::path& file, const std::optional<std::string>& field)
   Cloud cloud;
   cloud.x = points_of(data);
   cloud.value.resize(cloud.x.size());
-  const std::string name = field ? *field : default_field(field_names(data->GetPointData()));
-  const auto [array, component] = find_field(data->GetPointData(), name, file);
+  const auto viewed = ViewedField::of(field ? *field : default_field(field_names(data->GetPointData())));
+  vtkDataArray* array = find_field(data->GetPointData(), viewed.name, file);
   const int components = array->GetNumberOfComponents();
+  const auto component = viewed.component_of(components);
   for (std::size_t p = 0; p < cloud.value.size(); ++p) {
     const auto row = static_cast<vtkIdType>(p);
-    cloud.value[p] = component ? array->GetComponent(row, *component) : measure(array->GetTuple(row), components);
+    cloud.value[p] = component ? array->GetComponent(row, *component) : viewed_value({array->GetTuple(row), static_cast<std::size_t>(components)});
   }
-  cloud.label = label_of(name, components, component.has_value());
+  cloud.label = viewed.label(components);
   if (const char* unit = array->GetInformation()->Get(vtkDataArray::UNITS_LABEL()))
     cloud.unit = unit;
   return cloud;
@@ -205,22 +154,20 @@ Outline read_outline(const fs::path& folder)
   }
   vtkNew<vtkXMLUnstructuredGridReader> reader;
   update(*reader, file);
-  vtkNew<vtkDataSetSurfaceFilter> surface;
-  surface->SetInputData(reader->GetOutput());
-  vtkNew<vtkFeatureEdges> edges;
-  edges->SetInputConnection(surface->GetOutputPort());
-  edges->BoundaryEdgesOn();
-  edges->FeatureEdgesOn();
-  edges->SetFeatureAngle(sharp_edge);
-  edges->NonManifoldEdgesOff();
-  edges->ManifoldEdgesOff();
-  edges->Update();
-
-  Outline outline{points_of(edges->GetOutput()), {}};
-  vtkNew<vtkIdList> ends;
-  vtkCellArray* lines = edges->GetOutput()->GetLines();
-  for (lines->InitTraversal(); lines->GetNextCell(ends) != 0;)
-    outline.edges.push_back({static_cast<Index>(ends->GetId(0)), static_cast<Index>(ends->GetId(1))});
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  Outline outline{points_of(grid), {}};
+  std::vector<Real> nodes;
+  for (const Vec3& x : outline.nodes)
+    nodes.insert(nodes.end(), x.begin(), x.end());
+  std::vector<Index> corners;
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+    grid->GetCellPoints(c, cell);
+    for (const vtkIdType node : *cell)
+      corners.push_back(static_cast<Index>(node));
+  }
+  const int dimension = grid->GetNumberOfCells() > 0 && grid->GetCellType(0) == VTK_TRIANGLE ? 2 : 3;
+  outline.edges = edges_of(dimension, nodes, corners).outline;
   return outline;
 }
 

@@ -45,10 +45,6 @@ Outline read_outline(const std::filesystem::path& folder);
 /// Two opposite corners, or nothing for an empty cloud.
 std::optional<Bounds> bounds_of(const std::vector<Vec3>& x);
 
-/// Typical distance of neighbouring particles [m]: the median over a sample of the mean distance to the nearest 4 (2-D) or 6.
-/// Positive; one for fewer than two particles.
-Real spacing_of(const Cloud& cloud, int dimension);
-
 /// How much each particle faces `light` [-1, 1] if it lies at the surface of the cloud; zero deep inside.  The normal points away
 /// from the centre of mass of the neighbours within `reach` [m].
 std::vector<Real> facing(const Cloud& cloud, const Vec3& light, Real reach);

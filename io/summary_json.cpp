@@ -21,6 +21,12 @@ std::string text_behind(const SummaryJson& json, const char* key)
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+std::vector<std::string> texts_behind(const SummaryJson& json, const char* key)
+{
+  const auto found = json.find(key);
+  return found != json.end() ? found->get<std::vector<std::string>>() : std::vector<std::string>();
+}
+
 /// "kinetic [J]" -> "kinetic", "J"
 std::pair<std::string, std::string> name_and_unit(const std::string& key)
 {
@@ -59,6 +65,14 @@ SummaryBack read_summary(const std::filesystem::path& file)
     back.commit = text_behind(json.at("program"), "commit");
     back.scene_digest = text_behind(json.at("scene"), "digest");
     back.mesh_digest = text_behind(json.at("mesh"), "digest");
+    back.title = text_behind(json, "title");
+    back.scene_file = text_behind(json.at("scene"), "file");
+    back.overrides = texts_behind(json.at("scene"), "set");
+    back.warnings = texts_behind(json, "warnings");
+    for (const SummaryJson& body : json.value("bodies", SummaryJson::array()))
+      back.bodies.push_back({text_behind(body, "name"), text_behind(body, "material"), text_behind(body, "law"),
+                             body.value("particles", std::int64_t{0}), 0});
+    back.text = text;
     for (const SummaryJson& stage : json.at("stages"))
       back.quick = back.quick || text_behind(stage, "result") == "quick";
     add_numbers(json, "", "", back.numbers);

@@ -10,8 +10,12 @@ namespace talus {
 
 struct SummaryBack {
   std::string status, message, commit, scene_digest, mesh_digest;  ///< empty where the file does not say
-  bool quick = false;                                              ///< ended as a quick run
-  std::vector<NamedValue> numbers;  ///< by the path of their keys without units, such as "balances.energy.terms.plastic"
+  std::string title, scene_file;
+  std::vector<std::string> overrides, warnings;  ///< what --set changed of the scene; what the run warned of
+  std::vector<BodySummary> bodies;               ///< without their masses
+  std::string text;                              ///< of the file
+  bool quick = false;                            ///< ended as a quick run
+  std::vector<NamedValue> numbers;               ///< by the path of their keys without units, such as "balances.energy.terms.plastic"
 };
 
 /// EnvironmentError naming the file: it cannot be read, or is no summary of a run.

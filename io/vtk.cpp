@@ -7,6 +7,7 @@
 #include <vtkCellType.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
 #include <vtkLZ4DataCompressor.h>
@@ -489,6 +490,27 @@ StoredMeshFields read_mesh_fields(const fs::path& file)
   read_file(*reader, file);
   vtkUnstructuredGrid* grid = reader->GetOutput();
   return {stored_fields(*grid->GetPointData(), grid->GetPoints()), stored_fields(*grid->GetCellData(), nullptr)};
+}
+
+StoredMesh read_mesh(const fs::path& file)
+{
+  vtkNew<vtkXMLUnstructuredGridReader> reader;
+  read_file(*reader, file);
+  vtkUnstructuredGrid* grid = reader->GetOutput();
+  StoredMesh mesh;
+  mesh.nodes.resize(3 * static_cast<std::size_t>(grid->GetNumberOfPoints()));
+  for (vtkIdType n = 0; n < grid->GetNumberOfPoints(); ++n)
+    grid->GetPoint(n, mesh.nodes.data() + 3 * n);
+  mesh.dimension = grid->GetNumberOfCells() > 0 && grid->GetCellType(0) == VTK_TETRA ? 3 : 2;
+  vtkNew<vtkIdList> cell;
+  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
+    grid->GetCellPoints(c, cell);
+    if (cell->GetNumberOfIds() != mesh.dimension + 1)
+      throw EnvironmentError(fmt::format("{}: its cells are not all triangles, or all tetrahedra", file.string()));
+    for (const vtkIdType node : *cell)
+      mesh.corners.push_back(static_cast<Index>(node));
+  }
+  return mesh;
 }
 
 void PvdSeries::drop_from(Real time)

@@ -73,6 +73,15 @@ struct StoredMeshFields {
 /// What write_mesh has written, without the corners of the cells.  Errors as above.
 StoredMeshFields read_mesh_fields(const std::filesystem::path& file);
 
+/// The mesh itself in such a file.
+struct StoredMesh {
+  int dimension = 2;
+  std::vector<Real> nodes;     ///< 3 numbers a node [m]
+  std::vector<Index> corners;  ///< dimension + 1 a cell
+};
+/// Errors as above.
+StoredMesh read_mesh(const std::filesystem::path& file);
+
 /// The list of the files of a run with their times.  Rewritten as a whole by every append, so it is valid after a kill.
 class PvdSeries {
  public:

@@ -155,6 +155,15 @@ void write_whole(const fs::path& file, std::string_view text)
   write_whole(file, [&](const fs::path& temporary) { write_text(temporary, text, file); });
 }
 
+void write_for_now(const fs::path& file, std::string_view text)
+try {
+  Temporary temporary(file);
+  write_text(temporary.path(), text, file);
+  if (::rename(temporary.path().c_str(), file.c_str()) == 0)
+    temporary.keep();
+} catch (const EnvironmentError&) {  // such as a full disk: who has more to write will say so
+}
+
 void write_together(Exchange& ranks, const fs::path& file, const std::function<void(const fs::path&)>& begin,
                     const std::function<void(const PutBytes&)>& write)
 {

@@ -21,6 +21,9 @@ void write_whole(const std::filesystem::path& file, const std::function<void(con
 /// The same for a text.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
+/// A text of the moment: whole for whoever reads it, but nobody waits for the disk.  Where that fails nothing has happened.
+void write_for_now(const std::filesystem::path& file, std::string_view text);
+
 /// Writes bytes to their place in a file.  It throws nothing but keeps the first error: other ranks are waiting.
 using PutBytes = std::function<void(std::uint64_t at, std::span<const std::byte> bytes)>;
 

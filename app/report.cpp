@@ -1,0 +1,217 @@
+#include "app/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/report_metrics.hpp"
+#include "app/report_particles.hpp"
+#include "app/results.hpp"
+#include "app/summary.hpp"
+#include "app/upright.hpp"
+#include "core/error.hpp"
+#include "io/reader.hpp"
+#include "io/whole_file.hpp"
+#include "mesh/outline.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Real bytes_of_megabyte = 1e6;
+constexpr std::size_t most_cell_edges = 200'000;  // of a mesh: more would be a grey surface
+
+std::vector<PageBody> bodies_of(const RunFolder& run)
+{
+  std::vector<PageBody> bodies;
+  for (const BodySummary& body : run.summary.bodies)
+    bodies.push_back({body.name, body.material, body.law});
+  if (!bodies.empty())
+    return bodies;
+  for (const BodySpec& body : run.scene.bodies)  // a run that has not ended
+    bodies.push_back({body.name, body.material, ""});
+  return bodies;
+}
+
+std::vector<Real> axis_of(std::span<const Real> places, std::size_t axis)
+{
+  std::vector<Real> values;
+  for (std::size_t i = axis; i < places.size(); i += 3)
+    values.push_back(places[i]);
+  return values;
+}
+
+BlockId add_edges(const std::vector<Edge>& edges, Page& page)
+{
+  std::vector<std::uint32_t> nodes;
+  for (const Edge& edge : edges)
+    for (const Index node : edge)
+      nodes.push_back(static_cast<std::uint32_t>(node));
+  return page.add(packed(nodes));
+}
+
+/// The nodes that these edges use, under new numbers; the rest of a mesh in 3-D nobody sees.
+std::vector<Real> renumber(std::span<const Real> nodes, MeshEdges& edges)
+{
+  std::vector<Index> number(nodes.size() / 3, none);
+  for (const Edge& edge : edges.all)
+    for (const Index n : edge)
+      number[static_cast<std::size_t>(n)] = 0;
+  std::vector<Real> kept;
+  for (std::size_t n = 0; n < number.size(); ++n)
+    if (number[n] != none) {
+      number[n] = static_cast<Index>(kept.size() / 3);
+      kept.insert(kept.end(), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
+    }
+  for (std::vector<Edge>* list : {&edges.all, &edges.outline})
+    for (Edge& edge : *list)
+      for (Index& n : edge)
+        n = number[static_cast<std::size_t>(n)];
+  return kept;
+}
+
+void add_mesh(const fs::path& folder, Page& page)
+{
+  fs::path file = folder / "mesh.vtu";
+  if (!fs::exists(file))
+    return;
+  const StoredMesh mesh = read_mesh(file);
+  MeshEdges edges = edges_of(mesh.dimension, mesh.nodes, mesh.corners);
+  const std::vector<Real> nodes = renumber(mesh.nodes, edges);
+  if (nodes.empty())
+    return;
+  PageMesh shown;
+  shown.nodes = static_cast<std::int64_t>(nodes.size() / 3);
+  for (std::size_t d = 0; d < static_cast<std::size_t>(page.dimension); ++d) {
+    const std::vector<Real> values = axis_of(nodes, d);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    shown.x.low[static_cast<Index>(d)] = *low;
+    shown.x.high[static_cast<Index>(d)] = *high;
+    shown.x.axes.push_back(page.add(packed(quantised(values, *low, *high))));
+  }
+  shown.outline = add_edges(edges.outline, page);
+  if (edges.all.size() <= most_cell_edges)
+    shown.cells = add_edges(edges.all, page);
+  else
+    page.notes.push_back(fmt::format("mesh: its {} edges are not shown, only its outline", edges.all.size()));
+  page.mesh = std::move(shown);
+}
+
+/// A history that cannot be read is left out.
+HistoryTable history_in(const fs::path& folder, Page& page)
+{
+  const fs::path file = folder / "history.csv";
+  if (!fs::exists(file))
+    return {};
+  try {
+    return read_history(file);
+  } catch (const EnvironmentError& e) {
+    page.notes.push_back(fmt::format("history: {}", e.what()));
+    return {};
+  }
+}
+
+void add_history_table(const HistoryTable& history, std::size_t most, Page& page)
+{
+  if (history.rows() == 0)
+    return;
+  page.history = table_of(history.columns, history.values, most, page);
+  if (page.history->thinned > 1)
+    page.notes.push_back(fmt::format("history: every {}th of {} rows is shown", page.history->thinned, history.rows()));
+}
+
+std::optional<std::array<Real, 2>> picture_range(const PictureSpec& picture, const RunSurvey& survey)
+{
+  if (picture.range.size() != 2 || survey.fields.empty() || words_of(survey.fields.front()) != picture.field)
+    return std::nullopt;
+  return std::array{picture.range[0], picture.range[1]};
+}
+
+std::vector<std::string> names_of_bodies(const std::vector<PageBody>& bodies)
+{
+  std::vector<std::string> names;
+  for (const PageBody& body : bodies)
+    names.push_back(body.name);
+  return names;
+}
+
+Page begin_page(const RunFolder& run, const PageWishes& wishes)
+{
+  Page page;
+  page.title = run.scene.title;
+  page.name = fs::weakly_canonical(run.path).filename().string();
+  page.dimension = static_cast<int>(run.scene.dimension);
+  page.up = upright_of(run.scene);
+  page.live = wishes.live;
+  if (run.state != RunState::at_work)
+    page.summary = run.summary.text;
+  page.scene_file = fs::path(run.summary.scene_file).filename().string();
+  page.scene_text = run.scene.text;
+  for (const std::string& warning : run.summary.warnings)
+    page.warnings.push_back({warning, line_of_warning(warning, run.summary.scene_file, run.scene.text)});
+  return page;
+}
+
+}  // namespace
+
+fs::path default_template() { return fs::read_symlink("/proc/self/exe").parent_path() / report_file; }
+
+RunState state_of_run(const fs::path& folder, const SummaryBack& summary)
+{
+  if (summary.status == "done")
+    return RunState::done;
+  if (summary.status == "stopped")
+    return RunState::stopped;
+  if (summary.message != message_before_the_end)
+    return RunState::failed;
+  return run_is_at_work(folder) ? RunState::at_work : RunState::killed;
+}
+
+RunFolder read_run_folder(const fs::path& folder)
+{
+  if (!fs::is_directory(folder))
+    throw Error(fmt::format("{}: there is no such folder", folder.string()));
+  if (!fs::exists(folder / "summary.json") || !fs::exists(folder / "scene.yaml"))
+    throw Error(fmt::format("{} holds no results of a run (no summary.json and scene.yaml)", folder.string()));
+  RunFolder run{folder, read_summary(folder / "summary.json"), {}, {}};
+  run.scene = read_scene(folder / "scene.yaml", run.summary.overrides);
+  run.state = state_of_run(folder, run.summary);
+  return run;
+}
+
+std::string page_of(const RunFolder& run, const PageWishes& wishes, const fs::path& template_file, RunSurvey& survey,
+                    std::vector<std::string>& notes)
+{
+  const std::string text = read_whole(template_file);
+  Page page = begin_page(run, wishes);
+  const std::vector<PageBody> bodies = bodies_of(run);
+  look_over(run.path, {page.up, bodies.size(), wishes.fields, run.scene.outputs.picture.field}, survey);
+  page.notes.insert(page.notes.end(), survey.left_out.begin(), survey.left_out.end());
+  if (survey.frames.empty() && !wishes.fields.empty())
+    throw Error(fmt::format("--fields: {} has no particle files", run.path.string()));
+
+  const HistoryTable history = history_in(run.path, page);
+  const auto& outputs = run.scene.outputs;
+  const MetricTask task{page.dimension, page.up, against_gravity(run.scene).has_value(), names_of_bodies(bodies),
+                        outputs.history ? outputs.history->fronts : std::vector<FrontSpec>()};
+  page.metrics = metrics_of(survey, history, task);
+  if (!survey.frames.empty()) {
+    const RunOutTable run_out = run_out_of(survey, task);
+    page.run_out = table_of(run_out.columns, run_out.values, wishes.history_rows, page);
+  }
+  add_history_table(history, wishes.history_rows, page);
+  add_mesh(run.path, page);
+
+  const Real room = bytes_of_megabyte * wishes.megabytes - static_cast<Real>(text.size() + to_json(page).size() + page.block_bytes());
+  if (room < 0)
+    throw Error(fmt::format("--size: too small: the page without particles takes {:.3g} MB", wishes.megabytes - room / bytes_of_megabyte));
+  add_particles(survey, {page.dimension, bodies, picture_range(outputs.picture, survey), wishes.frames, !wishes.fields.empty(), room},
+                page);
+  notes = page.notes;
+  return filled(text, template_file, page);
+}
+
+}  // namespace talus

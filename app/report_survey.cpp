@@ -1,0 +1,199 @@
+#include "app/report_survey.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/differences.hpp"
+#include "core/error.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Real share_of_furthest = 0.05;  // displaced further than this of the furthest: it has moved
+constexpr Real share_of_extent = 1e-4;    // below that nothing has moved [-]
+
+Vec3 place(std::span<const Real> places, std::size_t p) { return Eigen::Map<const Vec3>(places.data() + 3 * p); }
+
+/// What is looked at in a frame.
+struct Looked {
+  std::span<const Real> places;
+  const StoredField* velocity;
+  std::vector<Real> body;
+};
+
+std::optional<ValueRange> finite_range(const std::vector<Real>& values)
+{
+  std::optional<ValueRange> range;
+  for (const Real value : values)
+    if (std::isfinite(value)) {
+      if (!range)
+        range = {value, value};
+      range->low = std::min(range->low, value);
+      range->high = std::max(range->high, value);
+    }
+  return range;
+}
+
+Vec3 on_the_level(const Vec3& d, const Vec3& up) { return d - d.dot(up) * up; }
+
+/// Of the pairs of places of one body.
+std::optional<MovedMass> moved_mass(const std::vector<Vec3>& then, const std::vector<Vec3>& now, Real furthest, const Vec3& up)
+{
+  MovedMass moved;
+  std::vector<std::size_t> rows;
+  for (std::size_t p = 0; p < now.size(); ++p)
+    if ((now[p] - then[p]).norm() > share_of_furthest * furthest)
+      rows.push_back(p);
+  if (rows.empty())
+    return std::nullopt;
+  moved.count = static_cast<std::int64_t>(rows.size());
+  moved.low = moved.high = now[rows.front()];
+  moved.crest = then[rows.front()];
+  for (const std::size_t p : rows) {
+    moved.low = moved.low.cwiseMin(now[p]);
+    moved.high = moved.high.cwiseMax(now[p]);
+    if (then[p].dot(up) > moved.crest.dot(up))
+      moved.crest = then[p];
+  }
+  moved.length = -1;
+  for (const std::size_t p : rows)
+    if (const Real length = on_the_level(now[p] - moved.crest, up).norm(); length > moved.length) {
+      moved.length = length;
+      moved.toe = now[p];
+    }
+  moved.height = (moved.crest - moved.toe).dot(up);
+  return moved;
+}
+
+/// Of the rows that belong to body `b`, or of all.
+MassSurvey survey_of(const Looked& looked, const Pairs& common, std::span<const Real> start, std::optional<std::size_t> b, const Vec3& up)
+{
+  const auto belongs = [&](std::size_t row) { return !b || (row < looked.body.size() && looked.body[row] == static_cast<Real>(*b)); };
+  MassSurvey mass;
+  constexpr Real infinity = std::numeric_limits<Real>::infinity();
+  Vec3 low = Vec3::Constant(infinity), high = Vec3::Constant(-infinity);
+  Real crest = -infinity, speed = 0;
+  for (std::size_t row = 0; row < looked.places.size() / 3; ++row) {
+    if (!belongs(row))
+      continue;
+    ++mass.count;
+    const Vec3 x = place(looked.places, row);
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+    crest = std::max(crest, x.dot(up));
+    if (looked.velocity != nullptr)
+      speed = std::max(speed, place(looked.velocity->values, row).norm());
+  }
+  if (mass.count == 0)
+    return mass;
+  mass.low = low, mass.high = high, mass.crest = crest;
+  if (looked.velocity != nullptr)
+    mass.speed = speed;
+  std::vector<Vec3> then, now;
+  Real furthest = 0;
+  for (const auto& [first, row] : common.both)
+    if (belongs(row)) {
+      then.push_back(place(start, first));
+      now.push_back(place(looked.places, row));
+      furthest = std::max(furthest, (now.back() - then.back()).norm());
+    }
+  if (then.empty())
+    return mass;
+  mass.displacement = furthest;
+  if (furthest > share_of_extent * (high - low).norm())
+    mass.moved = moved_mass(then, now, furthest, up);
+  return mass;
+}
+
+void begin(const StoredParticles& particles, const SurveyTask& task, RunSurvey& survey)
+{
+  survey.fields = fields_to_show(particles, task.fields, task.of_picture);
+  survey.begun = true;
+  for (const ViewedField& field : survey.fields) {
+    const StoredField& there = *stored_field(particles, field.name);
+    survey.labels.push_back(field.label(there.components));
+    survey.units.push_back(there.unit);
+  }
+  survey.ids = particles.ids;
+  survey.places = particles.fields.front().values;
+}
+
+FrameSurvey survey_of(Real time, const fs::path& file, const SurveyTask& task, RunSurvey& survey)
+{
+  FrameSurvey frame{time, file, state_of(file), 0, {}, {}};
+  const StoredParticles particles = read_particles(file);
+  if (!survey.begun)
+    begin(particles, task, survey);
+  frame.count = static_cast<std::int64_t>(particles.ids.size());
+  for (const ViewedField& viewed : survey.fields) {
+    const StoredField* field = stored_field(particles, viewed.name);
+    frame.fields.push_back(field == nullptr ? std::nullopt : finite_range(viewed_values(*field, viewed)));
+  }
+  Looked looked{particles.fields.front().values, stored_field(particles, "velocity"), {}};
+  if (const StoredField* body = stored_field(particles, "body"))
+    looked.body = body->values;
+  const Pairs common = match_ids(survey.ids, particles.ids);
+  frame.masses.push_back(survey_of(looked, common, survey.places, std::nullopt, task.up));
+  for (std::size_t b = 0; task.bodies > 1 && b < task.bodies; ++b)
+    frame.masses.push_back(survey_of(looked, common, survey.places, b, task.up));
+  return frame;
+}
+
+}  // namespace
+
+std::string state_of(const fs::path& file)
+{
+  std::error_code not_there;
+  const auto size = fs::file_size(file, not_there);
+  const auto time = fs::last_write_time(file, not_there);
+  return not_there ? "" : fmt::format("{}-{}", size, time.time_since_epoch().count());
+}
+
+void look_over(const fs::path& folder, const SurveyTask& task, RunSurvey& survey)
+{
+  survey.left_out.clear();
+  std::vector<std::pair<Real, fs::path>> listed;
+  if (fs::exists(folder / "particles.pvd"))
+    listed = read_pvd(folder / "particles.pvd");
+  std::vector<FrameSurvey> known = std::move(survey.frames);
+  survey.frames.clear();
+  if (known.empty() || listed.empty() || known.front().file != listed.front().second ||
+      known.front().state != state_of(known.front().file)) {
+    survey = {};  // another run than before
+    known.clear();
+  }
+  for (const auto& entry : listed) {
+    const Real time = entry.first;
+    const fs::path& file = entry.second;
+    const auto same = [&](const FrameSurvey& frame) { return frame.file == file && frame.state == state_of(file); };
+    if (const auto before = std::find_if(known.begin(), known.end(), same); before != known.end()) {
+      survey.frames.push_back(std::move(*before));
+      continue;
+    }
+    try {
+      survey.frames.push_back(survey_of(time, file, task, survey));
+    } catch (const EnvironmentError& e) {
+      survey.left_out.push_back(fmt::format("the frame at t = {:.6g} s is left out: {}", time, e.what()));
+    }
+  }
+}
+
+ValueRange range_over_frames(const RunSurvey& survey, std::size_t field)
+{
+  std::optional<ValueRange> all;
+  for (const FrameSurvey& frame : survey.frames)
+    if (const auto& range = frame.fields[field]) {
+      if (!all)
+        all = range;
+      all->low = std::min(all->low, range->low);
+      all->high = std::max(all->high, range->high);
+    }
+  return all.value_or(ValueRange{0, 0});
+}
+
+}  // namespace talus
