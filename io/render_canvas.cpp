@@ -32,7 +32,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Colour grey{178, 178, 178}, edge_grey{110, 110, 110};
+constexpr Colour grey{178, 178, 178}, edge_grey{140, 140, 140};
 constexpr Real shadow = 0.45;        // brightness taken from a surface that turns its back on the light
 constexpr Real gloss = 0.14;         // white added to a surface that faces it: without it the dark end of the colours shows no shape
 constexpr Real shading_reach = 3.0;  // radii of particles over which the surface normal is averaged
@@ -159,7 +159,7 @@ void draw(const Picture& picture, const Cloud& cloud, const fs::path& png)
 
   const bool edges = picture.mesh_lines == MeshLines::edges;
   add_lines(edges && picture.dimension == 2 ? over : scene, picture.camera, picture.mesh,
-            edges ? Pen{edge_grey, 0.75, 0.6} : Pen{grey, 1.5, 1});
+            edges ? Pen{edge_grey, 0.75, 0.9} : Pen{grey, 1.5, 1});
   add_particles(scene, picture, cloud);
   add_lines(over, picture.camera, picture.start, {start_colour, 1.5, 1});
   aim(scene, over, picture.camera, panel, picture.cut_off ? panel : Panel{panel.left, 0, panel.right, 1});

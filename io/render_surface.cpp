@@ -65,36 +65,37 @@ Surface joined(vtkPolyData* contour)
 }
 
 template <class Writer>
-void put(Writer& writer, vtkPolyData* surface, const fs::path& file)
+void write_as(Writer& writer, vtkPolyData* surface, const fs::path& file)
 {
-  writer.SetFileName(file.c_str());
   writer.SetInputData(surface);
-  const bool written = writer.Write() != 0;
-  std::error_code missing;
-  // A full disk is not noticed by every writer: each point and each triangle takes twelve bytes or more.
-  const auto least = 12 * static_cast<std::uintmax_t>(surface->GetNumberOfPolys());
-  if (!written || writer.GetErrorCode() != 0 || fs::file_size(file, missing) < least || missing)
-    throw EnvironmentError(fmt::format("cannot write {}", file.string()));
+  write_whole(file, [&](const fs::path& temporary) {
+    const fs::path named = temporary.string() + file.extension().string();  // that of .ply adds the ending to names without it
+    writer.SetFileName(named.c_str());
+    const bool written = writer.Write() != 0;
+    std::error_code failed;
+    // A full disk is not noticed by every writer: each triangle takes twelve bytes or more.
+    const bool whole = fs::file_size(named, failed) > 12 * static_cast<std::uintmax_t>(surface->GetNumberOfPolys());
+    if (!failed)
+      fs::rename(named, temporary, failed);
+    if (!written || !whole || failed || writer.GetErrorCode() != 0)
+      throw EnvironmentError(fmt::format("cannot write {}", file.string()));
+  });
 }
 
 void write(vtkPolyData* surface, const fs::path& file)
 {
-  write_whole(file, [&](const fs::path& temporary) {
-    if (file.extension() == ".ply") {
-      vtkNew<vtkPLYWriter> writer;
-      writer->SetFileTypeToBinary();
-      if (surface->GetPointData()->HasArray(colour_name) != 0)
-        writer->SetArrayName(colour_name);
-      put(*writer, surface, temporary);
-    } else if (file.extension() == ".stl") {
-      vtkNew<vtkSTLWriter> writer;
-      writer->SetFileTypeToBinary();
-      put(*writer, surface, temporary);
-    } else {
-      vtkNew<vtkOBJWriter> writer;
-      put(*writer, surface, temporary);
-    }
-  });
+  if (file.extension() == ".obj")
+    return write_as(*vtkNew<vtkOBJWriter>(), surface, file);
+  if (file.extension() == ".stl") {
+    vtkNew<vtkSTLWriter> writer;
+    writer->SetFileTypeToBinary();
+    return write_as(*writer, surface, file);
+  }
+  vtkNew<vtkPLYWriter> writer;
+  writer->SetFileTypeToBinary();
+  if (surface->GetPointData()->HasArray(colour_name) != 0)
+    writer->SetArrayName(colour_name);
+  write_as(*writer, surface, file);
 }
 
 struct Extracted {
