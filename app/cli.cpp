@@ -10,6 +10,7 @@
 #include "core/exchange.hpp"
 #include "core/version.hpp"
 #include "core/words.hpp"
+#include "io/picture_settings.hpp"
 #include "materials/laboratory.hpp"
 
 namespace talus {
@@ -40,6 +41,7 @@ class CommandLine {
     add_render();
     add_report();
     add_watch();
+    add_surface();
     add_diff();
     add_sweep();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
@@ -129,16 +131,36 @@ class CommandLine {
     drive->callback([this] { drive_law(drive_); });
   }
 
+  /// Options of talus-render, whose words are handed on as they stand.
+  template <std::size_t N>
+  static void add_words(CLI::App& command, const std::array<render::Option, N>& options, std::vector<std::string>& words)
+  {
+    for (const render::Option& option : options) {
+      const std::string name(option.name), help(option.help);
+      const auto keep = [&words, name](const std::vector<std::string>& values) {
+        words.push_back(name);
+        words.insert(words.end(), values.begin(), values.end());
+      };
+      if (option.most == 0)
+        command.add_flag_callback(
+            name, [keep] { keep({}); }, help);
+      else
+        command.add_option_function<std::vector<std::string>>(name, keep, help)
+            ->type_name(std::string(option.values))
+            ->expected(option.least, option.most);
+    }
+  }
+
   void add_render()
   {
-    CLI::App* render = app_.add_subcommand("render", "draw pictures of a run");
+    CLI::App* render = app_.add_subcommand("render", "draw pictures of a run, or a movie");
     render->add_option("folder", render_.folder, "results of a run")->required();
-    render->add_option("--field", render_.field, "particle field that colours the particles; default what the scene says");
-    render->add_option("--frames", render_.frames, "first, last, all, or the number of one");
-    render->add_option("--size", render_.size, "pixels, such as 1280x720");
-    render->add_option("--range", render_.range, "lowest and highest value of the colours")->expected(2);
-    render->add_option("--view", render_.view, "3-D: direction from the scene to the camera")->expected(3);
-    render->add_option("--out", render_.out, "a .png or a folder; default DIR/pictures");
+    add_words(*render, render::picture_options, render_.words);
+    CLI::Option* movie = render->add_option("--movie", render_.movie, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
+    render->add_option("--fps", render_.per_second, "pictures per second of the movie; default 10")
+        ->needs(movie)
+        ->check(CLI::Range(0.1, 100.0));
+    render->add_flag("--keep-frames", render_.keep_frames, "leave the pictures of the movie as numbered files in --out")->needs(movie);
     render->callback([this] { render_results(render_); });
   }
 
@@ -167,6 +189,15 @@ class CommandLine {
     watch->add_flag("--once", watch_.once, "look once, serve nothing, end");
     watch->add_option("--page", watch_.page, "page to fill instead of the one that was built with the program");
     watch->callback([this] { status_ = watch_run(watch_); });
+  }
+
+  void add_surface()
+  {
+    CLI::App* surface = app_.add_subcommand("surface", "write the surface of bodies for other programs, and say what it encloses");
+    surface->add_option("folder", surface_.folder, "results of a run")->required();
+    surface->add_option("--body", surface_.body, "name of the body; default each of them, all in one file");
+    add_words(*surface, render::surface_options, surface_.words);
+    surface->callback([this] { extract_surface(surface_); });
   }
 
   void add_diff()
@@ -262,6 +293,7 @@ class CommandLine {
   RenderOptions render_;
   ReportOptions report_;
   WatchOptions watch_;
+  SurfaceOptions surface_;
   DiffOptions diff_;
   SweepOptions sweep_;
   SuiteOptions verify_, tradeoff_;

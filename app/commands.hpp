@@ -52,11 +52,13 @@ void drive_law(const DriveOptions& options);
 
 struct RenderOptions {
   std::filesystem::path folder;
-  std::optional<std::string> field, frames, size;
-  std::vector<Real> range, view;
-  std::optional<std::filesystem::path> out;
+  std::vector<std::string> words;              ///< render::picture_options and what follows them
+  std::optional<std::filesystem::path> movie;  ///< a .mp4 or .gif of all pictures
+  Real per_second = 10;                        ///< pictures of the movie
+  bool keep_frames = false;
 };
-/// Draws the results in a folder; what is not asked for is as the scene says.
+/// Draws the results in a folder; what is not asked for is as the scene says.  Error with all that is wrong with the words, before anything is
+/// drawn; EnvironmentError.
 void render_results(const RenderOptions& options);
 
 struct ReportOptions {
@@ -81,6 +83,13 @@ struct WatchOptions {
 /// Follows a run in the terminal until it ends, and serves its page to browsers on this machine.  Returns what the run returns: 0 done (or,
 /// with `once`, at work), 1 failed, 4 stopped.  Errors as above.
 int watch_run(const WatchOptions& options);
+struct SurfaceOptions {
+  std::filesystem::path folder;
+  std::optional<std::string> body;  ///< its name; default all of them
+  std::vector<std::string> words;   ///< render::surface_options and what follows them
+};
+/// Writes the surfaces of bodies and prints how much they enclose.  Errors as above.
+void extract_surface(const SurfaceOptions& options);
 
 struct DiffOptions {
   std::filesystem::path a, b;       ///< folders of two runs

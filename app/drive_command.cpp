@@ -146,7 +146,7 @@ void plot_test(const std::string& title, const fs::path& table, const fs::path& 
                                      "--y",   std::string(columns[1]), "--out",   picture.string()};
   for (const ClosedForm& form : forms)
     arguments.insert(arguments.end(), {"--level", form.name, fmt::format("{}", form.value)});
-  launch_render(fs::read_symlink("/proc/self/exe").parent_path() / "talus-render", arguments);
+  launch_render(arguments);
 }
 
 void drive_through_test(const DriveOptions& options)

@@ -76,7 +76,8 @@ Column history_column(const Frame<D>& frame, std::span<const Index> rows, std::s
 std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
 {
   std::vector<std::string> fields = outputs.particles->fields_wanted;
-  for (const std::string& name : {outputs.picture.field.substr(0, outputs.picture.field.find(':')), std::string("body")})
+  const std::string of_picture = outputs.picture.field.substr(0, outputs.picture.field.find(':'));
+  for (const std::string& name : {of_picture, std::string("body"), std::string("volume")})  // the last two: talus surface
     if (std::find(fields.begin(), fields.end(), name) == fields.end())
       fields.push_back(name);
   return fields;

@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// What particle files hold: the fields asked for, the one that pictures show, and the body.
+/// What particle files hold: the fields asked for, the one that pictures show, body and volume.
 std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
 
 /// A field of all particles in the order of `rows`.  Names: those of io/scene_rules.hpp, `body` (its number), and every history

@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "app/rendered_run.hpp"
 #include "app/upright.hpp"
-#include "core/error.hpp"
 #include "io/launch_render.hpp"
-#include "io/reader.hpp"
+#include "io/movie.hpp"
 
 namespace talus {
 
@@ -13,13 +13,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void add(std::string_view option, const std::vector<Real>& numbers, std::vector<std::string>& arguments)
+using Words = std::vector<std::string>;
+
+void add(const std::string& option, const std::vector<Real>& numbers, Words& words)
 {
   if (numbers.empty())
     return;
-  arguments.emplace_back(option);
+  words.push_back(option);
   for (const Real number : numbers)
-    arguments.push_back(fmt::format("{}", number));
+    words.push_back(fmt::format("{}", number));
 }
 
 /// Against gravity, so that what falls falls down in the picture.
@@ -32,32 +34,90 @@ std::vector<Real> up_of(const Scene& scene)
   return {};
 }
 
+/// What the scene says where the command line says nothing.
+Words with_defaults(const Scene& scene, const RenderOptions& options)
+{
+  const PictureSpec& picture = scene.outputs.picture;
+  const auto given = [&](std::string_view option) { return has_option(options.words, option); };
+  Words words{options.folder.string(), "--title", scene.title};
+  if (!given("--field"))
+    words.insert(words.end(), {"--field", picture.field});
+  if (!given("--range") && !given("--field"))
+    add("--range", picture.range, words);
+  if (scene.dimension == 3 && !given("--view"))
+    add("--view", picture.view, words);
+  add("--up", up_of(scene), words);
+  if (!picture.mesh && !given("--mesh"))
+    words.emplace_back("--no-mesh");
+  words.insert(words.end(), options.words.begin(), options.words.end());
+  return words;
+}
+
+/// The whole series with the same colours throughout.
+void add_movie_defaults(Words& words)
+{
+  if (!has_option(words, "--frames"))
+    words.insert(words.end(), {"--frames", "all"});
+  if (!has_option(words, "--range"))
+    words.insert(words.end(), {"--range", "whole"});
+}
+
+void check_movie(const RenderOptions& options, Words& problems)
+{
+  if (!options.movie)
+    return;
+  if (const std::string problem = movie_problem(*options.movie); !problem.empty())
+    problems.push_back("--movie: " + problem);
+  if (has_option(options.words, "--out") && !options.keep_frames)
+    problems.emplace_back("--out: of a movie it says where the pictures go that --keep-frames keeps");
+}
+
+std::vector<fs::path> draw(const Words& words)
+{
+  std::vector<fs::path> pictures;
+  for (const RenderedFile& file : launch_render(words))
+    pictures.push_back(file.path);
+  return pictures;
+}
+
+/// A folder that is gone afterwards.
+struct Passing {
+  fs::path folder;
+  ~Passing()
+  {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  }
+};
+
+void film(const RenderOptions& options, Words words)
+{
+  require_movie_maker();
+  if (options.keep_frames)
+    return make_movie(draw(words), options.per_second, *options.movie);
+  const Passing frames{options.movie->string() + ".frames"};
+  words.insert(words.end(), {"--out", frames.folder.string()});
+  make_movie(draw(words), options.per_second, *options.movie);
+}
+
 }  // namespace
 
 void render_results(const RenderOptions& options)
 {
-  if (!fs::exists(options.folder / "summary.json"))
-    throw EnvironmentError(fmt::format("{} holds no results of a run (no summary.json)", options.folder.string()));
-  const Scene scene = read_scene(options.folder / "scene.yaml");
-  const PictureSpec& picture = scene.outputs.picture;
-  std::vector<std::string> arguments{options.folder.string(), "--field", options.field.value_or(picture.field), "--title", scene.title};
-  add("--range", options.range.empty() && !options.field ? picture.range : options.range, arguments);
-  if (scene.dimension == 3)
-    add("--view", options.view.empty() ? picture.view : options.view, arguments);
-  add("--up", up_of(scene), arguments);
-  if (!picture.mesh)
-    arguments.emplace_back("--no-mesh");
-  const auto add_word = [&](const char* option, const auto& word) {
-    if (word)
-      arguments.insert(arguments.end(), {option, *word});
-  };
-  add_word("--frames", options.frames);
-  add_word("--size", options.size);
-  if (options.out)
-    arguments.insert(arguments.end(), {"--out", options.out->string()});
-  const fs::path self = fs::read_symlink("/proc/self/exe");
-  for (const fs::path& file : launch_render(self.parent_path() / "talus-render", arguments))
-    fmt::print("{}\n", file.string());
+  const RenderedRun run = read_rendered_run(options.folder);
+  Words words = with_defaults(run.scene, options), problems;
+  if (options.movie)
+    add_movie_defaults(words);
+  render::check(render::parse_picture(words, problems), run.facts, problems);
+  check_movie(options, problems);
+  render::require_none(problems);
+  if (options.movie) {
+    film(options, std::move(words));
+    fmt::print("{}\n", options.movie->string());
+  } else {
+    for (const fs::path& file : draw(words))
+      fmt::print("{}\n", file.string());
+  }
 }
 
 }  // namespace talus

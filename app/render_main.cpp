@@ -1,14 +1,55 @@
-// talus-render: pictures in a process of their own, because VTK ends the process when there is no display.
+// talus-render: pictures and surfaces in a process of their own, because VTK ends the process when there is no display.
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/error.hpp"
 #include "io/render.hpp"
 #include "io/render_chart.hpp"
+#include "io/render_surface.hpp"
+
+namespace {
+
+using namespace talus;
+
+/// io/launch_render.cpp looks for these lines: a file, and what there is to say of it.
+void announce(const std::filesystem::path& file, const std::string& said = "")
+{
+  fmt::print("file: {}\n", file.string());
+  std::istringstream lines(said);
+  for (std::string line; std::getline(lines, line);)
+    fmt::print("said: {}\n", line);
+  std::fflush(stdout);
+}
+
+void draw_chart(std::span<const std::string> words)
+{
+  const auto chart = render::parse_chart(words);
+  render::draw(chart);
+  announce(chart.out);
+}
+
+void write_surfaces(std::span<const std::string> words)
+{
+  std::vector<std::string> problems;
+  const auto settings = render::parse_surface(words, problems);
+  render::require_none(problems);
+  render::make_surfaces(settings, announce);
+}
+
+void draw_pictures(std::span<const std::string> words)
+{
+  std::vector<std::string> problems;
+  const auto settings = render::parse_picture(words, problems);
+  render::require_none(problems);
+  render::make_pictures(settings, [](const std::filesystem::path& picture) { announce(picture); });
+}
+
+}  // namespace
 
 // Exit codes as those of talus: 0 done, 1 unforeseen, 2 wrong arguments, 3 wrong environment.
 int main(int argc, char** argv)
@@ -16,20 +57,15 @@ int main(int argc, char** argv)
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   try {
     if (arguments.size() == 1 && arguments.front() == "--help") {
-      fmt::print("{}\n", talus::render::usage());
+      fmt::print("{}", render::usage());
       return 0;
     }
-    const auto announce = [](const std::filesystem::path& picture) {
-      fmt::print("picture: {}\n", picture.string());  // io/launch_render.cpp looks for these lines
-      std::fflush(stdout);
-    };
-    if (!arguments.empty() && arguments.front() == "chart") {
-      const auto chart = talus::render::parse_chart(std::span(arguments).subspan(1));
-      talus::render::draw(chart);
-      announce(chart.out);
-      return 0;
-    }
-    talus::render::make_pictures(talus::render::parse(arguments), announce);
+    if (!arguments.empty() && arguments.front() == "chart")
+      draw_chart(std::span(arguments).subspan(1));
+    else if (!arguments.empty() && arguments.front() == "surface")
+      write_surfaces(std::span(arguments).subspan(1));
+    else
+      draw_pictures(arguments);
     return 0;
   } catch (const talus::EnvironmentError& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -1,7 +1,8 @@
 # Everything is required, nothing is a switch. Packages of Debian: tools/debian-packages.txt; licences: THIRD_PARTY.md.
 set(TALUS_VTK_RENDER
   VTK::CommonCore VTK::CommonColor VTK::CommonDataModel VTK::CommonExecutionModel VTK::CommonMath VTK::CommonTransforms
-  VTK::FiltersCore VTK::FiltersGeneral VTK::FiltersGeometry VTK::FiltersSources VTK::ImagingCore VTK::IOImage VTK::IOInfovis VTK::IOXML
+  VTK::FiltersCore VTK::FiltersExtraction VTK::FiltersGeneral VTK::FiltersGeometry VTK::FiltersHybrid VTK::FiltersSources VTK::ImagingCore VTK::IOGeometry VTK::IOImage
+  VTK::IOInfovis VTK::IOPLY VTK::IOXML
   VTK::ChartsCore VTK::RenderingContext2D VTK::RenderingContextOpenGL2
   VTK::RenderingCore VTK::RenderingOpenGL2 VTK::RenderingAnnotation VTK::RenderingFreeType)
 list(TRANSFORM TALUS_VTK_RENDER REPLACE "VTK::" "" OUTPUT_VARIABLE vtk_components)

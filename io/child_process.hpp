@@ -32,4 +32,14 @@ class ChildProcess {
   std::optional<int> code_;
 };
 
+/// What a program said on both its outputs, and how it ended: as ChildProcess::wait().
+struct Ending {
+  std::string output;
+  int code;
+};
+Ending run_to_its_end(std::vector<std::string> words);
+
+/// Whether one of the folders of PATH has that program.
+bool on_path(const std::string& program);
+
 }  // namespace talus

@@ -1,16 +1,13 @@
-// One pipe for standard output and standard error of the program.
+// What talus-render says, taken apart.
 #include "io/launch_render.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -23,18 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view picture_mark = "picture: ";  // how talus-render announces a file; xvfb-run may merge its two outputs
-constexpr int refused = 2;                              // its exit code for arguments that do not fit the results
-
-bool on_path(const std::string& program)
-{
-  const char* variable = std::getenv("PATH");
-  std::istringstream folders(variable != nullptr ? variable : "");
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (::access((fs::path(folder) / program).c_str(), X_OK) == 0)
-      return true;
-  return false;
-}
+// How talus-render announces a file, and what there is to say of it; xvfb-run may merge its two outputs.
+constexpr std::string_view file_mark = "file: ", said_mark = "said: ";
+constexpr int refused = 2;  // its exit code for arguments that do not fit the results
 
 bool has_display()
 {
@@ -42,12 +30,12 @@ bool has_display()
   return display != nullptr && *display != '\0';
 }
 
-std::vector<std::string> command_line(const fs::path& talus_render, const std::vector<std::string>& arguments)
+std::vector<std::string> command_line(const fs::path& talus_render, const std::vector<std::string>& arguments, Display display)
 {
   if (::access(talus_render.c_str(), X_OK) != 0)
     throw EnvironmentError(fmt::format("cannot start {}: {}", talus_render.string(), std::strerror(errno)));
   std::vector<std::string> words;
-  if (!has_display()) {
+  if (display == Display::needed && !has_display()) {
     for (const char* program : {"xvfb-run", "Xvfb", "xauth"})
       if (!on_path(program))
         throw EnvironmentError(
@@ -59,43 +47,6 @@ std::vector<std::string> command_line(const fs::path& talus_render, const std::v
   words.push_back(talus_render.string());
   words.insert(words.end(), arguments.begin(), arguments.end());
   return words;
-}
-
-struct Ending {
-  std::string output;
-  int code;  ///< as ChildProcess gives it
-};
-
-std::string read_all(int descriptor)
-{
-  std::string text;
-  std::array<char, 4096> block;
-  for (;;) {
-    const ssize_t got = ::read(descriptor, block.data(), block.size());
-    if (got > 0)
-      text.append(block.data(), static_cast<std::size_t>(got));
-    else if (got == 0 || errno != EINTR)
-      return text;
-  }
-}
-
-Ending run(std::vector<std::string> words)
-{
-  std::array<int, 2> ends;
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw EnvironmentError(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
-  std::optional<ChildProcess> child;
-  try {
-    child.emplace(std::move(words), ends[1]);
-  } catch (const EnvironmentError&) {
-    ::close(ends[0]), ::close(ends[1]);
-    throw;
-  }
-  ::close(ends[1]);
-  Ending ending{read_all(ends[0]), 0};
-  ::close(ends[0]);
-  ending.code = child->wait();
-  return ending;
 }
 
 /// An abort shows as a signal, or as 128 + its number when a shell (xvfb-run) stands between.
@@ -114,15 +65,17 @@ Ending run(std::vector<std::string> words)
 
 }  // namespace
 
-std::vector<fs::path> launch_render(const fs::path& talus_render, const std::vector<std::string>& arguments)
+std::vector<RenderedFile> launch_render(const fs::path& talus_render, const std::vector<std::string>& arguments, Display display)
 {
-  const Ending ending = run(command_line(talus_render, arguments));
-  std::vector<fs::path> pictures;
+  const Ending ending = run_to_its_end(command_line(talus_render, arguments, display));
+  std::vector<RenderedFile> files;
   std::string messages;
   std::istringstream lines(ending.output);
   for (std::string line; std::getline(lines, line);) {
-    if (line.starts_with(picture_mark))
-      pictures.emplace_back(line.substr(picture_mark.size()));
+    if (line.starts_with(file_mark))
+      files.push_back({line.substr(file_mark.size()), {}});
+    else if (line.starts_with(said_mark) && !files.empty())
+      files.back().said.push_back(line.substr(said_mark.size()));
     else
       messages += (messages.empty() ? "" : "\n") + line;
   }
@@ -130,14 +83,19 @@ std::vector<fs::path> launch_render(const fs::path& talus_render, const std::vec
     explain(talus_render, ending.code, messages);
   if (!messages.empty())
     fmt::print(stderr, "{}\n", messages);
-  if (pictures.empty())
-    throw EnvironmentError(fmt::format("{} wrote no picture", talus_render.string()));
-  for (const fs::path& picture : pictures) {
+  if (files.empty())
+    throw EnvironmentError(fmt::format("{} wrote nothing", talus_render.string()));
+  for (const RenderedFile& file : files) {
     std::error_code failed;
-    if (fs::file_size(picture, failed) == 0 || failed)
-      throw EnvironmentError(fmt::format("{} says it wrote {}, which is not there", talus_render.string(), picture.string()));
+    if (fs::file_size(file.path, failed) == 0 || failed)
+      throw EnvironmentError(fmt::format("{} says it wrote {}, which is not there", talus_render.string(), file.path.string()));
   }
-  return pictures;
+  return files;
+}
+
+std::vector<RenderedFile> launch_render(const std::vector<std::string>& arguments, Display display)
+{
+  return launch_render(fs::read_symlink("/proc/self/exe").parent_path() / "talus-render", arguments, display);
 }
 
 }  // namespace talus

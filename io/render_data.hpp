@@ -1,14 +1,24 @@
 #pragma once
-// What a picture is made of, read back from the result files: particles with one number each, and the edges of the mesh.
+// What a picture is made of, read back from the result files: particles with one number each, and lines of the mesh.
 #include <array>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "core/types.hpp"
+#include "io/picture_settings.hpp"
+#include "io/render_density.hpp"
 
 namespace talus::render {
+
+/// Three a point.
+inline std::span<const Real> numbers_of(const std::vector<Vec3>& points)
+{
+  static_assert(sizeof(Vec3) == 3 * sizeof(Real));
+  return {points.empty() ? nullptr : points.front().data(), 3 * points.size()};
+}
 
 struct ResultFile {
   Real time;  ///< s
@@ -21,9 +31,9 @@ struct Cloud {
   std::string label, unit;  ///< of the values; empty where the file says nothing
 };
 
-struct Outline {
-  std::vector<Vec3> nodes;
-  std::vector<std::array<Index, 2>> edges;
+struct Lines {
+  std::vector<Vec3> points;  ///< m
+  std::vector<std::array<Index, 2>> ends;
 };
 
 struct Bounds {
@@ -33,14 +43,22 @@ struct Bounds {
 /// The files that particles.pvd of a run's folder lists.  EnvironmentError if there is none or it lists nothing.
 std::vector<ResultFile> particle_files(const std::filesystem::path& folder);
 
+/// What pictures of these files can show.  A run is 2-D if all particles of its first frame have z = 0.
+RunFacts facts_of(const std::vector<ResultFile>& files);
+
 /// Particles of a .vtp with one field: scalars as they are, vectors by their length, symmetric tensors by their von Mises value;
 /// "velocity:x" and "stress:xy" are components.  Without a name: displacement, else velocity, else the first field there is.
 /// Error (which fields there are) if the name is unknown; EnvironmentError if the file cannot be read.
 Cloud read_cloud(const std::filesystem::path& file, const std::optional<std::string>& field);
 
-/// Edges to draw of mesh.vtu, or of the first file of mesh.pvd: the boundary in 2-D, sharp edges of the boundary in 3-D.
-/// Nothing if the folder has no mesh.
-Outline read_outline(const std::filesystem::path& folder);
+/// Of mesh.vtu, or of the first file of mesh.pvd.  outline: the boundary in 2-D, sharp edges of the boundary in 3-D; edges: all edges of cells,
+/// in 3-D of those facets of cells that make up the boundary.  Nothing if the folder has no mesh.
+Lines read_mesh_lines(const std::filesystem::path& folder, MeshLines which);
+/// The lines among the cells.
+Lines lines_of(vtkPolyData* data);
+
+/// Particles of a .vtp by the number of their body, with values if a field is named.  Error if there is no field "volume"; others as read_cloud.
+std::map<int, Matter> read_bodies(const std::filesystem::path& file, const std::optional<std::string>& field);
 
 /// Two opposite corners, or nothing for an empty cloud.
 std::optional<Bounds> bounds_of(const std::vector<Vec3>& x);

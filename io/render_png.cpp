@@ -9,6 +9,7 @@
 #include <vtkWindowToImageFilter.h>
 
 #include "core/error.hpp"
+#include "io/whole_file.hpp"
 
 namespace talus::render {
 
@@ -31,18 +32,14 @@ void save(vtkRenderWindow* window, const fs::path& png)
   averaged->SetInputConnection(shot->GetOutputPort());
   averaged->SetShrinkFactors(oversampling, oversampling, 1);
   averaged->AveragingOn();
-  const fs::path temporary = png.string() + ".tmp";
-  vtkNew<vtkPNGWriter> writer;
-  writer->SetFileName(temporary.c_str());
-  writer->SetInputConnection(averaged->GetOutputPort());
-  writer->Write();
-  std::error_code failed;
-  if (writer->GetErrorCode() == 0)
-    fs::rename(temporary, png, failed);
-  if (writer->GetErrorCode() != 0 || failed) {
-    fs::remove(temporary, failed);
-    throw EnvironmentError(fmt::format("cannot write {}", png.string()));
-  }
+  write_whole(png, [&](const fs::path& temporary) {
+    vtkNew<vtkPNGWriter> writer;
+    writer->SetFileName(temporary.c_str());
+    writer->SetInputConnection(averaged->GetOutputPort());
+    writer->Write();
+    if (writer->GetErrorCode() != 0)
+      throw EnvironmentError(fmt::format("cannot write {}", png.string()));
+  });
 }
 
 }  // namespace talus::render

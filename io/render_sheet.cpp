@@ -11,6 +11,7 @@
 #include <vtkRenderer.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
+#include <vtkTextRenderer.h>
 
 namespace talus::render {
 
@@ -38,7 +39,7 @@ void Sheet::polygon(const std::vector<std::array<Real, 2>>& corners, const Colou
   renderer_->AddActor2D(actor);
 }
 
-void Sheet::text(const std::string& words, Real x, Real y, Side side, Style style)
+Real Sheet::text(const std::string& words, Real x, Real y, Side side, Style style)
 {
   vtkNew<vtkTextActor> actor;
   actor->SetInput(words.c_str());
@@ -54,6 +55,10 @@ void Sheet::text(const std::string& words, Real x, Real y, Side side, Style styl
   font->SetVerticalJustificationToCentered();
   actor->SetPosition(x, y);
   renderer_->AddActor2D(actor);
+  std::array<int, 4> box{};
+  constexpr int dpi = 72;  // of every vtkRenderWindow
+  vtkTextRenderer::GetInstance()->GetBoundingBox(font, words, box.data(), dpi);
+  return style.upright ? box[3] - box[2] : box[1] - box[0];
 }
 
 }  // namespace talus::render

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/render_canvas.hpp"
+#include "io/render_colours.hpp"
 
 class vtkRenderer;
 
@@ -29,8 +29,8 @@ class Sheet {
 
   void line(const std::vector<std::array<Real, 2>>& points, const Colour& colour) { polygon(points, colour, false); }
   void area(const std::vector<std::array<Real, 2>>& corners, const Colour& colour) { polygon(corners, colour, true); }
-  /// (x, y) is the middle of the text's height at its left end, centre or right end.
-  void text(const std::string& words, Real x, Real y, Side side = Side::left, Style style = {});
+  /// (x, y) is the middle of the text's height at its left end, centre or right end.  Returns its length [pixels].
+  Real text(const std::string& words, Real x, Real y, Side side = Side::left, Style style = {});
   Real letter() const noexcept { return letter_; }
 
  private:

@@ -38,4 +38,15 @@ std::vector<Tick> ticks(Real low, Real high)
   return list;
 }
 
+std::vector<Tick> decades(Real low, Real high)
+{
+  const bool wide = high / low >= 100;
+  std::vector<Tick> list;
+  for (Real power = std::pow(10, std::floor(std::log10(low))); power <= high; power *= 10)
+    for (const Real digit : {1.0, 2.0, 5.0})
+      if (const Real value = digit * power; value >= low * (1 - slack) && value <= high * (1 + slack) && (digit == 1 || !wide))
+        list.push_back({value, fmt::format("{:.6g}", value)});
+  return list;
+}
+
 }  // namespace talus::render

@@ -16,5 +16,7 @@ struct Tick {
 };
 /// Multiples of a round step in [low, high], about five of them, all with the same number of decimals.
 std::vector<Tick> ticks(Real low, Real high);
+/// Powers of ten in [low, high] (> 0), with twice and five times those where they are fewer than three.
+std::vector<Tick> decades(Real low, Real high);
 
 }  // namespace talus::render

@@ -10,6 +10,7 @@
 #include <vtkIdList.h>
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
+#include <vtkInformationVector.h>
 #include <vtkLZ4DataCompressor.h>
 #include <vtkLogger.h>
 #include <vtkNew.h>
@@ -126,9 +127,9 @@ void check_layout(const fs::path& file)
     throw EnvironmentError(fmt::format("cannot read {}: it is damaged, or not written by talus", file.string()));
 }
 
-/// The file in the reader.  VTK's readers go on after errors; this one stops.
+/// The file in the reader, or so much of it as `update` asks for.  VTK's readers go on after errors; this one stops.
 template <class Reader>
-void read_file(Reader& reader, const fs::path& file)
+void read_file(Reader& reader, const fs::path& file, void (vtkAlgorithm::*update)() = &vtkAlgorithm::Update)
 {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored))
@@ -137,7 +138,7 @@ void read_file(Reader& reader, const fs::path& file)
   const VtkComplaints complaints;
   reader.SetFileName(file.c_str());
   try {
-    reader.Update();
+    (reader.*update)();
   } catch (const std::exception&) {  // such as std::bad_alloc, for a length that is nonsense
     throw EnvironmentError(fmt::format("cannot read {}: it is damaged, or larger than the memory", file.string()));
   }
@@ -482,6 +483,20 @@ StoredParticles read_particles(const fs::path& file)
   if (!particles.ids.empty())
     std::memcpy(particles.ids.data(), ids->GetVoidPointer(0), particles.ids.size() * sizeof(std::int64_t));
   return particles;
+}
+
+std::vector<std::pair<std::string, int>> stored_particle_fields(const fs::path& file)
+{
+  vtkNew<vtkXMLPolyDataReader> reader;
+  read_file(*reader, file, &vtkAlgorithm::UpdateInformation);
+  std::vector<std::pair<std::string, int>> fields;
+  vtkInformationVector* heads = reader->GetOutputInformation(0)->Get(vtkDataObject::POINT_DATA_VECTOR());
+  for (int i = 0; heads != nullptr && i < heads->GetNumberOfInformationObjects(); ++i) {
+    vtkInformation* head = heads->GetInformationObject(i);
+    if (const char* name = head->Get(vtkDataObject::FIELD_NAME()); name != nullptr && name != id_name)
+      fields.emplace_back(name, head->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()));
+  }
+  return fields;
 }
 
 StoredMeshFields read_mesh_fields(const fs::path& file)

@@ -66,6 +66,9 @@ struct StoredParticles {
 /// What write_particles has written.  EnvironmentError naming the file: it is not there, it is damaged, or its particles have no ids.
 StoredParticles read_particles(const std::filesystem::path& file);
 
+/// Names and numbers of components of the fields in such a file, "id" left out; none of their values are read.  Errors as above.
+std::vector<std::pair<std::string, int>> stored_particle_fields(const std::filesystem::path& file);
+
 struct StoredMeshFields {
   std::vector<StoredField> nodes;  ///< first "position" [m], 3 numbers per node
   std::vector<StoredField> cells;

@@ -1,15 +1,27 @@
 #!/usr/bin/env bash
-# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names.
+# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names; docs: those of docs/pictures.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ -x build/talus ] || { echo "build/talus is missing: make build" >&2; exit 3; }
 
+render() { build/talus render "runs/$1" --size 900x420 "${@:2}"; }
+
+docs() {
+  for name in slope_failure_2d slope_failure_3d; do
+    [ -f "runs/$name/summary.json" ] || build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
+  done
+  render slope_failure_2d --field stress:xy --map coolwarm --window 20 10 70 40 --out docs/images/pictures_window.png
+  render slope_failure_2d --outline start --mesh edges --out docs/images/pictures_outline.png
+  render slope_failure_3d --view iso --clip z 5 --outline start --out docs/images/pictures_clip.png
+}
+
+[ "$*" = docs ] && { docs; exit; }
 scenes=("$@")
 [ ${#scenes[@]} -gt 0 ] || mapfile -t scenes < <(find scenes -mindepth 1 -maxdepth 1 -type d -printf '%f\n' | sort)
 for name in "${scenes[@]}"; do
   build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
   frame=last
   [ "$name" = cantilever ] && frame=14  # t = 0.7 s, its lowest point; at the end it is back up
-  build/talus render "runs/$name" --frames "$frame" --size 900x420 --out "scenes/$name/picture.png"
+  render "$name" --frames "$frame" --out "scenes/$name/picture.png"
   if [ "$name" = slope_failure_3d ]; then cp "scenes/$name/picture.png" docs/images/slope_failure_3d.png; fi
 done

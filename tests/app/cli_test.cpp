@@ -105,6 +105,32 @@ TEST_F(CommandLine, DriveNamesTheTestsAndMaterialsThereAre)
   EXPECT_THAT(many.err, HasSubstr("--material is needed where there are several: rubber or water"));
 }
 
+TEST_F(CommandLine, MoviesAndSurfacesComeFromTheResultsOfARun)
+{
+  write("block.yaml", block_scene("time: {end: 0.02}\noutputs: {particles: {every: 0.01, fields: [velocity]}}\n", ", velocity: [1, 0]"));
+  ASSERT_EQ(talus("run block.yaml --out block --quiet").code, 0);
+  const Outcome surface = talus("surface block --body block --out block.obj");
+  EXPECT_EQ(surface.code, 0) << surface.err;
+  EXPECT_THAT(surface.out, testing::ContainsRegex("^block.obj\n  block: .* segments, .* encloses .* particles have 1 m.2 "));
+  const Outcome movie = talus("render block --movie block.gif --fps 5 --size 400x300");
+  EXPECT_EQ(movie.code, 0) << movie.err;
+  EXPECT_EQ(movie.out, "block.gif\n");
+  EXPECT_EQ(read("block.gif").substr(0, 3), "GIF");
+  EXPECT_FALSE(exists("block.gif.frames"));
+  EXPECT_FALSE(exists("block/pictures"));
+
+  const Outcome pictures = talus("render block --field velocty --view front --frames 9 --map virids");
+  EXPECT_EQ(pictures.code, 2);
+  EXPECT_THAT(pictures.err, testing::AllOf(HasSubstr("did you mean \"velocity\"?"), HasSubstr("--view: the run is 2-D"),
+                                           HasSubstr("there is no frame 9"), HasSubstr("did you mean \"viridis\"?")));
+  const Outcome both = talus("render block --movie block.avi --out frames");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_THAT(both.err, testing::AllOf(HasSubstr("should end in .mp4 or .gif"), HasSubstr("--keep-frames")));
+  const Outcome body = talus("surface block --body blok --out block.stl");
+  EXPECT_EQ(body.code, 2);
+  EXPECT_THAT(body.err, testing::AllOf(HasSubstr("did you mean \"block\"?"), HasSubstr(".stl knows no lines")));
+}
+
 TEST_F(CommandLine, RenderNeedsResults)
 {
   const Outcome outcome = talus("render nowhere");

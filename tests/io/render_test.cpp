@@ -1,18 +1,23 @@
-// talus-render as `talus render` starts it.  The program stands beside this test program; xvfb must be installed.
+// talus-render as `talus render` and `talus surface` start it, and movies by ffmpeg.  The program stands beside this test program; xvfb must be installed.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
+#include <map>
 #include <optional>
 
 #include "core/error.hpp"
 #include "io/launch_render.hpp"
+#include "io/movie.hpp"
 #include "io/vtk.hpp"
 #include "io/whole_file.hpp"
+#include "mesh/generate.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus::render_test {
@@ -48,25 +53,87 @@ class Variable {
   std::optional<std::string> old_;
 };
 
-/// Two frames of a 20 x 10 sheet of particles that slides by 5 m.
-void write_run(const fs::path& folder)
+/// Two frames of 20 x 10 x layers particles, 1 m apart, that slide by 5 m and slow down to half their velocity, which is largest on the right.
+void write_run(const fs::path& folder, int layers = 1)
 {
   PvdSeries series(folder / "particles.pvd");
   for (int frame = 0; frame < 2; ++frame) {
     std::vector<Real> x;
     std::vector<std::int64_t> id;
-    Column velocity{"velocity", 3, {}, "m/s"};
-    for (int i = 0; i < 200; ++i) {
+    Column velocity{"velocity", 3, {}, "m/s"}, volume{"volume", 1, {}, "m^3"}, body{"body", 1, {}};
+    for (int i = 0; i < 200 * layers; ++i) {
       id.push_back(i);
-      for (const Real value : {i % 20 + 5.0 * frame, i / 20 + 0.0, 0.0})
+      for (const Real value : {i % 20 + 5.0 * frame, i / 20 % 10 + 0.0, i / 200 + 0.0})
         x.push_back(value);
-      for (const float value : {static_cast<float>(i % 20), 0.0F, 0.0F})
+      for (const float value : {static_cast<float>(i % 20) / static_cast<float>(frame + 1), 0.0F, 0.0F})
         velocity.values.push_back(value);
+      volume.values.push_back(1);
+      body.values.push_back(0);
     }
     const fs::path file = folder / "particles" / fmt::format("{}.vtp", frame);
-    write_particles(file, frame, x, id, std::vector<Column>{velocity});
+    write_particles(file, frame, x, id, std::vector<Column>{velocity, volume, body});
     series.append(frame, file);
   }
+}
+
+/// A mesh of 24 x 10 m in squares of 2 m, each of two triangles.
+void write_square_mesh(const fs::path& file) { write_mesh<2>(file, 0, Mesh<2>(box<2>(Vec<2>(0, 0), Vec<2>(24, 10), {12, 5})), {}, {}); }
+
+struct Pixel {
+  unsigned char r, g, b;
+  int largest() const { return std::max({r, g, b}); }
+  bool is_coloured() const { return largest() - std::min({r, g, b}) > 40; }
+  bool is_yellow() const { return r > 200 && g > 200 && b < 90; }
+  bool is_dark() const { return largest() < 70; }
+  bool is_grey() const { return !is_coloured() && largest() < 235; }
+};
+
+/// A picture of 400 x 240 pixels, decoded by ffmpeg, which must be installed.
+struct Pixels {
+  std::vector<Pixel> rows;  ///< from above
+  explicit Pixels(const fs::path& png)
+  {
+    const fs::path raw = png.string() + ".raw";
+    const std::string command =
+        fmt::format("ffmpeg -nostdin -v error -y -i '{}' -f rawvideo -pix_fmt rgb24 '{}'", png.string(), raw.string());
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    const std::string bytes = read_whole(raw);
+    for (std::size_t i = 0; i + 2 < bytes.size(); i += 3)
+      rows.push_back(
+          {static_cast<unsigned char>(bytes[i]), static_cast<unsigned char>(bytes[i + 1]), static_cast<unsigned char>(bytes[i + 2])});
+  }
+  /// How many there are among the particles: left of the colour bar, below the title, above the scale.
+  template <class F>
+  std::ptrdiff_t count(F&& is, int from = 0, int to = 345) const
+  {
+    std::ptrdiff_t n = 0;
+    for (int y = 25; y < 215; ++y)
+      for (int x = from; x < to; ++x)
+        n += is(rows.at(static_cast<std::size_t>(y * 400 + x))) ? 1 : 0;
+    return n;
+  }
+};
+
+Pixels drawn(const ScratchFolder& folder, const std::vector<std::string>& words)
+{
+  const fs::path file = folder / "picture.png";
+  std::vector<std::string> arguments{folder.path().string(), "--out", file.string(), "--size", "400x240", "--field", "velocity"};
+  arguments.insert(arguments.end(), words.begin(), words.end());
+  launch_render(program(), arguments);
+  return Pixels(file);
+}
+
+/// Triangles of a binary STL: 80 bytes, their number, and 50 bytes each, of which the first twelve floats are the normal and three corners.
+std::vector<std::array<std::array<float, 3>, 3>> triangles_of(const fs::path& stl)
+{
+  const std::string bytes = read_whole(stl);
+  std::uint32_t n = 0;
+  std::memcpy(&n, bytes.data() + 80, sizeof n);
+  EXPECT_EQ(bytes.size(), 84 + 50 * std::size_t{n});
+  std::vector<std::array<std::array<float, 3>, 3>> triangles(n);
+  for (std::size_t t = 0; t < n; ++t)
+    std::memcpy(&triangles[t], bytes.data() + 84 + 50 * t + 12, 36);
+  return triangles;
 }
 
 /// Width and height in the header of a PNG (ISO/IEC 15948, 11.2.2).
@@ -106,8 +173,8 @@ TEST(Render, DrawsEveryFrameWithoutADisplay)
   write_run(folder.path());
   const auto pictures = launch_render(program(), {folder.path().string(), "--frames", "all", "--size", "400x240", "--title", "Sliding"});
   ASSERT_EQ(pictures.size(), 2u);
-  EXPECT_EQ(pictures[1], folder.path() / "pictures/velocity_0001.png");
-  const std::string first = read_whole(pictures[0]), last = read_whole(pictures[1]);
+  EXPECT_EQ(pictures[1].path, folder.path() / "pictures/velocity_0001.png");
+  const std::string first = read_whole(pictures[0].path), last = read_whole(pictures[1].path);
   EXPECT_THAT(png_size(first), testing::ElementsAre(400u, 240u));
   EXPECT_NE(first, last);  // the camera stands still, the sheet has moved
 }
@@ -147,6 +214,188 @@ TEST(Render, ChartShowsACurveAndLevels)
   EXPECT_NE(read_whole(folder / "bare.png"), read_whole(folder / "level.png"));
   EXPECT_THAT(message_of<Error>(program(), chart("none.png", "stres [Pa]", {})), HasSubstr("did you mean \"stress [Pa]\"?"));
   EXPECT_FALSE(fs::exists(folder / "none.png"));
+}
+
+TEST(Render, ClipLeavesOutWhatLiesBeyondThePlane)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path());
+  const auto coloured = [](const Pixel& p) { return p.is_coloured(); };
+  const Pixels whole = drawn(folder, {"--frames", "first"}), cut = drawn(folder, {"--frames", "first", "--clip", "x", "9.5"});
+  EXPECT_NEAR(static_cast<Real>(cut.count(coloured)), 0.5 * static_cast<Real>(whole.count(coloured)),
+              0.05 * static_cast<Real>(whole.count(coloured)));
+  EXPECT_GT(whole.count(coloured, 160), 1000);
+  EXPECT_EQ(cut.count(coloured, 160), 0);  // x = 9.5 m of 24 m is 10.7 / 26.6 of 348 pixels
+}
+
+TEST(Render, WindowShowsThePartAskedForAndZoomWhatIsLookedAt)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path());
+  const auto yellow = [](const Pixel& p) { return p.is_yellow(); };
+  const auto coloured = [](const Pixel& p) { return p.is_coloured(); };
+  const std::vector<std::string> same{"--frames", "first", "--range", "0", "19"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.end(), same.begin(), same.end());
+    return drawn(folder, words);
+  };
+  const Pixels all = with({});
+  EXPECT_GT(all.count(yellow), 100);
+  EXPECT_EQ(with({"--window", "0", "0", "9", "9"}).count(yellow), 0);
+  EXPECT_GT(with({"--window", "16", "0", "19", "9"}).count(yellow), all.count(yellow));
+  const Pixels near_left = with({"--look-at", "4", "5", "--zoom", "3"});
+  EXPECT_EQ(near_left.count(yellow), 0);
+  EXPECT_GT(near_left.count(coloured), all.count(coloured));
+}
+
+TEST(Render, OutlineAtTheStartIsDrawnOverWhatHasMoved)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path());
+  const auto dark = [](const Pixel& p) { return p.is_dark(); };
+  const Pixels bare = drawn(folder, {"--range", "-20", "20"}), outlined = drawn(folder, {"--range", "-20", "20", "--outline", "start"});
+  EXPECT_GT(outlined.count(dark), bare.count(dark) + 500);                    // about two thirds of 348 pixels long, twice
+  EXPECT_GT(outlined.count(dark, 20, 60), bare.count(dark, 20, 60) + 50);     // where nothing is any more
+  EXPECT_LT(outlined.count(dark, 290, 340), bare.count(dark, 290, 340) + 5);  // where nothing was
+}
+
+TEST(Render, MeshIsItsOutlineOrAllItsEdgesOrNothing)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path());
+  write_square_mesh(folder / "mesh.vtu");
+  const auto grey = [](const Pixel& p) { return p.is_grey(); };
+  const auto count = [&](const char* lines) { return drawn(folder, {"--frames", "first", "--mesh", lines}).count(grey, 285); };
+  const auto nothing = count("none"), outline = count("outline"), edges = count("edges");
+  EXPECT_EQ(nothing, 0);
+  EXPECT_GT(outline, 50);
+  EXPECT_GT(edges, 2 * outline);
+}
+
+TEST(Render, RangeOfTheWholeSeriesIsThatOfAllFrames)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path());
+  const auto bytes = [&](const std::vector<std::string>& words) {
+    drawn(folder, words);
+    return read_whole(folder / "picture.png");
+  };
+  const std::string whole = bytes({"--range", "whole"});
+  EXPECT_EQ(whole, bytes({"--range", "0", "19"}));
+  EXPECT_NE(whole, bytes({"--range", "last"}));
+  EXPECT_NE(whole, bytes({"--range", "whole", "--map", "cividis"}));
+  EXPECT_NE(bytes({"--range", "1", "19", "--log"}), bytes({"--range", "1", "19"}));
+}
+
+TEST(Render, NamedViewsAreDirectionsAsUpSays)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path(), 2);
+  const auto coloured = [&](const std::vector<std::string>& words) {
+    return drawn(folder, words).count([](const Pixel& p) { return p.is_coloured(); });
+  };
+  const std::vector<std::string> y_up{"--up", "0", "1", "0"};
+  const auto view = [&](std::vector<std::string> words, const std::vector<std::string>& more = {}) {
+    words.insert(words.end(), more.begin(), more.end());
+    drawn(folder, words);
+    return read_whole(folder / "picture.png");
+  };
+  EXPECT_EQ(view({"--view", "front"}), view({"--view", "0", "-1", "0"}));
+  EXPECT_EQ(view({"--view", "front"}, y_up), view({"--view", "0", "0", "1"}, y_up));
+  EXPECT_NE(view({"--view", "front", "--orthographic"}), view({"--view", "front"}));
+  EXPECT_GT(coloured({"--view", "top"}), 3 * coloured({"--view", "front"}));  // 20 x 10 beside 20 x 2
+}
+
+TEST(Surface, OfABlockIsClosedLooksOutwardsAndEnclosesIt)
+{
+  const ScratchFolder folder;
+  write_run(folder.path(), 12);
+  const fs::path stl = folder / "block.stl";
+  const auto files =
+      launch_render(program(), {"surface", folder.path().string(), "--out", stl.string(), "--body", "0", "block"}, Display::not_needed);
+  ASSERT_EQ(files.size(), 1u);
+  ASSERT_EQ(files[0].said.size(), 1u);
+  EXPECT_THAT(files[0].said[0], testing::AllOf(HasSubstr("block: "), HasSubstr("its 2400 particles have 2400 m^3")));
+  using Corner = std::array<float, 3>;
+  std::map<std::pair<Corner, Corner>, int> edges;
+  Real volume = 0, lowest = 1e9, highest = -1e9;
+  for (const auto& [a, b, c] : triangles_of(stl)) {
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      ++edges[{from, to}];
+      --edges[{to, from}];
+      lowest = std::min<Real>(lowest, from[0]);
+      highest = std::max<Real>(highest, from[0]);
+    }
+    volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6.0;
+  }
+  EXPECT_TRUE(std::all_of(edges.begin(), edges.end(), [](const auto& edge) { return edge.second == 0; })) << "an edge has one side only";
+  EXPECT_NEAR(volume, 2400, 0.04 * 2400);  // edges and corners are round
+  EXPECT_NEAR(lowest, 5 - 0.5, 0.1);       // half a particle beyond the outermost centres
+  EXPECT_NEAR(highest, 24 + 0.5, 0.1);
+}
+
+TEST(Surface, OfASheetIsALineAndOfSeveralFramesSeveralFiles)
+{
+  const ScratchFolder folder;
+  write_run(folder.path());
+  const auto surface = [&](const std::string& file, std::vector<std::string> words) {
+    words.insert(words.begin(), {"surface", folder.path().string(), "--out", (folder / file).string()});
+    return words;
+  };
+  EXPECT_THAT(message_of<Error>(program(), surface("sheet.ply", {})), HasSubstr("the run is 2-D, its surface is a line"));
+  const auto files = launch_render(program(), surface("sheet.obj", {"--frame", "all"}), Display::not_needed);
+  ASSERT_EQ(files.size(), 2u);
+  EXPECT_EQ(files[1].path, folder / "sheet_0001.obj");
+  EXPECT_THAT(read_whole(files[1].path), HasSubstr("\nl "));
+  EXPECT_THAT(message_of<Error>(program(), surface("sheet.obj", {"--spacing", "1e-6"})),
+              testing::AllOf(HasSubstr("--spacing: 1e-06 m makes a grid of"), HasSubstr("would do")));
+  EXPECT_FALSE(fs::exists(folder / "sheet.obj"));
+}
+
+TEST(Surface, VerticesOfAPlyHaveTheColoursOfAField)
+{
+  const ScratchFolder folder;
+  write_run(folder.path(), 4);
+  const fs::path ply = folder / "block.ply";
+  launch_render(program(), {"surface", folder.path().string(), "--out", ply.string(), "--field", "velocity:x"}, Display::not_needed);
+  const std::string bytes = read_whole(ply);
+  EXPECT_THAT(bytes.substr(0, 300),
+              testing::AllOf(testing::StartsWith("ply\nformat binary_little_endian"), HasSubstr("property uchar red")));
+}
+
+TEST(Movie, HasAllPicturesAndIsThereAsAWholeOrNotAtAll)
+{
+  const ScratchFolder folder;
+  const Variable none("DISPLAY", std::nullopt);
+  write_run(folder.path());
+  std::vector<fs::path> pictures;
+  for (const RenderedFile& file : launch_render(program(), {folder.path().string(), "--frames", "all", "--size", "401x241"}))
+    pictures.push_back(file.path);
+  const std::vector<fs::path> three{pictures[0], pictures[1], pictures[0]};
+  make_movie(three, 5, folder / "a 100%.mp4");
+  make_movie(three, 5, folder / "slide.gif");
+  EXPECT_EQ(read_whole(folder / "a 100%.mp4").substr(4, 4), "ftyp");
+  EXPECT_EQ(read_whole(folder / "slide.gif").substr(0, 6), "GIF89a");
+  for (const char* name : {"a 100%.mp4", "slide.gif"}) {
+    const std::string command =
+        fmt::format("ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height -of csv=p=0 '{}' >'{}'",
+                    (folder / name).string(), (folder / "said").string());
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    EXPECT_THAT(read_whole(folder / "said"), testing::StartsWith(name[0] == 'a' ? "402,242,3" : "401,241,3"));
+  }
+  std::ofstream(folder / "no.png") << "no picture";
+  EXPECT_THROW(make_movie({folder / "no.png"}, 5, folder / "no.mp4"), EnvironmentError);
+  EXPECT_FALSE(fs::exists(folder / "no.mp4"));
+  EXPECT_FALSE(fs::exists(folder / "no.mp4.tmp"));
+  EXPECT_FALSE(fs::exists(folder / "no.mp4.tmp.series"));
+  const Variable empty("PATH", folder.path().string());
+  EXPECT_THROW(make_movie(three, 5, folder / "b.gif"), EnvironmentError);
 }
 
 TEST(Render, UnknownFieldIsRefusedWithTheNearestName)
@@ -196,9 +445,8 @@ TEST(LaunchRender, PictureThatIsNotThereIsAnError)
 {
   const ScratchFolder folder;
   const Variable some("DISPLAY", ":nowhere");
-  EXPECT_THAT(message_of<EnvironmentError>(script(folder, "echo picture: /nowhere.png"), {}),
-              HasSubstr("/nowhere.png, which is not there"));
-  EXPECT_THAT(message_of<EnvironmentError>(script(folder, "exit 0"), {}), HasSubstr("wrote no picture"));
+  EXPECT_THAT(message_of<EnvironmentError>(script(folder, "echo file: /nowhere.png"), {}), HasSubstr("/nowhere.png, which is not there"));
+  EXPECT_THAT(message_of<EnvironmentError>(script(folder, "exit 0"), {}), HasSubstr("wrote nothing"));
 }
 
 TEST(LaunchRender, ArgumentsArriveAsTheyWereGiven)

@@ -1,0 +1,37 @@
+#include "app/rendered_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "io/reader.hpp"
+#include "io/vtk.hpp"
+
+namespace talus {
+
+namespace fs = std::filesystem;
+
+RenderedRun read_rendered_run(const fs::path& folder)
+{
+  if (!fs::exists(folder / "summary.json"))
+    throw EnvironmentError(fmt::format("{} holds no results of a run (no summary.json)", folder.string()));
+  RenderedRun run{read_scene(folder / "scene.yaml"), {}};
+  const fs::path series = folder / "particles.pvd";
+  if (!fs::exists(series))
+    throw EnvironmentError(fmt::format("{} is not there: the scene asks for no outputs.particles", series.string()));
+  const auto files = read_pvd(series);
+  if (files.empty())
+    throw EnvironmentError(fmt::format("{} lists no file", series.string()));
+  run.facts = {run.scene.dimension, files.size(), {}};
+  for (const auto& [name, components] : stored_particle_fields(files.front().second))
+    run.facts.fields.push_back({name, components});
+  return run;
+}
+
+bool has_option(const std::vector<std::string>& words, std::string_view option)
+{
+  return std::find(words.begin(), words.end(), option) != words.end();
+}
+
+}  // namespace talus

@@ -1,0 +1,38 @@
+// Words of the command line to a chart.
+#include <fmt/format.h>
+
+#include "core/error.hpp"
+#include "io/option_words.hpp"
+#include "io/picture_settings.hpp"
+#include "io/render_chart.hpp"
+
+namespace talus::render {
+
+Chart parse_chart(std::span<const std::string> arguments)
+{
+  Chart chart;
+  OptionWords words(arguments);
+  while (!words.empty()) {
+    const std::string word = words.next("");
+    if (word == "--x")
+      chart.x = words.next(word);
+    else if (word == "--y")
+      chart.y = words.next(word);
+    else if (word == "--title")
+      chart.title = words.next(word);
+    else if (word == "--out")
+      chart.out = words.next(word);
+    else if (word == "--level") {
+      std::string name = words.next(word);
+      chart.levels.push_back({std::move(name), number<Real>(words.next(word), word)});
+    } else if (!word.starts_with("--") && chart.table.empty())
+      chart.table = word;
+    else
+      throw Error(fmt::format("unknown option {}\n{}", word, usage()));
+  }
+  if (chart.table.empty() || chart.x.empty() || chart.y.empty() || chart.out.empty())
+    throw Error("a chart needs a table, --x, --y and --out\n" + usage());
+  return chart;
+}
+
+}  // namespace talus::render
