@@ -8,7 +8,7 @@ namespace talus {
 
 namespace {
 
-constexpr std::array<int, 3> requests{SIGTERM, SIGINT, SIGUSR1};
+constexpr std::array<int, 3> stop_signals{SIGTERM, SIGINT, SIGUSR1};
 volatile std::sig_atomic_t noted = 0;
 
 extern "C" void note(int number)
@@ -25,13 +25,13 @@ extern "C" void note(int number)
 StopRequests::StopRequests()
 {
   noted = 0;
-  for (const int number : requests)
+  for (const int number : stop_signals)
     std::signal(number, note);
 }
 
 StopRequests::~StopRequests()
 {
-  for (const int number : requests)
+  for (const int number : stop_signals)
     std::signal(number, noted != 0 ? SIG_IGN : SIG_DFL);  // a program that was told to stop is about to end
 }
 
