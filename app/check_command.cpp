@@ -48,10 +48,11 @@ std::string describe_time(const std::vector<StageTrial>& trials, Real preparing,
     usual += n * trial.usual, least += n * trial.quickest * quicker_steps, most += n * trial.slowest * slower_steps;
     made += trial.made, steps += trial.steps;
   }
-  return text + fmt::format("  speed: {:.3g} million particle-steps/s with {} thread{}, measured in {} steps\n"
-                            "  time: about {}, likely between {} and {}\n",
-                            static_cast<Real>(steps) * particles / usual / million, threads(), threads() == 1 ? "" : "s", made,
-                            duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
+  return text + fmt::format(
+                    "  speed: {:.3g} million particle-steps/s with {} thread{}, measured in {} steps\n"
+                    "  time: about {}, likely between {} and {}\n",
+                    static_cast<Real>(steps) * particles / usual / million, threads(), threads() == 1 ? "" : "s", made,
+                    duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
 }
 
 enum class Times : std::uint8_t { left_out, measured };

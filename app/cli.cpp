@@ -1,9 +1,9 @@
 // The only file that sees CLI11.
 #include "app/cli.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
@@ -134,9 +134,11 @@ class CommandLine {
     CLI::App* run = app_.add_subcommand("run", "run a scene");
     CLI::Option_group* what = run->add_option_group("what");
     CLI::Option* scene = what->add_option("scene", run_.scene, "scene file (.yaml)")->type_name(scene_value);
-    what->add_option("--resume", run_.resume, "go on with a run that was stopped: its folder, or one of its checkpoints")->type_name(folder_value);
+    what->add_option("--resume", run_.resume, "go on with a run that was stopped: its folder, or one of its checkpoints")
+        ->type_name(folder_value);
     what->require_option(1);
-    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with")->type_name(folder_value);
+    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with")
+        ->type_name(folder_value);
     run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
     run->add_option("--set", run_.set, set_help);
     run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
@@ -162,7 +164,9 @@ class CommandLine {
   void add_mesh()
   {
     CLI::App* mesh = app_.add_subcommand("mesh", "quality and groups of a mesh; make it if need be");
-    mesh->add_option("file", mesh_.file, "scene (.yaml), mesh (.msh) or geometry (.geo, .step)")->type_name("*.yaml *.msh *.geo *.step")->required();
+    mesh->add_option("file", mesh_.file, "scene (.yaml), mesh (.msh) or geometry (.geo, .step)")
+        ->type_name("*.yaml *.msh *.geo *.step")
+        ->required();
     mesh->add_option("--out", mesh_.out, "write the mesh to this .msh")->type_name("*.msh");
     mesh->add_option("--size", mesh_.size, "edge length of the cells of a geometry [m]")->check(CLI::PositiveNumber);
     mesh->add_option("--dimension", mesh_.dimension, "2 or 3; default that of the largest cells")->check(CLI::Range(2, 3));

@@ -38,8 +38,8 @@ bool assigns(std::string_view text)
 [[noreturn]] void refuse(const std::string& text, std::string_view known, const std::string& why)
 {
   constexpr std::size_t longest_quote = 200;
-  throw std::invalid_argument(fmt::format("{} is no formula of {}: {}",
-                                          text.size() <= longest_quote ? fmt::format("\"{}\"", text) : "this long text", known, why));
+  throw std::invalid_argument(
+      fmt::format("{} is no formula of {}: {}", text.size() <= longest_quote ? fmt::format("\"{}\"", text) : "this long text", known, why));
 }
 
 /// Reads the text of a formula of what `define` names, `known` in words, and has its value once: what is wrong with the text shows then.
