@@ -1,8 +1,10 @@
-// talus check
+// talus check, and talus run --dry-run
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
-#include "app/simulate.hpp"
+#include "app/quick.hpp"
+#include "app/trial.hpp"
+#include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
 
@@ -10,39 +12,107 @@ namespace talus {
 
 namespace {
 
-template <int D>
-void check(const Scene& scene)
+constexpr Real megabyte = 1e6, million = 1e6;
+/// Steps of a whole run over those at its start, measured: particles that get faster ask for shorter steps, those that rest for less work.
+constexpr Real quicker_steps = 0.8, slower_steps = 1.6;
+
+std::string in_megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / megabyte); }
+
+/// Files and their sizes, those that there are.
+std::string describe_disk_use(const FileSizes& one, const DiskUse& use)
 {
+  std::string text = fmt::format("  disk: at most {} before compression:", in_megabytes(use.bytes));
+  const auto add = [&](std::int64_t number, const char* what, Real each) {
+    if (number > 0)
+      text += fmt::format("{} {} {} of {}", text.ends_with(':') ? "" : ",", number, what, in_megabytes(each));
+  };
+  add(use.particle_files, "particle files", one.particles);
+  add(use.mesh_files, "mesh files", one.mesh);
+  add(use.history_rows > 0 ? 1 : 0, "history", static_cast<Real>(use.history_rows) * one.history_row);
+  add(use.checkpoints, "checkpoints", one.checkpoint);
+  return text + "\n";
+}
+
+std::string describe_time(const std::vector<StageTrial>& trials, Real preparing, Index particles)
+{
+  if (trials.empty())
+    return "  time: the run has too few steps to measure\n";
+  std::string text;
+  Real usual = 0, least = 0, most = 0;
+  std::int64_t made = 0, steps = 0;
+  for (const StageTrial& trial : trials) {
+    const auto n = static_cast<Real>(trial.steps);
+    if (trials.size() > 1)
+      text += fmt::format("  stage {}: at most {} steps of {:.3g} ms: {}\n", trial.name, trial.steps, 1e3 * trial.usual,
+                          duration_in_words(n * trial.usual));
+    usual += n * trial.usual, least += n * trial.quickest * quicker_steps, most += n * trial.slowest * slower_steps;
+    made += trial.made, steps += trial.steps;
+  }
+  return text + fmt::format(
+                    "  speed: {:.3g} million particle-steps/s with {} thread{}, measured in {} steps\n"
+                    "  time: about {}, likely between {} and {}\n",
+                    static_cast<Real>(steps) * particles / usual / million, threads(), threads() == 1 ? "" : "s", made,
+                    duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
+}
+
+enum class Times : std::uint8_t { left_out, measured };
+
+/// What a run would find wrong, and what it would cost.
+template <int D>
+void tell_cost(Scene scene, bool quick, Times times)
+{
+  StopWatch watch;
+  Real preparing = 0;
   auto mesh = load_mesh<D>(scene.mesh, folder_of(scene));
   auto setup = set_up(scene, mesh);
+  watch.lap(preparing);
+  if (quick)
+    shorten(first_step(mesh, setup), setup.stages, scene.outputs);
   const auto warnings = setup.warnings;
   const Index particles = setup.particles.size(), cells = mesh.n_cells(), nodes = mesh.n_nodes();
+  const Real duration = total_duration(setup);
   std::string bodies;
   for (const Body& body : setup.bodies)
     bodies += fmt::format("  body \"{}\": {} particles\n", body.name, body.size());
   if (setup.origin)
     bodies += describe(*setup.origin);
+  const bool measured = times == Times::measured;
+  const auto trials = measured ? try_stages(scene, mesh, setup) : std::vector<StageTrial>{};
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));
   for (const std::string& warning : warnings)
     fmt::print(stderr, "warning: {}\n", warning);
-  constexpr Real mega = 1e6;
   fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}", scene.title, D, scene.kernel, cells, nodes, particles, bodies);
   fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
-             static_cast<Real>(cost.steps) * particles / mega);
-  fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / mega,
-             static_cast<Real>(cost.mesh_bytes) / mega, static_cast<Real>(cost.node_bytes) / mega);
-  fmt::print("{}: no errors\n", scene.file);
+             static_cast<Real>(cost.steps) * particles / million);
+  fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,
+             static_cast<Real>(cost.mesh_bytes) / megabyte, static_cast<Real>(cost.node_bytes) / megabyte);
+  fmt::print("{}{}", describe_disk_use(cost.files, disk_use(cost.files, scene.outputs, duration)),
+             measured ? describe_time(trials, preparing, particles) : "");
+  fmt::print("{}: no errors{}\n", scene.file, measured ? ", nothing was written" : "");
+}
+
+void tell_cost(Scene scene, bool quick, Times times)
+{
+  if (scene.dimension == 2)
+    tell_cost<2>(std::move(scene), quick, times);
+  else
+    tell_cost<3>(std::move(scene), quick, times);
 }
 
 }  // namespace
 
 void check_scene(const std::filesystem::path& file, const std::vector<std::string>& set)
 {
-  const Scene scene = read_scene(file, set);
-  if (scene.dimension == 2)
-    check<2>(scene);
-  else
-    check<3>(scene);
+  tell_cost(read_scene(file, set), false, Times::left_out);
+}
+
+void dry_run(const RunOptions& options)
+{
+  Scene scene = read_scene(options.scene, options.set);
+  take_threads(options.threads, scene);
+  if (options.quick)
+    coarsen(scene);
+  tell_cost(std::move(scene), options.quick, Times::measured);
 }
 
 }  // namespace talus

@@ -1,12 +1,16 @@
 // The only file that sees CLI11.
 #include "app/cli.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
 #include <array>
 
 #include "app/commands.hpp"
+#include "app/completion.hpp"
+#include "app/templates.hpp"
 #include "core/exchange.hpp"
 #include "core/version.hpp"
 #include "core/words.hpp"
@@ -20,10 +24,15 @@ namespace {
 constexpr int usage_error = 2, results_differ = 1;
 constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
 constexpr int most_steps = 10'000'000;
+
+/// What help shows for values, and what a shell completes (completion.hpp): files by their names, folders, some words.
+constexpr auto scene_value = "*.yaml", folder_value = "FOLDER";
+std::string one_of(const std::vector<std::string>& words) { return fmt::format("{{{}}}", fmt::join(words, ",")); }
+
 /// What all ranks do together; any other command is the root's.
 bool is_shared_by_ranks(const CLI::App& command)
 {
-  return command.get_name() == "run" || (command.get_name() == "bench" && command.count("--mpi") > 0);
+  return (command.get_name() == "run" && command.count("--dry-run") == 0) || (command.get_name() == "bench" && command.count("--mpi") > 0);
 }
 
 /// Commands and the options they fill; lives as long as the parse.
@@ -34,6 +43,7 @@ class CommandLine {
     app_.require_subcommand(1);
     app_.set_version_flag("--version", describe(version()));
     app_.set_help_all_flag("--help-all", "help of every command");
+    add_new();
     add_run();
     add_check();
     add_mesh();
@@ -47,9 +57,8 @@ class CommandLine {
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
     add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
     add_bench();
-    CLI::App* manual = app_.add_subcommand("manual", "every key of a scene, as Markdown");
-    manual->add_flag("--schema", schema_, "as JSON Schema, for editors");
-    manual->callback([this] { print_manual(schema_); });
+    add_manual();
+    add_completion();
     app_.add_subcommand("info", "version, laws, kernels, licence")->callback([] { print_info(); });
     app_.parse_complete_callback([this] { leave_to_root(*app_.get_subcommands().front()); });
   }
@@ -73,14 +82,67 @@ class CommandLine {
       command.callback(nullptr);
   }
 
+  void add_new()
+  {
+    CLI::App* made = app_.add_subcommand("new", "write a commented scene from a template and your answers");
+    made->add_option("template", new_.from, "name of a template (talus new --list), or the file of one")
+        ->type_name(one_of(template_names()) + " or *.yaml");
+    made->add_option("--out", new_.out, "file to write; default <template>.yaml")->type_name(scene_value);
+    made->add_option("--set", new_.set, "answer a question: name=value; the others take their defaults")->type_name("NAME=VALUE");
+    made->add_flag("--list", new_.list, "write nothing: tell the templates, or what one of them asks");
+    made->add_flag("--force", new_.force, "replace the file if it is there");
+    made->callback([this] { new_scene(new_); });
+  }
+
+  void add_manual()
+  {
+    CLI::App* manual = app_.add_subcommand("manual", "every key of a scene, as Markdown; or what some of them mean");
+    CLI::Option* words =
+        manual->add_option("key", manual_words_, "keys, laws, kernels, types: friction_angle, materials.cohesion, mohr_coulomb");
+    words->type_name("KEY");
+    manual->add_flag("--schema", schema_, "as JSON Schema, for editors")->excludes(words);
+    manual->callback([this] { print_manual(schema_, manual_words_); });
+  }
+
+  void add_completion()
+  {
+    CLI::App* completion = app_.add_subcommand("completion", "print what makes a shell complete commands, options and files");
+    completion->add_option("shell", shell_, "which shell")->required()->check(CLI::IsMember(completion_shells()));
+    completion->callback([this] {
+      std::vector<CommandWords> commands;
+      for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; })) {
+        commands.push_back({command->get_name(), command->get_description(), {}});
+        add_options(*command, commands.back().options);
+      }
+      fmt::print("{}", completion_script(shell_, commands));
+    });
+  }
+
+  /// Those of a command and of the groups in it.
+  static void add_options(const CLI::App& from, std::vector<OptionWords>& options)
+  {
+    for (const CLI::Option* option : from.get_options()) {
+      OptionWords words{{}, option->get_items_expected_max() > 0 ? option->get_type_name() : "", option->get_description()};
+      for (const std::string& name : option->get_snames())
+        words.names.push_back("-" + name);
+      for (const std::string& name : option->get_lnames())
+        words.names.push_back("--" + name);
+      options.push_back(std::move(words));
+    }
+    for (const CLI::App* group : from.get_subcommands([](const CLI::App*) { return true; }))
+      add_options(*group, options);
+  }
+
   void add_run()
   {
     CLI::App* run = app_.add_subcommand("run", "run a scene");
     CLI::Option_group* what = run->add_option_group("what");
-    CLI::Option* scene = what->add_option("scene", run_.scene, "scene file (.yaml)");
-    what->add_option("--resume", run_.resume, "go on with a run that was stopped: its folder, or one of its checkpoints");
+    CLI::Option* scene = what->add_option("scene", run_.scene, "scene file (.yaml)")->type_name(scene_value);
+    what->add_option("--resume", run_.resume, "go on with a run that was stopped: its folder, or one of its checkpoints")
+        ->type_name(folder_value);
     what->require_option(1);
-    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with");
+    run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with")
+        ->type_name(folder_value);
     run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
     run->add_option("--set", run_.set, set_help);
     run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
@@ -90,13 +152,15 @@ class CommandLine {
         ->check(CLI::NonNegativeNumber);
     run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");
-    run->callback([this] { run_scene(run_); });
+    run->add_flag("--dry-run", run_.dry, "write nothing: tell what the run would take in memory, files and time, from a few steps")
+        ->needs(scene);
+    run->callback([this] { run_.dry ? dry_run(run_) : run_scene(run_); });
   }
 
   void add_check()
   {
     CLI::App* check = app_.add_subcommand("check", "find everything wrong with a scene and its mesh; say what a run would cost");
-    check->add_option("scene", check_scene_, "scene file (.yaml)")->required();
+    check->add_option("scene", check_scene_, "scene file (.yaml)")->type_name(scene_value)->required();
     check->add_option("--set", check_set_, set_help);
     check->callback([this] { check_scene(check_scene_, check_set_); });
   }
@@ -104,8 +168,10 @@ class CommandLine {
   void add_mesh()
   {
     CLI::App* mesh = app_.add_subcommand("mesh", "quality and groups of a mesh; make it if need be");
-    mesh->add_option("file", mesh_.file, "scene (.yaml), mesh (.msh) or geometry (.geo, .step)")->required();
-    mesh->add_option("--out", mesh_.out, "write the mesh to this .msh");
+    mesh->add_option("file", mesh_.file, "scene (.yaml), mesh (.msh) or geometry (.geo, .step)")
+        ->type_name("*.yaml *.msh *.geo *.step")
+        ->required();
+    mesh->add_option("--out", mesh_.out, "write the mesh to this .msh")->type_name("*.msh");
     mesh->add_option("--size", mesh_.size, "edge length of the cells of a geometry [m]")->check(CLI::PositiveNumber);
     mesh->add_option("--dimension", mesh_.dimension, "2 or 3; default that of the largest cells")->check(CLI::Range(2, 3));
     mesh->add_option("--set", mesh_.set, set_help);
@@ -115,11 +181,12 @@ class CommandLine {
   void add_drive()
   {
     CLI::App* drive = app_.add_subcommand("drive", "drive one law along a path of strains and stresses, or through a laboratory test");
-    drive->add_option("file", drive_.file, "material and paths (.yaml); with --test a scene")->required();
+    drive->add_option("file", drive_.file, "material and paths (.yaml); with --test a scene")->type_name(scene_value)->required();
     drive->add_option("--out", drive_.out, "write the table to this .csv; default the screen, and with --test nowhere");
     drive->add_option("--set", drive_.set, set_help);
     constexpr auto tests = words(Laboratory{});
     CLI::Option* test = drive->add_option("--test", drive_.test, or_list(std::vector<std::string>(tests.begin(), tests.end())));
+    test->type_name(one_of(std::vector<std::string>(tests.begin(), tests.end())));
     const auto of_test = [&](const char* name, auto& value, const char* help) { return drive->add_option(name, value, help)->needs(test); };
     of_test("--material", drive_.material, "material of the scene; may be left out where there is one");
     of_test("--pressure", drive_.pressure, "stress at the start, equal in all directions [Pa]; default 1e5, for the last two tests 0")
@@ -154,7 +221,7 @@ class CommandLine {
   void add_render()
   {
     CLI::App* render = app_.add_subcommand("render", "draw pictures of a run, or a movie");
-    render->add_option("folder", render_.folder, "results of a run")->required();
+    render->add_option("folder", render_.folder, "results of a run")->type_name(folder_value)->required();
     add_words(*render, render::picture_options, render_.words);
     CLI::Option* movie = render->add_option("--movie", render_.movie, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
     render->add_option("--fps", render_.per_second, "pictures per second of the movie; default 10")
@@ -167,9 +234,11 @@ class CommandLine {
   void add_report()
   {
     CLI::App* report = app_.add_subcommand("report", "make one page for the browser of a run: particles, history, numbers");
-    report->add_option("folder", report_.folder, "results of a run, ended or not")->required();
+    report->add_option("folder", report_.folder, "results of a run, ended or not")->type_name(folder_value)->required();
     report->add_option("--out", report_.out, "a .html; default DIR/report.html");
-    report->add_option("--fields", report_.fields, "particle fields, such as plastic_strain,stress:xy; default that of the pictures, then all")
+    report
+        ->add_option("--fields", report_.fields,
+                     "particle fields, such as plastic_strain,stress:xy; default that of the pictures, then all")
         ->delimiter(',');
     report->add_option("--frames", report_.frames, "so many, evenly spread; default as many as there is room for")
         ->check(CLI::Range(1, most_steps));
@@ -182,9 +251,10 @@ class CommandLine {
   {
     constexpr int most_port = 65535;
     CLI::App* watch = app_.add_subcommand("watch", "follow a run in the terminal and in the browser until it ends");
-    watch->add_option("folder", watch_.folder, "where a run leaves its results")->required();
+    watch->add_option("folder", watch_.folder, "where a run leaves its results")->type_name(folder_value)->required();
     watch->add_option("--interval", watch_.interval, "seconds between looks; default 2")->check(CLI::Range(0.1, 3600.0));
-    watch->add_option("--port", watch_.port, "of the page, on this machine only; default any that is free")->check(CLI::Range(0, most_port));
+    watch->add_option("--port", watch_.port, "of the page, on this machine only; default any that is free")
+        ->check(CLI::Range(0, most_port));
     watch->add_flag("!--no-serve", watch_.serve, "no page, only the terminal");
     watch->add_flag("--once", watch_.once, "look once, serve nothing, end");
     watch->add_option("--page", watch_.page, "page to fill instead of the one that was built with the program");
@@ -194,7 +264,7 @@ class CommandLine {
   void add_surface()
   {
     CLI::App* surface = app_.add_subcommand("surface", "write the surface of bodies for other programs, and say what it encloses");
-    surface->add_option("folder", surface_.folder, "results of a run")->required();
+    surface->add_option("folder", surface_.folder, "results of a run")->type_name(folder_value)->required();
     surface->add_option("--body", surface_.body, "name of the body; default each of them, all in one file");
     add_words(*surface, render::surface_options, surface_.words);
     surface->callback([this] { extract_surface(surface_); });
@@ -203,8 +273,8 @@ class CommandLine {
   void add_diff()
   {
     CLI::App* diff = app_.add_subcommand("diff", "compare the results of two runs, field by field");
-    diff->add_option("a", diff_.a, "results of a run")->required();
-    diff->add_option("b", diff_.b, "results of another run")->required();
+    diff->add_option("a", diff_.a, "results of a run")->type_name(folder_value)->required();
+    diff->add_option("b", diff_.b, "results of another run")->type_name(folder_value)->required();
     const auto tolerance = [&](const char* name, Real& value, const char* help) {
       return diff->add_option(name, value, help)->check(CLI::NonNegativeNumber);
     };
@@ -218,8 +288,8 @@ class CommandLine {
   void add_sweep()
   {
     CLI::App* sweep = app_.add_subcommand("sweep", "run a scene with several values of its keys, and put their results into a table");
-    sweep->add_option("study", sweep_.study, "study (.yaml): scene, what varies, what is told")->required();
-    sweep->add_option("--out", sweep_.out, "folder of cases and table; default runs/<name of the study>");
+    sweep->add_option("study", sweep_.study, "study (.yaml): scene, what varies, what is told")->type_name(scene_value)->required();
+    sweep->add_option("--out", sweep_.out, "folder of cases and table; default runs/<name of the study>")->type_name(folder_value);
     CLI::Option* jobs =
         sweep->add_option("--jobs", sweep_.jobs, "cases at a time; default as many as there are cores for")->check(CLI::Range(1, 1024));
     sweep->add_option("--threads", sweep_.threads, "threads of each; default the cores over the cases at a time")
@@ -242,7 +312,7 @@ class CommandLine {
     if (!verify)
       cases->required()->expected(1);
     suite->add_option("--level", options.level, "quick or full; default quick")->check(CLI::IsMember({"quick", "full"}));
-    suite->add_option("--out", options.out, "folder for runs and report; default runs/" + name);
+    suite->add_option("--out", options.out, "folder for runs and report; default runs/" + name)->type_name(folder_value);
     suite->add_option("--jobs", options.jobs, "runs at a time; default one a core")->check(CLI::Range(1, 1024));
     suite->add_option("--threads", options.threads, "threads of each run; default 1")->check(CLI::Range(1, 1024));
     suite->add_flag("--reuse", options.reuse, "do not repeat runs whose program and inputs are unchanged");
@@ -285,6 +355,7 @@ class CommandLine {
   }
 
   CLI::App app_;
+  NewOptions new_;
   RunOptions run_;
   std::filesystem::path check_scene_;
   std::vector<std::string> check_set_;
@@ -298,6 +369,8 @@ class CommandLine {
   SweepOptions sweep_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
+  std::vector<std::string> manual_words_;
+  std::string shell_;
   bool schema_ = false;
   int status_ = 0;
 };

@@ -10,6 +10,15 @@
 
 namespace talus {
 
+struct NewOptions {
+  std::optional<std::string> from;  ///< name of a template, or its file
+  std::optional<std::filesystem::path> out;
+  std::vector<std::string> set;  ///< name=value of questions; then nothing is asked
+  bool list = false, force = false;
+};
+/// Writes a scene from a template and answers.  SceneErrors, Error: an answer or the template is wrong; the file is there already.
+void new_scene(const NewOptions& options);
+
 struct RunOptions {
   std::filesystem::path scene;
   std::optional<std::filesystem::path> out;
@@ -19,10 +28,14 @@ struct RunOptions {
   std::optional<std::int64_t> rebalance;  ///< ranks share the run out anew every so many steps; 0: never; default: when it pays
   std::vector<std::string> set;
   bool quick = false, quiet = false;
+  bool dry = false;  ///< only tell what the run would cost
 };
 /// Runs a scene, or goes on with one, and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError; Stopped by a signal or
 /// where it was to stop.
 void run_scene(const RunOptions& options);
+
+/// Makes a few steps, writes nothing, says what the run would cost in memory, files and time.  SceneErrors, RunError.
+void dry_run(const RunOptions& options);
 
 /// Does everything but run, writes nothing, says what a run would cost.
 void check_scene(const std::filesystem::path& scene, const std::vector<std::string>& set);
@@ -139,8 +152,8 @@ struct BenchOptions {
 /// nothing.
 void bench(const BenchOptions& options);
 
-/// Every key of a scene: Markdown, or JSON Schema.
-void print_manual(bool schema);
+/// Every key of a scene: Markdown, or JSON Schema; or what these words mean.  Error: nothing.
+void print_manual(bool schema, const std::vector<std::string>& words);
 void print_info();
 
 }  // namespace talus

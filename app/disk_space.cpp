@@ -27,7 +27,7 @@ Real bytes_of_fields(const std::vector<std::string>& names, ColumnOf&& column_of
 }
 
 /// How often something is written, at the beginning and at the end as well.
-Real times(Real time, Real every) { return std::floor(time / every) + 2; }
+std::int64_t times(Real time, Real every) { return static_cast<std::int64_t>(time / every) + 2; }
 
 std::string megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / 1e6); }
 
@@ -55,6 +55,20 @@ FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs)
   return sizes;
 }
 
+DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time)
+{
+  const auto times_of = [&](const auto& output) { return output ? times(time, output->every) : 0; };
+  DiskUse use;
+  use.particle_files = times_of(outputs.particles);
+  use.mesh_files = times_of(outputs.mesh);
+  use.history_rows = times_of(outputs.history);
+  use.checkpoints = outputs.checkpoint.keep + 1;  // one more while it is written
+  const auto bytes = [](std::int64_t number, Real each) { return static_cast<Real>(number) * each; };
+  use.bytes = bytes(use.particle_files, one.particles) + bytes(use.mesh_files, one.mesh) + bytes(use.history_rows, one.history_row) +
+              bytes(use.checkpoints, one.checkpoint);
+  return use;
+}
+
 namespace {
 
 void compare_with_free_space(const std::filesystem::path& folder, const FileSizes& one, const OutputSpec& outputs, Real time_left)
@@ -65,13 +79,7 @@ void compare_with_free_space(const std::filesystem::path& folder, const FileSize
   if (free < least)
     throw EnvironmentError(fmt::format("the disk of {} has {} left; one checkpoint and one file of each kind take about {}",
                                        folder.string(), megabytes(free), megabytes(least)));
-  Real all = one.checkpoint * (outputs.checkpoint.keep + 1);  // one more while it is written
-  if (outputs.particles)
-    all += one.particles * times(time_left, outputs.particles->every);
-  if (outputs.mesh)
-    all += one.mesh * times(time_left, outputs.mesh->every);
-  if (outputs.history)
-    all += one.history_row * times(time_left, outputs.history->every);
+  const Real all = disk_use(one, outputs, time_left).bytes;
   if (free < all)
     fmt::print(stderr, "warning: the disk of {} has {} left; all outputs of the run may take about {}\n", folder.string(), megabytes(free),
                megabytes(all));

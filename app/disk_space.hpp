@@ -14,6 +14,14 @@ struct FileSizes {
 template <int D>
 FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs);
 
+/// What a run writes in `time` [s], besides its mesh and its summary: how often each kind, and bytes of all of it as if nothing were
+/// compressed.
+struct DiskUse {
+  std::int64_t particle_files{}, mesh_files{}, history_rows{}, checkpoints{};
+  Real bytes{};
+};
+DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time);
+
 /// EnvironmentError: the disk of `folder` has no room for a checkpoint and one file of each kind.  A warning on standard error: it has none
 /// for all that will be written in `time_left` [s].
 template <int D>

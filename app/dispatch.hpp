@@ -302,6 +302,7 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
 {
   Estimate cost{};
   cost.dt = first_step(mesh, setup);
+  const Stage first_stage = setup.stages.front();
   for (const Stage& stage : setup.stages)
     cost.steps += static_cast<std::int64_t>(std::ceil(stage.duration / cost.dt));
   with_kernel<D>(scene.kernel, [&]<class K>() {
@@ -317,6 +318,7 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
         bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.hats.sum) + bytes(m.hats.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
     if constexpr (HasNodePart<K, D>)
       cost.node_bytes += static_cast<std::int64_t>(m.kernel.node_part().size_bytes());
+    cost.files = file_sizes(frame_of(m, first_stage), scene.outputs);
   });
   return cost;
 }

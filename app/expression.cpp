@@ -10,6 +10,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/words.hpp"
+
 namespace talus {
 
 struct Formula::Machine {
@@ -20,7 +22,7 @@ struct Formula::Machine {
 
 namespace {
 
-/// muParser would store into x, y, z or t.
+/// muParser would store into what is named.
 bool assigns(std::string_view text)
 {
   for (std::size_t at = text.find('='); at != text.npos; at = text.find('=', at + 1)) {
@@ -33,11 +35,34 @@ bool assigns(std::string_view text)
   return false;
 }
 
-[[noreturn]] void refuse(const std::string& text, const std::string& why)
+[[noreturn]] void refuse(const std::string& text, std::string_view known, const std::string& why)
 {
   constexpr std::size_t longest_quote = 200;
-  throw std::invalid_argument(fmt::format("{} is no formula of x, y, z and t: {}",
-                                          text.size() <= longest_quote ? fmt::format("\"{}\"", text) : "this long text", why));
+  throw std::invalid_argument(
+      fmt::format("{} is no formula of {}: {}", text.size() <= longest_quote ? fmt::format("\"{}\"", text) : "this long text", known, why));
+}
+
+/// Reads the text of a formula of what `define` names, `known` in words, and has its value once: what is wrong with the text shows then.
+template <class Define>
+Real read_formula(const std::string& text, std::string_view known, Define&& define, mu::Parser& parser)
+{
+  constexpr std::size_t most_characters = 10'000;
+  if (text.size() > most_characters)
+    refuse(text, known, fmt::format("it has more than {} characters", most_characters));
+  if (assigns(text))
+    refuse(text, known, "it cannot assign; == compares");
+  Real value = 0;
+  try {
+    parser.DefineConst("pi", std::numbers::pi);
+    define();
+    parser.SetExpr(text);
+    value = parser.Eval();
+  } catch (const mu::ParserError& e) {
+    refuse(text, known, e.GetMsg());
+  }
+  if (parser.GetNumResults() > 1)
+    refuse(text, known, fmt::format("it has {} values; decimals are written with a point", parser.GetNumResults()));
+  return value;
 }
 
 }  // namespace
@@ -45,24 +70,13 @@ bool assigns(std::string_view text)
 Formula::Formula(const std::string& text) : machine_(std::make_shared<Machine>())
 {
   mu::Parser& parser = machine_->parser;
-  constexpr std::size_t most_characters = 10'000;
-  if (text.size() > most_characters)
-    refuse(text, fmt::format("it has more than {} characters", most_characters));
-  if (assigns(text))
-    refuse(text, "it cannot assign; == compares");
-  try {
-    parser.DefineConst("pi", std::numbers::pi);
+  const auto place_and_time = [&] {
     parser.DefineVar("x", &machine_->place[0]);
     parser.DefineVar("y", &machine_->place[1]);
     parser.DefineVar("z", &machine_->place[2]);
     parser.DefineVar("t", &machine_->time);
-    parser.SetExpr(text);
-    parser.Eval();  // what is wrong with the text shows now
-  } catch (const mu::ParserError& e) {
-    refuse(text, e.GetMsg());
-  }
-  if (parser.GetNumResults() > 1)
-    refuse(text, fmt::format("it has {} values; decimals are written with a point", parser.GetNumResults()));
+  };
+  read_formula(text, "x, y, z and t", place_and_time, parser);
 }
 
 Real Formula::operator()(const Vec3& place, Real time) const
@@ -118,6 +132,22 @@ std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> pla
       throw std::invalid_argument(
           fmt::format("\"{}\" is {} at ({:.6g}, {:.6g}, {:.6g})", formula, values[i], places[i][0], places[i][1], places[i][2]));
   return values;
+}
+
+Real evaluate(const std::string& formula, std::span<const NamedNumber> names)
+{
+  std::vector<std::string> known;
+  for (const NamedNumber& one : names)
+    known.push_back(one.name);
+  mu::Parser parser;
+  const auto define = [&] {
+    for (const NamedNumber& one : names)
+      parser.DefineConst(one.name, one.value);
+  };
+  const Real value = read_formula(formula, known.empty() ? "numbers" : or_list(known), define, parser);
+  if (!std::isfinite(value))
+    throw std::invalid_argument(fmt::format("\"{}\" is {}", formula, value));
+  return value;
 }
 
 }  // namespace talus

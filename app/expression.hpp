@@ -26,6 +26,15 @@ class Formula {
 /// Throws std::invalid_argument, in words: no formula, or its value is not finite somewhere.
 std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> places);
 
+/// Something with a value that formulas may name.
+struct NamedNumber {
+  std::string name;
+  Real value;
+};
+/// Value of a formula of these names, the constant pi and the usual functions.  std::invalid_argument, in words: no formula, or its value is
+/// not finite.
+Real evaluate(const std::string& formula, std::span<const NamedNumber> names);
+
 /// Derivatives of `formula` along x, y, z at each place by central differences; `sizes` [m] are lengths over which the formula is meant
 /// to be resolved there, such as those of cells.  They err by about eps^(2/3) of value / size; what does not depend on a coordinate has
 /// the derivative 0 along it to the bit.  Beside a jump, or the end of where the formula is finite, the derivative is that of the

@@ -6,6 +6,14 @@
 
 namespace talus {
 
-void print_manual(bool schema) { fmt::print("{}", schema ? scene_schema() : scene_manual()); }
+void print_manual(bool schema, const std::vector<std::string>& words)
+{
+  if (words.empty())
+    return fmt::print("{}", schema ? scene_schema() : scene_manual());
+  std::string text;
+  for (const std::string& word : words)
+    text += (text.empty() ? "" : "\n") + manual_of(word);
+  fmt::print("{}", text);
+}
 
 }  // namespace talus

@@ -9,6 +9,7 @@
 #include "app/commands.hpp"
 #include "app/quick.hpp"
 #include "app/results.hpp"
+#include "app/shell_words.hpp"
 #include "app/signals.hpp"
 #include "app/summary.hpp"
 #include "app/traps.hpp"
@@ -43,19 +44,6 @@ std::string with_changes(const Scene& scene)
     text += "'\n";
   }
   return text;
-}
-
-/// As a shell takes it for one word.
-std::string shell_word(const fs::path& word)
-{
-  const std::string text = word.string();
-  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%";
-  if (!text.empty() && text.find_first_not_of(plain) == text.npos)
-    return text;
-  std::string out = "'";
-  for (const char c : text)
-    out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return out + "'";
 }
 
 std::vector<std::string> names_of(const std::vector<fs::path>& files)
@@ -421,11 +409,7 @@ void run_scene(const RunOptions& options)
   if (options.resume)
     from.emplace(*options.resume);
   Scene scene = from ? read_again(from->identity(), options.set) : read_scene(options.scene, options.set);
-  const Index wanted = options.threads.value_or(scene.threads);
-  if (wanted > 0)
-    set_threads(wanted);
-  else if (!world().alone())
-    set_threads(std::max(1, threads() / ranks_on_this_machine()));
+  take_threads(options.threads, scene);
   if (from && !from->folder() && !options.out)
     throw EnvironmentError(fmt::format("{} lies in no folder of a run (DIR/{}, with DIR/summary.json): say with --out where the results go",
                                        options.resume->string(), checkpoint_folder));

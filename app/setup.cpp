@@ -7,6 +7,8 @@
 #include "app/fields.hpp"
 #include "app/guards.hpp"
 #include "app/seed.hpp"
+#include "core/exchange.hpp"
+#include "core/parallel.hpp"
 #include "io/history_columns.hpp"
 #include "io/scene_rules.hpp"
 
@@ -281,6 +283,15 @@ std::string describe(const OriginSummary& origin)
   for (const auto& [body, from, particles] : origin.bodies)
     text += fmt::format("    body \"{}\": the {} particles of \"{}\"\n", body, particles, from);
   return text;
+}
+
+void take_threads(std::optional<int> asked, const Scene& scene)
+{
+  const Index wanted = asked.value_or(scene.threads);
+  if (wanted > 0)
+    set_threads(wanted);
+  else if (!world().alone())
+    set_threads(std::max(1, threads() / ranks_on_this_machine()));
 }
 
 std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::path(scene.file).parent_path(); }

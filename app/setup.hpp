@@ -43,6 +43,9 @@ Transfer transfer_of(const TransferSpec& spec);
 /// A line for each body that comes from another run, and where that is.
 std::string describe(const OriginSummary& origin);
 
+/// As many threads as were asked for, or else as the scene says, or all that this rank has for itself.
+void take_threads(std::optional<int> asked, const Scene& scene);
+
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);
 

@@ -2,6 +2,7 @@
 // The kernel's name becomes a type here, once: builds the model and runs its stages.
 #include <functional>
 
+#include "app/disk_space.hpp"
 #include "app/setup.hpp"
 #include "app/state.hpp"
 
@@ -40,6 +41,7 @@ struct Estimate {
   Real dt;             ///< first step [s]
   std::int64_t steps;  ///< of all stages with that step
   std::int64_t particle_bytes, mesh_bytes, node_bytes;
+  FileSizes files;  ///< on the disk
 };
 
 template <int D>

@@ -92,6 +92,40 @@ function(talus_render_modules)
   endif()
 endfunction()
 
+# scenes/templates/*.yaml as texts in the program, for `talus new` (app/templates.hpp). A file that changes makes them again.
+function(talus_embed_templates folder)
+  file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/templates/*.yaml)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
+  list(LENGTH files count)
+  set(texts)
+  foreach(file ${files})
+    cmake_path(GET file STEM name)
+    file(READ ${file} text)
+    string(APPEND texts "    {\"${name}\", R\"template(${text})template\"},\n")
+  endforeach()
+  set(source ${PROJECT_BINARY_DIR}/generated/scene_templates.cpp)
+  file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
+// Made of scenes/templates by cmake.
+#include "app/templates.hpp"
+
+#include <array>
+
+namespace talus {
+
+namespace {
+
+constexpr std::array<TemplateText, @count@> embedded_templates{{
+@texts@}};
+
+}  // namespace
+
+std::span<const TemplateText> shipped_templates() { return embedded_templates; }
+
+}  // namespace talus
+]])
+  target_sources(talus_${folder} PRIVATE ${source})
+endfunction()
+
 # The version header is asked for at every build and rewritten only when its text changes. Only `source` sees it.
 function(talus_version source)
   if(NOT EXISTS ${PROJECT_SOURCE_DIR}/${source})

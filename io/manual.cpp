@@ -1,18 +1,21 @@
 #include "io/manual.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <concepts>
 #include <functional>
+#include <set>
 #include <typeindex>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "core/words.hpp"
 #include "io/field_reader.hpp"
+#include "io/field_words.hpp"
 #include "io/scene.hpp"
 #include "kernels/kernels.hpp"
 
@@ -59,35 +62,26 @@ std::string in_words(std::span<const std::string_view> all)
   return or_list(quoted);
 }
 
-template <class T>
-concept IsList = requires(const T& list)
-{
-  list.begin();
-}
-&&!std::same_as<T, std::string>;
+using HistoryRow = std::array<std::string, 3>;
 
-/// The default of an optional key.  A number out of its range and an empty text stand for "not given".
-template <class T>
-std::string default_of(const T& value, const Range& range)
+/// A part of the manual, in Markdown: the keys of a mapping, or what a key chooses from.
+struct ManualPart {
+  std::string title;
+  std::string path;                   ///< of the mapping in a scene; of a list for an entry of it
+  std::string chosen{};               ///< the word that makes the mapping have these keys: a law, a type
+  std::string text{};                 ///< before the keys
+  std::vector<Row> rows{};            ///< keys
+  std::vector<HistoryRow> history{};  ///< variables of a law
+};
+
+std::string to_markdown(const ManualPart& part)
 {
-  if constexpr (std::same_as<T, bool>) {
-    return value ? "true" : "false";
-  } else if constexpr (std::is_arithmetic_v<T>) {
-    return range.holds(value) ? fmt::format("{}", value) : "none";
-  } else if constexpr (std::same_as<T, std::string>) {
-    return value.empty() ? "none" : value;
-  } else if constexpr (std::is_enum_v<T>) {
-    return std::string(words(value)[static_cast<std::size_t>(value)]);
-  } else if constexpr (IsList<T>) {
-    std::vector<std::string> items;
-    for (const auto& item : value)
-      items.push_back(default_of(item, range));
-    return items.empty() ? "none" : fmt::format("[{}]", fmt::join(items, ", "));
-  } else if constexpr (requires { value.has_value(); }) {
-    return value ? default_of(*value, range) : "none";
-  } else {
-    return HasFields<T> ? "see there" : "none";
-  }
+  std::string text = fmt::format("\n{} {}\n\n", part.chosen.empty() ? "##" : "###", part.title) + part.text;
+  if (!part.rows.empty() || part.text.empty() || !part.chosen.empty())
+    text += to_table(head, part.rows);
+  if (!part.history.empty())
+    text += "\nIt keeps, for output:\n\n" + to_table({"history variable", "unit", "meaning"}, part.history);
+  return text;
 }
 
 class Manual {
@@ -95,32 +89,21 @@ class Manual {
   static constexpr std::string_view top = "the scene";
 
   template <HasFields T>
-  std::string write(const std::string& title)
+  static std::vector<ManualPart> write()
   {
-    std::string text = section<T>(title, 2) + kernels();
-    while (!waiting_.empty()) {
-      const auto next = std::move(waiting_.front());
-      waiting_.erase(waiting_.begin());
-      const auto later = std::exchange(waiting_, {});
-      text += next();  // what it mentions comes right behind it
-      waiting_.insert(waiting_.end(), later.begin(), later.end());
+    Manual manual;
+    manual.section<T>(std::string(top));
+    while (!manual.waiting_.empty()) {
+      const auto next = std::move(manual.waiting_.front());
+      manual.waiting_.erase(manual.waiting_.begin());
+      const auto later = std::exchange(manual.waiting_, {});
+      next();  // what it mentions comes right behind it
+      manual.waiting_.insert(manual.waiting_.end(), later.begin(), later.end());
     }
-    return text;
+    return std::move(manual.parts_);
   }
 
  private:
-  static std::string kernels()
-  {
-    std::string text = "\nKernels:\n\n";
-    for_each_type(Kernels<2>{}, [&]<class K>() { text += fmt::format("* `{}`: {}\n", K::name, K::summary); });
-    return text;
-  }
-
-  static std::string heading(int level, std::string_view title)
-  {
-    return fmt::format("\n{} {}\n\n", std::string(static_cast<std::size_t>(level), '#'), title);
-  }
-
   /// The link to the section of a type, which is written once, after the section that first mentions it.
   template <class T>
   std::string link(const std::string& path)
@@ -128,7 +111,7 @@ class Manual {
     const std::string own = std::same_as<T, Shape> ? "shape" : std::same_as<T, Box> ? "box" : path;
     const auto [title, is_new] = titles_.emplace(std::type_index(typeid(T)), own);
     if (is_new)
-      waiting_.push_back([this, own] { return section<T>(own, 2); });
+      waiting_.push_back([this, own] { section<T>(own); });
     std::string anchor;
     for (const char c : title->second)
       if (c != '.')
@@ -137,45 +120,50 @@ class Manual {
   }
 
   template <HasFields T>
-  std::string section(const std::string& path, int level)
+  void section(const std::string& path)
   {
-    std::vector<Row> rows;
-    add_rows<T>(rows, path == top ? "" : path + ".");
-    return heading(level, path) + to_table(head, rows) + alternatives<T>();
+    const std::string in_scene = path == top ? "" : path;
+    ManualPart part{.title = path, .path = in_scene};
+    add_rows<T>(part.rows, in_scene.empty() ? "" : in_scene + ".");
+    parts_.push_back(std::move(part));
+    for_each_field<T>([&](const auto& field) { add_alternatives_of(field, in_scene); });
   }
   template <class Variant>
-  requires(!HasFields<Variant>) std::string section(const std::string& path, int level)
+  requires(!HasFields<Variant>) void section(const std::string& path)
   {
-    return heading(level, path) + "One of these, chosen by the key `type`.\n" +
-           each_alternative("type", path, std::type_identity<Variant>{});
+    parts_.push_back({.title = path, .path = path, .text = "One of these, chosen by the key `type`.\n"});
+    add_each_alternative("type", path, path, std::type_identity<Variant>{});
   }
 
+  /// Keys of a mapping at `path`; `prefix` is what their own mappings are called after, if not after the word that chooses.
   template <class... T>
-  std::string each_alternative(std::string_view key, const std::string& path, std::type_identity<std::variant<T...>>)
+  void add_each_alternative(std::string_view key, const std::string& path, const std::string& prefix,
+                            std::type_identity<std::variant<T...>>)
   {
-    return (alternative_section<T>(key, path) + ...);
+    (add_alternative<T>(key, path, prefix), ...);
   }
   template <class T>
-  std::string alternative_section(std::string_view key, const std::string& path)
+  void add_alternative(std::string_view key, const std::string& path, const std::string& prefix)
   {
-    std::vector<Row> rows;
-    add_rows<T>(rows, (path.empty() ? std::string(T::name) : path) + ".");
-    std::string text = heading(3, fmt::format("{}: {}", key, T::name));
+    ManualPart part{.title = fmt::format("{}: {}", key, T::name), .path = path, .chosen = std::string(T::name)};
+    add_rows<T>(part.rows, (prefix.empty() ? part.chosen : prefix) + ".");
     if constexpr (requires { T::summary; })
-      text += sentence(T::summary) + "\n\n";
-    text += to_table(head, rows);
+      part.text = sentence(T::summary) + "\n\n";
     if constexpr (requires { typename T::State; })
-      text += history<typename T::State>();
-    return text;
+      for_each_field<typename T::State>([&](const auto& variable) {
+        part.history.push_back({code(variable.key), std::string(variable.unit), std::string(variable.meaning)});
+      });
+    parts_.push_back(std::move(part));
   }
-  template <class State>
-  std::string history()
+
+  /// Parts of the structs that a key of a mapping chooses from.
+  template <class Field>
+  void add_alternatives_of(const Field&, const std::string&)
+  {}
+  template <class T, class Value>
+  void add_alternatives_of(const Alternative<T, Value>& field, const std::string& path)
   {
-    std::vector<std::array<std::string, 3>> rows;
-    for_each_field<State>([&](const auto& variable) {
-      rows.push_back({code(variable.key), std::string(variable.unit), std::string(variable.meaning)});
-    });
-    return rows.empty() ? "" : "\nIt keeps, for output:\n\n" + to_table({"history variable", "unit", "meaning"}, rows);
+    add_each_alternative(field.key, path, "", std::type_identity<Value>{});
   }
 
   static std::string sentence(std::string_view text)
@@ -183,25 +171,6 @@ class Manual {
     std::string whole(text);
     whole.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(whole.front())));
     return whole.ends_with('.') ? whole : whole + ".";
-  }
-
-  /// Sections of the structs that a key of T chooses from.
-  template <HasFields T>
-  std::string alternatives()
-  {
-    std::string text;
-    for_each_field<T>([&](const auto& field) { text += alternatives_of(field); });
-    return text;
-  }
-  template <class Field>
-  std::string alternatives_of(const Field&)
-  {
-    return "";
-  }
-  template <class T, class Value>
-  std::string alternatives_of(const Alternative<T, Value>& field)
-  {
-    return each_alternative(field.key, "", std::type_identity<Value>{});
   }
 
   template <HasFields T>
@@ -274,7 +243,8 @@ class Manual {
   }
 
   std::unordered_map<std::type_index, std::string> titles_;
-  std::vector<std::function<std::string()>> waiting_;
+  std::vector<ManualPart> parts_;
+  std::vector<std::function<void()>> waiting_;
 };
 
 constexpr std::string_view introduction = R"(# Scene files
@@ -292,8 +262,244 @@ What a scene file can say. This page is written by `talus manual` out of the lis
 * `--set key=value` on the command line replaces or adds a value: `--set time.end=2 --set 'bodies[0].particles_per_cell=6'`.
 )";
 
+std::vector<std::array<std::string_view, 2>> kernel_summaries()
+{
+  std::vector<std::array<std::string_view, 2>> all;
+  for_each_type(Kernels<2>{}, [&]<class K>() { all.push_back({K::name, K::summary}); });
+  return all;
+}
+
 }  // namespace
 
-std::string scene_manual() { return std::string(introduction) + Manual().write<Scene>(std::string(Manual::top)); }
+std::string scene_manual()
+{
+  std::string text(introduction), after_first = "\nKernels:\n\n";
+  for (const auto& kernel : kernel_summaries())
+    after_first += fmt::format("* `{}`: {}\n", kernel[0], kernel[1]);
+  for (const ManualPart& part : Manual::write<Scene>())
+    text += to_markdown(part) + std::exchange(after_first, "");
+  return text;
+}
+
+namespace {
+
+/// Links and code of Markdown as they are read: "list of [bodies](#bodies)" is a list of bodies.
+std::string without_markup(std::string_view markdown)
+{
+  std::string text;
+  for (std::size_t i = 0; i < markdown.size(); ++i) {
+    if (markdown.substr(i).starts_with("](#"))
+      i = std::min(markdown.find(')', i), markdown.size() - 1);
+    else if (markdown[i] != '`' && (markdown[i] != '[' || markdown.find("](#", i) == markdown.npos))
+      text += markdown[i];
+  }
+  return text;
+}
+
+/// "materials[0].cohesion" -> materials, cohesion
+std::vector<std::string> words_of_path(std::string_view path)
+{
+  std::vector<std::string> words(1);
+  bool in_brackets = false;
+  for (const char c : path) {
+    in_brackets = c == '[' || (in_brackets && c != ']');
+    if (c == '.')
+      words.emplace_back();
+    else if (!in_brackets && c != ']')
+      words.back() += c;
+  }
+  return words;
+}
+
+/// Whether `asked` are words of `chain` in their order, the last ones the same.
+bool leads_to(const std::vector<std::string>& asked, const std::vector<std::string>& chain)
+{
+  if (asked.back() != chain.back())
+    return false;
+  auto at = chain.begin();
+  for (const std::string& word : asked) {
+    at = std::find(at, chain.end(), word);
+    if (at == chain.end())
+      return false;
+    ++at;
+  }
+  return true;
+}
+
+/// Keys that lead to a mapping, and the word that it was chosen by.
+std::vector<std::string> chain_of(const ManualPart& part)
+{
+  std::vector<std::string> chain = part.path.empty() ? std::vector<std::string>{} : words_of_path(part.path);
+  if (!part.chosen.empty())
+    chain.push_back(part.chosen);
+  return chain;
+}
+
+/// What the manual has on a word.
+class Entry {
+ public:
+  Entry(const std::vector<ManualPart>& manual, const std::string& asked) : manual_(manual), asked_(words_of_path(asked))
+  {
+    for (const ManualPart& part : manual_)
+      look_at(part);
+    if (keys_.empty() && parts_.empty() && asked_.size() == 1)
+      add_keys_that_take(asked_.back());
+  }
+
+  /// Empty if it has nothing.
+  std::string text() const
+  {
+    std::vector<std::string> entries;
+    for (const auto& kernel : kernel_summaries())
+      if (asked_.size() == 1 && asked_.back() == kernel[0])
+        entries.push_back(fmt::format("kernel: {}\n  {}\n", kernel[0], kernel[1]));
+    const bool in_full = keys_.size() <= most_in_full;
+    std::string lines;
+    for (const Key& key : keys_)
+      if (in_full)
+        entries.push_back(describe(key));
+      else
+        lines += fmt::format("{} in {}: {}\n", without_markup(key.row.front()), fmt::join(key.places, " and "), key.row[meaning]);
+    if (!lines.empty())
+      entries.push_back(lines);
+    for (const ManualPart* part : parts_)
+      entries.push_back(describe(*part));
+    return fmt::format("{}", fmt::join(entries, "\n"));
+  }
+
+ private:
+  static constexpr std::size_t type = 1, unit = 2, range = 3, fallback = 4, meaning = 5;  // columns of a row
+  static constexpr std::size_t most_in_full = 4;
+
+  /// A key, once for all mappings in which it means the same.
+  struct Key {
+    Row row;
+    std::vector<std::string> places;
+  };
+
+  void look_at(const ManualPart& part)
+  {
+    auto chain = chain_of(part);
+    if (!chain.empty() && leads_to(asked_, chain))
+      parts_.push_back(&part);
+    chain.emplace_back();
+    const auto add_if_asked = [&](const Row& row) {
+      chain.back() = without_markup(row.front());
+      if (leads_to(asked_, chain))
+        add_key(part, row);
+    };
+    for (const Row& row : part.rows)
+      add_if_asked(row);
+    for (const HistoryRow& variable : part.history)
+      add_if_asked({variable[0], "history variable, for outputs.particles.fields", variable[1], "", "", variable[2]});
+  }
+
+  void add_keys_that_take(const std::string& word)
+  {
+    for (const ManualPart& part : manual_)
+      for (const Row& row : part.rows)
+        if (row[range].find(code(word)) != std::string::npos)
+          add_key(part, row);
+  }
+
+  void add_key(const ManualPart& part, const Row& row)
+  {
+    const auto known = std::find_if(keys_.begin(), keys_.end(), [&](const Key& key) { return key.row == row; });
+    if (known != keys_.end())
+      known->places.push_back(place_of(part));
+    else
+      keys_.push_back({row, {place_of(part)}});
+  }
+
+  static std::string place_of(const ManualPart& part)
+  {
+    if (part.path.empty())
+      return std::string(Manual::top);
+    return part.chosen.empty() ? part.path : fmt::format("{} ({})", part.path, part.title);
+  }
+
+  /// "number [m]; > 0; default 3"
+  static std::string kind_of(const Row& row)
+  {
+    const bool has_unit = !row[unit].empty() && row[unit] != "-";
+    std::string text = without_markup(row[type]) + (has_unit ? fmt::format(" [{}]", row[unit]) : "");
+    if (!row[range].empty())
+      text += "; " + without_markup(row[range]);
+    if (!row[fallback].empty())
+      text += (row[fallback] == "required" ? "; " : "; default ") + row[fallback];
+    return text;
+  }
+
+  static std::string describe(const Key& key)
+  {
+    return fmt::format("{}\n  {}\n  {}\n  in {}\n", without_markup(key.row.front()), key.row[meaning], kind_of(key.row),
+                       fmt::join(key.places, ", "));
+  }
+
+  std::string describe(const ManualPart& part) const
+  {
+    std::string text = fmt::format("Keys of {}\n", place_of(part));
+    if (!part.text.empty())
+      text += fmt::format("  {}\n", without_markup(part.text.substr(0, part.text.find('\n'))));
+    for (const Row& row : part.rows)
+      text += fmt::format("  {:<24} {}\n  {:<24} ({})\n", without_markup(row.front()), row[meaning], "", kind_of(row));
+    if (!part.history.empty())
+      text += "It keeps, for outputs.particles.fields\n";
+    for (const HistoryRow& variable : part.history)
+      text += fmt::format("  {:<24} {} [{}]\n", without_markup(variable[0]), variable[2], variable[1]);
+    if (const auto inside = inside_of(part); !inside.empty())
+      text += fmt::format("Further: talus manual {}\n", fmt::join(inside, " "));
+    return text;
+  }
+
+  /// What a mapping chooses from, and mappings in it.
+  std::vector<std::string> inside_of(const ManualPart& part) const
+  {
+    std::vector<std::string> inside;
+    for (const ManualPart& other : manual_)
+      if (part.chosen.empty() && other.path == part.path && !other.chosen.empty())
+        inside.push_back(other.chosen);
+      else if (part.chosen.empty() && other.chosen.empty() && other.path.starts_with(part.path + "."))
+        inside.push_back(other.path);
+    return inside;
+  }
+
+  const std::vector<ManualPart>& manual_;
+  std::vector<std::string> asked_;
+  std::vector<Key> keys_;
+  std::vector<const ManualPart*> parts_;
+};
+
+/// All that can be asked for by one word.
+std::vector<std::string> words_of_manual(const std::vector<ManualPart>& manual)
+{
+  std::set<std::string> words;
+  for (const ManualPart& part : manual) {
+    const auto chain = chain_of(part);
+    words.insert(chain.begin(), chain.end());
+    for (const Row& row : part.rows)
+      words.insert(without_markup(row.front()));
+    for (const HistoryRow& variable : part.history)
+      words.insert(without_markup(variable.front()));
+  }
+  for (const auto& kernel : kernel_summaries())
+    words.emplace(kernel.front());
+  return {words.begin(), words.end()};
+}
+
+}  // namespace
+
+std::string manual_of(const std::string& word)
+{
+  const auto manual = Manual::write<Scene>();
+  if (std::string text = Entry(manual, word).text(); !text.empty())
+    return text;
+  const std::string asked = words_of_path(word).back();
+  const auto near = closest_match(asked, words_of_manual(manual));
+  throw Error(fmt::format("the manual knows no \"{}\"{}", word,
+                          !near            ? "; talus manual prints all of it"
+                          : *near == asked ? fmt::format(": ask for \"{}\" alone", asked)
+                                           : fmt::format(" — did you mean \"{}\"?", *near)));
+}
 
 }  // namespace talus

@@ -304,4 +304,20 @@ Study read_study(const std::filesystem::path& file)
   return study;
 }
 
+SceneTemplate read_template(const std::filesystem::path& file, const std::string& text)
+{
+  const std::string whole = plain_text(file, text);
+  constexpr std::string_view rule = "\n---\n";
+  const std::size_t end = whole.find(rule);
+  if (end == whole.npos)
+    throw SceneErrors(Where{file.string(), 0, 0, ""}, "a template has questions, a line \"---\", and the text of the scene");
+  const std::string head = whole.substr(0, end + 1);
+  SceneTemplate made{.file = file.string(), .head = {}, .body = whole.substr(end + rule.size())};
+  made.first_line = static_cast<int>(std::count(head.begin(), head.end(), '\n')) + 2;
+  Document document = read_document(file, head, {});
+  FieldReader(document.problems).read(document.root, "", {}, made.head);
+  document.problems.throw_if_any();
+  return made;
+}
+
 }  // namespace talus

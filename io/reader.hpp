@@ -6,6 +6,7 @@
 
 #include "io/point_test.hpp"
 #include "io/scene.hpp"
+#include "io/scene_template.hpp"
 #include "io/study.hpp"
 
 namespace talus {
@@ -24,5 +25,8 @@ PointTest read_point_path(const std::filesystem::path& file, std::span<const std
 
 /// The file of `talus sweep`.  That each case is a sound scene is seen when its scene is read with the changes.
 Study read_study(const std::filesystem::path& file);
+
+/// A template of `talus new` out of a text that was in `file`.  What stands in its formulas and in the scene is looked at as it is used.
+SceneTemplate read_template(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace talus

@@ -1,14 +1,20 @@
 // JSON Schema of scene files, out of their field lists.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <cmath>
 #include <concepts>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <tuple>
 #include <utility>
 #include <variant>
 
 #include "io/field_reader.hpp"
+#include "io/field_words.hpp"
 #include "io/manual.hpp"
 #include "io/scene_rules.hpp"
+#include "kernels/kernels.hpp"
 
 namespace talus {
 
@@ -51,20 +57,51 @@ Json mapping_of()
   return schema;
 }
 
-/// One schema per struct: the mapping `base` with the key that names the struct, and the keys of the struct.
-template <class... T>
-Json one_of(const Json& base, std::string_view key, std::type_identity<std::variant<T...>>)
+/// The required keys of a mapping, with places to type their values.
+Json snippet(const std::string& key, std::string_view word, std::string_view summary, const Json& needed)
 {
-  Json all = Json::array();
+  Json body = Json::object();
+  int place = 0;
+  for (const std::string name : needed)
+    body[name] = name == key ? std::string(word) : fmt::format("${}", ++place);
+  return {{"label", word}, {"description", summary.empty() ? fmt::format("{}: {}", key, word) : std::string(summary)}, {"body", body}};
+}
+
+template <class T>
+constexpr std::string_view summary_of()
+{
+  if constexpr (requires { T::summary; })
+    return T::summary;
+  else
+    return "";
+}
+
+/// The mapping `base` with the key that names a struct, which decides what other keys there are.  Editors offer, and complain of, those of the
+/// struct that is named, and before it is named only those of `base`.
+template <class... T>
+Json one_of(const Json& base, std::string_view key, std::string_view meaning, std::type_identity<std::variant<T...>>)
+{
+  const std::string name(key);
+  Json schema = base;
+  schema.erase("additionalProperties");
+  Json& word = schema["properties"][name] = {{"description", meaning}, {"enum", {T::name...}}};
+  if ((!summary_of<T>().empty() && ...))
+    word["markdownEnumDescriptions"] = {summary_of<T>()...};
+  schema["required"].push_back(name);
+  schema["allOf"] = Json::array();
+  schema["defaultSnippets"] = Json::array();
   const auto add = [&]<class Chosen>(std::type_identity<Chosen>) {
-    Json schema = base;
-    schema["properties"][std::string(key)] = {{"const", Chosen::name}};
-    schema["required"].push_back(key);
-    add_keys<Chosen>(schema);
-    all.push_back(std::move(schema));
+    constexpr std::string_view summary = summary_of<Chosen>();
+    Json chosen = base;
+    chosen["properties"][name] = {{"const", Chosen::name}, {"description", summary.empty() ? meaning : summary}};
+    chosen["required"].push_back(name);
+    add_keys<Chosen>(chosen);
+    schema["defaultSnippets"].push_back(snippet(name, Chosen::name, summary, chosen["required"]));
+    Json is_chosen{{"properties", {{name, {{"const", Chosen::name}}}}}, {"required", {name}}};
+    schema["allOf"].push_back({{"if", std::move(is_chosen)}, {"then", std::move(chosen)}});
   };
   (add(std::type_identity<T>{}), ...);
-  return {{"oneOf", std::move(all)}};
+  return schema;
 }
 
 template <class T>
@@ -93,18 +130,10 @@ Json schema_of(const Range& range)
   } else if constexpr (requires(const T& value) { value.has_value(); }) {
     return schema_of<typename T::value_type>(range);
   } else if constexpr (IsVariant<T>) {
-    return one_of(empty_mapping(), "type", std::type_identity<T>{});
+    return one_of(empty_mapping(), "type", "what it is: decides the other keys", std::type_identity<T>{});
   } else {
     return mapping_of<T>();
   }
-}
-
-template <class Field, class Value>
-Json described(const Field& field, std::type_identity<Value>, const Range& range, std::string_view unit)
-{
-  Json schema = schema_of<Value>(range);
-  schema["description"] = std::string(field.meaning) + (unit.empty() || unit == "-" ? "" : " [" + std::string(unit) + "]");
-  return schema;
 }
 
 template <class Value>
@@ -113,40 +142,85 @@ constexpr bool is_optional = requires(const Value& value)
   value.has_value();
 };
 
+/// The default as an editor would insert it; null for what has none or is no scalar.
+template <class T>
+Json default_value(const T& value, const Range& range)
+{
+  if constexpr (is_optional<T>)
+    return value ? default_value(*value, range) : Json();
+  else if constexpr (std::same_as<T, bool>)
+    return value;
+  else if constexpr (std::is_arithmetic_v<T>)
+    return range.holds(static_cast<Real>(value)) ? Json(value) : Json();
+  else if constexpr (std::is_enum_v<T> || std::same_as<T, std::string>)
+    return default_of(value, range) == "none" ? Json() : Json(default_of(value, range));
+  else
+    return {};
+}
+
 /// The schema of a key, and whether it must be there.
-template <class T, class Value>
-std::pair<Json, bool> key_of(const Parameter<T, Value>& field)
+struct KeySchema {
+  Json schema;
+  bool needed;
+};
+
+/// With what the manual says of it: "mass density at rest [kg/m^3] (required; range > 0)".
+template <class Value>
+KeySchema described(const Value& fallback, std::string_view meaning, std::string_view unit, const Range& range, Need need)
 {
-  return {described(field, std::type_identity<Value>{}, field.range, field.unit), field.need == Need::required};
+  const bool needed = need == Need::required;
+  Json schema = schema_of<Value>(range);
+  std::vector<std::string> facts;
+  if (needed)
+    facts.emplace_back("required");
+  if (const std::string allowed = to_string(range); allowed != "any")
+    facts.push_back("range " + allowed);
+  if constexpr (!HasFields<Value>)
+    if (const std::string value = default_of(fallback, range); !needed && value != "none")
+      facts.push_back("default " + value);
+  const bool has_unit = !unit.empty() && unit != "-" && !HasFields<Value>;
+  const std::string text = fmt::format("{}{}", meaning, has_unit ? fmt::format(" [{}]", unit) : "");
+  const std::string all_facts = fmt::format("{}", fmt::join(facts, "; "));
+  schema["description"] = facts.empty() ? text : fmt::format("{} ({})", text, all_facts);
+  schema["markdownDescription"] = facts.empty() ? text : fmt::format("{}\n\n*{}*", text, all_facts);
+  if (const Json value = default_value(fallback, range); !needed && !value.is_null())
+    schema["default"] = value;
+  return {std::move(schema), needed};
+}
+
+template <class T, class Value>
+KeySchema key_of(const Parameter<T, Value>& field)
+{
+  return described(T{}.*field.member, field.meaning, field.unit, field.range, field.need);
 }
 template <class T, class Value>
-std::pair<Json, bool> key_of(const Choice<T, Value>& field)
+KeySchema key_of(const Choice<T, Value>& field)
 {
-  return {described(field, std::type_identity<Value>{}, any, ""), field.need == Need::required};
+  return described(T{}.*field.member, field.meaning, "", any, field.need);
 }
 template <class T, class Value>
-std::pair<Json, bool> key_of(const Group<T, Value>& field)
+KeySchema key_of(const Group<T, Value>& field)
 {
-  return {described(field, std::type_identity<Value>{}, any, ""), !is_optional<Value>};
+  return described(Value{}, field.meaning, "", any, is_optional<Value> ? Need::optional : Need::required);
 }
 template <class T, class Item>
-std::pair<Json, bool> key_of(const List<T, Item>& field)
+KeySchema key_of(const List<T, Item>& field)
 {
-  return {described(field, std::type_identity<std::vector<Item>>{}, any, ""), field.need == Need::required};
+  return described(std::vector<Item>{}, field.meaning, "", any, field.need);
 }
 
 template <class Field>
 void add_key(Json& schema, const Field& field)
 {
-  const auto [key, needed] = key_of(field);
-  schema["properties"][std::string(field.key)] = key;
+  auto [key, needed] = key_of(field);
+  schema["properties"][std::string(field.key)] = std::move(key);
   if (needed)
     schema["required"].push_back(field.key);
 }
 template <class T, class Value>
 void add_key(Json& schema, const Alternative<T, Value>& field)
 {
-  schema = one_of(schema, field.key, std::type_identity<Value>{});
+  schema = one_of(schema, field.key, field.meaning, std::type_identity<Value>{});
 }
 
 /// Alternatives come last in a field list: they multiply what was there before.
@@ -156,14 +230,28 @@ void add_keys(Json& schema)
   for_each_field<T>([&](const auto& field) { add_key(schema, field); });
 }
 
+/// Those of all particles, and the history variables of all laws.
+std::set<std::string> fields_of_any_law()
+{
+  std::set<std::string> names(particle_fields.begin(), particle_fields.end());
+  for_each_type(Laws{}, [&]<class L>() { for_each_field<typename L::State>([&](const auto& variable) { names.emplace(variable.key); }); });
+  return names;
+}
+
 }  // namespace
 
 std::string scene_schema()
 {
-  Json schema = mapping_of<Scene>();
-  schema["properties"]["kernel"]["enum"] = kernel_names();
-  schema["$schema"] = "http://json-schema.org/draft-07/schema#";
-  schema["title"] = "Talus scene";
+  Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"$id", "urn:talus:scene"}, {"title", "Talus scene"}};
+  schema.update(mapping_of<Scene>());
+  Json& keys = schema["properties"];
+  Json& kernel = keys["kernel"];
+  kernel["enum"] = kernel_names();
+  kernel["markdownEnumDescriptions"] = Json::array();
+  for_each_type(Kernels<2>{}, [&]<class K>() { kernel["markdownEnumDescriptions"].push_back(K::summary); });
+  Json& outputs = keys["outputs"]["properties"];
+  outputs["particles"]["properties"]["fields"]["items"] = {{"enum", fields_of_any_law()}};
+  outputs["mesh"]["properties"]["fields"]["items"] = {{"enum", node_fields}};
   return schema.dump(2) + "\n";
 }
 
