@@ -377,7 +377,8 @@ class Checkpoint(Mapping[str, np.ndarray]):
             self._paths: list[str] = []
             self._file.visititems(lambda name, item: self._paths.append(name) if isinstance(item, h5py.Dataset) else None)
         except (OSError, RuntimeError, KeyError) as error:
-            kind = Damaged if self.path.open("rb").read(8) == b"\x89HDF\r\n\x1a\n" else UnknownFormat
+            with self.path.open("rb") as begin:
+                kind = Damaged if begin.read(8) == b"\x89HDF\r\n\x1a\n" else UnknownFormat
             raise kind(f"{self.path}: {error}") from error
         if "format" not in self._paths:
             raise UnknownFormat(f"{self.path}: no checkpoint of Talus")

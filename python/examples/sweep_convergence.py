@@ -15,13 +15,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # not needed where
 import talus  # noqa: E402
 
 
-def extrapolated(lengths, values):
-    """Order and limit of values at three lengths of one ratio, the finest first; None where they do not approach one another monotonically."""
-    (h1, h2, h3), (v1, v2, v3) = lengths[:3], values[:3]
-    if not np.isclose(h2 / h1, h3 / h2, rtol=0.05) or (v3 - v2) * (v2 - v1) <= 0 or abs(v3 - v2) <= abs(v2 - v1):
-        return None
-    order = np.log((v3 - v2) / (v2 - v1)) / np.log(h2 / h1)
-    return order, v1 - (v2 - v1) / ((h2 / h1)**order - 1)
+LOWEST_ORDER = 0.5  # below it an extrapolation goes further than the values do, and tells nothing
+
+
+def observed_order(lengths, values):
+    """Of values at three lengths of one ratio, the smallest first; nan where they do not approach one another from one side."""
+    (h1, h2, h3), (v1, v2, v3) = lengths, values
+    if not np.isclose(h2 / h1, h3 / h2, rtol=0.01) or (v3 - v2) * (v2 - v1) <= 0:
+        return float("nan")
+    return np.log((v3 - v2) / (v2 - v1)) / np.log(h2 / h1)
 
 
 def main():
@@ -46,11 +48,17 @@ def main():
     for other, rows in lines.items():
         name = ", ".join(f"{key} {value}" for key, value in zip(others, other)) or "all cases"
         drawn, = axis.plot(keys[rows], values[rows], "o-", label=name)
-        limit = extrapolated(keys[rows], values[rows]) if given.order and len(rows) >= 3 else None
         print(f"{name}: " + ", ".join(f"{value:.6g}" for value in values[rows]) + f" {unit} at {', '.join(f'{key:g}' for key in keys[rows])}")
-        if limit:
-            axis.axhline(limit[1], color=drawn.get_color(), linestyle="--")
-            print(f"  order {limit[0]:.3g}, extrapolated {limit[1]:.6g} {unit} (dashed)")
+        if not given.order or len(rows) < 3:
+            continue
+        h, v = keys[rows[:3]], values[rows[:3]]
+        order = observed_order(h, v)
+        if order >= LOWEST_ORDER:
+            limit = v[0] - (v[1] - v[0]) / ((h[1] / h[0])**order - 1)
+            axis.axhline(limit, color=drawn.get_color(), linestyle="--")
+            print(f"  order {order:.3g}, extrapolated {limit:.6g} {unit} (dashed)")
+        else:
+            print(f"  order {order:.3g}: these values do not tell where they go to")
     axis.legend(frameon=False)
     axis.set(xlabel=given.key, ylabel=f"{given.number} [{unit}]")
     axis.grid(alpha=0.3)
