@@ -522,12 +522,12 @@ class Run:
 
     @property
     def status(self) -> str:
-        """`done`, `stopped`, `failed`, ... as the summary says."""
+        """`done`, `stopped`, `failed`, or `not ended` of a run that goes on or was killed."""
         return self.summary["status"]
 
     @property
     def bodies(self) -> list[str]:
-        """Names of the bodies, in the order of their numbers; empty where no summary tells them."""
+        """Names of the bodies, in the order of their numbers; empty as long as the summary does not tell them."""
         return [body["name"] for body in self.summary.get("bodies", [])] if (self.folder / "summary.json").exists() else []
 
     @property
