@@ -8,7 +8,7 @@ SCENE       ?= scenes/slope_failure_3d/scene.yaml
 RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build portable run test fuzz check format bench scaling verify docs clean
+.PHONY: help setup build portable package run test fuzz check format bench scaling verify docs clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
@@ -24,6 +24,11 @@ build: setup  ## compile build/talus and build/talus-render, at full speed
 
 portable: setup  ## compile build/portable/talus, which runs on any x86-64 processor and uses what it has (two builds)
 	@tools/build_portable.sh
+
+package: portable  ## the portable programs as a Debian package: build/talus_VERSION_amd64.deb
+	@cpack --config build/portable/CPackConfig.cmake -B build/package >/dev/null
+	@mv build/package/talus_*.deb build/ && rm -r build/package
+	@ls build/talus_*.deb
 
 run: build  ## build, run SCENE into RUN, draw its pictures, make its page
 	build/talus run $(SCENE) --out $(RUN)

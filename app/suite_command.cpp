@@ -16,7 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folder of the suite's scripts: where the environment says, beside an installed program, or where the program was built from.
+/// Folder of the suite's scripts: where the environment says, where it is installed with PREFIX/libexec/talus/talus, or in the sources that
+/// have build/<preset>/talus.
 fs::path suite_folder(const fs::path& self, const std::string& script)
 {
   if (const char* given = std::getenv("TALUS_SUITE"); given != nullptr && *given != '\0') {
@@ -24,7 +25,8 @@ fs::path suite_folder(const fs::path& self, const std::string& script)
       throw EnvironmentError(fmt::format("TALUS_SUITE is {}, where there is no {}", given, script));
     return given;
   }
-  const fs::path installed = self.parent_path().parent_path() / "share/talus/benchmarks", source = TALUS_SUITE_SOURCE;
+  const fs::path above = self.parent_path().parent_path().parent_path(), installed = above / "share/talus/benchmarks",
+                 source = above / "benchmarks";
   for (const fs::path& folder : {installed, source})
     if (fs::exists(folder / script))
       return folder;
@@ -45,9 +47,9 @@ void run_suite(const SuiteOptions& options)
 {
   const fs::path self = fs::read_symlink("/proc/self/exe");
   const std::string script = options.suite + ".py";
-  // Debian's Python, which has Debian's modules, before whatever else the path finds
+  // Debian's Python, which has Debian's modules, before whatever else the path finds; -B: it leaves nothing beside installed scripts
   const std::string python = ::access("/usr/bin/python3", X_OK) == 0 ? "/usr/bin/python3" : "python3";
-  std::vector<std::string> words{python, (suite_folder(self, script) / script).string(), "--program", self.string()};
+  std::vector<std::string> words{python, "-B", (suite_folder(self, script) / script).string(), "--program", self.string()};
   const auto add_number = [&](const char* option, const std::optional<int>& number) {
     add(option, number ? std::optional(std::to_string(*number)) : std::nullopt, words);
   };

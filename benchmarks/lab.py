@@ -15,6 +15,7 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import threading
 
@@ -23,11 +24,13 @@ import matplotlib.figure
 import matplotlib.ticker
 import numpy as np
 
-import vtp
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "python"))
+
+import talus  # noqa: E402
 
 matplotlib.use("Agg")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
 matplotlib.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True})
 METHODS = {  # for sweeps, the default first; linear with tpic turns points inside out
     f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
@@ -61,11 +64,11 @@ class Run:
 
     @functools.cached_property
     def history(self):
-        return read_history(self.folder / "history.csv")
+        return talus.Run(self.folder).history
 
     @functools.cached_property
     def summary(self):
-        return json.loads((self.folder / "summary.json").read_text(encoding="utf-8"))
+        return talus.Run(self.folder).summary
 
     @property
     def particles(self):
@@ -79,17 +82,14 @@ class Run:
     def memory(self):
         return self.summary["cost"]["peak_memory [B]"]
 
+    @functools.cached_property
     def frames(self):
-        """Particle files in order of time."""
-        return sorted(self.folder.glob("particles_*.vtp"))
-
-    def times(self):
-        """Times of the particle files [s], as the list of the series has them."""
-        return [float(time) for time in re.findall(r'timestep="([^"]+)"', (self.folder / "particles.pvd").read_text(encoding="utf-8"))]
+        """Particle files in order of time, a talus.Series; empty where the scene asks for none."""
+        return talus.Run(self.folder).particles if (self.folder / "particles.pvd").exists() else []
 
     def last_frame(self):
-        """Arrays of the last particle file by name; 'Points' are the positions, shape (n, 3)."""
-        return vtp.read(self.frames()[-1])
+        """Fields of the last particle file by name; 'position' has the shape (n, 3)."""
+        return self.frames[-1]
 
     @property
     def ending(self):
@@ -263,14 +263,6 @@ def plain(value):
     if isinstance(value, (float, np.floating)):
         return float(value) if np.isfinite(value) else None
     return int(value) if isinstance(value, np.integer) else value
-
-
-def read_history(path):
-    """Columns of a history.csv by name without unit, nan where an entry is empty; a last row cut short is left out."""
-    text = path.read_text(encoding="utf-8")
-    rows = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))
-    values = np.array([[float(cell or "nan") for cell in row] for row in rows[1:]])
-    return {name.split(" [")[0]: values[:, i] for i, name in enumerate(rows[0])}
 
 
 def reference(case, name="reference.json"):

@@ -110,7 +110,7 @@ def write(document, folder):
 
 def draw_particles(figure, frame, dimension):
     """Particles where they are in a frame, as seen along the shortest side of the body, coloured by displacement or else by speed."""
-    points = frame["Points"]
+    points = frame["position"]
     extent = np.ptp(points, axis=0)
     across = 2 if dimension == 2 else int(np.argmin(extent))
     a, b = [axis for axis in range(3) if axis != across]

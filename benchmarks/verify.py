@@ -137,7 +137,7 @@ def title(case):
 
 def picture(lab, case):
     """Draws the last frame of the run with the most particles, for the pages of the run."""
-    framed = [run for run in lab.runs_of(case) if not run.failure() and run.frames()]
+    framed = [run for run in lab.runs_of(case) if not run.failure() and run.frames]
     if framed:
         run = max(framed, key=lambda run: run.particles)
         lab.figure(case, f"particles_{case}", lambda figure: pages.draw_particles(figure, run.last_frame(), run.summary["dimension"]),

@@ -22,7 +22,6 @@ if(TALUS_SHARED)
   set(TALUS_LIBRARY_KIND SHARED)
   set(CMAKE_POSITION_INDEPENDENT_CODE ON)
   set(CMAKE_LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib)
-  set(CMAKE_BUILD_RPATH_USE_ORIGIN ON)
   list(APPEND TALUS_COMPILE_OPTIONS -fno-semantic-interposition)   # inside a library calls are calls of itself
 endif()
 set(TALUS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)

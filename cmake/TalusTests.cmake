@@ -78,12 +78,20 @@ function(talus_tool_tests)
   endforeach()
 endfunction()
 
-# What a run writes, read by others.
-function(talus_read_back_test)
-  if(TARGET talus)
-    add_test(NAME read_back COMMAND ${TALUS_PYTHON} ${PROJECT_SOURCE_DIR}/tests/app/read_back.py $<TARGET_FILE:talus>)
-    set_tests_properties(read_back PROPERTIES LABELS unit TIMEOUT 120)
+# What a run writes, read by others, and by the module that comes with Talus.
+function(talus_python_tests)
+  add_test(NAME read_back COMMAND ${TALUS_PYTHON} ${PROJECT_SOURCE_DIR}/tests/app/read_back.py $<TARGET_FILE:talus>)
+  add_test(NAME python.reader COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/python/reader_test.py $<TARGET_FILE:talus>)
+  set_tests_properties(read_back python.reader PROPERTIES LABELS unit TIMEOUT 120)
+endfunction()
+
+# The package of the programs at hand, looked into and run from where it is unpacked.  Nobody packs programs with sanitizers.
+function(talus_package_test)
+  if(CMAKE_CXX_FLAGS MATCHES -fsanitize)
+    return()
   endif()
+  add_test(NAME package.deb COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/package/package_test.py ${CMAKE_CPACK_COMMAND} ${PROJECT_BINARY_DIR})
+  set_tests_properties(package.deb PROPERTIES LABELS package TIMEOUT 120)
 endfunction()
 
 # Every shipped scene is checked, and run once, coarse and short.

@@ -13,7 +13,7 @@ build() {  # preset -> build/<preset>
 build portable
 build portable-v3
 mkdir -p build/portable/lib/glibc-hwcaps/x86-64-v3
-cp build/portable-v3/lib/*.so build/portable/lib/glibc-hwcaps/x86-64-v3/
+install --mode=644 --strip build/portable-v3/lib/*.so build/portable/lib/glibc-hwcaps/x86-64-v3/
 
 # Which libraries are taken here, and that the plainest run as well.
 loader=/lib64/ld-linux-x86-64.so.2

@@ -5,7 +5,6 @@ import contextlib
 import io
 import json
 import pathlib
-import struct
 import sys
 import tempfile
 import unittest
@@ -14,7 +13,6 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
 import lab  # noqa: E402
-import lz4.block  # noqa: E402
 import numpy as np  # noqa: E402
 import pages  # noqa: E402
 import precision  # noqa: E402
@@ -22,7 +20,6 @@ import regression  # noqa: E402
 import report  # noqa: E402
 import tradeoff  # noqa: E402
 import verify  # noqa: E402
-import vtp  # noqa: E402
 
 SUMMARY = {"kernel": "umls", "transfer": "flip, musl", "mesh": {"cells": 4}, "bodies": [{"particles": 6}],
            "cost": {"threads": 1, "peak_memory [B]": 1000}, "program": {"version": "1", "commit": "abc", "compiler": "gcc"}}
@@ -260,14 +257,6 @@ class Measures(unittest.TestCase):
     def test_the_order_of_a_parabola_is_two(self):
         self.assertAlmostEqual(lab.observed_order([1, 0.5, 0.25], [3, 0.75, 0.1875]), 2, places=12)
 
-    def test_a_history_cut_short_loses_its_last_row_only(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "history.csv"
-            path.write_text("time [s],kinetic [J]\n0,1\n0.5,2\n1,", encoding="utf-8")
-            history = lab.read_history(path)
-        self.assertEqual(history["time"].tolist(), [0, 0.5])
-        self.assertEqual(history["kinetic"].tolist(), [1, 2])
-
     def test_an_empty_entry_is_finite_only_where_it_is_the_centre_of_nothing(self):
         finite, nan = lab.module("extremes").finite, float("nan")
         for mass, centre, kinetic, expected in ((1, 2, 3, True), (0, nan, 0, True), (1, nan, 3, False), (0, nan, nan, False), (nan, nan, 0, False),
@@ -284,35 +273,6 @@ class Readme(unittest.TestCase):
     def test_without_both_markers_in_order_nothing_is_replaced(self):
         for text in ("", report.BEGIN, f"{report.END}\n{report.BEGIN}", f"{report.BEGIN}{report.BEGIN}{report.END}"):
             self.assertIsNone(report.replace_block(text, "new"))
-
-
-class ParticleFiles(unittest.TestCase):
-    def write(self, folder, values, block):
-        """A file with one array, in LZ4 blocks of `block` bytes."""
-        raw = values.tobytes()
-        parts = [raw[i:i + block] for i in range(0, len(raw), block)]
-        packed = [lz4.block.compress(part, store_size=False) for part in parts]
-        last = len(parts[-1]) if len(parts[-1]) < block else 0
-        head = ('<VTKFile type="PolyData" header_type="UInt64" compressor="vtkLZ4DataCompressor"><PolyData><Piece><PointData/><Points>'
-                '<DataArray type="Float64" Name="Points" NumberOfComponents="3" offset="0"/></Points></Piece></PolyData>'
-                '<AppendedData encoding="raw">_')
-        path = pathlib.Path(folder) / "p.vtp"
-        path.write_bytes(head.encode() + struct.pack(f"<{3 + len(packed)}Q", len(parts), block, last, *map(len, packed)) + b"".join(packed))
-        return path
-
-    def test_arrays_come_back_whatever_the_last_block_holds(self):
-        values = np.arange(60.0)
-        with tempfile.TemporaryDirectory() as folder:
-            for block in (48, 64, 480, 4096):
-                points = vtp.read(self.write(folder, values, block))["Points"]
-                np.testing.assert_array_equal(points, values.reshape(20, 3))
-
-    def test_another_encoding_is_refused(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "p.vtp"
-            path.write_bytes(b"<VTKFile></VTKFile>")
-            with self.assertRaises(ValueError):
-                vtp.read(path)
 
 
 class Precision(unittest.TestCase):

@@ -3,7 +3,6 @@ import numpy as np
 
 import fields
 import lab as tools
-import vtp
 
 CASE = "cantilever"
 SIZES = {"quick": [0.5, 0.25], "full": [0.5, 0.25, 0.125]}
@@ -70,9 +69,9 @@ def judge(name, size, run, curve, data):
 
 def corner(run, at):
     """Times [s] and downward displacement [m] of a corner of the thick beam: no particle sits there, so a linear field is fitted to those nearest to it."""
-    frames = [vtp.read(path) for path in run.frames()]
+    frames = list(run.frames)
     at = np.array(at, dtype=float)
-    start = frames[0]["Points"][:, :len(at)]
+    start = frames[0]["position"][:, :len(at)]
     down = -np.array([fields.extended(start, frame["displacement"][:, len(at) - 1], at, 12 if len(at) == 2 else 24) for frame in frames])
     return np.minimum(np.arange(len(frames)) * FRAMES, run.history["time"][-1]), down
 

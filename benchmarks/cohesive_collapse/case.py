@@ -66,7 +66,7 @@ def draw(figure, runs, pictured, critical):
     left.set(xlabel="unit weight [kN/m$^3$]", ylabel="settlement of the edge of the crest [m]", xlim=(0, 10), ylim=(0, 4))
     left.legend(fontsize=6, loc="upper left")
     frame = pictured.last_frame()
-    dots = right.scatter(frame["Points"][:, 0], frame["Points"][:, 1], c=frame["plastic_strain"], s=3, vmin=0, vmax=2, cmap="viridis")
+    dots = right.scatter(frame["position"][:, 0], frame["position"][:, 1], c=frame["plastic_strain"], s=3, vmin=0, vmax=2, cmap="viridis")
     right.plot([0, 8, 8], [8, 8, 0], color="0.6", lw=0.8)
     right.set(aspect="equal", xlim=(0, 16), ylim=(0, 8.5), xlabel="x [m]", title="at 10 kN/m$^3$")
     figure.colorbar(dots, label="plastic strain", shrink=0.7)

@@ -2,7 +2,6 @@
 import numpy as np
 
 import lab as tools
-import vtp
 
 CASE = "colliding_disks"
 JUDGED_SIZE = 0.025  # m; coarser cells are reported
@@ -43,7 +42,7 @@ def approach(frame):
 
 def velocity_curve(run):
     """Times of the frames [s] and velocity of the first disk over that of the approach, positive away, as fe_curves.csv has it."""
-    velocity = np.array([approach(vtp.read(path)) for path in run.frames()])
+    velocity = np.array([approach(frame) for frame in run.frames])
     return np.linspace(0, run.history["time"][-1], len(velocity)), -velocity / velocity[0]
 
 

@@ -29,7 +29,7 @@ FALLS = 10  # times of free fall over the height, after which everything is at r
 
 def surface(frame, strip=STRIP):
     """Height of the mass [m] over strips (x of their middles, y): area of the particles, taken as squares, over the width of a strip."""
-    x, half = frame["Points"][:, 0], np.sqrt(frame["volume"]) / 2
+    x, half = frame["position"][:, 0], np.sqrt(frame["volume"]) / 2
     edges = np.arange(0, x.max() + 3 * strip, strip)
     left, right = x - half, x + half
     area = np.zeros(len(edges) - 1)
@@ -47,7 +47,7 @@ def farthest(x, y, height):
 
 def failure_line(frame):
     """Line between what moved and what did not, at places before the collapse: x [m] at heights y, and where it meets the floor."""
-    start = frame["Points"] - frame["displacement"]
+    start = frame["position"] - frame["displacement"]
     moved = np.linalg.norm(frame["displacement"], axis=1) > MOVED
     heights = np.arange(0.015, 0.1, 0.01)
     line = np.array([start[moved & (np.abs(start[:, 1] - y) < 0.005), 0].min() for y in heights])

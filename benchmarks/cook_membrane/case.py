@@ -10,7 +10,7 @@ CASE = "cook_membrane"
 def lift(run, corner):
     """Upward displacement of a corner of the body [m]: no particle sits there, so a plane through the twelve nearest ones is extended."""
     frame = run.last_frame()
-    start = frame["Points"][:, :2] - frame["displacement"][:, :2]
+    start = frame["position"][:, :2] - frame["displacement"][:, :2]
     return float(fields.extended(start, frame["displacement"][:, 1], corner))
 
 
@@ -18,7 +18,7 @@ def draw(figure, runs):
     """Pressure of the particles of two runs."""
     for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True, squeeze=False).flat, runs.items()):
         frame = run.last_frame()
-        dots = axis.scatter(frame["Points"][:, 0], frame["Points"][:, 1], c=frame["pressure"], s=4, vmin=-0.2, vmax=0.2, cmap="viridis")
+        dots = axis.scatter(frame["position"][:, 0], frame["position"][:, 1], c=frame["pressure"], s=4, vmin=-0.2, vmax=0.2, cmap="viridis")
         axis.set(title=name, aspect="equal", xlabel="x [m]")
     figure.colorbar(dots, label="pressure [Pa]")
 

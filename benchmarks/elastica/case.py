@@ -62,7 +62,7 @@ def theory(load, data):
 def tip(run, data):
     """Drop and shortening of the middle of the free end over the length: a linear field fitted to the particles nearest to it."""
     frame, at = run.last_frame(), np.array([data["length [m]"], data["height [m]"] / 2])
-    start = frame["Points"][:, :2] - frame["displacement"][:, :2]
+    start = frame["position"][:, :2] - frame["displacement"][:, :2]
     moved = fields.extended(start, frame["displacement"][:, :2], at)
     return float(-moved[1] / data["length [m]"]), float(-moved[0] / data["length [m]"])
 
@@ -72,7 +72,7 @@ def draw(figure, runs, data):
     left, right = figure.subplots(1, 2)
     for load in LOADS:
         frame = runs[load, 0.5].last_frame()
-        left.plot(frame["Points"][:, 0], frame["Points"][:, 1], ".", markersize=2, label=f"{load}")
+        left.plot(frame["position"][:, 0], frame["position"][:, 1], ".", markersize=2, label=f"{load}")
     loads = np.linspace(0.3, 10, 25)
     curves = np.array([theory(load, data) for load in loads])
     for part, name in enumerate(("drop", "shortening")):

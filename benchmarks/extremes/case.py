@@ -78,7 +78,7 @@ def free_fall(run):
 def layer_error(run):
     """Error of the mean vertical stress in the middle of the upper layer, 5 < y < 7 m, over its closed form [-]."""
     frame = run.last_frame()
-    height = frame["Points"][:, 1] - frame["displacement"][:, 1]
+    height = frame["position"][:, 1] - frame["displacement"][:, 1]
     inside = (height > 5) & (height < 7)
     return abs(float(np.mean(frame["stress"][inside, 1]) / np.mean(-2000 * 9.81 * (8 - height[inside]))) - 1)
 

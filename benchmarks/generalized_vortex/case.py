@@ -2,7 +2,6 @@
 import numpy as np
 
 import lab as tools
-import vtp
 
 CASE = "generalized_vortex"
 SIZES = {"quick": [0.14, 0.1, 0.07], "full": [0.14, 0.1, 0.07, 0.05, 0.035]}  # m
@@ -42,12 +41,11 @@ def exact(place, time, turn, data):
 
 def errors_over_time(run, turn, data):
     """Times [s] and errors: root of the mean over the mass of the square of the error in displacement, over the same of the largest displacement."""
-    times = run.times()
+    times = run.frames.times
     found = []
-    for path, time in zip(run.frames(), times):
-        frame = vtp.read(path)
+    for frame, time in zip(run.frames, times):
         moved = frame["displacement"][:, :2].astype(float)
-        place = frame["Points"][:, :2] - moved
+        place = frame["position"][:, :2] - moved
         size = np.average(np.sum(exact(place, 0.5, turn, data)**2, axis=1), weights=frame["mass"])
         found.append(np.sqrt(np.average(np.sum((moved - exact(place, time, turn, data))**2, axis=1), weights=frame["mass"]) / size))
     return times, found
@@ -70,11 +68,11 @@ def draw(figure, curves, run, data):
     tools.size_axis(left, SIZES["quick"])
     left.set_ylabel("error in displacement [%]")
     left.legend(fontsize=7)
-    frame = vtp.read(run.frames()[len(run.frames()) // 2])
-    place = frame["Points"] - frame["displacement"]
+    frame = run.frames[len(run.frames) // 2]
+    place = frame["position"] - frame["displacement"]
     sector = np.abs(np.arctan2(place[:, 1], place[:, 0])) < 0.1
-    right.plot(*frame["Points"][:, :2].T, ".", color="0.85", markersize=1)
-    right.plot(*frame["Points"][sector, :2].T, "k.", markersize=2, label="talus")
+    right.plot(*frame["position"][:, :2].T, ".", color="0.85", markersize=1)
+    right.plot(*frame["position"][sector, :2].T, "k.", markersize=2, label="talus")
     radius = np.linspace(0.75, 1.25, 200)
     line = np.c_[radius, 0 * radius]
     right.plot(*(line + exact(line, 0.5, 1, data)).T, "C1-", label="exact")

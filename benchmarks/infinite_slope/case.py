@@ -2,7 +2,6 @@
 import numpy as np
 
 import lab as tools
-import vtp
 
 CASE = "infinite_slope"
 STEADY = 0.3  # s, from when on is measured
@@ -44,10 +43,9 @@ def settings(soil, angle, data):
 def of_the_soil(run):
     """Times [s] and the angle [deg] of shear over normal stress, summed over the volume of the shearing soil in the middle of the layer."""
     every, rows = 0.05, []  # s, as in the scene
-    for number, path in enumerate(run.frames()):
+    for number, frame in enumerate(run.frames):
         if number > 1:
-            frame = vtp.read(path)
-            x, y = frame["Points"][:, 0], frame["Points"][:, 1]
+            x, y = frame["position"][:, 0], frame["position"][:, 1]
             weight = frame["volume"] * ((x > MIDDLE[0]) & (x < MIDDLE[1]) & (y < SHEARING))
             rows.append((every * number, np.degrees(np.arctan2(weight @ frame["stress"][:, 3], -weight @ frame["stress"][:, 1]))))
     return np.array(rows).T

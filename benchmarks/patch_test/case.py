@@ -2,7 +2,6 @@
 import numpy as np
 
 import lab as tools
-import vtp
 
 CASE = "patch_test"
 KERNELS = {"linear": "flip", "umls": "flip", "projected": "aflip"}
@@ -49,7 +48,7 @@ def strain_error(run, data):
 def pressed_error(run, share=1):
     """Root of the mean over the mass of the square of the error in the stress along x over its exact value, the load, in that share of the length that is farthest from it."""
     frame = run.last_frame()
-    part = frame["Points"][:, 0] <= share * frame["Points"][:, 0].max()
+    part = frame["position"][:, 0] <= share * frame["position"][:, 0].max()
     return float(np.sqrt(np.average((frame["stress"][part, 0] / -PRESSED - 1)**2, weights=frame["mass"][part])))
 
 
@@ -63,8 +62,8 @@ def stress_error(run, data):
 
 def gradient_error(run, index):
     """Root mean square, over particles that start 0.15 m and more inside, of the error in the velocity gradient over its exact value, in one file."""
-    time, frame = run.times()[index], vtp.read(run.frames()[index])
-    place = frame["Points"] - frame["displacement"]
+    time, frame = run.frames.times[index], run.frames[index]
+    place = frame["position"] - frame["displacement"]
     inside = np.all(np.abs(place[:, :2] - 0.5) < 0.15, axis=1)
     exact = START @ np.linalg.inv(np.eye(2) + time * START)
     wrong = frame["velocity_gradient"].reshape(-1, 3, 3)[inside, :2, :2] - exact
@@ -75,7 +74,7 @@ def draw(figure, runs, data):
     """Stress xx over the pressure of two runs."""
     for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
         frame = run.last_frame()
-        dots = axis.scatter(frame["Points"][:, 0], frame["Points"][:, 1], c=-frame["stress"][:, 0] / data["pressure [Pa]"], s=4, vmin=0.8, vmax=1.2, cmap="coolwarm")
+        dots = axis.scatter(frame["position"][:, 0], frame["position"][:, 1], c=-frame["stress"][:, 0] / data["pressure [Pa]"], s=4, vmin=0.8, vmax=1.2, cmap="coolwarm")
         axis.set(title=name, aspect="equal", xlabel="x [m]")
     figure.colorbar(dots, label="pressing stress over the exact one")
 

@@ -22,7 +22,7 @@ def hole(run, data):
     No particle sits on the hole: `shapes` are fitted by least squares to the particles around it and taken on the hole.
     """
     frame = run.last_frame()
-    x, y = frame["Points"][:, 0], frame["Points"][:, 1]
+    x, y = frame["position"][:, 0], frame["position"][:, 1]
     radius, angle = np.hypot(x, y) / data["radius [m]"], np.arctan2(y, x)
     near = radius < REACH
     stress = frame["stress"][near, :2] / data["traction [Pa]"]
@@ -41,7 +41,7 @@ def draw(figure, runs, data):
     left, right = figure.subplots(1, 2, width_ratios=[1.2, 1])
     for kernel, run in runs.items():
         frame = run.last_frame()
-        x, y = frame["Points"][:, 0] / data["radius [m]"], frame["Points"][:, 1] / data["radius [m]"]
+        x, y = frame["position"][:, 0] / data["radius [m]"], frame["position"][:, 1] / data["radius [m]"]
         stress = frame["stress"][:, 0] / data["traction [Pa]"]
         if kernel == "umls":
             dots = left.scatter(x, y, c=stress, s=5, vmin=0, vmax=3.2, cmap="viridis")

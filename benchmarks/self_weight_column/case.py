@@ -41,7 +41,7 @@ def settlement(law, height, data, points=2001):
 def stress_error(run, data):
     """Mean over the mass of the error in vertical stress at each particle, relative to the stress at the base."""
     frame = run.last_frame()
-    height = frame["Points"][:, 1] - frame["displacement"][:, 1]
+    height = frame["position"][:, 1] - frame["displacement"][:, 1]
     exact = -data["weight [N/m^3]"] * (data["height [m]"] - height)
     wrong = np.average(np.abs(frame["stress"][:, 1] - exact), weights=frame["mass"])
     return float(wrong / (data["weight [N/m^3]"] * data["height [m]"]))
@@ -50,7 +50,7 @@ def stress_error(run, data):
 def top_settlement(run):
     """Height before loading and settlement of the highest particle [m]."""
     frame = run.last_frame()
-    height = frame["Points"][:, 1] - frame["displacement"][:, 1]
+    height = frame["position"][:, 1] - frame["displacement"][:, 1]
     top = int(np.argmax(height))
     return float(height[top]), float(-frame["displacement"][top, 1])
 
@@ -65,7 +65,7 @@ def draw(figure, sizes, errors, run, data):
     left.set(ylabel="error in stress [%]")
     left.legend()
     frame = run.last_frame()
-    height = frame["Points"][:, 1] - frame["displacement"][:, 1]
+    height = frame["position"][:, 1] - frame["displacement"][:, 1]
     right.plot(frame["stress"][:, 1] / 1e3, height, ".", markersize=2, label="particles")
     right.plot([-data["weight [N/m^3]"] * data["height [m]"] / 1e3, 0], [0, data["height [m]"]], "k-", linewidth=0.8, label="exact")
     right.set(xlabel="vertical stress [kPa]", ylabel="height before loading [m]")

@@ -13,7 +13,7 @@ INVISCID = {"materials[0].bulk_viscosity.linear": 0, "materials[0].bulk_viscosit
 def profile(run):
     """Initial place X [m], velocity [m/s], longitudinal stress [Pa] and stretch of the last frame, in order of X."""
     frame = run.last_frame()
-    start = frame["Points"][:, 0] - frame["displacement"][:, 0]
+    start = frame["position"][:, 0] - frame["displacement"][:, 0]
     order = np.argsort(start)
     return start[order], frame["velocity"][order, 0], frame["stress"][order, 0], frame["F"][order, 0]
 

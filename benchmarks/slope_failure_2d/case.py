@@ -2,7 +2,6 @@
 import numpy as np
 
 import lab as tools
-import vtp
 
 CASE = "slope_failure_2d"
 SIZE = {"quick": 1.5, "full": 1.0}  # m, cells
@@ -19,7 +18,7 @@ def settings(lab, strength):
 
 def surface(frame, spacing, width=2.0):
     """Free surface as (x, y): the highest particle of each strip of `width`, raised by half the distance `spacing` of particles [m]."""
-    x, y = frame["Points"][:, 0], frame["Points"][:, 1]
+    x, y = frame["position"][:, 0], frame["position"][:, 1]
     strip = (x / width).astype(int)
     highest = np.full(strip.max() + 1, -np.inf)
     np.maximum.at(highest, strip, y)
@@ -29,14 +28,14 @@ def surface(frame, spacing, width=2.0):
 
 def toe(frame, spacing):
     """Farthest x [m] of soil that lies clearly, by a spacing of particles, above the level ground and came down from the slope."""
-    start = frame["Points"] - frame["displacement"]
-    debris = (frame["Points"][:, 1] > LEVEL_GROUND + spacing) & (start[:, 0] < 50) & (start[:, 1] > LEVEL_GROUND)
-    return float(np.max(frame["Points"][debris, 0]) + spacing / 2)
+    start = frame["position"] - frame["displacement"]
+    debris = (frame["position"][:, 1] > LEVEL_GROUND + spacing) & (start[:, 0] < 50) & (start[:, 1] > LEVEL_GROUND)
+    return float(np.max(frame["position"][debris, 0]) + spacing / 2)
 
 
 def spacing(run):
     """Mean distance of particles at the start [m]: root of the mean area, or cube root of the mean volume, per particle."""
-    frame = vtp.read(run.frames()[0])
+    frame = run.frames[0]
     return float(np.mean(frame["volume"]) ** (1 / run.summary["dimension"]))
 
 

@@ -20,8 +20,8 @@ def profile(frame, spacing):
 def slices(run, width):
     """Surfaces of slices across the `width` [m] one row each."""
     frame, spacing = run.last_frame(), slope.spacing(run)
-    own = np.minimum((frame["Points"][:, 2] / width * SLICES).astype(int), SLICES - 1)
-    return np.array([profile({"Points": frame["Points"][own == k]}, spacing) for k in range(SLICES)])
+    own = np.minimum((frame["position"][:, 2] / width * SLICES).astype(int), SLICES - 1)
+    return np.array([profile({"position": frame["position"][own == k]}, spacing) for k in range(SLICES)])
 
 
 def apart(solid, plane):

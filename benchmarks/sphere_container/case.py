@@ -2,7 +2,6 @@
 import numpy as np
 
 import lab as tools
-import vtp
 
 CASE = "sphere_container"
 SIZES = {"quick": [0.2, 0.13], "full": [0.2, 0.13, 0.09]}  # m
@@ -10,9 +9,9 @@ SIZES = {"quick": [0.2, 0.13], "full": [0.2, 0.13, 0.09]}  # m
 
 def extent(run):
     """Times of the frames [s], radius of the outermost particle [m] and volume of the body [m^3] in them."""
-    frames = [vtp.read(path) for path in run.frames()]
+    frames = list(run.frames)
     times = np.linspace(0, run.history["time"][-1], len(frames))
-    return times, np.array([np.linalg.norm(frame["Points"], axis=1).max() for frame in frames]), np.array([frame["volume"].sum() for frame in frames])
+    return times, np.array([np.linalg.norm(frame["position"], axis=1).max() for frame in frames]), np.array([frame["volume"].sum() for frame in frames])
 
 
 def mass_lost(run):

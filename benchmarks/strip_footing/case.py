@@ -40,7 +40,7 @@ def draw(figure, runs, data):
     axes[0].set(xlabel="settlement [mm]", ylabel="load / (a c)", ylim=(0, 6.5))
     axes[0].legend(loc="lower right")
     frame = next(iter(runs.values())).last_frame()
-    x, y = frame["Points"][:, 0], frame["Points"][:, 1]
+    x, y = frame["position"][:, 0], frame["position"][:, 1]
     shown = axes[1].tripcolor(matplotlib.tri.Triangulation(x, y), 100 * frame["plastic_strain"], vmin=0, vmax=4, shading="gouraud", cmap="magma_r")
     axes[1].plot([0, half], [10.1, 10.1], "k", lw=4, solid_capstyle="butt")
     axes[1].set(xlabel="x [m]", ylabel="y [m]", xlim=(0, 14), ylim=(3, 10.6), aspect="equal")

@@ -23,7 +23,7 @@ def outline(run):
     The rod rebounds: its foot has left the wall by the end.
     """
     frame = run.last_frame()
-    x, size = frame["Points"], np.cbrt(frame["volume"]) / 2
+    x, size = frame["position"], np.cbrt(frame["volume"]) / 2
     radial = np.hypot(x[:, 0], x[:, 1]) + size
     layer, foot = 2 * float(np.mean(size)), float((x[:, 2] - size).min())
 
