@@ -58,6 +58,13 @@ struct Maxwell : Elasticity {
     return unpack(scale_and_shift(2 * c.shear * kept / J, shear, c.bulk * volume / J));
   }
 
+  /// Makes `stress` [Pa] that of the state at F = I: what a law remembers its stress by.
+  void prestress(const Mat3& stress, State& state) const noexcept
+  {
+    const Moduli elastic = moduli();
+    state.elastic_left = expm1(add_diagonal(pack(dev(stress) / elastic.shear), 2 * stress.trace() / (9 * elastic.bulk)));
+  }
+
   /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
