@@ -15,6 +15,7 @@ import argparse
 import math
 import os
 import re
+import resource
 import shutil
 import subprocess
 import sys
@@ -116,10 +117,15 @@ def main():
     if not talus.is_file():
         sys.exit(f"no program at {talus}: make build")
     failed, all_seconds = [], 0.0
+
+    def processor():
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return used.ru_utime + used.ru_stime
+
     for page in sorted(PAGES.glob("*.md")):
         if options.only and page.stem not in options.only:
             continue
-        scratch, start = ROOT / "build/tutorials" / page.stem, time.monotonic()
+        scratch, start, start_processor = ROOT / "build/tutorials" / page.stem, time.monotonic(), processor()
         try:
             run(page, talus, scratch)
             if options.pictures:
@@ -130,8 +136,8 @@ def main():
             verdict = f"NOT as told\n{broken}"
         seconds = time.monotonic() - start
         all_seconds += seconds
-        print(f"tutorial {page.stem}: {seconds:.1f} s, {verdict}", flush=True)
-    print(f"tutorials: {all_seconds:.1f} s" + (f", broken: {', '.join(failed)}" if failed else ""))
+        print(f"tutorial {page.stem}: {seconds:.1f} s, {processor() - start_processor:.1f} s of processor, {verdict}", flush=True)
+    print(f"tutorials: {all_seconds:.1f} s, {processor():.1f} s of processor" + (f", broken: {', '.join(failed)}" if failed else ""))
     return 1 if failed else 0
 
 
