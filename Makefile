@@ -8,7 +8,7 @@ SCENE       ?= scenes/slope_failure_3d/scene.yaml
 RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build portable package run test fuzz check format bench scaling verify docs clean
+.PHONY: help setup build portable package run test fuzz check format bench scaling verify docs site tutorials clean
 
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 16
@@ -65,6 +65,13 @@ docs: build  ## write docs/reference/scene.md out of the program
 	@mkdir -p docs/reference
 	@build/talus manual > build/scene.md && mv build/scene.md docs/reference/scene.md
 	@tools/ci.sh docs
+
+site:  ## write the documentation as a site that opens from its folder, build/site/index.html
+	@tools/ci.sh site
+	@echo "build/site/index.html"
+
+tutorials: build  ## run every command of docs/tutorials
+	@tools/ci.sh tutorials
 
 clean:  ## remove everything built; runs/ stays
 	@rm -rf build

@@ -76,6 +76,8 @@ function(talus_tool_tests)
     add_test(NAME tools.${name} COMMAND ${TALUS_PYTHON} ${script})
     set_tests_properties(tools.${name} PROPERTIES LABELS tools TIMEOUT 120)
   endforeach()
+  add_test(NAME tools.try_tutorial_parts COMMAND ${PROJECT_SOURCE_DIR}/tools/try_tutorial_parts.sh)
+  set_tests_properties(tools.try_tutorial_parts PROPERTIES LABELS nightly TIMEOUT 7200)
 endfunction()
 
 # What a run writes, read by others, and by the module that comes with Talus.

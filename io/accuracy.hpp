@@ -7,7 +7,7 @@ namespace talus {
 /// Multiplies the sizes of all cells that Talus makes itself.  Meshes from files stay as they are.
 void scale_cells(MeshSpec& mesh, Real factor);
 
-/// Sets what the scene leaves open by its accuracy, and scales its cells; see docs/accuracy.md for what was measured.
+/// Sets what the scene leaves open by its accuracy, and scales its cells; see docs/guide.md for what was measured.
 void settle_accuracy(Scene& scene);
 
 }  // namespace talus

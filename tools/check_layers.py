@@ -18,7 +18,7 @@ BELOW = {  # folder -> folders it may include, besides itself
     "app": ["core", "mesh", "kernels", "materials", "solver", "io"],
 }
 BELOW_TESTS = {**{folder: [folder, *below] for folder, below in BELOW.items()},
-               "fuzz": [*BELOW], "ranks": [*BELOW], "speed": ["core", "mesh", "kernels", "materials", "solver"]}
+               "fuzz": [*BELOW], "tutorials": ["core", "mesh", "kernels", "materials", "solver"], "ranks": [*BELOW], "speed": ["core", "mesh", "kernels", "materials", "solver"]}
 
 # header pattern, files that may include it; tests/io/report_test.cpp may include what io/report.cpp may. The first match decides.
 THIRD_PARTY = [
@@ -63,6 +63,8 @@ def wrong_include(path, quote, header):
         return None if target[0] in allowed else f'{"/".join(parts[:-1])} may not include {target[0]} ("{header}")'
     if quote == '"' and target[0] == "tests":
         return None if parts[0] == "tests" else f'only tests may include "{header}"'
+    if quote == '"' and target[:2] == ["docs", "tutorials"]:
+        return None if path.startswith("tests/tutorials/") else f'only tests/tutorials may include "{header}"'
     for pattern, files in THIRD_PARTY:
         if fnmatch.fnmatch(header, pattern):
             return None if fits(path, files) else f"{header} is for {' and '.join(files)} only"

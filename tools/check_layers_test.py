@@ -24,6 +24,11 @@ class Layers(unittest.TestCase):
         self.fails("io/scene.cpp", '#include "solver/model.hpp"')
         self.fails("tests/mesh/locate_test.cpp", '#include "kernels/kernel.hpp"')
 
+    def test_what_the_tutorials_show_is_for_their_tests(self):
+        self.passes("tests/tutorials/tutorials_test.cpp", '#include "docs/tutorials/own_law/maxwell.hpp"')
+        self.fails("materials/laws.hpp", '#include "docs/tutorials/own_law/maxwell.hpp"')
+        self.fails("tests/materials/law_test.cpp", '#include "docs/tutorials/own_law/maxwell.hpp"')
+
     def test_paths_start_at_the_root(self):
         self.fails("mesh/mesh.cpp", '#include "mesh.hpp"')
         self.fails("mesh/mesh.cpp", '#include "../core/types.hpp"')

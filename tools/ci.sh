@@ -8,7 +8,7 @@ python=/usr/bin/python3
 [ -x "$python" ] || python=python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
-all_stages=(setup "${lint_stages[@]}" dev docs verify fuzz test)
+all_stages=(setup "${lint_stages[@]}" dev docs site verify tutorials fuzz test)
 
 cxx_files() { git ls-files -- '*.hpp' '*.cpp'; }
 
@@ -65,6 +65,16 @@ stage_docs() {
 # The benchmarks, quick level, with the program of stage dev: its asserts watch them, and it takes but a fifth longer than the one of `make build`,
 # whose values the last release has. Ends badly where a run fails or a judged number does that passed then; a number that only changed is named.
 stage_verify() { tools/verify.sh --program "$PWD/build/dev/talus" --level quick --jobs "$jobs" --regression --out build/verify; }
+
+# The documentation as a site: build/site/index.html.  A warning, a broken link and a page that the navigation lacks are errors.
+stage_site() { "$python" -m mkdocs build --quiet --config-file tools/site/mkdocs.yml; }
+
+# Every command of docs/tutorials, with the program that stage verify has built: what they write is there, what they print is what the page shows.
+# Pictures are drawn by the talus-render of stage dev where there is no other: to compile one more would take longer than the tutorials.
+stage_tutorials() {
+  [ -x build/release/talus-render ] || cp build/dev/talus-render build/release/
+  "$python" tools/run_tutorials.py build/release/talus
+}
 
 # Two minutes of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
 stage_fuzz() { tools/fuzz.sh quick; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names; docs: those of docs/pictures.md.
+# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names, and those of the tutorials then; docs: those of docs/pictures.md.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ -x build/talus ] || { echo "build/talus is missing: make build" >&2; exit 3; }
@@ -25,3 +25,4 @@ for name in "${scenes[@]}"; do
   render "$name" --frames "$frame" --out "scenes/$name/picture.png"
   if [ "$name" = slope_failure_3d ]; then cp "scenes/$name/picture.png" docs/images/slope_failure_3d.png; fi
 done
+if [ $# -eq 0 ]; then tools/run_tutorials.py build/talus --pictures; fi
