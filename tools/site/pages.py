@@ -166,7 +166,7 @@ def on_page_markdown(markdown, page, config, files):
 def on_page_content(content, page, config, files):
     """What the search looks through: the sections of each page."""
     for level, anchor, title, body in re.findall(r'<h([1-3]) id="([^"]+)">(.*?)<a class="headerlink".*?</h\1>(.*?)(?=<h[1-3] id=|\Z)', content, re.S):
-        words = html.unescape(re.sub(r"<[^>]+>", " ", body))
+        words = re.sub(r"\\[()\[\]]", "", html.unescape(re.sub(r"<[^>]+>", " ", body)))    # less what marks formulas
         sections.append({"at": f"{page.file.url}#{anchor}", "page": page.title, "title": html.unescape(re.sub(r"<[^>]+>", "", title)),
                          "text": re.sub(r"\s+", " ", words).strip(), "level": int(level)})
     return content
