@@ -6,6 +6,7 @@ import json
 import os
 import posixpath
 import re
+import shutil
 import subprocess
 import tempfile
 from pathlib import Path
@@ -165,7 +166,7 @@ def on_page_markdown(markdown, page, config, files):
 def on_page_content(content, page, config, files):
     """What the search looks through: the sections of each page."""
     for level, anchor, title, body in re.findall(r'<h([1-3]) id="([^"]+)">(.*?)<a class="headerlink".*?</h\1>(.*?)(?=<h[1-3] id=|\Z)', content, re.S):
-        words = html.unescape(re.sub(r"<[^>]+>", " ", body))
+        words = re.sub(r"\\[()\[\]]", "", html.unescape(re.sub(r"<[^>]+>", " ", body)))    # less what marks formulas
         sections.append({"at": f"{page.file.url}#{anchor}", "page": page.title, "title": html.unescape(re.sub(r"<[^>]+>", "", title)),
                          "text": re.sub(r"\s+", " ", words).strip(), "level": int(level)})
     return content
@@ -174,6 +175,23 @@ def on_page_content(content, page, config, files):
 sections = []
 
 
+def lost_links(site):
+    """Links and anchors of all pages that lead nowhere; mkdocs looks at Markdown only, and at no anchor."""
+    pages = {path.relative_to(site).as_posix(): path.read_text(encoding="utf-8") for path in sorted(site.rglob("*.html"))}
+    anchors = {name: set(re.findall(r'\bid="([^"]+)"', text)) for name, text in pages.items()}
+    for name, text in pages.items():
+        for link in re.findall(r'\b(?:href|src)="([^"]+)"', text):
+            if "://" in link or link.startswith(("mailto:", "data:", "/")) or name == "404.html":
+                continue
+            path, _, anchor = html.unescape(link).partition("#")
+            target = posixpath.normpath(posixpath.join(posixpath.dirname(name), path)) if path else name
+            if not (site / target).exists() or (anchor and target in anchors and anchor not in anchors[target]):
+                yield f"{name}: {link}"
+
+
 def on_post_build(config):
     text = "window.talus_sections = " + json.dumps(sections, ensure_ascii=False, separators=(",", ":")) + ";\n"
     (Path(config["site_dir"]) / "site/words.js").write_text(text, encoding="utf-8")
+    shutil.rmtree(written)
+    if lost := list(lost_links(Path(config["site_dir"]))):
+        raise PluginError("links that lead nowhere:\n  " + "\n  ".join(lost))
