@@ -48,6 +48,16 @@ export function group_columns(columns, is_zero = () => false) {
     .sort((a, b) => rank(a.title) - rank(b.title));
 }
 
+/** Columns of a table that talus has made up of words, such as the run-out: one plot for each unit. */
+export function group_by_unit(columns) {
+  const titles = {m: 'places and lengths', 'm/s': 'speeds', deg: 'angles', '': 'ratios'};
+  const units = [...new Set(columns.slice(1).map(({unit = ''}) => unit))];
+  return units.map((unit) => {
+    const its = columns.map((_, c) => c).filter((c) => c > 0 && (columns[c].unit ?? '') === unit);
+    return {title: titles[unit] ?? unit, unit, columns: its, chosen: its.slice(0, 6)};
+  });
+}
+
 /** Plots that are open when nothing was chosen: energies, fronts, and the first that says how something moved. */
 export function first_choice(groups) {
   const busy = groups.filter(({title}) => title === 'energies' || title === 'fronts');

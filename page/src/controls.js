@@ -68,9 +68,9 @@ function make_colour_group({particles}, viewer, state) {
   };
   const root = group('Colours',
     choice('by', [...fields, [BODY, 'body']], {name: 'field', change: ({target}) => state.set({field: target.value, range: 'auto', from: null, to: null})}),
-    choice('map', Object.keys(MAPS).map((name) => [name, name]), {name: 'map', change: ({target}) => state.set({map: target.value})}),
+    el('div', {class: 'pair'}, choice('map', Object.keys(MAPS).map((name) => [name, name]), {name: 'map', change: ({target}) => state.set({map: target.value})}),
     choice('range', [['auto', 'auto'], ['run', 'whole run'], ['frame', 'this frame'], ['hand', 'by hand']],
-      {name: 'range', change: ({target}) => (target.value === 'hand' ? by_hand({}) : state.set({range: target.value, from: null, to: null}))}),
+      {name: 'range', change: ({target}) => (target.value === 'hand' ? by_hand({}) : state.set({range: target.value, from: null, to: null}))})),
     el('div', {class: 'pair'}, number_input('from', 'from', (from) => by_hand({from})), number_input('to', 'to', (to) => by_hand({to}))));
   const show = () => {
     const choices = state.get();

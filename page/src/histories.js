@@ -50,11 +50,11 @@ function make_plot(group, table, columns, timeline, {chosen, changed, close}) {
  * @param {HTMLElement} element to fill
  * @param {object} table TABLE of the run
  * @param {ArrayLike<number>[]} columns its values
- * @param {{timeline: object, chosen: string|null, keep: (text: string) => void}} links chosen: plots in words, kept by the address
+ * @param {{timeline: object, group?: Function, chosen: string|null, keep: (text: string) => void}} links chosen: plots in words, kept by the address
  */
-export function show_histories(element, table, columns, {timeline, chosen, keep}) {
+export function show_histories(element, table, columns, {timeline, group: sort = group_columns, chosen, keep}) {
   const is_zero = (c) => columns[c].every((v) => !(Math.abs(v) > 0));
-  const groups = group_columns(table.columns, is_zero);
+  const groups = sort(table.columns, is_zero);
   const menu = el('div', {class: 'chips', role: 'group', 'aria-label': 'Plots'});
   const list = el('div', {class: 'histories'});
   const open = new Map();

@@ -40,10 +40,10 @@ export function make_keys(run, viewer, save_picture) {
   };
   addEventListener('keydown', (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || help.open) return;
-    if (event.target.closest('input, select, textarea, [contenteditable]')) return;
-    if (event.key === ' ' && event.target.closest('button, summary, a')) return;
-    const in_page = event.target === document.body || event.target.closest('#viewer');
-    if (['Home', 'End'].includes(event.key) && !in_page) return;
+    const {target, key} = event;
+    if (target.closest('select, input[type="number"]')) return;                                                 // typing
+    if (key === ' ' && target.closest('button, summary, a, input[type="checkbox"]')) return;                    // these have a use for it themselves
+    if (['Home', 'End'].includes(key) && (target.type === 'range' || !(target === document.body || target.closest('#viewer')))) return;
     if (viewer && event.target.id === 'canvas') {
       const nudge = (event.shiftKey && SHIFTED[event.key]) || (!event.shiftKey || event.key === '+' ? CANVAS_KEYS[event.key] : null);
       if (nudge) {

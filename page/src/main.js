@@ -2,7 +2,7 @@
 import 'uplot/dist/uPlot.min.css';
 import './page.css';
 import {make_blocks} from './blocks.js';
-import {split_columns} from './columns.js';
+import {group_by_unit, split_columns} from './columns.js';
 import {make_controls} from './controls.js';
 import {el} from './dom.js';
 import {show_balances} from './balances.js';
@@ -90,7 +90,7 @@ async function show(run) {
     if (run.run_out?.rows) {
       const plots = element.appendChild(el('div', {}));
       const table = run.run_out;
-      show_histories(plots, table, split_columns(await blocks.numbers(table.values), table), {timeline, chosen: null, keep: () => {}});
+      show_histories(plots, table, split_columns(await blocks.numbers(table.values), table), {timeline, group: group_by_unit, chosen: null, keep: () => {}});
     }
     if (!element.childElementCount) element.append(el('p', {class: 'empty'}, 'Nothing to measure: no particles were written.'));
   });

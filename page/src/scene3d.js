@@ -58,10 +58,11 @@ export function make_view(canvas, run, moved) {
   }
 
   function resize() {
-    const {clientWidth: width, clientHeight: height} = canvas;
-    if (!width || !height) return;
+    const room = canvas.parentElement.getBoundingClientRect();
+    const [width, height] = [Math.floor(room.width), Math.floor(room.height) - 1];   // whole pixels, or the browser would blur the picture
+    if (width < 1 || height < 1) return;
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    renderer.setSize(width, height, false);
+    renderer.setSize(width, height);
     material.uniforms.pixels.value = height * renderer.getPixelRatio();
     eye.set_aspect(width / height);
     draw();
@@ -180,7 +181,7 @@ export function make_view(canvas, run, moved) {
     draw_soon();
   }
 
-  new ResizeObserver(resize).observe(canvas);
+  new ResizeObserver(resize).observe(canvas.parentElement);
   matchMedia('(prefers-color-scheme: dark)').addEventListener('change', take_colours);
   set_map('viridis');
   take_colours();
