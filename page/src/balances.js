@@ -3,10 +3,20 @@ import {CURVES} from './timeline.js';
 import {el, number, split_unit, table, unit, with_unit} from './dom.js';
 
 /** Energies as they enter the balance: those put in, and where they are in the end. */
-const GIVEN = [['gravity_work', 'work of gravity'], ['load_work', 'work of loads'], ['wall_work', 'work of walls'], ['kinetic_start', 'kinetic energy at the start']];
+const GIVEN = [
+  ['gravity_work', 'work of gravity'],
+  ['load_work', 'work of loads'],
+  ['wall_work', 'work of walls'],
+  ['kinetic_start', 'kinetic energy at the start'],
+];
 const FOUND = [
-  ['kinetic', 'kinetic energy'], ['strain', 'strain energy'], ['plastic', 'plastic dissipation'], ['friction', 'friction at walls and contacts'],
-  ['damping', 'damping'], ['carried_away', 'carried away by deleted particles'], ['transfer_loss', 'lost in transfers between particles and nodes'],
+  ['kinetic', 'kinetic energy'],
+  ['strain', 'strain energy'],
+  ['plastic', 'plastic dissipation'],
+  ['friction', 'friction at walls and contacts'],
+  ['damping', 'damping'],
+  ['carried_away', 'carried away by deleted particles'],
+  ['transfer_loss', 'lost in transfers between particles and nodes'],
   ['energy_defect', 'not accounted for'],
 ];
 
@@ -31,29 +41,48 @@ function closing_words(name, {closure, relative_to: scale, closes}) {
 
 function mass_words(mass) {
   const removed = mass['removed [kg]'];
-  return `${with_unit(mass['start [kg]'], 'kg')} at the start, ${with_unit(mass['end [kg]'], 'kg')} at the end; `
-    + (mass.particles_removed ? `${mass.particles_removed} particles with ${with_unit(removed, 'kg')} were removed.` : 'no particle was removed.');
+  return (
+    `${with_unit(mass['start [kg]'], 'kg')} at the start, ${with_unit(mass['end [kg]'], 'kg')} at the end; ` +
+    (mass.particles_removed
+      ? `${mass.particles_removed} particles with ${with_unit(removed, 'kg')} were removed.`
+      : 'no particle was removed.')
+  );
 }
 
 function verdicts(balances) {
   const names = {mass: 'Mass', momentum: 'Momentum', angular_momentum: 'Angular momentum', energy: 'Energy'};
-  return el('ul', {class: 'verdicts'}, Object.entries(names).filter(([key]) => balances[key]).map(([key, words]) => {
-    const balance = balances[key];
-    return el('li', {class: balance.closes ? 'good' : 'bad'}, el('b', {'aria-hidden': 'true'}, balance.closes ? '✓ ' : '✗ '), closing_words(words, balance),
-      key === 'mass' ? ` ${mass_words(balance)}` : null);
-  }));
+  return el(
+    'ul',
+    {class: 'verdicts'},
+    Object.entries(names)
+      .filter(([key]) => balances[key])
+      .map(([key, words]) => {
+        const balance = balances[key];
+        return el(
+          'li',
+          {class: balance.closes ? 'good' : 'bad'},
+          el('b', {'aria-hidden': 'true'}, balance.closes ? '✓ ' : '✗ '),
+          closing_words(words, balance),
+          key === 'mass' ? ` ${mass_words(balance)}` : null,
+        );
+      }),
+  );
 }
 
 function energy_words(terms) {
   const sum = (names) => names.reduce((total, [name]) => total + (terms.get(name) ?? 0), 0);
   const given = sum(GIVEN);
   const largest = FOUND.filter(([name]) => name !== 'energy_defect')
-    .map(([name, words]) => [terms.get(name) ?? 0, words]).sort(([a], [b]) => Math.abs(b) - Math.abs(a))[0];
+    .map(([name, words]) => [terms.get(name) ?? 0, words])
+    .sort(([a], [b]) => Math.abs(b) - Math.abs(a))[0];
   const unexplained = terms.get('unexplained / dissipated');
-  return `${with_unit(given, 'J')} were put in. Most of it is ${largest[1]}: ${with_unit(largest[0], 'J')}`
-    + (given ? ` (${percent(Math.abs(largest[0] / given))}).` : '.')
-    + (unexplained !== undefined && unexplained !== null
-      ? ` Transfers and what is not accounted for are ${percent(Math.abs(unexplained))} of what was dissipated.` : '');
+  return (
+    `${with_unit(given, 'J')} were put in. Most of it is ${largest[1]}: ${with_unit(largest[0], 'J')}` +
+    (given ? ` (${percent(Math.abs(largest[0] / given))}).` : '.') +
+    (unexplained !== undefined && unexplained !== null
+      ? ` Transfers and what is not accounted for are ${percent(Math.abs(unexplained))} of what was dissipated.`
+      : '')
+  );
 }
 
 function energy_table(stages) {
@@ -62,35 +91,54 @@ function energy_table(stages) {
   const row = ([name, words]) => [words, ...columns.map((stage) => number(stages.get(stage).get(name)))];
   const present = ([name]) => columns.some((stage) => stages.get(stage).get(name));
   const sum = (names) => columns.map((stage) => number(names.reduce((total, [name]) => total + (stages.get(stage).get(name) ?? 0), 0)));
-  return table('Where the energy came from and where it is', head, [
-    ...GIVEN.filter(present).map(row), [el('b', {}, 'put in'), ...sum(GIVEN)],
-    ...FOUND.filter((term) => present(term) || term[0] === 'energy_defect').map(row), [el('b', {}, 'sum'), ...sum(FOUND)],
-  ], {class: 'sums'});
+  return table(
+    'Where the energy came from and where it is',
+    head,
+    [
+      ...GIVEN.filter(present).map(row),
+      [el('b', {}, 'put in'), ...sum(GIVEN)],
+      ...FOUND.filter((term) => present(term) || term[0] === 'energy_defect').map(row),
+      [el('b', {}, 'sum'), ...sum(FOUND)],
+    ],
+    {class: 'sums'},
+  );
 }
 
 function momentum_table(title, balance, its_unit) {
   const of = (name) => balance[`${name} [${its_unit}]`] ?? [];
   const names = of('end').length === 1 ? ['z'] : ['x', 'y', 'z'].slice(0, of('end').length);
-  return table(`${title} [${unit(its_unit)}]`, ['', ...names],
-    [['at the start', of('start')], ['impulse from outside', of('impulse')], ['at the end', of('end')]].map(([words, values]) => [words, ...values.map((v) => number(v))]));
+  return table(
+    `${title} [${unit(its_unit)}]`,
+    ['', ...names],
+    [
+      ['at the start', of('start')],
+      ['impulse from outside', of('impulse')],
+      ['at the end', of('end')],
+    ].map(([words, values]) => [words, ...values.map((v) => number(v))]),
+  );
 }
 
 /** Energies as bands that lie on one another, positive ones upwards, negative ones downwards; the line is what was put in. */
 function energy_picture(element, table, columns, timeline) {
   const column = (name) => columns[table.columns.findIndex((c) => c.name === name && c.unit === 'J')];
-  const bands = FOUND.map(([name, words], k) => ({words, values: column(name), colour: CURVES[k % CURVES.length]}))
-    .filter(({values}) => values && values.some((v) => Math.abs(v) > 0));
+  const bands = FOUND.map(([name, words], k) => ({words, values: column(name), colour: CURVES[k % CURVES.length]})).filter(
+    ({values}) => values && values.some((v) => Math.abs(v) > 0),
+  );
   if (!bands.length) return false;
   const rows = table.rows;
   const put_in = new Float64Array(rows);
   const edges = {up: [new Float64Array(rows)], down: [new Float64Array(rows)]};
-  for (const [name] of GIVEN) column(name)?.forEach((v, row) => { put_in[row] += v; });
+  for (const [name] of GIVEN)
+    column(name)?.forEach((v, row) => {
+      put_in[row] += v;
+    });
   for (const {values} of bands) {
     const next = (before, keep) => before.map((sum, row) => sum + (keep(values[row]) ? values[row] : 0));
     edges.up.push(next(edges.up.at(-1), (v) => v > 0));
     edges.down.push(next(edges.down.at(-1), (v) => v < 0));
   }
-  const low = Math.min(0, ...edges.down.at(-1), ...put_in), high = Math.max(0, ...edges.up.at(-1), ...put_in);
+  const low = Math.min(0, ...edges.down.at(-1), ...put_in),
+    high = Math.max(0, ...edges.up.at(-1), ...put_in);
   const room = 0.04 * (high - low) || 1;
 
   function draw(plot) {
@@ -118,20 +166,40 @@ function energy_picture(element, table, columns, timeline) {
     readings[k] = el('output', {});
     return el('span', {class: 'chip'}, swatch, words, readings[k]);
   };
-  const place = el('div', {class: 'plot', role: 'img', 'aria-label': 'Energies over time, one on the other; the table has the numbers of the end'});
+  const place = el('div', {
+    class: 'plot',
+    role: 'img',
+    'aria-label': 'Energies over time, one on the other; the table has the numbers of the end',
+  });
   element.append(
-    el('div', {class: 'chips'}, bands.map(({words, colour}, k) => key(words, colour, k)), key('put in', null, bands.length)), place);
+    el(
+      'div',
+      {class: 'chips'},
+      bands.map(({words, colour}, k) => key(words, colour, k)),
+      key('put in', null, bands.length),
+    ),
+    place,
+  );
   timeline.add(place, {
-    unit: 'J', height: 230, draw, data: [columns[0], put_in], range: () => [low - room, high + room],
+    unit: 'J',
+    height: 230,
+    draw,
+    data: [columns[0], put_in],
+    range: () => [low - room, high + room],
     series: [{label: 'put in', stroke: () => getComputedStyle(document.documentElement).getPropertyValue('--text').trim(), width: 2}],
-    read: (row) => [...bands.map(({values}) => values), put_in].forEach((values, k) => { readings[k].textContent = row === null ? '' : number(values[row]); }),
+    read: (row) =>
+      [...bands.map(({values}) => values), put_in].forEach((values, k) => {
+        readings[k].textContent = row === null ? '' : number(values[row]);
+      }),
   });
   return true;
 }
 
 /** What the last row of the history says, while there is no summary. */
 function terms_so_far(table, columns) {
-  const entries = table.columns.map(({name, unit: its_unit}, c) => [name, its_unit, columns[c].at(-1)]).filter(([, its_unit]) => its_unit === 'J');
+  const entries = table.columns
+    .map(({name, unit: its_unit}, c) => [name, its_unit, columns[c].at(-1)])
+    .filter(([, its_unit]) => its_unit === 'J');
   return new Map([['', new Map(entries.map(([name, , value]) => [name, value]))]]);
 }
 
@@ -141,9 +209,15 @@ export function show_balances(element, run, columns, timeline) {
   const picture = el('div', {});
   const parts = [];
   if (run.summary) {
-    parts.push(Object.keys(balances).length ? verdicts(balances) : el('p', {class: 'empty'}, 'The summary of this run has no balances.'));
+    parts.push(
+      Object.keys(balances).length
+        ? verdicts(balances)
+        : el('p', {class: 'empty'}, 'The balances are drawn up when a run ends; this one did not come to that.'),
+    );
   } else {
-    parts.push(el('p', {class: 'note'}, 'The balances are drawn up when the run ends.', columns ? ' So far, by the last row of the history:' : ''));
+    parts.push(
+      el('p', {class: 'note'}, 'The balances are drawn up when the run ends.', columns ? ' So far, by the last row of the history:' : ''),
+    );
   }
   const stages = balances.energy ? terms_by_stage(balances.energy.terms) : columns ? terms_so_far(run.history, columns) : null;
   if (stages) parts.push(el('h3', {}, 'Energy'), el('p', {}, energy_words(stages.get(''))), picture, energy_table(stages));
@@ -151,5 +225,11 @@ export function show_balances(element, run, columns, timeline) {
   if (balances.angular_momentum) parts.push(momentum_table('Angular momentum about the origin', balances.angular_momentum, 'kg m^2/s'));
   element.replaceChildren(...parts);
   if (stages && !(columns && energy_picture(picture, run.history, columns, timeline)))
-    picture.append(el('p', {class: 'note'}, columns ? 'No energies changed.' : 'How energies went in time is not known: no history was asked for (outputs.history).'));
+    picture.append(
+      el(
+        'p',
+        {class: 'note'},
+        columns ? 'No energies changed.' : 'How energies went in time is not known: no history was asked for (outputs.history).',
+      ),
+    );
 }

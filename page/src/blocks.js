@@ -23,7 +23,8 @@ export function make_blocks() {
       if (error) fail(new Error(error));
       else keep(numbers);
     };
-    worker.onerror = () => {   // not allowed after all: what waits is done here
+    worker.onerror = () => {
+      // not allowed after all: what waits is done here
       worker = null;
       for (const {text, block, keep, fail} of waiting.values()) decode(text, block).then(keep, fail);
       waiting.clear();

@@ -2,8 +2,8 @@
 import * as THREE from 'three';
 import {OrbitControls} from 'three/addons/controls/OrbitControls.js';
 
-const OPENING = 35;                                                       // degrees, of the perspective camera
-const SLOPE = 2 * Math.tan(THREE.MathUtils.degToRad(OPENING / 2));        // height of the picture over distance
+const OPENING = 35; // degrees, of the perspective camera
+const SLOPE = 2 * Math.tan(THREE.MathUtils.degToRad(OPENING / 2)); // height of the picture over distance
 
 /** Three directions at right angles: up, to the right, and towards a reader who stands in front. */
 export function directions(up, dimension) {
@@ -28,14 +28,11 @@ export function make_eye(element, {dimension, up, bounds, moved}) {
   const around = directions(up, dimension);
   const views = named_views(around);
   const span = Math.max(bounds.getSize(new THREE.Vector3()).length(), 1e-9);
-  const cameras = {
-    flat: new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 1),
-    deep: new THREE.PerspectiveCamera(OPENING, 1, 0.1, 1),
-  };
+  const cameras = {flat: new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 1), deep: new THREE.PerspectiveCamera(OPENING, 1, 0.1, 1)};
   let camera = dimension === 2 ? cameras.flat : cameras.deep;
   let aspect = 1;
   let quiet = false;
-  let fitted = null;   // direction from which everything was made to fit, until the reader moves
+  let fitted = null; // direction from which everything was made to fit, until the reader moves
   for (const c of Object.values(cameras)) c.up.copy(around.up);
 
   const controls = new OrbitControls(camera, element);
@@ -53,8 +50,8 @@ export function make_eye(element, {dimension, up, bounds, moved}) {
     moved();
   });
 
-  const height = () => (camera === cameras.flat ? (camera.top - camera.bottom) / camera.zoom
-    : SLOPE * camera.position.distanceTo(controls.target));
+  const height = () =>
+    camera === cameras.flat ? (camera.top - camera.bottom) / camera.zoom : SLOPE * camera.position.distanceTo(controls.target);
 
   function shape() {
     cameras.deep.aspect = aspect;
@@ -71,7 +68,9 @@ export function make_eye(element, {dimension, up, bounds, moved}) {
     const right = new THREE.Vector3().crossVectors(around.up, towards).normalize();
     const top = new THREE.Vector3().crossVectors(towards, right);
     const middle = bounds.getCenter(new THREE.Vector3());
-    let half_width = 0, half_height = 0, nearest = 0;
+    let half_width = 0,
+      half_height = 0,
+      nearest = 0;
     for (let corner = 0; corner < 8; ++corner) {
       const to = new THREE.Vector3(...['x', 'y', 'z'].map((axis, k) => (corner & (1 << k) ? bounds.max : bounds.min)[axis])).sub(middle);
       half_width = Math.max(half_width, Math.abs(to.dot(right)));
@@ -103,7 +102,13 @@ export function make_eye(element, {dimension, up, bounds, moved}) {
   const towards = () => camera.position.clone().sub(controls.target).normalize();
 
   return {
-    views, around, fit, look, towards, height, shape,
+    views,
+    around,
+    fit,
+    look,
+    towards,
+    height,
+    shape,
     camera: () => camera,
     target: () => controls.target,
     fit_as_seen: () => fit(towards()),
@@ -126,17 +131,22 @@ export function make_eye(element, {dimension, up, bounds, moved}) {
     /** Turned by angles [rad] about the vertical and towards it, moved by shares of the picture, zoomed. */
     nudge({turn = 0, tilt = 0, right = 0, up: upwards = 0, zoom = 1}) {
       const from = new THREE.Spherical().setFromVector3(
-        towards().applyQuaternion(new THREE.Quaternion().setFromUnitVectors(around.up, new THREE.Vector3(0, 1, 0))));
+        towards().applyQuaternion(new THREE.Quaternion().setFromUnitVectors(around.up, new THREE.Vector3(0, 1, 0))),
+      );
       if (dimension === 3) {
         from.theta += turn;
         from.phi -= tilt;
         from.makeSafe();
       }
-      const direction = new THREE.Vector3().setFromSpherical(from)
+      const direction = new THREE.Vector3()
+        .setFromSpherical(from)
         .applyQuaternion(new THREE.Quaternion().setFromUnitVectors(new THREE.Vector3(0, 1, 0), around.up));
       const sideways = new THREE.Vector3().setFromMatrixColumn(camera.matrix, 0);
       const across = new THREE.Vector3().setFromMatrixColumn(camera.matrix, 1);
-      const target = controls.target.clone().addScaledVector(sideways, right * height()).addScaledVector(across, upwards * height());
+      const target = controls.target
+        .clone()
+        .addScaledVector(sideways, right * height())
+        .addScaledVector(across, upwards * height());
       look({towards: direction, target, height: height() / zoom});
       moved();
     },

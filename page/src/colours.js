@@ -6,7 +6,7 @@ const rows = (text) => text.match(/[0-9a-f]{6}/g).map((hex) => [0, 2, 4].map((i)
 export const MAPS = {
   viridis: rows('440154 48186a 472d7b 424086 3b528b 33638d 2c728e 26828e 21918c 1fa088 28ae80 3fbc73 5ec962 84d44b addc30 d8e219 fde725'),
   cividis: rows('00224e 002e6a 1a386f 32436d 434e6c 535a6d 61656f 6f7073 7d7c78 8c8878 9b9476 aba072 bcae6c cdbb63 dec958 f0d846 fee838'),
-  'blue–orange': rows('08306b 2166ac 4a90c9 92c0de d9e6ee f3ead9 f4c48a e58f3c b85a10 6e3005'),   // lightness symmetrical about the middle
+  'blue–orange': rows('08306b 2166ac 4a90c9 92c0de d9e6ee f3ead9 f4c48a e58f3c b85a10 6e3005'), // lightness symmetrical about the middle
 };
 
 /** Okabe and Ito (2008), without black; pairs stay apart with any kind of colour vision. */

@@ -1,12 +1,17 @@
 // Columns of a history, sorted into plots: what is of one kind and one unit belongs into one picture.
 
-const KINDS = [   // pattern of the name, unit it needs (null: any), title of the plot; first match decides
+const KINDS = [
+  // pattern of the name, unit it needs (null: any), title of the plot; first match decides
   [/^angular_momentum_[xyz]$/, null, () => 'angular momentum'],
   [/^momentum_[xyz]$/, null, () => 'momentum'],
   [/^reaction_/, null, () => 'reactions'],
   [/^centre_[xyz]$/, null, () => 'centre of mass'],
   [/./, 'J', () => 'energies'],
-  [/^(dt|step|stage|mass|residual)$/, null, ([name]) => ({dt: 'length of a step', step: 'steps', stage: 'stage', mass: 'mass', residual: 'unbalanced share of the load'}[name])],
+  [
+    /^(dt|step|stage|mass|residual)$/,
+    null,
+    ([name]) => ({dt: 'length of a step', step: 'steps', stage: 'stage', mass: 'mass', residual: 'unbalanced share of the load'})[name],
+  ],
   [/^(.+)_u[xyz]$/, 'm', ([, point]) => `${point}: displacement`],
   [/^(.+)_v[xyz]$/, 'm/s', ([, point]) => `${point}: velocity`],
   [/^(.+)_s[xyz]{2}$/, 'Pa', ([, point]) => `${point}: stress`],
@@ -67,10 +72,14 @@ export function first_choice(groups) {
 
 /** "energies:kinetic+strain;fronts:toe" <-> open plots with the names of their columns. */
 export const to_text = (plots) => plots.map(({title, names}) => `${title}=${names.join('+')}`).join(';');
-export const from_text = (text) => text.split(';').filter(Boolean).map((part) => {
-  const [title, names = ''] = part.split('=');
-  return {title, names: names.split('+').filter(Boolean)};
-});
+export const from_text = (text) =>
+  text
+    .split(';')
+    .filter(Boolean)
+    .map((part) => {
+      const [title, names = ''] = part.split('=');
+      return {title, names: names.split('+').filter(Boolean)};
+    });
 
 /** A table's block -> one array a column. @param {{columns: object[], rows: number}} table */
 export const split_columns = (numbers, {columns, rows}) => columns.map((_, c) => numbers.subarray(c * rows, (c + 1) * rows));

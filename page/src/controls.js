@@ -4,14 +4,22 @@ import {choice, el, icon, number, unit} from './dom.js';
 import {BODY, field_index, limit_of, section_normal, span_along} from './shown.js';
 import {save} from './picture.js';
 
-const SLIDER = 1000;   // steps of a slider
+const SLIDER = 1000; // steps of a slider
 
 /** A number that may be left empty; what is not a number is left as it was. */
 function number_input(label, name, apply) {
-  return el('label', {}, el('span', {}, label), el('input', {
-    name, type: 'number', step: 'any', inputmode: 'decimal',
-    change: ({target}) => apply(target.value === '' || !Number.isFinite(target.valueAsNumber) ? null : target.valueAsNumber),
-  }));
+  return el(
+    'label',
+    {},
+    el('span', {}, label),
+    el('input', {
+      name,
+      type: 'number',
+      step: 'any',
+      inputmode: 'decimal',
+      change: ({target}) => apply(target.value === '' || !Number.isFinite(target.valueAsNumber) ? null : target.valueAsNumber),
+    }),
+  );
 }
 
 const group = (title, ...children) => el('fieldset', {}, el('legend', {}, title), children);
@@ -32,9 +40,17 @@ function make_time_bar(run, viewer, state) {
     bar.hidden = true;
     return;
   }
-  const play = el('button', {type: 'button', 'aria-label': 'Play', title: 'Play or pause (space)', click: () => viewer.play()}, icon('play'));
+  const play = el(
+    'button',
+    {type: 'button', 'aria-label': 'Play', title: 'Play or pause (space)', click: () => viewer.play()},
+    icon('play'),
+  );
   const slider = el('input', {
-    type: 'range', min: 0, max: frames.length - 1, step: 1, 'aria-label': 'Frame',
+    type: 'range',
+    min: 0,
+    max: frames.length - 1,
+    step: 1,
+    'aria-label': 'Frame',
     input: ({target}) => viewer.go_to(target.valueAsNumber),
   });
   const time = el('output', {});
@@ -43,8 +59,14 @@ function make_time_bar(run, viewer, state) {
     el('button', {type: 'button', 'aria-label': 'One frame back', title: 'One frame back (,)', click: () => viewer.step(-1)}, icon('back')),
     play,
     el('button', {type: 'button', 'aria-label': 'One frame on', title: 'One frame on (.)', click: () => viewer.step(1)}, icon('next')),
-    el('button', {type: 'button', 'aria-label': 'Last frame', title: 'Last frame (End)', click: () => viewer.go_to(frames.length - 1)}, icon('last')),
-    slider, time);
+    el(
+      'button',
+      {type: 'button', 'aria-label': 'Last frame', title: 'Last frame (End)', click: () => viewer.go_to(frames.length - 1)},
+      icon('last'),
+    ),
+    slider,
+    time,
+  );
   const show = () => {
     const index = viewer.current();
     slider.value = index;
@@ -66,12 +88,41 @@ function make_colour_group({particles}, viewer, state) {
     const [from, to] = viewer.colour_range() ?? [null, null];
     state.set({from, to, ...changes, range: 'hand'});
   };
-  const root = group('Colours',
-    choice('by', [...fields, [BODY, 'body']], {name: 'field', change: ({target}) => state.set({field: target.value, range: 'auto', from: null, to: null})}),
-    el('div', {class: 'pair'}, choice('map', Object.keys(MAPS).map((name) => [name, name]), {name: 'map', change: ({target}) => state.set({map: target.value})}),
-    choice('range', [['auto', 'auto'], ['run', 'whole run'], ['frame', 'this frame'], ['hand', 'by hand']],
-      {name: 'range', change: ({target}) => (target.value === 'hand' ? by_hand({}) : state.set({range: target.value, from: null, to: null}))})),
-    el('div', {class: 'pair'}, number_input('from', 'from', (from) => by_hand({from})), number_input('to', 'to', (to) => by_hand({to}))));
+  const root = group(
+    'Colours',
+    choice('by', [...fields, [BODY, 'body']], {
+      name: 'field',
+      change: ({target}) => state.set({field: target.value, range: 'auto', from: null, to: null}),
+    }),
+    el(
+      'div',
+      {class: 'pair'},
+      choice(
+        'map',
+        Object.keys(MAPS).map((name) => [name, name]),
+        {name: 'map', change: ({target}) => state.set({map: target.value})},
+      ),
+      choice(
+        'range',
+        [
+          ['auto', 'auto'],
+          ['run', 'whole run'],
+          ['frame', 'this frame'],
+          ['hand', 'by hand'],
+        ],
+        {
+          name: 'range',
+          change: ({target}) => (target.value === 'hand' ? by_hand({}) : state.set({range: target.value, from: null, to: null})),
+        },
+      ),
+    ),
+    el(
+      'div',
+      {class: 'pair'},
+      number_input('from', 'from', (from) => by_hand({from})),
+      number_input('to', 'to', (to) => by_hand({to})),
+    ),
+  );
   const show = () => {
     const choices = state.get();
     const index = field_index(particles, choices.field);
@@ -91,15 +142,31 @@ function make_colour_group({particles}, viewer, state) {
 
 function make_section_group(run, viewer, state) {
   const {bounds, eye} = viewer.view;
-  const axes = [['none', 'none'], ['x', 'across x'], ['y', 'across y'], ...(run.dimension === 3 ? [['z', 'across z'], ['view', 'across the line of sight']] : [])];
+  const axes = [
+    ['none', 'none'],
+    ['x', 'across x'],
+    ['y', 'across y'],
+    ...(run.dimension === 3
+      ? [
+          ['z', 'across z'],
+          ['view', 'across the line of sight'],
+        ]
+      : []),
+  ];
   const slider = el('input', {
-    type: 'range', name: 'slide', min: 0, max: SLIDER, step: 1, 'aria-label': 'Place of the section',
+    type: 'range',
+    name: 'slide',
+    min: 0,
+    max: SLIDER,
+    step: 1,
+    'aria-label': 'Place of the section',
     input: ({target}) => {
       const [least, most] = span_along(section_normal(state.get()), bounds);
       state.set({at: least + ((most - least) * target.valueAsNumber) / SLIDER});
     },
   });
-  const root = group('Section',
+  const root = group(
+    'Section',
     choice('cut', axes, {
       name: 'section',
       change: ({target}) => {
@@ -108,9 +175,18 @@ function make_section_group(run, viewer, state) {
       },
     }),
     slider,
-    el('div', {class: 'pair'},
+    el(
+      'div',
+      {class: 'pair'},
       number_input('at [m]', 'at', (at) => state.set({at})),
-      el('label', {class: 'tick'}, el('input', {type: 'checkbox', name: 'flip', change: ({target}) => state.set({flip: target.checked})}), 'flip')));
+      el(
+        'label',
+        {class: 'tick'},
+        el('input', {type: 'checkbox', name: 'flip', change: ({target}) => state.set({flip: target.checked})}),
+        'flip',
+      ),
+    ),
+  );
   const show = () => {
     const choices = state.get();
     const normal = section_normal(choices);
@@ -133,15 +209,20 @@ function make_section_group(run, viewer, state) {
 }
 
 function make_limit_group({particles}, state) {
-  const root = group('Only values',
+  const root = group(
+    'Only values',
     choice('of', [['', 'every particle'], ...particles.fields.map(({name, label}) => [name, label || name])], {
       name: 'only',
       change: ({target}) => state.set({only: target.value || null, lowest: null, highest: null}),
     }),
-    el('div', {class: 'pair'},
+    el(
+      'div',
+      {class: 'pair'},
       number_input('at least', 'lowest', (lowest) => state.set({lowest})),
-      number_input('at most', 'highest', (highest) => state.set({highest}))),
-    el('p', {class: 'note'}));
+      number_input('at most', 'highest', (highest) => state.set({highest})),
+    ),
+    el('p', {class: 'note'}),
+  );
   const show = () => {
     const choices = state.get();
     const field = particles.fields.find(({name}) => name === choices.only);
@@ -150,7 +231,8 @@ function make_limit_group({particles}, state) {
       show_value(root, name, field ? choices[name] : null);
       root.querySelector(`[name="${name}"]`).disabled = !field;
     }
-    root.querySelector('.note').textContent = !field ? ''
+    root.querySelector('.note').textContent = !field
+      ? ''
       : `${limit_of(particles, choices) ? '' : 'No limit so far. '}In this run ${number(field.low, 3)} to ${number(field.high, 3)} ${unit(field.unit)}`;
   };
   state.listen(show);
@@ -160,13 +242,33 @@ function make_limit_group({particles}, state) {
 
 function make_display_group(run, state) {
   const meshes = [['none', 'hidden'], ['outline', 'outline'], ...(run.mesh?.cells ? [['cells', 'every edge']] : [])];
-  const root = group('Display',
-    run.particles ? el('label', {}, el('span', {}, 'size'), el('input', {
-      type: 'range', name: 'size', min: 0.3, max: 2, step: 0.1, input: ({target}) => state.set({size: target.valueAsNumber}),
-    })) : null,
+  const root = group(
+    'Display',
+    run.particles
+      ? el(
+          'label',
+          {},
+          el('span', {}, 'size'),
+          el('input', {
+            type: 'range',
+            name: 'size',
+            min: 0.3,
+            max: 2,
+            step: 0.1,
+            input: ({target}) => state.set({size: target.valueAsNumber}),
+          }),
+        )
+      : null,
     run.mesh ? choice('mesh', meshes, {name: 'mesh', change: ({target}) => state.set({mesh: target.value})}) : null,
-    run.dimension === 3 ? el('label', {class: 'tick'},
-      el('input', {type: 'checkbox', name: 'orthographic', change: ({target}) => state.set({orthographic: target.checked})}), 'parallel view') : null);
+    run.dimension === 3
+      ? el(
+          'label',
+          {class: 'tick'},
+          el('input', {type: 'checkbox', name: 'orthographic', change: ({target}) => state.set({orthographic: target.checked})}),
+          'parallel view',
+        )
+      : null,
+  );
   const show = () => {
     const choices = state.get();
     for (const name of ['size', 'mesh', 'orthographic']) show_value(root, name, choices[name]);
@@ -178,20 +280,38 @@ function make_display_group(run, state) {
 
 export function make_controls(run, viewer, state) {
   make_time_bar(run, viewer, state);
-  const views = run.dimension === 3 ? [['iso', 'Oblique', 1], ['front', 'Front', 2], ['side', 'Side', 3], ['top', 'Top', 4], ['fit', 'All', 'f']] : [['fit', 'All', 'f']];
+  const views =
+    run.dimension === 3
+      ? [
+          ['iso', 'Oblique', 1],
+          ['front', 'Front', 2],
+          ['side', 'Side', 3],
+          ['top', 'Top', 4],
+          ['fit', 'All', 'f'],
+        ]
+      : [['fit', 'All', 'f']];
   const save_picture = () => {
     const index = viewer.current();
-    const field = run.particles ? state.get().field ?? run.particles.fields[run.particles.field ?? 0]?.name ?? BODY : 'mesh';
+    const field = run.particles ? (state.get().field ?? run.particles.fields[run.particles.field ?? 0]?.name ?? BODY) : 'mesh';
     save(viewer.picture(), run.title, `${run.name || 'talus'}_${field}_${String(index).padStart(4, '0')}.png`);
   };
-  document.getElementById('views').append(
-    ...views.map(([name, words, key]) => el('button', {type: 'button', title: `${words} (${key})`, click: () => viewer.look_from(name)}, words)),
-    el('button', {type: 'button', title: 'Save the picture (p)', click: save_picture}, 'Save PNG'));
-  document.getElementById('controls').append(...[
-    run.particles && make_colour_group(run, viewer, state),
-    run.particles && make_section_group(run, viewer, state),
-    run.particles?.fields.length ? make_limit_group(run, state) : null,
-    make_display_group(run, state),
-  ].filter(Boolean));
+  document
+    .getElementById('views')
+    .append(
+      ...views.map(([name, words, key]) =>
+        el('button', {type: 'button', title: `${words} (${key})`, click: () => viewer.look_from(name)}, words),
+      ),
+      el('button', {type: 'button', title: 'Save the picture (p)', click: save_picture}, 'Save PNG'),
+    );
+  document
+    .getElementById('controls')
+    .append(
+      ...[
+        run.particles && make_colour_group(run, viewer, state),
+        run.particles && make_section_group(run, viewer, state),
+        run.particles?.fields.length ? make_limit_group(run, state) : null,
+        make_display_group(run, state),
+      ].filter(Boolean),
+    );
   return {save_picture};
 }

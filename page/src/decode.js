@@ -31,8 +31,7 @@ export async function inflate(bytes) {
 export function join_planes(bytes, width) {
   const count = bytes.length / width;
   const joined = new Uint8Array(bytes.length);
-  for (let plane = 0; plane < width; ++plane)
-    for (let i = 0; i < count; ++i) joined[i * width + plane] = bytes[plane * count + i];
+  for (let plane = 0; plane < width; ++plane) for (let i = 0; i < count; ++i) joined[i * width + plane] = bytes[plane * count + i];
   return joined;
 }
 

@@ -9,19 +9,30 @@ export function el(tag, attributes = {}, ...children) {
     else if (name === 'value' || name === 'checked' || name === 'disabled') element[name] = value;
     else element.setAttribute(name, value === true ? '' : value);
   }
-  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined && child !== false).map((child) => (child instanceof Node ? child : String(child))));
+  element.append(
+    ...children
+      .flat(Infinity)
+      .filter((child) => child !== null && child !== undefined && child !== false)
+      .map((child) => (child instanceof Node ? child : String(child))),
+  );
   return element;
 }
 
-const SHAPES = {   // in a box of 16 by 16
-  play: 'M4 2l10 6-10 6z', pause: 'M4 2h3v12H4zM9 2h3v12H9z', next: 'M3 2l8 6-8 6zM11 2h2v12h-2z', back: 'M13 2L5 8l8 6zM5 2H3v12h2z',
-  last: 'M1 3l6 5-6 5zM7 3l6 5-6 5zM13 3h2v10h-2z', first: 'M15 3L9 8l6 5zM9 3L3 8l6 5zM3 3H1v10h2z',
+const SHAPES = {
+  // in a box of 16 by 16
+  play: 'M4 2l10 6-10 6z',
+  pause: 'M4 2h3v12H4zM9 2h3v12H9z',
+  next: 'M3 2l8 6-8 6zM11 2h2v12h-2z',
+  back: 'M13 2L5 8l8 6zM5 2H3v12h2z',
+  last: 'M1 3l6 5-6 5zM7 3l6 5-6 5zM13 3h2v10h-2z',
+  first: 'M15 3L9 8l6 5zM9 3L3 8l6 5zM3 3H1v10h2z',
 };
 
 /** A sign on a button, which has its words in aria-label. */
 export function icon(name) {
   const svg = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
-  for (const [key, value] of Object.entries({viewBox: '0 0 16 16', width: 14, height: 14, fill: 'currentColor', 'aria-hidden': 'true'})) svg.setAttribute(key, value);
+  for (const [key, value] of Object.entries({viewBox: '0 0 16 16', width: 14, height: 14, fill: 'currentColor', 'aria-hidden': 'true'}))
+    svg.setAttribute(key, value);
   svg.append(document.createElementNS(svg.namespaceURI, 'path'));
   svg.firstChild.setAttribute('d', SHAPES[name]);
   return svg;
@@ -29,15 +40,49 @@ export function icon(name) {
 
 /** A choice out of several: [[value, words], ...]. */
 export function choice(label, options, attributes = {}) {
-  return el('label', {}, el('span', {}, label),
-    el('select', {name: attributes.name, change: attributes.change}, options.map(([value, words]) => el('option', {value}, words))));
+  return el(
+    'label',
+    {},
+    el('span', {}, label),
+    el(
+      'select',
+      {name: attributes.name, change: attributes.change},
+      options.map(([value, words]) => el('option', {value}, words)),
+    ),
+  );
 }
 
 export function table(caption, head, rows, attributes = {}) {
-  return el('div', {class: 'wide', tabindex: 0, role: 'region', 'aria-label': caption},
-    el('table', attributes, el('caption', {}, caption),
-      el('thead', {}, el('tr', {}, head.map((words) => el('th', {scope: 'col'}, words)))),
-      el('tbody', {}, rows.map(([first, ...rest]) => el('tr', {}, el('th', {scope: 'row'}, first), rest.map((cell) => el('td', {}, cell)))))));
+  return el(
+    'div',
+    {class: 'wide', tabindex: 0, role: 'region', 'aria-label': caption},
+    el(
+      'table',
+      attributes,
+      el('caption', {}, caption),
+      el(
+        'thead',
+        {},
+        el(
+          'tr',
+          {},
+          head.map((words) => el('th', {scope: 'col'}, words)),
+        ),
+      ),
+      el(
+        'tbody',
+        {},
+        rows.map(([first, ...rest]) =>
+          el(
+            'tr',
+            {},
+            el('th', {scope: 'row'}, first),
+            rest.map((cell) => el('td', {}, cell)),
+          ),
+        ),
+      ),
+    ),
+  );
 }
 
 /** Four digits, powers of ten where plain writing would be long. */

@@ -24,11 +24,14 @@ function make_cache() {
     }
     const entry = {bytes: 0, promise: make()};
     entries.set(key, entry);
-    entry.promise.then((numbers) => {
-      entry.bytes = numbers?.byteLength ?? 1;
-      held += entry.bytes;
-      shrink();
-    }, () => entries.delete(key));
+    entry.promise.then(
+      (numbers) => {
+        entry.bytes = numbers?.byteLength ?? 1;
+        held += entry.bytes;
+        shrink();
+      },
+      () => entries.delete(key),
+    );
     return entry.promise;
   };
 }
@@ -56,15 +59,17 @@ export function make_frames(particles, blocks) {
   const optional = (block) => (block ? blocks.numbers(block) : null);
 
   /** Uint16Array, 4 a particle */
-  const places = (f) => cached(`places ${f}`, async () => {
-    const {x, y, z, body} = frames[f];
-    return join_places(await Promise.all([blocks.numbers(x), blocks.numbers(y), optional(z), optional(body)]), frames[f]);
-  });
+  const places = (f) =>
+    cached(`places ${f}`, async () => {
+      const {x, y, z, body} = frames[f];
+      return join_places(await Promise.all([blocks.numbers(x), blocks.numbers(y), optional(z), optional(body)]), frames[f]);
+    });
   /** Uint16Array in [low, high] of the field over all frames, or null where the frame does not have the field */
-  const steps = (f, field) => cached(`field ${field} ${f}`, async () => {
-    const block = frames[f].fields[field];
-    return block ? as_steps(await blocks.numbers(block), fields[field].low, fields[field].high) : null;
-  });
+  const steps = (f, field) =>
+    cached(`field ${field} ${f}`, async () => {
+      const block = frames[f].fields[field];
+      return block ? as_steps(await blocks.numbers(block), fields[field].low, fields[field].high) : null;
+    });
   /** Uint32Array */
   const ids = (f) => cached(`ids ${f}`, () => blocks.numbers(frames[f].id));
 
@@ -78,7 +83,8 @@ export function place_of(places, p, {low, high}) {
 
 /** Lowest and highest value among whole numbers, or null if there are none. */
 export function range_of(steps, low, high) {
-  let least = Infinity, most = -Infinity;
+  let least = Infinity,
+    most = -Infinity;
   for (const step of steps) {
     if (step > 65534) continue;
     if (step < least) least = step;

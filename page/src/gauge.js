@@ -3,7 +3,7 @@ import * as THREE from 'three';
 import {number} from './dom.js';
 
 const NAMESPACE = 'http://www.w3.org/2000/svg';
-const ARM = 22;   // CSS pixels
+const ARM = 22; // CSS pixels
 
 function svg(tag, attributes, text = '') {
   const element = document.createElementNS(NAMESPACE, tag);
@@ -20,12 +20,19 @@ export function round_length(length) {
 
 /** @returns {(eye: object, canvas: HTMLCanvasElement) => void} */
 export function make_gauge(element, dimension) {
-  const axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].slice(0, dimension).map((axis) => new THREE.Vector3(...axis));
+  const axes = [
+    [1, 0, 0],
+    [0, 1, 0],
+    [0, 0, 1],
+  ]
+    .slice(0, dimension)
+    .map((axis) => new THREE.Vector3(...axis));
   return (eye, canvas) => {
     const towards = eye.towards();
     const right = new THREE.Vector3().crossVectors(eye.around.up, towards).normalize();
     const up = new THREE.Vector3().crossVectors(towards, right);
-    const arms = axes.map((axis, k) => ({name: 'xyz'[k], x: axis.dot(right), y: -axis.dot(up), depth: axis.dot(towards)}))
+    const arms = axes
+      .map((axis, k) => ({name: 'xyz'[k], x: axis.dot(right), y: -axis.dot(up), depth: axis.dot(towards)}))
       .filter(({x, y}) => Math.hypot(x, y) > 0.08)
       .sort((a, b) => a.depth - b.depth);
     const cross = svg('svg', {viewBox: '-34 -34 68 68', width: 68, height: 68, 'aria-hidden': 'true'});

@@ -13,30 +13,57 @@ function make_plot(group, table, columns, timeline, {chosen, changed, close}) {
     const swatch = el('i', {class: curve(k).dash.length ? 'dashed' : null});
     swatch.style.color = curve(k).stroke;
     readings[k] = el('output', {});
-    return el('label', {class: 'chip'},
+    return el(
+      'label',
+      {class: 'chip'},
       el('input', {
-        type: 'checkbox', name: `column-${table.columns[c].name}`, checked: shown[k], change: ({target}) => {
+        type: 'checkbox',
+        name: `column-${table.columns[c].name}`,
+        checked: shown[k],
+        change: ({target}) => {
           shown[k] = target.checked;
           plot.plot.setSeries(k + 1, {show: target.checked});
           changed();
         },
       }),
-      swatch, table.columns[c].label || table.columns[c].name, readings[k]);
+      swatch,
+      table.columns[c].label || table.columns[c].name,
+      readings[k],
+    );
   });
-  const element = el('section', {class: 'history', 'aria-label': group.title},
-    el('h3', {}, group.title, group.unit ? el('small', {}, ` [${unit(group.unit)}]`) : null,
-      el('button', {type: 'button', class: 'close', 'aria-label': `Close ${group.title}`, click: close}, '×')),
-    el('div', {class: 'chips'}, boxes), place);
+  const element = el(
+    'section',
+    {class: 'history', 'aria-label': group.title},
+    el(
+      'h3',
+      {},
+      group.title,
+      group.unit ? el('small', {}, ` [${unit(group.unit)}]`) : null,
+      el('button', {type: 'button', class: 'close', 'aria-label': `Close ${group.title}`, click: close}, '×'),
+    ),
+    el('div', {class: 'chips'}, boxes),
+    place,
+  );
   return {
-    element, group,
+    element,
+    group,
     chosen: () => group.columns.filter((_, k) => shown[k]),
     /** The element must be on the page by now: the plot is as wide as that. */
     draw() {
       plot = timeline.add(place, {
         unit: group.unit,
         data: [columns[0], ...group.columns.map((c) => columns[c])],
-        series: group.columns.map((c, k) => ({...curve(k), label: table.columns[c].name, width: 1.6, show: shown[k], points: {show: table.rows < 40}})),
-        read: (row) => readings.forEach((reading, k) => { reading.textContent = row === null ? '' : number(columns[group.columns[k]][row]); }),
+        series: group.columns.map((c, k) => ({
+          ...curve(k),
+          label: table.columns[c].name,
+          width: 1.6,
+          show: shown[k],
+          points: {show: table.rows < 40},
+        })),
+        read: (row) =>
+          readings.forEach((reading, k) => {
+            reading.textContent = row === null ? '' : number(columns[group.columns[k]][row]);
+          }),
       });
     },
     remove() {
@@ -59,11 +86,30 @@ export function show_histories(element, table, columns, {timeline, group: sort =
   const list = el('div', {class: 'histories'});
   const open = new Map();
 
-  const tell = () => keep(to_text(groups.filter((group) => open.has(group))
-    .map((group) => ({title: group.title, names: open.get(group).chosen().map((c) => table.columns[c].name)}))));
+  const tell = () =>
+    keep(
+      to_text(
+        groups
+          .filter((group) => open.has(group))
+          .map((group) => ({
+            title: group.title,
+            names: open
+              .get(group)
+              .chosen()
+              .map((c) => table.columns[c].name),
+          })),
+      ),
+    );
 
   function show(group, its_columns) {
-    const plot = make_plot(group, table, columns, timeline, {chosen: its_columns, changed: tell, close: () => { hide(group); tell(); }});
+    const plot = make_plot(group, table, columns, timeline, {
+      chosen: its_columns,
+      changed: tell,
+      close: () => {
+        hide(group);
+        tell();
+      },
+    });
     open.set(group, plot);
     const next = groups.slice(groups.indexOf(group) + 1).find((later) => open.has(later));
     list.insertBefore(plot.element, next ? open.get(next).element : null);
@@ -76,14 +122,24 @@ export function show_histories(element, table, columns, {timeline, group: sort =
     menu.querySelector(`[name="plot-${groups.indexOf(group)}"]`).checked = false;
   }
 
-  menu.append(...groups.map((group, k) => el('label', {class: 'chip'},
-    el('input', {
-      type: 'checkbox', name: `plot-${k}`, change: ({target}) => {
-        if (target.checked) show(group, group.chosen);
-        else hide(group);
-        tell();
-      },
-    }), group.title)));
+  menu.append(
+    ...groups.map((group, k) =>
+      el(
+        'label',
+        {class: 'chip'},
+        el('input', {
+          type: 'checkbox',
+          name: `plot-${k}`,
+          change: ({target}) => {
+            if (target.checked) show(group, group.chosen);
+            else hide(group);
+            tell();
+          },
+        }),
+        group.title,
+      ),
+    ),
+  );
   element.replaceChildren(menu, list);
 
   const wished = chosen === null ? null : from_text(chosen);
@@ -92,11 +148,15 @@ export function show_histories(element, table, columns, {timeline, group: sort =
   } else {
     for (const {title, names} of wished) {
       const group = groups.find((g) => g.title === title);
-      if (group && !open.has(group)) show(group, group.columns.filter((c) => names.includes(table.columns[c].name)));
+      if (group && !open.has(group))
+        show(
+          group,
+          group.columns.filter((c) => names.includes(table.columns[c].name)),
+        );
     }
   }
 }
 
 /** Notes below a table's plots. */
-export const thinned_note = ({thinned, rows}) => (thinned > 1 ? el('p', {class: 'note'}, `Every ${thinned}th row is here, ${rows} in all; the file has all of them.`) : null);
-
+export const thinned_note = ({thinned, rows}) =>
+  thinned > 1 ? el('p', {class: 'note'}, `Every ${thinned}th row is here, ${rows} in all; the file has all of them.`) : null;

@@ -12,12 +12,18 @@ export function make_legend(element) {
       const {field, range, map, bodies, missing} = what;
       element.hidden = false;
       if (!field) {
-        element.replaceChildren(el('strong', {}, 'body'),
-          el('ul', {}, bodies.map(({name, law}, i) => {
-            const swatch = el('i');
-            swatch.style.background = css(DISTINCT[i % DISTINCT.length]);
-            return el('li', {}, swatch, name, el('small', {}, law ? ` ${law}` : ''));
-          })));
+        element.replaceChildren(
+          el('strong', {}, 'body'),
+          el(
+            'ul',
+            {},
+            bodies.map(({name, law}, i) => {
+              const swatch = el('i');
+              swatch.style.background = css(DISTINCT[i % DISTINCT.length]);
+              return el('li', {}, swatch, name, el('small', {}, law ? ` ${law}` : ''));
+            }),
+          ),
+        );
         return;
       }
       const bar = el('div', {class: 'bar'});
@@ -25,8 +31,13 @@ export function make_legend(element) {
       element.replaceChildren(
         el('strong', {}, field.label || field.name, field.unit ? ` [${unit(field.unit)}]` : ''),
         bar,
-        el('div', {class: 'ticks'}, [0, 0.5, 1].map((t) => el('span', {}, number(range[0] + t * (range[1] - range[0]), 3)))),
-        missing ? el('small', {}, 'not in this frame') : '');
+        el(
+          'div',
+          {class: 'ticks'},
+          [0, 0.5, 1].map((t) => el('span', {}, number(range[0] + t * (range[1] - range[0]), 3))),
+        ),
+        missing ? el('small', {}, 'not in this frame') : '',
+      );
     },
   };
 }

@@ -1,5 +1,14 @@
 // A page that talus watch serves asks whether there is something new, and renews itself with its view kept.
 
+const PLACE = 'talus: how far the page was scrolled';
+
+/** Where the reader was in the page before it renewed itself. */
+export function go_back() {
+  const place = sessionStorage.getItem(PLACE);
+  sessionStorage.removeItem(PLACE);
+  if (place !== null) scrollTo({top: Number(place), behavior: 'instant'});
+}
+
 /** @param {{interval: number}} live s @param {() => void} keep the address says what is seen, from then on */
 export function follow({interval}, keep) {
   const line = document.getElementById('live');
@@ -13,6 +22,7 @@ export function follow({interval}, keep) {
       const stamp = await answer.text();
       if (known !== null && stamp !== known) {
         keep();
+        sessionStorage.setItem(PLACE, scrollY);
         location.reload();
         return;
       }

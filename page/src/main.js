@@ -8,7 +8,7 @@ import {el} from './dom.js';
 import {show_balances} from './balances.js';
 import {show_histories, thinned_note} from './histories.js';
 import {make_keys} from './keys.js';
-import {follow} from './live.js';
+import {follow, go_back} from './live.js';
 import {metric_table, remarks_of, show_cost, show_head, show_overview} from './overview.js';
 import {show_line, show_scene} from './scene_text.js';
 import {make_state} from './state.js';
@@ -29,7 +29,9 @@ function read_run() {
     return {problem: `What talus has written into this page cannot be read: ${error.message}. The file may have been cut off.`};
   }
   if (run.format !== FORMAT)
-    return {problem: `The run in this page is written in format ${run.format}; the page reads format ${FORMAT}. Make it again with one version of talus report.`};
+    return {
+      problem: `The run in this page is written in format ${run.format}; the page reads format ${FORMAT}. Make it again with one version of talus report.`,
+    };
   return {run: {warnings: [], notes: [], metrics: [], ...run}};
 }
 
@@ -46,7 +48,9 @@ async function fill(id, action) {
 /** Frame whose time is nearest. */
 function nearest_frame(frames, time) {
   let nearest = 0;
-  frames.forEach((frame, f) => { if (Math.abs(frame.time - time) < Math.abs(frames[nearest].time - time)) nearest = f; });
+  frames.forEach((frame, f) => {
+    if (Math.abs(frame.time - time) < Math.abs(frames[nearest].time - time)) nearest = f;
+  });
   return nearest;
 }
 
@@ -55,7 +59,9 @@ async function show(run) {
   const blocks = make_blocks();
   const remarks = remarks_of(run);
   show_head(run);
-  new ResizeObserver(([entry]) => document.documentElement.style.setProperty('--head', `${entry.target.offsetHeight}px`)).observe(document.querySelector('header'));
+  new ResizeObserver(([entry]) => document.documentElement.style.setProperty('--head', `${entry.target.offsetHeight}px`)).observe(
+    document.querySelector('header'),
+  );
   fill('overview-body', (element) => show_overview(element, run, remarks));
   fill('scene-body', (element) => show_scene(element, run.scene, remarks, run.summary?.scene?.set));
   fill('cost-body', (element) => show_cost(element, run));
@@ -76,7 +82,13 @@ async function show(run) {
   let columns = null;
   await fill('histories-body', async (element) => {
     if (!run.history?.rows) {
-      element.replaceChildren(el('p', {class: 'empty'}, run.live ? 'The history has no rows so far.' : 'No history was asked for: outputs.history of the scene does that.'));
+      element.replaceChildren(
+        el(
+          'p',
+          {class: 'empty'},
+          run.live ? 'The history has no rows so far.' : 'No history was asked for: outputs.history of the scene does that.',
+        ),
+      );
       place('zoom').hidden = true;
       return;
     }
@@ -84,13 +96,18 @@ async function show(run) {
     show_histories(element, run.history, columns, {timeline, chosen: state.get().plots, keep: (plots) => state.set({plots})});
     element.append(thinned_note(run.history) ?? '');
   });
-  fill('balances-body', (element) => show_balances(element, run, columns, timeline));
-  fill('runout-body', async (element) => {
+  await fill('balances-body', (element) => show_balances(element, run, columns, timeline));
+  await fill('runout-body', async (element) => {
     element.replaceChildren(...metric_table(run.metrics));
     if (run.run_out?.rows) {
       const plots = element.appendChild(el('div', {}));
       const table = run.run_out;
-      show_histories(plots, table, split_columns(await blocks.numbers(table.values), table), {timeline, group: group_by_unit, chosen: null, keep: () => {}});
+      show_histories(plots, table, split_columns(await blocks.numbers(table.values), table), {
+        timeline,
+        group: group_by_unit,
+        chosen: null,
+        keep: () => {},
+      });
     }
     if (!element.childElementCount) element.append(el('p', {class: 'empty'}, 'Nothing to measure: no particles were written.'));
   });
@@ -99,9 +116,11 @@ async function show(run) {
   place('zoom-out').addEventListener('click', () => timeline.zoom_by(0.5));
   place('zoom-all').addEventListener('click', () => timeline.whole());
 
-  if (state.get().line) show_line(state.get().line, /line=|^#L/.test(location.hash) && performance.getEntriesByType('navigation')[0]?.type !== 'reload');
+  if (state.get().line)
+    show_line(state.get().line, /line=|^#L/.test(location.hash) && performance.getEntriesByType('navigation')[0]?.type !== 'reload');
   state.listen(({line}, changed) => changed.has('line') && line && show_line(line));
-  addEventListener('click', (event) => {   // links within the page leave the address to the choices
+  addEventListener('click', (event) => {
+    // links within the page leave the address to the choices
     const target = event.target.closest?.('a[href^="#"]')?.getAttribute('href').slice(1);
     if (!target) return;
     event.preventDefault();
@@ -114,7 +133,10 @@ async function show(run) {
       place(target)?.focus({preventScroll: true});
     }
   });
-  if (run.live) follow(run.live, state.keep);
+  if (run.live) {
+    follow(run.live, state.keep);
+    go_back();
+  }
   document.documentElement.dataset.ready = 'yes';
 }
 

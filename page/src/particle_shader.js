@@ -50,7 +50,8 @@ const FRAGMENT = `
     if (outside > 1.0 && size > 2.0) discard;
     vec3 normal = vec3(at.x, -at.y, sqrt(max(0.0, 1.0 - outside)));
     #ifdef BALLS
-    float light = min(1.0, 0.30 + 0.82 * max(0.0, dot(normal, vec3(-0.30, 0.40, 0.866))));
+    float lit = min(1.0, 0.30 + 0.82 * max(0.0, dot(normal, vec3(-0.30, 0.40, 0.866))));
+    float light = mix(0.95, lit, smoothstep(2.0, 8.0, size));   // of a ball of few pixels nothing but noise would be seen
     float z = eye_z + radius * normal.z;
     vec2 clip = vec2(projectionMatrix[2][2] * z + projectionMatrix[3][2], projectionMatrix[2][3] * z + projectionMatrix[3][3]);
     gl_FragDepth = clamp(0.5 + 0.5 * clip.x / clip.y, 0.0, 1.0);
@@ -67,11 +68,16 @@ export function particle_material(balls) {
     vertexShader: `precision highp float; uniform mat4 modelViewMatrix, projectionMatrix; ${VERTEX}`,
     fragmentShader: `precision highp float; ${FRAGMENT}`,
     uniforms: {
-      low: {value: new THREE.Vector3()}, extent: {value: new THREE.Vector3()},
-      radius: {value: 1}, pixels: {value: 1},
-      section: {value: new THREE.Vector4()}, cuts: {value: false},
-      limits: {value: false}, by_body: {value: false},
-      range: {value: new THREE.Vector2(0, 1)}, limit: {value: new THREE.Vector2(0, 1)},
+      low: {value: new THREE.Vector3()},
+      extent: {value: new THREE.Vector3()},
+      radius: {value: 1},
+      pixels: {value: 1},
+      section: {value: new THREE.Vector4()},
+      cuts: {value: false},
+      limits: {value: false},
+      by_body: {value: false},
+      range: {value: new THREE.Vector2(0, 1)},
+      limit: {value: new THREE.Vector2(0, 1)},
       map: {value: null},
     },
   });

@@ -6,7 +6,10 @@ const style = (name) => getComputedStyle(document.documentElement).getPropertyVa
 
 function draw_legend(context, legend, width, height, scale) {
   const {field, range, map, bodies} = legend;
-  const left = 16 * scale, base = height - 16 * scale, wide = Math.min(260 * scale, width / 2), bar = 12 * scale;
+  const left = 16 * scale,
+    base = height - 16 * scale,
+    wide = Math.min(260 * scale, width / 2),
+    bar = 12 * scale;
   context.font = `${13 * scale}px system-ui, sans-serif`;
   context.fillStyle = style('--text');
   if (!field) {

@@ -25,10 +25,10 @@ const css_colour = (name) => new THREE.Color(getComputedStyle(document.documentE
  */
 export function make_view(canvas, run, moved) {
   const renderer = new THREE.WebGLRenderer({canvas, antialias: false, alpha: true, powerPreference: 'high-performance'});
-  renderer.outputColorSpace = THREE.LinearSRGBColorSpace;   // colours are written as they are meant to be seen
+  renderer.outputColorSpace = THREE.LinearSRGBColorSpace; // colours are written as they are meant to be seen
   THREE.ColorManagement.enabled = false;
   const everything = bounds_of(run);
-  const origin = everything.getCenter(new THREE.Vector3());  // single precision of the graphics card counts from here
+  const origin = everything.getCenter(new THREE.Vector3()); // single precision of the graphics card counts from here
   const bounds = everything.clone().translate(origin.clone().negate());
   const flat = run.dimension === 2;
   const radius = run.particles?.radius ?? 1;
@@ -41,7 +41,15 @@ export function make_view(canvas, run, moved) {
   const lines = {};
   scene.add(points);
   const shaded = flat ? null : make_shade_pass(renderer);
-  const eye = make_eye(canvas, {dimension: run.dimension, up: run.up, bounds, moved: () => { draw_soon(); moved(); }});
+  const eye = make_eye(canvas, {
+    dimension: run.dimension,
+    up: run.up,
+    bounds,
+    moved: () => {
+      draw_soon();
+      moved();
+    },
+  });
 
   let due = 0;
   function draw() {
@@ -59,7 +67,7 @@ export function make_view(canvas, run, moved) {
 
   function resize() {
     const room = canvas.parentElement.getBoundingClientRect();
-    const [width, height] = [Math.floor(room.width), Math.floor(room.height) - 1];   // whole pixels, or the browser would blur the picture
+    const [width, height] = [Math.floor(room.width), Math.floor(room.height) - 1]; // whole pixels, or the browser would blur the picture
     if (width < 1 || height < 1) return;
     renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
     renderer.setSize(width, height);
@@ -81,7 +89,8 @@ export function make_view(canvas, run, moved) {
   /** @param {{count: number, low: number[], high: number[]}} frame @param {Uint16Array} places @param {Uint16Array} values two a particle */
   function set_particles(frame, places, values) {
     const grown = points.geometry.getAttribute('place')?.array.length !== places.length;
-    if (grown) {   // buffers of the graphics card keep their size
+    if (grown) {
+      // buffers of the graphics card keep their size
       points.geometry.dispose();
       points.geometry = new THREE.BufferGeometry();
     }
@@ -152,7 +161,8 @@ export function make_view(canvas, run, moved) {
     const {clientWidth: width, clientHeight: height} = canvas;
     const to_clip = new THREE.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
     const scale = camera.projectionMatrix.elements[5];
-    let found = -1, nearest = Infinity;
+    let found = -1,
+      nearest = Infinity;
     for (let p = 0; p < frame.count; ++p) {
       const X = value_of(places[4 * p], frame.low[0], frame.high[0]) - origin.x;
       const Y = value_of(places[4 * p + 1], frame.low[1], frame.high[1]) - origin.y;
@@ -187,8 +197,19 @@ export function make_view(canvas, run, moved) {
   take_colours();
 
   return {
-    eye, origin, bounds: everything,
-    draw, draw_soon, resize, set_particles, set_map, set_looks, add_lines, show_lines, particle_at, set_mark,
+    eye,
+    origin,
+    bounds: everything,
+    draw,
+    draw_soon,
+    resize,
+    set_particles,
+    set_map,
+    set_looks,
+    add_lines,
+    show_lines,
+    particle_at,
+    set_mark,
     count_drawn: () => renderer.info.render.points,
   };
 }
@@ -198,7 +219,10 @@ function make_mark(scene) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute('position', new THREE.Float32BufferAttribute([0, 0, 0], 3));
   const material = new THREE.RawShaderMaterial({
-    glslVersion: THREE.GLSL3, transparent: true, depthTest: false, depthWrite: false,
+    glslVersion: THREE.GLSL3,
+    transparent: true,
+    depthTest: false,
+    depthWrite: false,
     uniforms: {size: {value: 26}, colour: {value: new THREE.Color('#d00')}},
     vertexShader: `precision highp float; in vec3 position; uniform mat4 modelViewMatrix, projectionMatrix; uniform float size;
       void main() { gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); gl_PointSize = size; }`,

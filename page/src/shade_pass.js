@@ -39,11 +39,20 @@ const FRAGMENT = `
 export function make_shade_pass(renderer) {
   const target = new THREE.WebGLRenderTarget(1, 1, {depthTexture: new THREE.DepthTexture(1, 1, THREE.UnsignedIntType)});
   const material = new THREE.RawShaderMaterial({
-    glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, depthTest: false, depthWrite: false, transparent: true,
+    glslVersion: THREE.GLSL3,
+    vertexShader: VERTEX,
+    fragmentShader: FRAGMENT,
+    depthTest: false,
+    depthWrite: false,
+    transparent: true,
     blending: THREE.NoBlending,
     uniforms: {
-      picture: {value: target.texture}, depths: {value: target.depthTexture}, pixel: {value: new THREE.Vector2()},
-      reach: {value: 1}, near_far: {value: new THREE.Vector2()}, orthographic: {value: false},
+      picture: {value: target.texture},
+      depths: {value: target.depthTexture},
+      pixel: {value: new THREE.Vector2()},
+      reach: {value: 1},
+      near_far: {value: new THREE.Vector2()},
+      orthographic: {value: false},
     },
   });
   const triangle = new THREE.BufferGeometry();

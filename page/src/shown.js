@@ -52,8 +52,11 @@ export function section_of(choices, box) {
 export function limit_of(particles, choices) {
   const field = particles.fields.find(({name}) => name === choices.only);
   if (!field || (choices.lowest === null && choices.highest === null)) return null;
-  const step = 0.5 / 65534;   // half of what numbers are rounded to, so that the ends of the range belong to it
-  return [choices.lowest === null ? -1 : share_of(choices.lowest, field) - step, choices.highest === null ? 2 : share_of(choices.highest, field) + step];
+  const step = 0.5 / 65534; // half of what numbers are rounded to, so that the ends of the range belong to it
+  return [
+    choices.lowest === null ? -1 : share_of(choices.lowest, field) - step,
+    choices.highest === null ? 2 : share_of(choices.highest, field) + step,
+  ];
 }
 
 /** @returns {(p: number) => boolean} whether particle p of a frame is shown */

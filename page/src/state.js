@@ -2,28 +2,28 @@
 
 /** name: [kind, value when nothing was chosen]. Lengths in metres, values in the field's unit. */
 const CHOICES = {
-  frame: ['number', null],          // null: the last one, also when a run goes on and there are more
-  field: ['text', null],            // name of a field, or "body"
+  frame: ['number', null], // null: the last one, also when a run goes on and there are more
+  field: ['text', null], // name of a field, or "body"
   map: ['text', 'viridis'],
-  range: ['text', 'auto'],          // auto, run, frame or hand
-  from: ['number', null],           // with range=hand
+  range: ['text', 'auto'], // auto, run, frame or hand
+  from: ['number', null], // with range=hand
   to: ['number', null],
-  section: ['text', 'none'],        // none, x, y, z or view
-  at: ['number', null],             // along the normal
-  normal: ['numbers', null],        // with section=view
+  section: ['text', 'none'], // none, x, y, z or view
+  at: ['number', null], // along the normal
+  normal: ['numbers', null], // with section=view
   flip: ['flag', false],
-  only: ['text', null],             // name of the field whose values are limited
+  only: ['text', null], // name of the field whose values are limited
   lowest: ['number', null],
   highest: ['number', null],
-  mesh: ['text', 'outline'],        // none, outline or cells
-  size: ['number', 1],              // of the particles, times their radius
+  mesh: ['text', 'outline'], // none, outline or cells
+  size: ['number', 1], // of the particles, times their radius
   orthographic: ['flag', null],
-  towards: ['numbers', null],       // unit vector from what is looked at to the eye
+  towards: ['numbers', null], // unit vector from what is looked at to the eye
   target: ['numbers', null],
-  height: ['number', null],         // of what is seen at the target
-  particle: ['number', null],       // id
+  height: ['number', null], // of what is seen at the target
+  particle: ['number', null], // id
   plots: ['text', null],
-  line: ['number', null],           // of the scene
+  line: ['number', null], // of the scene
 };
 
 const write = {
@@ -89,7 +89,7 @@ export function make_state() {
       if (!changed.size) return;
       choices = {...choices, ...changes};
       tell(changed);
-      timer ||= setTimeout(keep, 200);   // browsers allow only so many changes of the address a second
+      timer ||= setTimeout(keep, 200); // browsers allow only so many changes of the address a second
     },
   };
 }

@@ -2,7 +2,7 @@
 import uPlot from 'uplot';
 import {number, unit as write_unit} from './dom.js';
 
-export const CURVES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c8c8c', '#7a4ea3'];   // Okabe and Ito, the pale ones left out
+export const CURVES = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#8c8c8c', '#7a4ea3']; // Okabe and Ito, the pale ones left out
 const DASHES = [[], [6, 3], [2, 3]];
 const style = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -13,7 +13,7 @@ export const curve = (k) => ({stroke: CURVES[k % CURVES.length], dash: DASHES[Ma
 export function make_timeline(go_to) {
   const plots = new Set();
   let now = null;
-  let zoom = null;          // [from, to] s, or null: everything
+  let zoom = null; // [from, to] s, or null: everything
   let following = false;
 
   function set_zoom(range) {
@@ -29,7 +29,10 @@ export function make_timeline(go_to) {
 
   function draw_now(plot) {
     if (now === null || now < plot.scales.x.min || now > plot.scales.x.max) return;
-    const {ctx: context, bbox: {top, height}} = plot;
+    const {
+      ctx: context,
+      bbox: {top, height},
+    } = plot;
     const x = Math.round(plot.valToPos(now, 'x', true)) + 0.5;
     context.save();
     context.strokeStyle = style('--mark');
@@ -43,9 +46,12 @@ export function make_timeline(go_to) {
   }
 
   const axis = (extra) => ({
-    stroke: () => style('--muted'), font: '12px system-ui, sans-serif',
-    grid: {stroke: () => style('--grid'), width: 1}, ticks: {stroke: () => style('--grid'), width: 1},
-    values: (_, splits) => splits.map((v) => number(v, 5)), ...extra,
+    stroke: () => style('--muted'),
+    font: '12px system-ui, sans-serif',
+    grid: {stroke: () => style('--grid'), width: 1},
+    ticks: {stroke: () => style('--grid'), width: 1},
+    values: (_, splits) => splits.map((v) => number(v, 5)),
+    ...extra,
   });
 
   /**
@@ -56,29 +62,42 @@ export function make_timeline(go_to) {
    */
   function add(parent, {data, series, unit, height = 190, range, draw, read}) {
     let pressed = 0;
-    const plot = new uPlot({
-      width: Math.max(200, parent.clientWidth), height,
-      legend: {show: false},
-      cursor: {
-        points: {size: 6}, drag: {x: true, y: false},
-        sync: {key: 'talus', scales: ['x', null], filters: {pub: (type) => type === 'mousemove' || type === 'mouseleave'}},
+    const plot = new uPlot(
+      {
+        width: Math.max(200, parent.clientWidth),
+        height,
+        legend: {show: false},
+        cursor: {
+          points: {size: 6},
+          drag: {x: true, y: false},
+          sync: {key: 'talus', scales: ['x', null], filters: {pub: (type) => type === 'mousemove' || type === 'mouseleave'}},
+        },
+        scales: {x: {time: false}, y: range ? {range} : {}},
+        axes: [
+          axis({size: 34}),
+          axis({size: 66, label: write_unit(unit), labelSize: 18, labelGap: 0, labelFont: '12px system-ui, sans-serif'}),
+        ],
+        series: [{}, ...series],
+        hooks: {
+          drawClear: draw ? [draw] : [],
+          draw: [draw_now],
+          setCursor: [(u) => read?.(u.cursor.idx ?? null)],
+          setScale: [
+            (u, key) => {
+              if (key !== 'x' || following) return;
+              const x = u.data[0];
+              const {min, max} = u.scales.x;
+              set_zoom(min <= x[0] && max >= x[x.length - 1] ? null : [min, max]);
+            },
+          ],
+        },
       },
-      scales: {x: {time: false}, y: range ? {range} : {}},
-      axes: [axis({size: 34}), axis({size: 66, label: write_unit(unit), labelSize: 18, labelGap: 0, labelFont: '12px system-ui, sans-serif'})],
-      series: [{}, ...series],
-      hooks: {
-        drawClear: draw ? [draw] : [],
-        draw: [draw_now],
-        setCursor: [(u) => read?.(u.cursor.idx ?? null)],
-        setScale: [(u, key) => {
-          if (key !== 'x' || following) return;
-          const x = u.data[0];
-          const {min, max} = u.scales.x;
-          set_zoom(min <= x[0] && max >= x[x.length - 1] ? null : [min, max]);
-        }],
-      },
-    }, data, parent);
-    plot.over.addEventListener('mousedown', (event) => { pressed = event.clientX; });
+      data,
+      parent,
+    );
+    plot.over.addEventListener('mousedown', (event) => {
+      pressed = event.clientX;
+    });
     plot.over.addEventListener('click', (event) => {
       if (Math.abs(event.clientX - pressed) < 4) go_to(plot.posToVal(event.offsetX, 'x'));
     });

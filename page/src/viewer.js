@@ -7,7 +7,7 @@ import {make_gauge} from './gauge.js';
 import {el, number, whole, with_unit} from './dom.js';
 import {value_of, NOTHING} from './decode.js';
 
-const FASTEST_PLAY = 120;   // ms a frame
+const FASTEST_PLAY = 120; // ms a frame
 
 /** Two values a particle: of the field that colours, of the one that limits. */
 function join_values(count, colouring, limiting) {
@@ -26,8 +26,7 @@ async function mesh_places(mesh, blocks) {
   axes.forEach((numbers, axis) => {
     if (!numbers) return;
     const packed = numbers instanceof Uint16Array;
-    for (let v = 0; v < mesh.count; ++v)
-      places[3 * v + axis] = packed ? value_of(numbers[v], mesh.low[axis], mesh.high[axis]) : numbers[v];
+    for (let v = 0; v < mesh.count; ++v) places[3 * v + axis] = packed ? value_of(numbers[v], mesh.low[axis], mesh.high[axis]) : numbers[v];
   });
   return places;
 }
@@ -43,9 +42,15 @@ export function start_viewer(run, state, blocks) {
   const canvas = document.getElementById('canvas');
   const particles = run.particles?.frames.length ? run.particles : null;
   if (!particles && !run.mesh) {
-    stage.replaceChildren(el('p', {class: 'empty'}, run.live
-      ? 'Nothing to draw yet: the run has not written particles or a mesh so far.'
-      : 'Nothing to draw: the run wrote neither particles nor a mesh. outputs.particles of the scene asks for them.'));
+    stage.replaceChildren(
+      el(
+        'p',
+        {class: 'empty'},
+        run.live
+          ? 'Nothing to draw yet: the run has not written particles or a mesh so far.'
+          : 'Nothing to draw: the run wrote neither particles nor a mesh. outputs.particles of the scene asks for them.',
+      ),
+    );
     return null;
   }
   let view;
@@ -53,9 +58,14 @@ export function start_viewer(run, state, blocks) {
     view = make_view(canvas, run, moved);
   } catch (error) {
     console.info(error.message);
-    stage.replaceChildren(el('p', {class: 'empty', id: 'no-webgl'},
-      'This browser does not offer WebGL 2, so particles cannot be drawn here. Everything else of the page works. ',
-      'Another browser, or hardware acceleration in the settings of this one, helps.'));
+    stage.replaceChildren(
+      el(
+        'p',
+        {class: 'empty', id: 'no-webgl'},
+        'This browser does not offer WebGL 2, so particles cannot be drawn here. Everything else of the page works. ',
+        'Another browser, or hardware acceleration in the settings of this one, helps.',
+      ),
+    );
     return null;
   }
 
@@ -66,7 +76,7 @@ export function start_viewer(run, state, blocks) {
   const count_line = document.getElementById('shown');
   const picked = document.getElementById('particle');
   const listeners = [];
-  let now = null;           // the frame in the picture: {index, frame, places, colouring, limiting, field}
+  let now = null; // the frame in the picture: {index, frame, places, colouring, limiting, field}
   let wanted = 0;
   let playing = false;
   let counting = 0;
@@ -116,7 +126,7 @@ export function start_viewer(run, state, blocks) {
     } finally {
       clearTimeout(slow);
     }
-    if (index < last) frames.places(index + 1).catch(() => {});   // next to be asked for, most likely
+    if (index < last) frames.places(index + 1).catch(() => {}); // next to be asked for, most likely
   }
 
   /** Colours, section and limits of what is in the picture. */
@@ -139,7 +149,8 @@ export function start_viewer(run, state, blocks) {
     for (const listener of listeners) listener({...now, range});
   }
 
-  const shown = () => shown_test(now.frame, now.places, now.limiting, limit_of(particles, state.get()), section_of(state.get(), view.bounds));
+  const shown = () =>
+    shown_test(now.frame, now.places, now.limiting, limit_of(particles, state.get()), section_of(state.get(), view.bounds));
 
   function count() {
     const {count: total} = now.frame;
@@ -174,7 +185,11 @@ export function start_viewer(run, state, blocks) {
     const {index, frame, places} = now;
     const ids = await frames.ids(index);
     const p = ids.indexOf(id);
-    const close = el('button', {type: 'button', class: 'close', 'aria-label': 'Forget this particle', click: () => state.set({particle: null})}, '×');
+    const close = el(
+      'button',
+      {type: 'button', class: 'close', 'aria-label': 'Forget this particle', click: () => state.set({particle: null})},
+      '×',
+    );
     if (p < 0) {
       view.set_mark(null);
       picked.replaceChildren(close, el('strong', {}, `particle ${whole(id)}`), el('p', {}, 'is not in this frame.'));
@@ -185,19 +200,30 @@ export function start_viewer(run, state, blocks) {
     const place = place_of(places, p, frame);
     const body = particles.bodies[places[4 * p + 3]];
     view.set_mark(place);
-    picked.replaceChildren(close,
-      el('strong', {}, `particle ${whole(id)}`), body ? el('span', {}, ` of ${body.name}`) : null,
-      el('dl', {},
+    picked.replaceChildren(
+      close,
+      el('strong', {}, `particle ${whole(id)}`),
+      body ? el('span', {}, ` of ${body.name}`) : null,
+      el(
+        'dl',
+        {},
         place.slice(0, run.dimension).flatMap((c, k) => [el('dt', {}, 'xyz'[k]), el('dd', {}, with_unit(c, 'm'))]),
-        particles.fields.flatMap((field, k) => [el('dt', {}, field.label || field.name),
-          el('dd', {}, values[k] ? with_unit(field_value(values[k], p, field), field.unit) : '–')])));
+        particles.fields.flatMap((field, k) => [
+          el('dt', {}, field.label || field.name),
+          el('dd', {}, values[k] ? with_unit(field_value(values[k], p, field), field.unit) : '–'),
+        ]),
+      ),
+    );
   }
 
   /** Click, not drag. */
   let pressed = null;
-  canvas.addEventListener('pointerdown', (event) => { pressed = [event.offsetX, event.offsetY]; });
+  canvas.addEventListener('pointerdown', (event) => {
+    pressed = [event.offsetX, event.offsetY];
+  });
   canvas.addEventListener('pointerup', (event) => {
-    if (pressed && event.button === 0 && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) < 4) pick(event.offsetX, event.offsetY);
+    if (pressed && event.button === 0 && Math.hypot(event.offsetX - pressed[0], event.offsetY - pressed[1]) < 4)
+      pick(event.offsetX, event.offsetY);
     pressed = null;
   });
 
@@ -234,7 +260,14 @@ export function start_viewer(run, state, blocks) {
     if (run.dimension === 3 && orthographic !== null) view.eye.set_orthographic(orthographic);
     if (towards && target && height) {
       const {eye, origin} = view;
-      eye.look({towards: eye.around.up.clone().set(...towards), target: origin.clone().set(...target).sub(origin), height});
+      eye.look({
+        towards: eye.around.up.clone().set(...towards),
+        target: origin
+          .clone()
+          .set(...target)
+          .sub(origin),
+        height,
+      });
     } else {
       view.eye.fit();
     }
@@ -260,7 +293,7 @@ export function start_viewer(run, state, blocks) {
       view.draw_soon();
       gauge(view.eye, canvas);
     }
-    if (changed.size > 8) restore_eye();   // another address: everything may have changed
+    if (changed.size > 8) restore_eye(); // another address: everything may have changed
   });
   new ResizeObserver(() => gauge(view.eye, canvas)).observe(canvas);
   canvas.addEventListener('webglcontextlost', () => {
@@ -270,12 +303,19 @@ export function start_viewer(run, state, blocks) {
 
   view.resize();
   restore_eye();
-  load_mesh().catch((error) => { count_line.textContent = `The mesh cannot be shown: ${error.message}`; });
+  load_mesh().catch((error) => {
+    count_line.textContent = `The mesh cannot be shown: ${error.message}`;
+  });
   const ready = load();
   if (!particles) count_line.textContent = run.live ? 'no particles so far, only the mesh' : 'no particles were written, only the mesh';
 
   return {
-    ready, view, go_to, look_from, play, current,
+    ready,
+    view,
+    go_to,
+    look_from,
+    play,
+    current,
     last,
     listen: (listener) => listeners.push(listener),
     listen_play: (listener) => play_listeners.push(listener),
@@ -287,4 +327,3 @@ export function start_viewer(run, state, blocks) {
     colour_range: () => (now && now.field >= 0 ? colour_range(particles, state.get(), now.field, now.colouring) : null),
   };
 }
-

@@ -8,21 +8,27 @@ const modules = resolve(process.env.TALUS_PAGE_MODULES ?? join(here, '../node_mo
 const {chromium} = createRequire(join(modules, 'here.js'))('playwright-core');
 
 /** Debian's Chromium, drawing by software. */
-export const launch = () => chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-  args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-});
+export const launch = () =>
+  chromium.launch({
+    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+    args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+  });
 
 /** A page of its own, with what it complained about and what it asked of networks. */
 export async function open(browser, address, {width = 1280, height = 800, scheme = 'light', before} = {}) {
   const context = await browser.newContext({viewport: {width, height}, colorScheme: scheme, reducedMotion: 'reduce'});
   const page = await context.newPage();
-  const complaints = [], requests = [];
+  const complaints = [],
+    requests = [];
   page.on('console', (message) => ['error', 'warning'].includes(message.type()) && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.stack ?? error.message));
   page.on('request', (request) => /^(file|data|blob):/.test(request.url()) || requests.push(request.url()));
   if (before) await page.addInitScript(before);
-  await page.goto(/^https?:/.test(address) ? address : pathToFileURL(resolve(address.split('#')[0])).href + (address.includes('#') ? `#${address.split('#')[1]}` : ''));
+  await page.goto(
+    /^https?:/.test(address)
+      ? address
+      : pathToFileURL(resolve(address.split('#')[0])).href + (address.includes('#') ? `#${address.split('#')[1]}` : ''),
+  );
   await page.waitForSelector('html[data-ready]', {timeout: 60000, state: 'attached'});
   return {page, complaints, requests, close: () => context.close()};
 }
