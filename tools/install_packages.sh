@@ -3,7 +3,14 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-mapfile -t wanted < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' tools/debian-packages.txt)
+# "command:package" asks for the package only where nothing of that name can be run: what brings many others with it may be there already.
+mapfile -t entries < <(sed -e 's/#.*//' -e 's/[[:space:]]//g' -e '/^$/d' tools/debian-packages.txt)
+wanted=()
+for entry in "${entries[@]}"; do
+  if [[ $entry != *:* ]] || ! command -v "${entry%%:*}" >/dev/null; then
+    wanted+=("${entry#*:}")
+  fi
+done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   echo "This is not Debian. Talus needs, under the names Debian 12 gives them:" >&2
