@@ -15,6 +15,8 @@ namespace {
 constexpr Real megabyte = 1e6, million = 1e6;
 /// Steps of a whole run over those at its start, measured: particles that get faster ask for shorter steps, those that rest for less work.
 constexpr Real quicker_steps = 0.8, slower_steps = 1.6;
+/// Share of its time after which a stage that seeks rest may have found it.
+constexpr Real soonest_rest = 0.1;
 
 std::string in_megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / megabyte); }
 
@@ -43,9 +45,10 @@ std::string describe_time(const std::vector<StageTrial>& trials, Real preparing,
   for (const StageTrial& trial : trials) {
     const auto n = static_cast<Real>(trial.steps);
     if (trials.size() > 1)
-      text += fmt::format("  stage {}: at most {} steps of {:.3g} ms: {}\n", trial.name, trial.steps, 1e3 * trial.usual,
-                          duration_in_words(n * trial.usual));
-    usual += n * trial.usual, least += n * trial.quickest * quicker_steps, most += n * trial.slowest * slower_steps;
+      text += fmt::format("  stage {}: {} {} steps of {:.3g} ms: {}\n", trial.name, trial.ends_at_rest ? "at most" : "about", trial.steps,
+                          1e3 * trial.usual, duration_in_words(n * trial.usual));
+    usual += n * trial.usual, least += n * trial.quickest * (trial.ends_at_rest ? soonest_rest : quicker_steps),
+        most += n * trial.slowest * slower_steps;
     made += trial.made, steps += trial.steps;
   }
   return text + fmt::format(

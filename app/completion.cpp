@@ -25,7 +25,7 @@ ValueWords value_words(const std::string& value)
   for (std::size_t at = value.find("*."); at != value.npos; at = value.find("*.", at + 1))
     words.patterns.push_back(value.substr(at, value.find(' ', at) - at));
   words.folder = value.find("FOLDER") != value.npos;
-  words.files = value.starts_with("TEXT");
+  words.files = words.choices.empty() && value.starts_with("TEXT");
   return words;
 }
 
@@ -127,12 +127,10 @@ std::string zsh_text(std::string_view text)
 
 std::string zsh_action(const ValueWords& words)
 {
-  if (!words.patterns.empty())
-    return fmt::format("_files -g \"{}\"", fmt::join(words.patterns, " "));
-  if (words.files && !words.choices.empty())
-    return fmt::format("_alternative \"names\\:name\\:({})\" \"files\\:file\\:_files\"", fmt::join(words.choices, " "));
   if (!words.choices.empty())
     return fmt::format("({})", fmt::join(words.choices, " "));
+  if (!words.patterns.empty())
+    return fmt::format("_files -g \"{}\"", fmt::join(words.patterns, " "));
   return words.folder ? "_directories" : words.files ? "_files" : " ";
 }
 

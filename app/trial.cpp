@@ -25,7 +25,10 @@ StageTrial trial_of(const Stage& stage, Timed timed)
   const auto at_share = [&](Real share) { return sorted[static_cast<std::size_t>(share * static_cast<Real>(sorted.size() - 1))]; };
   const auto made = static_cast<std::int64_t>(sorted.size());
   const Real dt = timed.time / static_cast<Real>(made);
-  return {stage.name, dt, at_share(0.25), at_share(0.5), at_share(0.75), made, static_cast<std::int64_t>(std::ceil(stage.duration / dt))};
+  return {stage.name,     dt,
+          at_share(0.25), at_share(0.5),
+          at_share(0.75), stage.residual.has_value(),
+          made,           static_cast<std::int64_t>(std::ceil(stage.duration / dt))};
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ struct StageTrial {
   std::string name;
   Real dt;                        ///< their mean length [s]
   Real quickest, usual, slowest;  ///< the median of their wall times and the quartiles around it [s]
+  bool ends_at_rest;              ///< so perhaps long before its time is over
   std::int64_t made, steps;       ///< steps made; steps of that length that the stage has
-  Real seconds() const { return usual * static_cast<Real>(steps); }
 };
 
 /// The first steps of each stage, in memory, one stage after the other; nothing is written.  A stage is left where a step fails: then those

@@ -96,6 +96,14 @@ function(talus_package_test)
   set_tests_properties(package.deb PROPERTIES LABELS package TIMEOUT 120)
 endfunction()
 
+# The schema of scenes, as editors use it.
+function(talus_schema_test)
+  if(TARGET talus)
+    add_test(NAME schema COMMAND ${TALUS_PYTHON} ${PROJECT_SOURCE_DIR}/tests/app/schema.py $<TARGET_FILE:talus>)
+    set_tests_properties(schema PROPERTIES LABELS unit TIMEOUT 120)
+  endif()
+endfunction()
+
 # Every shipped scene is checked, and run once, coarse and short.
 function(talus_scene_tests)
   file(GLOB scenes CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/*/scene.yaml)

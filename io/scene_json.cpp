@@ -57,16 +57,6 @@ Json mapping_of()
   return schema;
 }
 
-/// The required keys of a mapping, with places to type their values.
-Json snippet(const std::string& key, std::string_view word, std::string_view summary, const Json& needed)
-{
-  Json body = Json::object();
-  int place = 0;
-  for (const std::string name : needed)
-    body[name] = name == key ? std::string(word) : fmt::format("${}", ++place);
-  return {{"label", word}, {"description", summary.empty() ? fmt::format("{}: {}", key, word) : std::string(summary)}, {"body", body}};
-}
-
 template <class T>
 constexpr std::string_view summary_of()
 {
@@ -89,14 +79,13 @@ Json one_of(const Json& base, std::string_view key, std::string_view meaning, st
     word["markdownEnumDescriptions"] = {summary_of<T>()...};
   schema["required"].push_back(name);
   schema["allOf"] = Json::array();
-  schema["defaultSnippets"] = Json::array();
   const auto add = [&]<class Chosen>(std::type_identity<Chosen>) {
     constexpr std::string_view summary = summary_of<Chosen>();
     Json chosen = base;
+    chosen["title"] = Chosen::name;  // what editors call a whole entry of this kind
     chosen["properties"][name] = {{"const", Chosen::name}, {"description", summary.empty() ? meaning : summary}};
     chosen["required"].push_back(name);
     add_keys<Chosen>(chosen);
-    schema["defaultSnippets"].push_back(snippet(name, Chosen::name, summary, chosen["required"]));
     Json is_chosen{{"properties", {{name, {{"const", Chosen::name}}}}}, {"required", {name}}};
     schema["allOf"].push_back({{"if", std::move(is_chosen)}, {"then", std::move(chosen)}});
   };

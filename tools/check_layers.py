@@ -30,7 +30,7 @@ THIRD_PARTY = [
     ("metis.h", ["mesh/partition.cpp"]),
     ("yaml-cpp/*", ["io/reader.cpp"]),
     ("gmsh.h*", ["io/gmsh_*.cpp"]),
-    ("vtk*", ["io/vtk*.cpp", "io/render*.cpp"]),
+    ("vtk*", ["io/vtk*.cpp", "io/render*"]),
     ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp", "tests/io/page_test.cpp"]),
     ("hdf5.h", ["io/hdf5*", "io/array_*.cpp"]),
     ("zlib.h", ["io/page_block.cpp", "tests/io/page_test.cpp"]),

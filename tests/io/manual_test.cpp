@@ -122,8 +122,9 @@ TEST(Schema, KnowsKeysTypesRangesAndWords)
   EXPECT_EQ(keys.at("dimension").at("maximum"), 3);
   EXPECT_EQ(keys.at("time").at("properties").at("end").at("exclusiveMinimum"), 0);
   EXPECT_EQ(keys.at("transfer").at("properties").at("scheme").at("enum"), (nlohmann::json{"flip", "apic", "tpic", "aflip"}));
-  EXPECT_EQ(keys.at("materials").at("items").at("oneOf").size(), Laws::size);
-  EXPECT_EQ(keys.at("loads").at("items").at("oneOf").at(0).at("properties").at("type").at("const"), "gravity");
+  EXPECT_EQ(keys.at("materials").at("items").at("allOf").size(), Laws::size);
+  EXPECT_EQ(keys.at("loads").at("items").at("allOf").at(0).at("then").at("properties").at("type").at("const"), "gravity");
+  EXPECT_EQ(keys.at("loads").at("items").at("properties").at("type").at("enum"), (nlohmann::json{"gravity", "body_force", "traction"}));
   EXPECT_THAT(schema.at("required").get<std::vector<std::string>>(),
               testing::UnorderedElementsAre("title", "dimension", "mesh", "materials", "bodies"));
 }
@@ -131,17 +132,50 @@ TEST(Schema, KnowsKeysTypesRangesAndWords)
 TEST(Schema, KnowsGroupsOfLawsAndOptionsOfBodies)
 {
   const auto keys = nlohmann::json::parse(scene_schema()).at("properties");
-  const auto& laws = keys.at("materials").at("items").at("oneOf");
-  const auto metal =
-      std::find_if(laws.begin(), laws.end(), [](const auto& law) { return law.at("properties").at("law").at("const") == "johnson_cook"; });
-  ASSERT_NE(metal, laws.end());
-  const auto& damage = metal->at("properties").at("damage");
+  const auto& laws = keys.at("materials").at("items").at("allOf");
+  const auto of_metal = std::find_if(laws.begin(), laws.end(),
+                                     [](const auto& law) { return law.at("if").at("properties").at("law").at("const") == "johnson_cook"; });
+  ASSERT_NE(of_metal, laws.end());
+  const auto& metal = of_metal->at("then");
+  EXPECT_EQ(metal.at("additionalProperties"), false);
+  const auto& damage = metal.at("properties").at("damage");
   EXPECT_EQ(damage.at("properties").at("d2").at("minimum"), 0);
   EXPECT_THAT(damage.at("required").get<std::vector<std::string>>(), testing::UnorderedElementsAre("d1", "d2", "d3", "d4", "d5"));
-  const auto required = metal->at("required").get<std::vector<std::string>>();
+  const auto required = metal.at("required").get<std::vector<std::string>>();
   EXPECT_THAT(required, testing::Contains("thermal_exponent"));
   EXPECT_THAT(required, testing::Not(testing::AnyOf(testing::Contains("damage"), testing::Contains("youngs_modulus"))));
   EXPECT_EQ(keys.at("bodies").at("items").at("properties").at("f_bar").at("type"), "boolean");
+}
+
+/// f(key, its schema) for every key anywhere in a schema.
+template <class F>
+void for_each_key(const nlohmann::json& schema, F&& f)
+{
+  if (const auto keys = schema.find("properties"); keys != schema.end())
+    for (const auto& [key, value] : keys->items()) {
+      f(key, value);
+      for_each_key(value, f);
+    }
+  if (const auto items = schema.find("items"); items != schema.end())
+    for_each_key(*items, f);
+  if (const auto all = schema.find("allOf"); all != schema.end())
+    for (const auto& one : *all)
+      for_each_key(one.at("then"), f);
+}
+
+TEST(Schema, EveryKeyIsDescribedWithUnitRangeAndDefault)
+{
+  const auto schema = nlohmann::json::parse(scene_schema());
+  int keys = 0;
+  for_each_key(schema, [&](const std::string& key, const nlohmann::json& value) {
+    EXPECT_TRUE(value.contains("description")) << key << value.dump();
+    ++keys;
+  });
+  EXPECT_GT(keys, 200);
+  const auto& step = schema.at("properties").at("time").at("properties").at("min_step");
+  EXPECT_THAT(step.at("description").get<std::string>(), testing::EndsWith(" [s] (range > 0; default 1e-12)"));
+  EXPECT_EQ(step.at("default"), 1e-12);
+  EXPECT_EQ(schema.at("properties").at("kernel").at("markdownEnumDescriptions").size(), kernel_names().size());
 }
 
 }  // namespace
