@@ -503,6 +503,9 @@ def _fits_digest(name: str, array: Any, values: np.ndarray) -> bool:
 # ---------------------------------------------------------------------------------------------------------------------- runs and studies
 
 
+_BEFORE_THE_END = "the run did not end"  # app/summary.hpp
+
+
 class Run:
     """A folder of results.  Of a run that goes on, or was killed, it shows what is there so far."""
 
@@ -523,7 +526,8 @@ class Run:
     @property
     def status(self) -> str:
         """`done`, `stopped`, `failed`, or `not ended` of a run that goes on or was killed."""
-        return self.summary["status"]
+        summary = self.summary
+        return "not ended" if summary.get("message") == _BEFORE_THE_END else summary["status"]
 
     @property
     def bodies(self) -> list[str]:

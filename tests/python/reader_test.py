@@ -8,6 +8,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -80,6 +81,15 @@ class OfARun(unittest.TestCase):
         self.assertEqual(self.run_.status, "done")
         self.assertTrue(self.run_.scene.startswith(SCENE))
         self.assertEqual(self.run_.bodies, ["heap", "stone"])
+
+    def test_a_run_that_was_killed_has_not_ended(self):
+        process = subprocess.Popen([self.program, "run", "scene.yaml", "--out", "killed", "--quiet", "--set", "time.end=1000"], cwd=self.folder)
+        while not (self.folder / "killed" / "history.csv").exists() and process.poll() is None:
+            time.sleep(0.02)
+        process.kill()
+        process.wait()
+        self.assertEqual(talus.Run(self.folder / "killed").status, "not ended")
+        self.assertEqual(talus.Run(self.folder / "many").status, "stopped")
 
     def test_a_history_has_columns_with_units_and_is_a_structured_array(self):
         history = self.run_.history
