@@ -390,6 +390,11 @@ async function test_solid_run(browser, file) {
   assert.ok(layout[0] <= 360, `no scrolling sideways on a phone: ${layout[0]}`);
   assert.ok(layout[1] <= layout[2] + 1, 'the picture stands above the numbers');
   assert.ok((await picture()).length > 300);
+  const buttons = await page.locator('#time button, #time input, #views button').evaluateAll((all) => all.map((one) => one.getBoundingClientRect()));
+  assert.ok(
+    buttons.every(({left, right}) => left >= 0 && right <= 360),
+    'every button can be reached',
+  );
   assert.deepEqual([complaints, requests], [[], []]);
   await close();
 }
