@@ -189,21 +189,32 @@ std::vector<std::string> notes_of(const RunSurvey& survey, const PagePlan& plan,
   return notes;
 }
 
-PagePlan plan_particles(const RunSurvey& survey, const ParticleWishes& wishes)
-{
-  const std::int64_t total = most_particles(survey);
-  std::vector<std::size_t> offered(wishes.frames ? std::clamp<std::size_t>(*wishes.frames, 1, survey.frames.size()) : survey.frames.size());
-  offered = evenly_spread(offered.size(), survey.frames.size());
-  const KeptAnyway kept{wishes.frames.has_value(), wishes.fields_asked_for};
-  const auto plan = [&](const ParticleCost& cost) {
-    PagePlan made = plan_page(total, offered.size(), cost, wishes.budget, kept);
-    for (std::size_t& frame : made.frames)
-      frame = offered[frame];
-    return made;
-  };
-  PagePlan rough = plan(guess(survey, wishes.dimension));
-  return plan(measure(survey, wishes, rough));
-}
+/// Plans within a budget, of the frames that are asked for.
+class Planner {
+ public:
+  Planner(const RunSurvey& survey, const ParticleWishes& wishes)
+      : total_(most_particles(survey)),
+        offered_(evenly_spread(std::clamp<std::size_t>(wishes.frames.value_or(survey.frames.size()), 1, survey.frames.size()),
+                               survey.frames.size())),
+        kept_{wishes.frames.has_value(), wishes.fields_asked_for},
+        cost_(guess(survey, wishes.dimension))
+  {
+    cost_ = measure(survey, wishes, within(wishes.budget));
+  }
+  PagePlan within(Real budget) const
+  {
+    PagePlan plan = plan_page(total_, offered_.size(), cost_, budget, kept_);
+    for (std::size_t& frame : plan.frames)
+      frame = offered_[frame];
+    return plan;
+  }
+
+ private:
+  std::int64_t total_;
+  std::vector<std::size_t> offered_;
+  KeptAnyway kept_;
+  ParticleCost cost_;
+};
 
 }  // namespace
 
@@ -222,7 +233,9 @@ void add_particles(const RunSurvey& survey, const ParticleWishes& wishes, Page& 
 {
   if (survey.frames.empty())
     return;
-  PagePlan plan = plan_particles(survey, wishes);
+  const Planner planner(survey, wishes);
+  Real budget = wishes.budget;
+  PagePlan plan = planner.within(budget);
   const std::size_t before = page.blocks.size(), bytes_before = page.block_bytes();
   PageParticles particles{most_particles(survey), 0, 1, wishes.bodies, {}, {}, wishes.range};
   for (int attempt = 1;; ++attempt) {
@@ -233,11 +246,12 @@ void add_particles(const RunSurvey& survey, const ParticleWishes& wishes, Page& 
     const auto bytes = static_cast<Real>(page.block_bytes() - bytes_before);
     if (bytes <= wishes.budget)
       break;
-    constexpr Real a_little_less = 0.97;  // what was measured on three frames was not enough
+    constexpr Real a_little_less = 0.99;  // what was measured on three frames was not enough
     constexpr int most_attempts = 6;
     if (attempt == most_attempts)
       throw Error(fmt::format("--size: too small: {} times of {} fields do not fit", plan.frames.size(), plan.fields));
-    plan.share *= a_little_less * wishes.budget / bytes;
+    budget *= a_little_less * wishes.budget / bytes;
+    plan = planner.within(budget);
     page.blocks.resize(before);
     particles.frames.clear();
   }
