@@ -11,6 +11,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSTLWriter.h>
+#include <vtkSmartPointer.h>
 #include <vtkStripper.h>
 #include <vtkUnsignedCharArray.h>
 
