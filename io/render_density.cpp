@@ -15,6 +15,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkReverseSense.h>
+#include <vtkSmartPointer.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>

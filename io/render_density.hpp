@@ -1,12 +1,12 @@
 #pragma once
 // Where bodies end that are given by particles: the level of a density that each particle spreads over its surroundings.
-#include <vtkSmartPointer.h>
-
 #include <vector>
 
 #include "core/types.hpp"
 
 class vtkPolyData;
+template <class T>
+class vtkSmartPointer;
 
 namespace talus::render {
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "core/units.hpp"
@@ -52,9 +53,11 @@ void add_scale(Sheet& sheet, const Picture& picture, const Size& size)
 void add_axes(Sheet& sheet, const Picture& picture)
 {
   const Vec3 right = picture.camera.up.cross(picture.camera.towards);
-  const Real arm = 2.2 * sheet.letter(), x0 = 3.4 * sheet.letter(), y0 = 2.6 * sheet.letter();
+  const Vec3& up = picture.camera.up;
+  const Real lowest = std::min({up[0], up[1], up[2], 0.0});  // an axis that points down needs room
+  const Real arm = 2.2 * sheet.letter(), x0 = 3.4 * sheet.letter(), y0 = 2.6 * sheet.letter() - 0.6 * arm * lowest;
   for (int d = 0; d < 3; ++d) {
-    const Real x = right[d], y = picture.camera.up[d];
+    const Real x = right[d], y = up[d];
     if (std::hypot(x, y) < 0.1)
       continue;  // points at the eye
     sheet.line({{x0, y0}, {x0 + arm * x, y0 + arm * y}}, ink);

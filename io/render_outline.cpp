@@ -4,6 +4,7 @@
 #include <vtkNew.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataSilhouette.h>
+#include <vtkSmartPointer.h>
 
 namespace talus::render {
 

@@ -11,6 +11,7 @@
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
 #include <vtkSTLWriter.h>
+#include <vtkSmartPointer.h>
 #include <vtkStripper.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -77,8 +78,10 @@ void write_as(Writer& writer, vtkPolyData* surface, const fs::path& file)
     const bool whole = fs::file_size(named, failed) > 12 * static_cast<std::uintmax_t>(surface->GetNumberOfPolys());
     if (!failed)
       fs::rename(named, temporary, failed);
-    if (!written || !whole || failed || writer.GetErrorCode() != 0)
-      throw EnvironmentError(fmt::format("cannot write {}", file.string()));
+    if (written && whole && !failed && writer.GetErrorCode() == 0)
+      return;
+    fs::remove(named, failed);
+    throw EnvironmentError(fmt::format("cannot write {}", file.string()));
   });
 }
 

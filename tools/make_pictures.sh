@@ -11,7 +11,7 @@ docs() {
     [ -f "runs/$name/summary.json" ] || build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
   done
   render slope_failure_2d --field stress:xy --map coolwarm --window 20 10 70 40 --out docs/images/pictures_window.png
-  render slope_failure_2d --outline start --mesh edges --out docs/images/pictures_outline.png
+  render slope_failure_2d --outline start --out docs/images/pictures_outline.png
   render slope_failure_3d --view iso --clip z 5 --outline start --out docs/images/pictures_clip.png
 }
 
