@@ -35,7 +35,7 @@ TEST(Expression, RefusesWhatIsNoFormula)
   const std::vector<Vec3> places{{0, 0, 0}};
   for (const char* wrong : {"", "2 +", "velocity", "sin(", "1 / x", "sqrt(x - 1)"})
     EXPECT_THROW(evaluate(wrong, places), std::invalid_argument) << wrong;
-  EXPECT_THROW(evaluate("2 +", {}), std::invalid_argument) << "even where there is nothing to evaluate";
+  EXPECT_THROW(evaluate("2 +", std::span<const Vec3>{}), std::invalid_argument) << "even where there is nothing to evaluate";
 }
 
 TEST(Expression, GradientOfALinearFieldIsExactToRoundOff)
