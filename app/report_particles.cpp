@@ -236,14 +236,16 @@ void add_particles(const RunSurvey& survey, const ParticleWishes& wishes, Page& 
   const Planner planner(survey, wishes);
   Real budget = wishes.budget;
   PagePlan plan = planner.within(budget);
-  const std::size_t before = page.blocks.size(), bytes_before = page.block_bytes();
+  const std::size_t before = page.blocks.size(), bytes_before = page.block_bytes() + to_json(page).size();
   PageParticles particles{most_particles(survey), 0, 1, wishes.bodies, {}, {}, wishes.range};
   for (int attempt = 1;; ++attempt) {
     FrameWriter writer(survey, wishes, plan, page);
     for (const std::size_t frame : plan.frames)
       particles.frames.push_back(writer.add(frame));
     particles.radius = writer.radius() > 0 ? writer.radius() : 1;
-    const auto bytes = static_cast<Real>(page.block_bytes() - bytes_before);
+    page.particles = particles;
+    constexpr Real words = 800;  // names of the fields, notes
+    const Real bytes = static_cast<Real>(page.block_bytes() + to_json(page).size() - bytes_before) + words;
     if (bytes <= wishes.budget)
       break;
     constexpr Real a_little_less = 0.99;  // what was measured on three frames was not enough

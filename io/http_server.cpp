@@ -52,6 +52,7 @@ struct HttpServer::Inside {
       return refuse(403, "this page is for http://127.0.0.1 and http://localhost only", response);
     if (request.method != "GET" && request.method != "HEAD") {
       response.set_header("Allow", "GET, HEAD");
+      response.set_header("Connection", "close");  // what else the request holds is not read
       return refuse(405, "nothing can be changed here", response);
     }
     const auto found = answer(request.path);
