@@ -66,12 +66,12 @@ docs: build  ## write docs/reference/scene.md out of the program
 	@build/talus manual > build/scene.md && mv build/scene.md docs/reference/scene.md
 	@tools/ci.sh docs
 
-site:  ## write the documentation as a site that opens from its folder, build/site/index.html
+site: setup  ## write the documentation as a site that opens from its folder, build/site/index.html
 	@tools/ci.sh site
 	@echo "build/site/index.html"
 
 tutorials: build  ## run every command of docs/tutorials
-	@tools/ci.sh tutorials
+	@/usr/bin/python3 tools/run_tutorials.py build/talus
 
 clean:  ## remove everything built; runs/ stays
 	@rm -rf build

@@ -69,12 +69,8 @@ stage_verify() { tools/verify.sh --program "$PWD/build/dev/talus" --level quick 
 # The documentation as a site: build/site/index.html.  A warning, a broken link and a page that the navigation lacks are errors.
 stage_site() { "$python" -m mkdocs build --quiet --config-file tools/site/mkdocs.yml; }
 
-# Every command of docs/tutorials, with the program that stage verify has built: what they write is there, what they print is what the page shows.
-# Pictures are drawn by the talus-render of stage dev where there is no other: to compile one more would take longer than the tutorials.
-stage_tutorials() {
-  [ -x build/release/talus-render ] || cp build/dev/talus-render build/release/
-  "$python" tools/run_tutorials.py build/release/talus
-}
+# Every command of docs/tutorials, with the program of stage dev: what they write is there, what they print is what the page shows.
+stage_tutorials() { "$python" tools/run_tutorials.py build/dev/talus; }
 
 # Two minutes of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
 stage_fuzz() { tools/fuzz.sh quick; }
