@@ -22,14 +22,14 @@ def stored(case):
     return known["values"], known["failed"]
 
 
-def differs(value, old):
-    """Whether the eighth digit of the old value changed, by more than one unit. A run gives the same bits again on one machine with one compiler; another
+def differs(value, old, digits=DIGITS):
+    """Whether the last of so many digits of the old value changed, by more than one unit. A run gives the same bits again on one machine with one compiler; another
     processor or compiler rounds otherwise, which smooth problems show in the tenth digit or later, and failing soil, contact and shocks earlier."""
     if value is None or old is None:
         return value is not old
     if max(abs(value), abs(old)) < NOTHING:
         return False
-    unit = 10.0 ** (math.floor(math.log10(abs(old))) - DIGITS + 1) if old else NOTHING
+    unit = 10.0 ** (math.floor(math.log10(abs(old))) - digits + 1) if old else NOTHING
     return abs(value - old) > 1.001 * unit
 
 
@@ -40,14 +40,14 @@ def change(value, old):
     return f"changed by {(value - old) / abs(old) * 100:+.2g} %, was {old:.{DIGITS}g}, is {value:.{DIGITS}g}"
 
 
-def compare(records, values, failed):
+def compare(records, values, failed, digits=DIGITS):
     """Adds 'release', 'changed' (words, or None) and 'known' (it failed in the release) to the records of a case; returns the metrics that are
     measured no more."""
     for record in records:
         record["known"] = record["metric"] in failed
         record["release"] = values.get(record["metric"])
         known = record["metric"] in values
-        record["changed"] = change(record["value"], record["release"]) if known and differs(record["value"], record["release"]) else None
+        record["changed"] = change(record["value"], record["release"]) if known and differs(record["value"], record["release"], digits) else None
     return sorted(values.keys() - {record["metric"] for record in records})
 
 

@@ -90,6 +90,8 @@ def arguments():
     options.add_argument("--precision", help="double or single, of every run that does not choose itself")
     options.add_argument("--release", action="store_true", help="for developers: store the values as those of the release (release.json of each case)")
     options.add_argument("--regression", action="store_true", help="status 1 only where something is worse than in the last release: a run failed, or a number that passed then or is new")
+    options.add_argument("--judged", action="store_true", help="for developers: leave out cases of which nothing passed in the release, so that nothing can become worse")
+    options.add_argument("--digits", type=int, default=regression.DIGITS, help="for developers: a number has changed since the release where one of so many digits has")
     given = options.parse_args()
     if unknown := [case for case in given.cases if case not in CASES]:
         options.error(f"no case {', '.join(unknown)}; there are: {', '.join(CASES)}")
@@ -100,13 +102,19 @@ def arguments():
     return settle(options, given, "verify")
 
 
+def judged():
+    """The cases of which a number passed in the release."""
+    results = json.loads((SUITE / "results.json").read_text(encoding="utf-8"))["results"]
+    return [case for case in CASES if any(record["case"] == case and record["pass"] for record in results)]
+
+
 def failed(case, metric, words):
     """The record of what did not end."""
     blank = dict.fromkeys(["value", "reference", "tolerance", "mesh", "particles", "kernel", "transfer", "processor_seconds", "peak_memory [B]", "threads", "commit"])
     return {"case": case, "metric": metric, "unit": "-", **blank, "source": "", "criterion": "runs", "pass": False, "error": words}
 
 
-def measure(lab, case, overrides):
+def measure(lab, case, overrides, digits=regression.DIGITS):
     """All results of one case as records, and what the reports say of it as a whole; runs that fail and errors in case.py are results that failed."""
     try:
         records = [result.record() for result in tools.module(case).evaluate(lab)]
@@ -124,7 +132,7 @@ def measure(lab, case, overrides):
     records += broken
     program = ended[0].summary["program"] if ended else dict.fromkeys(["version", "commit", "compiler"], "unknown")
     compared = lab.level == "quick" and not overrides
-    gone = regression.compare(records, *(regression.stored(case) if compared else ({}, [])))
+    gone = regression.compare(records, *(regression.stored(case) if compared else ({}, [])), digits)
     return records, {"case": case, "title": title(case), "level": lab.level, "overrides": overrides, "program": program, "runs": len(runs),
                      "processor_seconds": sum(run.seconds for run in ended), "gone": gone if compared and not any("error" in r for r in records) else []}
 
@@ -144,11 +152,11 @@ def picture(lab, case):
                    caption=f"Particles at the end of {run.label}.", shown="report")
 
 
-def conduct(lab, cases, overrides):
+def conduct(lab, cases, overrides, digits):
     """Runs all cases side by side; the document that verify.json holds, in the order of the cases."""
     with concurrent.futures.ThreadPoolExecutor(max(1, len(cases))) as pool:
         try:
-            pending = {pool.submit(measure, lab, case, overrides): case for case in cases}
+            pending = {pool.submit(measure, lab, case, overrides, digits): case for case in cases}
             for done in concurrent.futures.as_completed(pending):
                 records, info = done.result()
                 told = [f"{pending[done]}: {info['runs']} runs, {info['processor_seconds']:.1f} s of processor time", *("  " + report.line(r) for r in records),
@@ -172,7 +180,7 @@ def main():
     lab = tools.Lab(given.program, given.runs, given.out / "report/images", given.level, given.reuse, given.threads, given.jobs,
                     {tools.OVERRIDES[key]: word for key, word in overrides.items()})
     start = time.monotonic()
-    document = conduct(lab, given.cases or CASES, overrides)
+    document = conduct(lab, given.cases or (judged() if given.judged else CASES), overrides, given.digits)
     (given.out / "verify.json").write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     pages.write(document, given.out / "report")
     if given.release:

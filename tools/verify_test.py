@@ -132,6 +132,11 @@ class Runs(unittest.TestCase):
         self.assertIn("ZeroDivisionError", records[0]["error"])
         self.assertIs(records[0]["pass"], False)
 
+    def test_cases_that_nothing_passed_in_are_left_out_where_only_losses_matter(self):
+        judged = verify.judged()
+        self.assertIn("vibrating_bar", judged)
+        self.assertNotIn("cook_membrane", judged, "it only reports")
+
     def test_two_results_of_one_name_are_an_error(self):
         def evaluate(own):
             run = own.run(self.SCENE, "n", {})
@@ -145,6 +150,8 @@ class Regression(unittest.TestCase):
         self.assertFalse(regression.differs(1.2345678, 1.2345678 * (1 + 1e-10)))
         self.assertTrue(regression.differs(1.2345680, 1.2345678))
         self.assertTrue(regression.differs(-4.0, 4.0))
+        self.assertFalse(regression.differs(1.2385678, 1.2345678, 2))
+        self.assertTrue(regression.differs(1.35, 1.2345678, 2))
         self.assertTrue(regression.differs(None, 4.0))
 
     def test_rounding_of_ratios_is_no_change(self):
