@@ -65,6 +65,14 @@ class CommandLine {
 
   int parse(int argc, const char* const* argv)
   {
+    std::vector<std::string> commands;
+    for (const CLI::App* command : app_.get_subcommands([](const CLI::App*) { return true; }))
+      commands.push_back(command->get_name());
+    if (argc > 1 && argv[1][0] != '-' && std::find(commands.begin(), commands.end(), argv[1]) == commands.end()) {
+      if (world().is_root())
+        fmt::print(stderr, "error: there is no command \"{}\"{}\n", argv[1], suggestion(argv[1], commands));
+      return usage_error;
+    }
     try {
       app_.parse(argc, argv);
       return status_;

@@ -169,6 +169,8 @@ void new_scene(const NewOptions& options)
   if (options.list)
     return options.from ? list_questions(find_template(*options.from)) : list_templates();
   const bool asks = options.set.empty() && ::isatty(STDIN_FILENO) == 1;
+  if (!asks && options.set.empty())
+    fmt::print(stderr, "note: nothing is asked without a terminal: every answer is its default, or what --set NAME=VALUE says\n");
   Conversation conversation;
   std::optional<std::string> name = options.from;
   if (!name && !asks)

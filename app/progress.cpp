@@ -17,11 +17,8 @@ constexpr int bar_width = 30;
 
 }  // namespace
 
-Progress::Progress(Real total, bool quiet, std::filesystem::path file)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), file_(std::move(file))
-{
-  now_.total = total;
-}
+Progress::Progress(bool quiet, std::filesystem::path file) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), file_(std::move(file))
+{}
 
 Progress::~Progress()
 {
@@ -32,15 +29,15 @@ Progress::~Progress()
     std::filesystem::remove(file_, gone);
 }
 
-void Progress::step(Real done, const Clock& clock, std::string_view stage, Real particle_steps)
+void Progress::step(Real done, Real total, const Clock& clock, std::string_view stage, Real particle_steps)
 {
   const auto now = Watch::now();
-  const bool last = done >= now_.total && terminal_ && drawn_;  // so that the bar is full in the end
+  const bool last = done >= total && terminal_ && drawn_;  // so that the bar is full in the end
   const bool draws = !quiet_ && (last || now - drawn_at_ >= (terminal_ ? Watch::duration(between_bars) : Watch::duration(between_lines)));
   const bool writes = !file_.empty() && (!written_at_ || now - *written_at_ >= between_files);
   if (!draws && !writes)
     return;
-  now_.done = done, now_.time = clock.time, now_.dt = clock.dt, now_.step = clock.step;
+  now_.done = done, now_.total = total, now_.time = clock.time, now_.dt = clock.dt, now_.step = clock.step;
   now_.stage = stage;
   now_.elapsed = std::chrono::duration<Real>(now - start_).count();
   now_.particle_steps_per_second = now_.elapsed > 0 ? (particle_steps - particle_steps_before_) / now_.elapsed : 0;

@@ -10,8 +10,8 @@ namespace talus {
 
 class Progress {
  public:
-  /// total: simulated time of all stages [s].  file: rewritten every second and gone when this is; none if empty.
-  Progress(Real total, bool quiet, std::filesystem::path file);
+  /// file: rewritten every second and gone when this is; none if empty.
+  Progress(bool quiet, std::filesystem::path file);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
@@ -19,7 +19,7 @@ class Progress {
   /// A run that goes on has done this much already: rates and the time that is left count from here.
   void resume(Real done, Real particle_steps) noexcept { now_.done_before = done, particle_steps_before_ = particle_steps; }
   /// After each step: simulated time that is done, out of the total; the clock of the run; particle steps so far.
-  void step(Real done, const Clock& clock, std::string_view stage, Real particle_steps);
+  void step(Real done, Real total, const Clock& clock, std::string_view stage, Real particle_steps);
 
  private:
   using Watch = std::chrono::steady_clock;

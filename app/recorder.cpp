@@ -20,7 +20,7 @@ Real every(const std::optional<Spec>& spec)
   return spec ? spec->every : std::numeric_limits<Real>::infinity();
 }
 
-Real total(const std::vector<Stage>& stages)
+Real total(std::span<const Stage> stages)
 {
   Real sum = 0;
   for (const Stage& stage : stages)
@@ -95,7 +95,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       made_by_(std::move(made_by)),
       outputs_(outputs),
       stage_list_(stages),
-      progress_(total(stages), quiet || !world().is_root(), world().is_root() ? folder_ / progress_file : fs::path()),
+      progress_(quiet || !world().is_root(), world().is_root() ? folder_ / progress_file : fs::path()),
       particle_times_(every(outputs.particles)),
       mesh_times_(every(outputs.mesh)),
       history_times_(every(outputs.history)),
@@ -213,7 +213,9 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   if (moment == Moment::stage_begins)
     stage_start_ = frame.clock.time;
   if (moment == Moment::step_done)
-    progress_.step(done_before_ + frame.clock.time - stage_start_, frame.clock, frame.stage_name, frame.timings.particle_steps);
+    progress_.step(done_before_ + frame.clock.time - stage_start_,
+                   done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(frame.stage_number))),
+                   frame.clock, frame.stage_name, frame.timings.particle_steps);
 
   StopWatch watch;
   if (first || moment != Moment::stage_begins)  // the beginning of a later stage is the end of the one before
@@ -227,7 +229,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   last_.watched = frame.watched;
   if (moment != Moment::stage_done)
     return;
-  done_before_ += stage_list_[static_cast<std::size_t>(frame.stage_number)].duration;
+  done_before_ += frame.clock.time - stage_start_;  // a stage that seeks rest may end before its time
   last_.mass_there = totals(frame).mass;
   last_.energy = accounts_.energy(frame);
   last_.momentum = accounts_.momentum(frame);

@@ -144,10 +144,13 @@ void add_history(const HistoryTable& history, const MetricTask& task, std::vecto
     const auto column = history[front.name];
     if (!column || column->empty())
       continue;
-    all.push_back({"fronts of the history", front.name, column->back(), "m",
-                   fmt::format("coordinate beyond which {:.3g} % of the mass{} lies along {}, at the last row; in the first row {:.6g} m",
-                               100 * (1 - front.mass_share), front.body.empty() ? "" : " of " + front.body,
-                               words(front.direction)[static_cast<std::size_t>(front.direction)], column->front())});
+    all.push_back(
+        {"fronts of the history", front.name, column->back(), "m",
+         fmt::format("{}{} along {}, at the last row; in the first row {:.6g} m",
+                     front.mass_share < 1 ? fmt::format("coordinate beyond which {:.3g} % of the mass lies", 100 * (1 - front.mass_share))
+                                          : std::string("outermost particle"),
+                     front.body.empty() ? "" : " of " + front.body, words(front.direction)[static_cast<std::size_t>(front.direction)],
+                     column->front())});
   }
 }
 

@@ -19,6 +19,7 @@
 #include "io/gmsh_mesh.hpp"
 #include "io/gmsh_write.hpp"
 #include "io/reader.hpp"
+#include "io/summary_json.hpp"
 #include "io/whole_file.hpp"
 #include "mesh/digest.hpp"
 
@@ -27,6 +28,15 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Whether a folder holds a run that was stopped, with a checkpoint.
+bool could_go_on(const fs::path& folder)
+try {
+  return fs::exists(folder / "summary.json") && fs::exists(folder / checkpoint_folder) &&
+         read_summary(folder / "summary.json").status == "stopped";
+} catch (const EnvironmentError&) {  // that is no summary
+  return false;
+}
 
 /// The scene as it was read, and what --set changed of it, in comments at its end.
 std::string with_changes(const Scene& scene)
@@ -254,6 +264,8 @@ class Run {
       lock_ = FolderLock(folder_);
       remove_leftovers(folder_);
     } else {
+      if (could_go_on(folder_))
+        fmt::print(stderr, "note: {} held a run that was stopped and could have gone on by --resume: it is replaced\n", folder_.string());
       lock_ = prepare_results(folder_);
     }
     began_ = true;

@@ -42,7 +42,7 @@ std::optional<std::string> closest_match(std::string_view word, std::span<const 
       best_distance = d;
     }
   }
-  if (best == nullptr || best_distance > std::max<std::size_t>(1, std::min(word.size(), best->size()) / 3))
+  if (best == nullptr || best_distance >= best->size() || best_distance > std::max<std::size_t>(1, std::min(word.size(), best->size()) / 3))
     return std::nullopt;
   return *best;
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace talus::render {
 
@@ -56,6 +57,8 @@ Colour colour_of(Map map, Real share)
 Real Scale::share(Real value) const
 {
   const auto [low, high] = range;
+  if (log && !(value > 0))
+    return std::numeric_limits<Real>::quiet_NaN();  // it has no logarithm
   return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
 

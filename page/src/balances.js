@@ -80,8 +80,9 @@ function energy_words(terms) {
     `${with_unit(given, 'J')} were put in. Most of it is ${largest[1]}: ${with_unit(largest[0], 'J')}` +
     (given ? ` (${percent(Math.abs(largest[0] / given))}).` : '.') +
     (unexplained !== undefined && unexplained !== null
-      ? ` Transfers and what is not accounted for are ${percent(Math.abs(unexplained))} of what was dissipated.`
-      : '')
+      ? ` Not accounted for: ${percent(Math.abs(unexplained))} of what was dissipated.`
+      : '') +
+    (given && terms.get('transfer_loss') ? ` Transfers took ${percent(terms.get('transfer_loss') / Math.abs(given))} of what was put in.` : '')
   );
 }
 

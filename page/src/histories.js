@@ -52,7 +52,7 @@ function make_plot(group, table, columns, timeline, {chosen, changed, close}) {
     draw() {
       plot = timeline.add(place, {
         unit: group.unit,
-        data: [columns[0], ...group.columns.map((c) => columns[c])],
+        data: [columns[0], ...group.columns.map((c) => Array.from(columns[c], (value) => (Number.isFinite(value) ? value : null)))], // NaN would leave the axis without ends
         series: group.columns.map((c, k) => ({
           ...curve(k),
           label: table.columns[c].name,

@@ -54,7 +54,7 @@ def main():
     axis.set(xlabel="x [m]", ylabel=f"{'xyz'[PLAN[given.up][1]]} [m]", title=f"{last.time:.4g} s")
     out = given.out or given.folder / "deposit.png"
     figure.savefig(out, dpi=150)
-    print(f"{out}: risen by {np.nanmax(rise):.3g} m at most, sunk by {-np.nanmin(rise):.3g} m")
+    print(f"{out}: risen by {max(np.nanmax(rise), 0):.3g} m at most, sunk by {max(-np.nanmin(rise), 0):.3g} m")
 
 
 if __name__ == "__main__":
