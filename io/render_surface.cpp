@@ -149,7 +149,8 @@ Extracted extract(const std::map<int, Matter>& bodies, const SurfaceSettings& se
   together->Update();
   Surface surface = together->GetOutput();
   if (surface->GetNumberOfCells() == 0)
-    throw Error(fmt::format("--level, --spacing: nothing is as dense as {} of the inside, or the spacing is too wide to see it: {}", settings.level, fmt::join(said, "; ")));
+    throw Error(fmt::format("--level, --spacing: nothing is as dense as {} of the inside, or the spacing is too wide to see it: {}",
+                            settings.level, fmt::join(said, "; ")));
   if (settings.field)
     colour(surface);
   return {dimension == 2 ? joined(surface) : surface, fmt::format("{}", fmt::join(said, "\n"))};
