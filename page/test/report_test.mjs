@@ -252,6 +252,8 @@ async function test_plane_run(browser, file, {run, texts}) {
   assert.match(balances, /Angular momentum does not close: 8 %/);
   assert.match(balances, /Most of it is plastic dissipation/);
   assert.ok(coloured(await pixels(page, '#balances-body .plot')).length > 5000, 'energies are drawn on one another');
+  const blue = coloured(await pixels(page, '#runout-body .plot')).filter(([, , r, g, b]) => b > r + 30); // the first curve, not the red line of the time
+  assert.ok(blue.length > 100, `a curve that begins late does not take the others away: ${blue.length} pixels`);
   assert.match(await text_of(page, '#runout-body'), /run-out of the toe\s*2\.18\sm/);
   assert.match(await text_of(page, '#cost-body'), /5 min 13 s[\s\S]*3\.4 million particle-steps/);
   await page.locator('#overview-body a[href="#L22"]').click();

@@ -320,9 +320,9 @@ function pack_history(packer, end, mass) {
 }
 
 function pack_run_out(packer, times) {
-  const rows = times.map((t) => {
+  const rows = times.map((t, n) => {
     const s = grown((2.2 * t) / times.at(-1));
-    return [t, 2 - 1.1 * s, 1 + 2.2 * s];
+    return [t, 2 - 1.1 * s, n > 0 ? 1 + 2.2 * s : NaN]; // nothing has moved at the first
   });
   return packer.table(
     [
