@@ -32,7 +32,8 @@ namespace fs = std::filesystem;
 /// Whether a folder holds a run that was stopped, with a checkpoint.
 bool could_go_on(const fs::path& folder)
 try {
-  return fs::exists(folder / "summary.json") && fs::exists(folder / checkpoint_folder) &&
+  std::error_code unknown;
+  return fs::exists(folder / "summary.json", unknown) && fs::exists(folder / checkpoint_folder, unknown) &&
          read_summary(folder / "summary.json").status == "stopped";
 } catch (const EnvironmentError&) {  // that is no summary
   return false;

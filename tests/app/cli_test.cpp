@@ -138,6 +138,21 @@ TEST_F(CommandLine, RenderNeedsResults)
   EXPECT_EQ(outcome.err, "error: nowhere holds no results of a run (no summary.json)\n");
 }
 
+TEST_F(CommandLine, AMistypedCommandIsToldWhichWasMeant)
+{
+  const Outcome outcome = talus("rnder out");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(outcome.err, "error: there is no command \"rnder\" — did you mean \"render\"?\n");
+}
+
+TEST_F(CommandLine, ARunThatCouldHaveGoneOnIsNotReplacedInSilence)
+{
+  write("block.yaml", block_scene("time: {end: 1}\n"));
+  ASSERT_EQ(talus("run block.yaml --quiet --until 3 --out out").code, 4);
+  EXPECT_THAT(talus("run block.yaml --quiet --until 3 --out out").err,
+              testing::HasSubstr("note: out held a run that was stopped and could have gone on by --resume: it is replaced\n"));
+}
+
 }  // namespace
 
 }  // namespace talus::cli_test
