@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.hpp"
+#include "app/duration.hpp"
 #include "app/quick.hpp"
 #include "app/trial.hpp"
 #include "core/parallel.hpp"

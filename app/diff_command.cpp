@@ -9,6 +9,7 @@
 
 #include "app/commands.hpp"
 #include "app/differences.hpp"
+#include "app/results.hpp"
 #include "core/error.hpp"
 #include "core/viewed.hpp"
 #include "core/words.hpp"
@@ -462,8 +463,7 @@ bool same_results(const DiffOptions& options)
 try {
   const RunFolders folders{options.a, options.b};
   for (const fs::path& folder : folders)
-    if (!is_there(folder / "summary.json"))
-      throw Error(fmt::format("{} holds no results of a run (no summary.json)", folder.string()));
+    require_run(folder);
   const std::vector<FieldTable> tables = compare_all(folders, options);
   check_names(tables, folders, options);
   return print_all(tables, folders);

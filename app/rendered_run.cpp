@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/results.hpp"
 #include "core/error.hpp"
 #include "io/reader.hpp"
 #include "io/vtk.hpp"
@@ -14,8 +15,7 @@ namespace fs = std::filesystem;
 
 RenderedRun read_rendered_run(const fs::path& folder)
 {
-  if (!fs::exists(folder / "summary.json"))
-    throw EnvironmentError(fmt::format("{} holds no results of a run (no summary.json)", folder.string()));
+  require_run(folder);
   RenderedRun run{read_scene(folder / "scene.yaml"), {}};
   const fs::path series = folder / "particles.pvd";
   if (!fs::exists(series))

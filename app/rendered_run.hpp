@@ -13,7 +13,7 @@ struct RenderedRun {
   Scene scene;
   render::RunFacts facts;
 };
-/// EnvironmentError: the folder holds no results of a run, or none of particles.
+/// Error: the folder holds no results of a run; EnvironmentError: none of particles.
 RenderedRun read_rendered_run(const std::filesystem::path& folder);
 
 /// Whether the option is among the words of a command line.

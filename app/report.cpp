@@ -172,10 +172,7 @@ RunState state_of_run(const fs::path& folder, const SummaryBack& summary)
 
 RunFolder read_run_folder(const fs::path& folder)
 {
-  if (!fs::is_directory(folder))
-    throw Error(fmt::format("{}: there is no such folder", folder.string()));
-  if (!fs::exists(folder / "summary.json") || !fs::exists(folder / "scene.yaml"))
-    throw Error(fmt::format("{} holds no results of a run (no summary.json and scene.yaml)", folder.string()));
+  require_run(folder);
   RunFolder run{folder, read_summary(folder / "summary.json"), {}, {}};
   run.scene = read_scene(folder / "scene.yaml", run.summary.overrides);
   run.state = state_of_run(folder, run.summary);

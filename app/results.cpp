@@ -149,6 +149,12 @@ try {
   throw EnvironmentError(fmt::format("{} cannot be made: {}", folder.string(), e.code().message()));
 }
 
+void require_run(const fs::path& folder)
+{
+  if (std::error_code not_there; !fs::exists(folder / "summary.json", not_there))
+    throw Error(fmt::format("{} holds no results of a run (no summary.json)", folder.string()));
+}
+
 void require_results(const fs::path& folder)
 {
   if (std::error_code not_there; !fs::exists(folder / "summary.json", not_there))

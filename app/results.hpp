@@ -48,6 +48,9 @@ bool run_is_at_work(const std::filesystem::path& folder);
 /// True if clearing `folder` for results may take `source` away.
 bool lies_in(const std::filesystem::path& source, const std::filesystem::path& folder);
 
+/// Error: no run has left its results there.
+void require_run(const std::filesystem::path& folder);
+
 /// EnvironmentError: a run's folder is not there any more, or another has taken its place.  Without asking, its files would be made anew, each
 /// alone in an empty folder, and its history go on in a file that nobody finds.
 void require_results(const std::filesystem::path& folder);

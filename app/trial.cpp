@@ -77,19 +77,4 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
 template std::vector<StageTrial> try_stages<2>(const Scene&, Mesh<2>, Setup<2>);
 template std::vector<StageTrial> try_stages<3>(const Scene&, Mesh<3>, Setup<3>);
 
-std::string duration_in_words(Real seconds)
-{
-  constexpr std::int64_t minute = 60, hour = 3600, day = 24 * hour;
-  const auto whole = static_cast<std::int64_t>(std::round(seconds));
-  if (seconds < 9.95)
-    return fmt::format("{:.2g} s", seconds);
-  if (whole < minute)
-    return fmt::format("{} s", whole);
-  if (whole < hour)
-    return fmt::format("{} min {} s", whole / minute, whole % minute);
-  if (whole < day)
-    return fmt::format("{} h {} min", whole / hour, whole % hour / minute);
-  return fmt::format("{} days {} h", whole / day, whole % day / hour);
-}
-
 }  // namespace talus

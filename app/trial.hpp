@@ -21,7 +21,4 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
 extern template std::vector<StageTrial> try_stages<2>(const Scene&, Mesh<2>, Setup<2>);
 extern template std::vector<StageTrial> try_stages<3>(const Scene&, Mesh<3>, Setup<3>);
 
-/// "3 min 20 s", "2.5 s", "4 h 10 min"
-std::string duration_in_words(Real seconds);
-
 }  // namespace talus

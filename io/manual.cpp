@@ -351,7 +351,7 @@ class Entry {
   {
     std::vector<std::string> entries;
     for (const auto& kernel : kernel_summaries())
-      if (asked_.size() == 1 && asked_.back() == kernel[0])
+      if (asked_.size() == 1 && (asked_.back() == kernel[0] || asked_.back() == "kernel"))
         entries.push_back(fmt::format("kernel: {}\n  {}\n", kernel[0], kernel[1]));
     const bool in_full = keys_.size() <= most_in_full;
     std::string lines;

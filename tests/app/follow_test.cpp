@@ -56,7 +56,7 @@ TEST_F(Follow, ARunThatHasEndedIsToldWithWhatItReturned)
   EXPECT_EQ(failed.code, 1);
   EXPECT_THAT(failed.out, ContainsRegex("\nfailed .*\n +step [0-9]+, t = .* beyond watch.speed"));
   EXPECT_EQ(talus("watch nowhere").code, 2);
-  EXPECT_EQ(talus("watch nowhere").err, "error: nowhere: there is no such folder\n");
+  EXPECT_EQ(talus("watch nowhere").err, "error: nowhere holds no results of a run (no summary.json)\n");
 }
 
 TEST_F(Follow, ARunAtWorkSaysHowFarItIs)

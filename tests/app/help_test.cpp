@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "app/trial.hpp"
+#include "app/duration.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::help_test {
@@ -40,6 +40,8 @@ TEST_F(ManualOf, LawsTypesKernelsBlocksWordsAndHistoryVariablesAreFound)
               AllOf(HasSubstr("Drucker-Prager cone"), HasSubstr("dilation_angle"), HasSubstr("opened_volume")));
   EXPECT_THAT(talus("manual friction").out, HasSubstr("Keys of boundaries (type: friction)"));
   EXPECT_THAT(talus("manual umls").out, AllOf(HasSubstr("kernel: umls"), HasSubstr("Keys of umls")));
+  EXPECT_THAT(talus("manual kernel").out,
+              AllOf(HasSubstr("kernel: linear"), HasSubstr("kernel: projected"), HasSubstr("kernel: umls_projected")));
   EXPECT_THAT(talus("manual outputs").out, AllOf(HasSubstr("Keys of outputs"), HasSubstr("outputs.history.fronts")));
   EXPECT_THAT(talus("manual geostatic").out, HasSubstr("Keys of stages (type: geostatic)"));
   EXPECT_THAT(talus("manual box").out, HasSubstr("corner with the smallest coordinates"));
@@ -160,6 +162,8 @@ TEST_F(Completion, OffersCommandsOptionsWordsAndFiles)
   EXPECT_EQ(offered({"run", "slo"}), "slope.yaml\nslopes\n");
   EXPECT_EQ(offered({"run", "--out", "slo"}), "slopes\n");
   EXPECT_THAT(offered({"new", "sl"}), HasSubstr("slope\n"));
+  EXPECT_EQ(offered({"render", "--map", "c"}), "cividis\ncoolwarm\n");
+  EXPECT_EQ(offered({"render", "--view", "t"}), "top\n");
 }
 
 }  // namespace

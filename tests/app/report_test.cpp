@@ -219,8 +219,8 @@ TEST_F(Report, RunsWithoutHistoryWithoutParticlesAndFailedOnesHavePagesToo)
 
 TEST_F(Report, WhatIsNotThereEndsWithTwo)
 {
-  EXPECT_EQ(report("nowhere").err, "error: nowhere: there is no such folder\n");
-  EXPECT_EQ(report(".").err, "error: . holds no results of a run (no summary.json and scene.yaml)\n");
+  EXPECT_EQ(report("nowhere").err, "error: nowhere holds no results of a run (no summary.json)\n");
+  EXPECT_EQ(report(".").err, "error: . holds no results of a run (no summary.json)\n");
   write("block.yaml", block_scene("time: {end: 0.01}\noutputs: {particles: {every: 0.01, fields: [velocity]}}\n"));
   ASSERT_EQ(talus("run block.yaml --quiet --out out").code, 0);
   const Outcome field = report("out --fields velocty");

@@ -1,6 +1,8 @@
 // Words of a command line to settings, and everything that is wrong with them at once.
 #include "io/picture_settings.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -50,6 +52,19 @@ TEST(PictureSettings, WhatIsRightIsTaken)
                            "coolwarm"}),
               IsEmpty());
   EXPECT_THAT(problems_of({"--view", "top", "--look-at", "1", "2", "-3", "--zoom", "2", "--orthographic"}, solid), IsEmpty());
+}
+
+TEST(PictureSettings, HelpOffersTheWordsThatAreUnderstood)
+{
+  const auto offered = [](std::string_view name, const auto& words) {
+    const auto option = std::find_if(render::picture_options.begin(), render::picture_options.end(),
+                                     [&](const render::Option& one) { return one.name == name; });
+    ASSERT_NE(option, render::picture_options.end()) << name;
+    EXPECT_THAT(std::string(option->values), HasSubstr(fmt::format("{{{}}}", fmt::join(words, ",")))) << name;
+  };
+  offered("--map", words(render::Map{}));
+  offered("--view", words(render::NamedView{}));
+  offered("--mesh", words(render::MeshLines{}));
 }
 
 TEST(PictureSettings, EverythingWrongIsSaidAtOnce)
