@@ -113,6 +113,7 @@ Mesh<D>::Mesh(MeshData<D> data)
   find_boundary();
   measure();
   take_sets(data, inverse(old_cells, data.cells.size()), inverse(old_nodes, data.nodes.size()));
+  map_ = std::move(data.map);
 }
 
 template <int D>
@@ -141,6 +142,7 @@ Mesh<D>::Mesh(const Mesh& whole, std::span<const Index> cells)
   largest_edge_ = whole.largest_edge_;
   low_ = whole.low_;
   high_ = whole.high_;
+  map_ = whole.map_;
 
   cells_of_node_ = cells_at_nodes<D>(cells_, n_nodes());
   ring_of_node_ = nodes_around<D>(cells_, cells_of_node_);

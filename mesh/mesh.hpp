@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/map_frame.hpp"
 #include "core/types.hpp"
 
 namespace talus {
@@ -27,6 +28,7 @@ struct MeshData {
   std::map<std::string, std::vector<Index>> node_sets;                  ///< points and curves (3-D): node numbers
   std::map<std::string, std::vector<std::array<Index, D>>> facet_sets;  ///< boundary or interior facets by their nodes
   std::map<std::string, std::vector<Index>> cell_sets;                  ///< cell numbers
+  std::optional<MapFrame> map = {};                                     ///< of a mesh that was made of terrain
 };
 
 /// Immutable simplex mesh.  Cells are renumbered along a space-filling curve and nodes by first use, so that neighbours in
@@ -60,6 +62,8 @@ class Mesh {
   Real largest_edge() const noexcept { return largest_edge_; }                                ///< of all cells [m]
   const Vec<D>& low() const noexcept { return low_; }                                         ///< corners of the bounding box [m]
   const Vec<D>& high() const noexcept { return high_; }
+  /// Where the mesh lies on a map, if it was made of terrain.
+  const std::optional<MapFrame>& map() const noexcept { return map_; }
 
   /// Cell across the facet opposite each local node, or `none` on the boundary and where a larger mesh was cut.
   const std::array<Index, D + 1>& neighbours(Index c) const noexcept { return neighbours_[static_cast<std::size_t>(c)]; }
@@ -106,6 +110,7 @@ class Mesh {
   std::vector<std::uint8_t> on_boundary_;
   Real largest_edge_;
   Vec<D> low_, high_;
+  std::optional<MapFrame> map_;
   std::map<std::string, std::vector<Index>, std::less<>> node_sets_, cell_sets_;
   std::map<std::string, std::vector<Facet>, std::less<>> facet_sets_;
 };

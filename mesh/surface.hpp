@@ -1,0 +1,13 @@
+#pragma once
+// A surface over the plan: ground, bottom of a layer, water table.
+#include <array>
+#include <functional>
+
+#include "core/types.hpp"
+
+namespace talus {
+
+/// Elevation [m] at a place of the map [m]: (east, north), in 2-D without a section (x, 0).  NaN where it is not known.
+using Surface = std::function<Real(const std::array<Real, 2>& place)>;
+
+}  // namespace talus
