@@ -24,14 +24,19 @@ const GmshPart& open_gmsh_part()
 
 }  // namespace
 
+const GmshPart& gmsh()
+{
+  static const GmshPart& part = open_gmsh_part();
+  return part;
+}
+
 template <int D>
 const GmshFunctions<D>& gmsh()
 {
-  static const GmshPart& part = open_gmsh_part();
   if constexpr (D == 2)
-    return part.in_2d;
+    return gmsh().in_2d;
   else
-    return part.in_3d;
+    return gmsh().in_3d;
 }
 
 template const GmshFunctions<2>& gmsh<2>();
