@@ -6,26 +6,13 @@
 #include <cmath>
 #include <limits>
 
+#include "io/surface_file.hpp"
+
 namespace talus {
 
 namespace {
 
 using Points = std::vector<std::vector<Real>>;
-
-constexpr Real unknown = std::numeric_limits<Real>::quiet_NaN();
-
-/// A line in 2-D through points whose x grow; level outside is not assumed.
-Surface line_through(Points points)
-{
-  return [points = std::move(points)](const Place& place) {
-    if (place[0] < points.front()[0] || place[0] > points.back()[0])
-      return unknown;
-    const auto next = std::upper_bound(points.begin() + 1, points.end() - 1, place[0], [](Real x, const auto& p) { return x < p[0]; });
-    const auto &a = *(next - 1), &b = *next;
-    const Real share = (place[0] - a[0]) / (b[0] - a[0]);
-    return a[1] * (1 - share) + b[1] * share;
-  };
-}
 
 /// Reads one thing after the other; what is wrong is collected.
 template <int D>
@@ -38,10 +25,11 @@ class TerrainReader {
     if (D == 3 && spec_.section)
       complain(spec_.section->where, "a section is for scenes of dimension 2");
     input_.on_map = D == 3 || spec_.section;
-    input_.frame.crs = spec_.crs;
-    input_.ground = surface(spec_.ground, "ground");
+    map_ = {directory_, spec_.crs, !input_.on_map, {}};
+    input_.ground = surface(spec_.ground);
+    map_.ground = input_.ground;
     for (const LayerSpec& layer : spec_.layers) {
-      input_.bottoms.push_back(surface(layer.bottom, fmt::format("bottom of layer \"{}\"", layer.name)));
+      input_.bottoms.push_back(surface(layer.bottom));
       std::optional<Area>& within = input_.within.emplace_back();
       if (!layer.within.empty() || !layer.within_file.empty())
         within = area(layer.where, "within", layer.within, layer.within_file);
@@ -49,6 +37,7 @@ class TerrainReader {
     for (const ObstacleSpec& obstacle : spec_.obstacles)
       input_.obstacles.push_back(area(obstacle.where, "outline", obstacle.outline, obstacle.outline_file));
     domain();
+    input_.frame.crs = map_.crs;
     if (!problems_.empty())
       throw SceneErrors(std::move(problems_));
     return std::move(input_);
@@ -57,59 +46,26 @@ class TerrainReader {
  private:
   void complain(const Where& where, std::string message) { problems_.push_back({where, std::move(message), {}}); }
 
-  Surface surface(const SurfaceSpec& spec, const std::string& what)
+  /// Nothing is known of a surface that cannot be read.
+  Surface surface(const SurfaceSpec& spec)
   {
-    if (spec.elevation)
-      return [elevation = *spec.elevation](const Place&) { return elevation; };
-    if (spec.depth)
-      return [ground = input_.ground, depth = *spec.depth](const Place& place) { return ground(place) - depth; };
-    if (!spec.points.empty())
-      return points(spec, what);
-    complain(spec.where, fmt::format("the {}: files are not read yet", what));
-    return [](const Place&) { return unknown; };
-  }
-
-  Surface points(const SurfaceSpec& spec, const std::string& what)
-  {
-    const auto none_known = [](const Place&) { return unknown; };
-    if (D == 2 && !spec_.section) {
-      for (std::size_t i = 0; i < spec.points.size(); ++i) {
-        if (spec.points[i].size() != 2) {
-          complain(spec.where, fmt::format("the {}: every point has two numbers, [x, y]", what));
-          return none_known;
-        }
-        if (i > 0 && !(spec.points[i][0] > spec.points[i - 1][0])) {
-          complain(spec.where, fmt::format("the {}: x grows from point to point; point {} has {:.6g} after {:.6g}", what, i + 1,
-                                           spec.points[i][0], spec.points[i - 1][0]));
-          return none_known;
-        }
-        input_.kinks.push_back(spec.points[i][0]);
-      }
-      if (spec.points.size() < 2) {
-        complain(spec.where, fmt::format("the {} needs two points or more", what));
-        return none_known;
-      }
-      extend({spec.points.front()[0], 0}, {spec.points.back()[0], 0});
-      return line_through(spec.points);
+    if (!input_.on_map)
+      for (const auto& point : spec.points)
+        if (!point.empty())
+          input_.kinks.push_back(point[0]);
+    if (auto read = read_surface(spec, map_, problems_, input_.notes)) {
+      if (!ground_)
+        ground_ = *read;
+      return read->at;
     }
-    complain(spec.where, fmt::format("the {}: points are not triangulated yet", what));
-    return none_known;
-  }
-
-  /// The ground covers this much of the map; the first surface read is the ground.
-  void extend(const Place& low, const Place& high)
-  {
-    if (!covered_)
-      covered_ = std::pair(low, high);
+    return [](const Place&) { return std::numeric_limits<Real>::quiet_NaN(); };
   }
 
   /// A polygon of the scene or of a file, checked.
   Area area(const Where& where, std::string_view key, const Points& corners, const std::string& file)
   {
-    if (!file.empty()) {
-      complain(where, fmt::format("{}_file: files are not read yet", key));
-      return {};
-    }
+    if (!file.empty())
+      return area_of(read_outlines(file, where, map_, problems_, input_.notes));
     const bool plain = std::any_of(corners.begin(), corners.end(), [](const auto& corner) { return corner.size() < 2; });
     if (!input_.on_map && corners.size() == 2) {  // of a line only x counts
       const Real side = 1;
@@ -134,6 +90,16 @@ class TerrainReader {
     else if (const auto place = crossing_of(ring))
       complain(where, fmt::format("{} crosses itself at ({:.10g}, {:.10g})", key, (*place)[0], (*place)[1]));
     return {{ring}};
+  }
+
+  static Area area_of(const std::vector<MapPolygon>& polygons)
+  {
+    Area area;
+    for (const MapPolygon& polygon : polygons) {
+      area.rings.push_back(polygon.outer);
+      area.rings.insert(area.rings.end(), polygon.holes.begin(), polygon.holes.end());
+    }
+    return area;
   }
 
   void domain()
@@ -161,8 +127,8 @@ class TerrainReader {
       const auto by_x = [](const auto& a, const auto& b) { return a[0] < b[0]; };
       const auto [low, high] = std::minmax_element(spec_.domain.begin(), spec_.domain.end(), by_x);
       input_.from = (*low)[0] - shift, input_.to = (*high)[0] - shift;
-    } else if (covered_) {
-      input_.from = covered_->first[0] - shift, input_.to = covered_->second[0] - shift;
+    } else if (ground_ && ground_->extent) {
+      input_.from = ground_->extent->west - shift, input_.to = ground_->extent->east - shift;
     } else if (problems_.empty()) {
       complain(spec_.where, "domain is needed: the ground goes on without end");
     }
@@ -177,12 +143,16 @@ class TerrainReader {
     if (!spec_.domain.empty() || !spec_.domain_file.empty()) {
       input_.domain = area(spec_.where, "domain", spec_.domain, spec_.domain_file);
       input_.is_rectangle = spec_.domain.size() == 2;
-    } else if (covered_) {
-      input_.domain = rectangle(covered_->first, covered_->second);
+    } else if (ground_ && ground_->extent) {
+      const MapBox& all = *ground_->extent;
+      input_.domain = rectangle({all.west + ground_->spacing, all.south + ground_->spacing},
+                                {all.east - ground_->spacing, all.north - ground_->spacing});
       input_.is_rectangle = true;
     } else if (problems_.empty()) {
       complain(spec_.where, "domain is needed: the ground goes on without end");
     }
+    if (ground_ && !input_.domain.rings.empty())
+      check_cover(*ground_, spec_.ground.where, input_.domain.rings.front(), "domain", problems_);
     constexpr Real whole = 100;  // m: an origin that people can remember
     const Place low = bounds_of(input_.domain).first;
     if (spec_.origin.size() == 2)
@@ -194,7 +164,8 @@ class TerrainReader {
   const TerrainSpec& spec_;
   std::filesystem::path directory_;
   TerrainInput input_;
-  std::optional<std::pair<Place, Place>> covered_;
+  MapPlan map_;
+  std::optional<SurfaceRead> ground_;
   std::vector<Problem> problems_;
 };
 
