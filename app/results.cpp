@@ -71,8 +71,9 @@ namespace {
 /// Files that a run writes, and the pictures drawn of them.
 bool is_result(const fs::path& file)
 {
-  static constexpr std::array<std::string_view, 11> names{"summary.json", "history.csv", "runout.csv", "particles.pvd", "mesh.pvd", "mesh.msh",
-                                                          "mesh.vtu", "scene.yaml", initial_file, progress_file, report_file};
+  static constexpr std::array<std::string_view, 11> names{"summary.json", "history.csv", "runout.csv", "particles.pvd",
+                                                          "mesh.pvd",     "mesh.msh",    "mesh.vtu",   "scene.yaml",
+                                                          initial_file,   progress_file, report_file};
   const std::string name = file.filename().string();
   for (const std::string_view known : names)
     if (name == known)

@@ -39,12 +39,18 @@ struct RunoutNumbers {
   static constexpr auto fields()
   {
     using N = RunoutNumbers;
-    return std::tuple{kept("volume", &N::volume),           kept("area", &N::area),
-                      kept("mean", &N::mean),               kept("thickest", &N::thickest),
-                      kept("fastest", &N::fastest),         kept("kinetic", &N::kinetic),
-                      kept("front", &N::front),             kept("height", &N::height),
-                      kept("length", &N::length),           kept("centre", &N::centre),
-                      kept("centre_height", &N::centre_height), kept("centre_length", &N::centre_length),
+    return std::tuple{kept("volume", &N::volume),
+                      kept("area", &N::area),
+                      kept("mean", &N::mean),
+                      kept("thickest", &N::thickest),
+                      kept("fastest", &N::fastest),
+                      kept("kinetic", &N::kinetic),
+                      kept("front", &N::front),
+                      kept("height", &N::height),
+                      kept("length", &N::length),
+                      kept("centre", &N::centre),
+                      kept("centre_height", &N::centre_height),
+                      kept("centre_length", &N::centre_length),
                       kept("entrained", &N::entrained)};
   }
 };
@@ -134,9 +140,10 @@ class Runout {
   int frames_ = 0;
   Real time_ = -1;  // of the last look [s]
   RunoutNumbers now_;
-  Real fastest_ = 0, thickest_ = 0;     // so far [m/s], [m]
-  Real peak_ = 0, still_since_ = 0;     // of the kinetic energy [J]; since when it has been far below [s]
-  std::vector<Real> ground_, base_, surface_, surface_max_, thickness_, thickness_max_, speed_max_, intensity_max_, arrival_, source_, erosion_;
+  Real fastest_ = 0, thickest_ = 0;  // so far [m/s], [m]
+  Real peak_ = 0, still_since_ = 0;  // of the kinetic energy [J]; since when it has been far below [s]
+  std::vector<Real> ground_, base_, surface_, surface_max_, thickness_, thickness_max_, speed_max_, intensity_max_, arrival_, source_,
+      erosion_;
 };
 
 extern template PlanAxes plan_axes<2>(const Vec<2>&);

@@ -244,6 +244,8 @@ class Rules {
       if (!runout.bodies.empty() && std::find(runout.bodies.begin(), runout.bodies.end(), runout.eroded[i]) == runout.bodies.end())
         add(fmt::format("outputs.runout.eroded[{}]", i), fmt::format("\"{}\" is not among outputs.runout.bodies", runout.eroded[i]));
     different_names("outputs.runout.sections", runout.sections);
+    if (scene_.dimension == 2 && (runout.frames_every || runout.csv))
+      add(runout.csv ? "outputs.runout.csv" : "outputs.runout.frames_every", "there are maps in 3 dimensions only");
     if (scene_.dimension == 2 && !runout.sections.empty())
       add("outputs.runout.sections", "there is one section in 2 dimensions, the plane itself, and it is always written: leave this out");
   }

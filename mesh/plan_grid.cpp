@@ -16,7 +16,8 @@ struct Line {
 /// [place - side/2, place + side/2] on n cells of width d from `begin` on.
 Line line_of(Real place, Real side, Real begin, Real d, Index n)
 {
-  const Real low = std::clamp((place - side / 2 - begin) / d, Real{0}, Real(n)), high = std::clamp((place + side / 2 - begin) / d, Real{0}, Real(n));
+  const Real low = std::clamp((place - side / 2 - begin) / d, Real{0}, Real(n)),
+             high = std::clamp((place + side / 2 - begin) / d, Real{0}, Real(n));
   const Index first = std::clamp(static_cast<Index>(low), Index{0}, n - 1);
   if (!(high > low))
     return {first, {1}};
