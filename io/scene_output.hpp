@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
+#include "io/scene_runout.hpp"
 
 namespace talus {
 
@@ -123,6 +124,7 @@ struct OutputSpec {
   std::optional<ParticleOutputSpec> particles;
   std::optional<MeshOutputSpec> mesh;
   std::optional<HistoryOutputSpec> history;
+  std::optional<RunoutSpec> runout;
   CheckpointSpec checkpoint;
   PictureSpec picture;
   static constexpr auto fields()
@@ -130,6 +132,7 @@ struct OutputSpec {
     return std::tuple{
         group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"),
         group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"), group("history", &OutputSpec::history, "history.csv"),
+        group("runout", &OutputSpec::runout, "runout.csv and maps: how far, how thick and how fast what has moved gets"),
         optional("checkpoint", &OutputSpec::checkpoint, any, "-",
                  "the state of the run, from which talus run --resume goes on; one more is written when the run is told to stop"),
         optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};

@@ -231,6 +231,23 @@ class Rules {
     known_word("outputs.picture.field", "field", outputs.picture.field, particle_field_names());
     if (outputs.history)
       history(*outputs.history);
+    if (outputs.runout)
+      runout(*outputs.runout);
+  }
+
+  void runout(const RunoutSpec& runout)
+  {
+    const auto bodies = names(scene_.bodies);
+    known_fields("outputs.runout.bodies", runout.bodies, bodies, "body");
+    known_fields("outputs.runout.eroded", runout.eroded, bodies, "body");
+    for (std::size_t i = 0; i < runout.eroded.size(); ++i)
+      if (!runout.bodies.empty() && std::find(runout.bodies.begin(), runout.bodies.end(), runout.eroded[i]) == runout.bodies.end())
+        add(fmt::format("outputs.runout.eroded[{}]", i), fmt::format("\"{}\" is not among outputs.runout.bodies", runout.eroded[i]));
+    different_names("outputs.runout.sections", runout.sections);
+    if (scene_.dimension == 2 && (runout.frames_every || runout.csv))
+      add(runout.csv ? "outputs.runout.csv" : "outputs.runout.frames_every", "there are maps in 3 dimensions only");
+    if (scene_.dimension == 2 && !runout.sections.empty())
+      add("outputs.runout.sections", "there is one section in 2 dimensions, the plane itself, and it is always written: leave this out");
   }
 
   void history(const HistoryOutputSpec& history)
@@ -288,10 +305,11 @@ class Rules {
                         [&](const Item& item) { return item.name == items[i].name; });
   }
 
-  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known)
+  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                    std::string_view what = "field")
   {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      known_word(fmt::format("{}[{}]", path, i), "field", wanted[i], known);
+      known_word(fmt::format("{}[{}]", path, i), what, wanted[i], known);
       if (!wanted[i].empty() && std::find(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(i), wanted[i]) !=
                                     wanted.begin() + static_cast<std::ptrdiff_t>(i))
         add(fmt::format("{}[{}]", path, i), fmt::format("\"{}\" is asked for twice", wanted[i]));
