@@ -240,7 +240,7 @@ TEST_F(SurfaceFile, ValueForNoneThatIsNotDeclaredIsDroppedAndThatIsTold)
   ASSERT_TRUE(ground);
   EXPECT_NEAR(ground->at({1.5, 1.5}), 4, 1e-9);
   ASSERT_EQ(repairs.size(), 3U);
-  EXPECT_THAT(repairs[1], HasSubstr("1 cells have the value -32768, which is taken for none"));
+  EXPECT_THAT(repairs[1], HasSubstr("1 cell has the value -32768, which is taken for none"));
 }
 
 TEST_F(SurfaceFile, MissingFileIsAProblemOfTheScene)
@@ -314,7 +314,7 @@ TEST_F(SurfaceFile, PointsAtOnePlaceBecomeTheirMeanAndThatIsTold)
   ASSERT_TRUE(surface);
   EXPECT_NEAR(surface->at({0, 4}), 2, 1e-12);
   EXPECT_NEAR(surface->at({1, 1}), 1.25, 1e-12);
-  EXPECT_THAT(only_repair(), HasSubstr("1 points lie where another lies"));
+  EXPECT_THAT(only_repair(), HasSubstr("1 point lies where another lies"));
 }
 
 TEST_F(SurfaceFile, LineThroughPointsOfASceneInThePlane)
