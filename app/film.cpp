@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> drawn(const std::vector<std::string>& words)
+std::vector<fs::path> pictures_by(const std::vector<std::string>& words)
 {
   std::vector<fs::path> pictures;
   for (const RenderedFile& file : launch_render(words))
@@ -46,11 +46,11 @@ void film(const MovieOptions& options, std::vector<std::string> words)
 {
   require_movie_maker();
   if (options.keep_frames) {
-    make_movie(drawn(words), options.per_second, *options.movie);
+    make_movie(pictures_by(words), options.per_second, *options.movie);
   } else {
     const Passing frames{options.movie->string() + ".frames"};
     words.insert(words.end(), {"--out", frames.folder.string()});
-    make_movie(drawn(words), options.per_second, *options.movie);
+    make_movie(pictures_by(words), options.per_second, *options.movie);
   }
   fmt::print("{}\n", options.movie->string());
 }

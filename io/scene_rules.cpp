@@ -267,6 +267,13 @@ class Rules {
       if (scene_.dimension == 2 && (direction == Direction::z_plus || direction == Direction::z_minus))
         add(path + ".direction", "there is no z in 2 dimensions");
     }
+    for (std::size_t i = 0; i < history.walls.size(); ++i) {
+      const std::string path = fmt::format("outputs.history.walls[{}].on", i);
+      known_word(path, "wall", history.walls[i].on, wall_names(scene_.boundaries));
+      for (std::size_t j = 0; j < i; ++j)
+        if (!history.walls[i].on.empty() && history.walls[j].on == history.walls[i].on)
+          add(path, fmt::format("\"{}\" is asked for by outputs.history.walls[{}] already", history.walls[i].on, j));
+    }
     if (scene_.dimension == 2 || scene_.dimension == 3)
       different_columns(history);
   }
@@ -295,6 +302,11 @@ class Rules {
     for (std::size_t i = 0; i < history.fronts.size(); ++i)
       if (const FrontSpec& front = history.fronts[i]; is_first(history.fronts, i))
         note(fmt::format("outputs.history.fronts[{}]", i), "name", front.name, columns_of(front));
+    for (std::size_t i = 0; i < history.walls.size(); ++i)
+      if (const WallSpec& wall = history.walls[i];
+          std::none_of(history.walls.begin(), history.walls.begin() + static_cast<std::ptrdiff_t>(i),
+                       [&](const WallSpec& earlier) { return earlier.on == wall.on; }))
+        note(fmt::format("outputs.history.walls[{}]", i), "on", wall.on, columns_of(wall, scene_.dimension));
   }
 
   /// Of its name; others are found by different_names().
