@@ -300,7 +300,7 @@ namespace {
 
 bool wants_displacement(const OutputSpec& outputs)
 {
-  if (outputs.history && !outputs.history->points.empty())
+  if (outputs.runout || (outputs.history && !outputs.history->points.empty()))
     return true;
   if (!outputs.particles)
     return false;
@@ -331,6 +331,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
 {
   Complaints complaints(scene);
   Setup<D> setup;
+  setup.warnings = mesh.notes();
   Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
   setup.particles = std::move(seeds.particles);
   setup.n_particles = seeds.n_particles;
