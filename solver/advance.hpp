@@ -190,9 +190,8 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
     if (averages_volume(material)) {
       average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
       parallel_for_uneven(m.order.blocks, [&](Index block) {
-        m.stress_sums[m.order.key(body, block)] =
-            update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic, m.averaged,
-                          pore_water(m, body, m.clock.time + dt), m.particles, m.health);
+        m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic,
+                                                                m.averaged, pore_water(m, body, m.clock.time + dt), m.particles, m.health);
       });
     }
     if (m.heat)

@@ -40,11 +40,11 @@ struct StageState {
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{
-        kept("number", &StageState::number),   kept("first_step", &StageState::first_step), kept("balanced", &StageState::balanced),
-        kept("damping", &StageState::damping), kept("begin", &StageState::begin),           kept("ramp_time", &StageState::ramp_time),
-        kept("elastic", &StageState::elastic), kept("seeks_rest", &StageState::seeks_rest), kept("done", &StageState::done),
-        kept("first_residual", &StageState::first_residual)};
+    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
+                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
+                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
+                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest),
+                      kept("done", &StageState::done),         kept("first_residual", &StageState::first_residual)};
   }
 };
 

@@ -116,7 +116,8 @@ StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<cons
       [&](auto& batch) {
         in_numbers_of(particles, [&]<class S>(S) {
           for_each_bunch<S>(
-              rows, [&](const BunchOf<S>& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, pore, particles, health, lanes); },
+              rows,
+              [&](const BunchOf<S>& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, pore, particles, health, lanes); },
               [&](std::size_t p) {
                 AskFor<S>::row(p, particles.F, particles.stress, particles.volume, particles.volume0, particles.mass);
               });
