@@ -5,6 +5,7 @@
 #include "app/duration.hpp"
 #include "app/quick.hpp"
 #include "app/trial.hpp"
+#include "app/water.hpp"
 #include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
@@ -61,6 +62,17 @@ std::string describe_time(const std::vector<StageTrial>& trials, Real preparing,
                     duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
 }
 
+/// Which stress the law of a body sees, where there is water.
+template <int D>
+std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Body& body)
+{
+  if (!setup.water.any())
+    return "";
+  if (!setup.water.drains(static_cast<Index>(&body - setup.bodies.data())))
+    return ", total stress";
+  return fmt::format(", effective stress, {} below the water table", count_wet(mesh, setup.water, body, setup.particles));
+}
+
 enum class Times : std::uint8_t { left_out, measured };
 
 /// What a run would find wrong, and what it would cost.
@@ -80,7 +92,7 @@ void tell_cost(Scene scene, bool quick, Times times)
   const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
   for (const Body& body : setup.bodies)
-    bodies += fmt::format("  body \"{}\": {} particles\n", body.name, body.size());
+    bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
   if (setup.origin)
     bodies += describe(*setup.origin);
   const bool measured = times == Times::measured;

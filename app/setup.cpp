@@ -6,7 +6,9 @@
 #include "app/expression.hpp"
 #include "app/fields.hpp"
 #include "app/guards.hpp"
+#include "app/k0.hpp"
 #include "app/seed.hpp"
+#include "app/water.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
 #include "io/history_columns.hpp"
@@ -241,7 +243,7 @@ Stage stage_of(const GeostaticSpec& spec)
           .ramp = spec.ramp,
           .elastic = spec.elastic,
           .residual = spec.residual,
-          .k0 = spec.initial_stress ? std::optional(spec.initial_stress->k0) : std::nullopt,
+          .k0 = {},
           .reset_displacement = spec.reset_displacement,
           .where = spec.where};
 }
@@ -253,8 +255,11 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
     setup.stages.push_back(stage_of("run", scene.time.end, 0, scene.time.where));
   for (const StageSpec& spec : scene.stages)
     setup.stages.push_back(std::visit([](const auto& s) { return stage_of(s); }, spec));
+  for (std::size_t s = 0; s < scene.stages.size(); ++s)
+    if (const auto* spec = std::get_if<GeostaticSpec>(&scene.stages[s]); spec != nullptr && spec->initial_stress)
+      setup.stages[s].k0 = k0_of_bodies(*spec->initial_stress, scene, complaints);
   for (const Stage& stage : setup.stages)
-    for (std::size_t b = 0; stage.k0 && b < setup.bodies.size(); ++b)
+    for (std::size_t b = 0; !stage.k0.empty() && b < setup.bodies.size(); ++b)
       if (!can_start_from_stress(setup.materials[b]))
         complaints.add(
             stage.where, "initial_stress",
@@ -308,6 +313,18 @@ bool wants_displacement(const OutputSpec& outputs)
   return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
 }
 
+/// A table that no drained body reaches down to is hardly meant.  Every rank has to ask.
+template <int D>
+void warn_if_dry(const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+{
+  std::int64_t wet = 0;
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+    if (setup.water.drains(static_cast<Index>(b)))
+      wet += count_wet(mesh, setup.water, setup.bodies[b], setup.particles);
+  if (ranks.sum(wet) == 0)
+    setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
+}
+
 /// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
 void check_picture(const Scene& scene, Complaints& complaints)
 {
@@ -346,6 +363,11 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);
+  setup.water = water_of(
+      scene, mesh, setup.bodies, [&](Index cell) { return has_particles(cell); }, complaints, setup.warnings);
+  saturate(scene, mesh, setup.water, setup.bodies, setup.particles);
+  if (setup.water.any())
+    warn_if_dry(mesh, ranks, setup);
   check_picture(scene, complaints);
   ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
 
@@ -366,6 +388,7 @@ template <int D>
 void restrict_to(const Share& share, Setup<D>& setup)
 {
   setup.walls.restrict_to(share);
+  restrict_to(share, setup.water);
   for (MeshTraction<D>& load : setup.loads.on_mesh)
     restrict_to(share, load);
 }

@@ -16,6 +16,7 @@ struct Setup {
   std::vector<AnyBatch> materials;
   Walls<D> walls;
   Loads<D> loads;
+  Water water;
   Transfer transfer;
   Exits exits;
   std::vector<Stage> stages;

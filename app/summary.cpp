@@ -202,10 +202,12 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   s.files.assign(recorder.files().begin(), recorder.files().end());
   for (const StageResult& stage : recorder.stages()) {
     const bool geostatic = stage.name == "geostatic";
-    s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, geostatic ? std::optional(stage.residual) : std::nullopt,
+    const auto if_sought = [&](Real residual) { return geostatic ? std::optional(residual) : std::nullopt; };
+    s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, if_sought(stage.residual),
                         quick       ? "quick"
                         : geostatic ? "at rest"
-                                    : "done"});
+                                    : "done",
+                        if_sought(stage.first_residual)});
   }
   s.steps = last.clock.step;
   s.simulated_time = last.clock.time;
@@ -273,6 +275,10 @@ std::string table(const Recorder<D>& recorder)
     return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.unexplained(), b.dissipated())) : std::string("-");
   });
   text += run_out_lines(recorder.runout().numbers());
+  for (const StageResult& stage : recorder.stages())
+    if (stage.name == "geostatic")
+      text += fmt::format("stage {}: unbalanced force {:.3g} of the loads, {:.3g} when it began\n", stage.name, stage.residual,
+                          stage.first_residual);
   text += fmt::format("mass {:.6g} kg", last.mass.start);
   if (last.mass.deleted_count > 0)
     text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh or failed", last.mass.deleted, last.mass.deleted_count);

@@ -33,6 +33,8 @@ Json to_object(const StageSummary& stage)
   Json object = {{"kind", stage.kind}, {"result", stage.result}, {"steps", stage.steps}, {"duration [s]", stage.duration}};
   if (stage.residual)
     object["residual"] = *stage.residual;
+  if (stage.first_residual)
+    object["residual_at_begin"] = *stage.first_residual;
   return object;
 }
 

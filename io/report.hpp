@@ -36,9 +36,10 @@ struct BodySummary {
 struct StageSummary {
   std::string kind;  ///< "geostatic" or "run"
   std::int64_t steps{};
-  Real duration{};               ///< simulated [s]
-  std::optional<Real> residual;  ///< unbalanced nodal force over total load at the end, where the stage looks for it
-  std::string result;            ///< "reached", "not converged", ...
+  Real duration{};                          ///< simulated [s]
+  std::optional<Real> residual;             ///< unbalanced nodal force over total load at the end, where the stage looks for it
+  std::string result;                       ///< "reached", "not converged", ...
+  std::optional<Real> first_residual = {};  ///< the same in the first step: how far the stage began from balance
 };
 
 /// How well a balance closes: |sum that should vanish| over the named scale.

@@ -82,6 +82,36 @@ void SectionSpec::check(std::vector<std::string>& problems) const
   }
 }
 
+void K0Rule::check_rule(std::vector<std::string>& problems) const
+{
+  if (ocr != 1 && !from_friction)
+    problems.push_back("ocr is for from_friction: true only");
+  for (std::size_t i = 0; i < k0_table.size(); ++i)
+    if (k0_table[i].size() != 2)
+      problems.push_back(fmt::format("k0_table[{}] needs 2 values, depth and k0, not {}", i, k0_table[i].size()));
+    else if (i > 0 && k0_table[i - 1].size() == 2 && !(k0_table[i][0] > k0_table[i - 1][0]))
+      problems.push_back(fmt::format("k0_table[{}]: the depth {} m does not come below {} m", i, k0_table[i][0], k0_table[i - 1][0]));
+}
+
+void K0OfBody::check(std::vector<std::string>& problems) const
+{
+  exactly_one("k0, k0_table or from_friction", given(), problems);
+  check_rule(problems);
+}
+
+void K0Spec::check(std::vector<std::string>& problems) const
+{
+  if (given() > 1 || bodies.empty())
+    exactly_one("k0, k0_table or from_friction", given(), problems);
+  check_rule(problems);
+}
+
+const K0Rule& K0Spec::of(const std::string& body) const noexcept
+{
+  const auto own = std::find_if(bodies.begin(), bodies.end(), [&](const K0OfBody& b) { return b.body == body; });
+  return own == bodies.end() ? static_cast<const K0Rule&>(*this) : *own;
+}
+
 void PictureSpec::check(std::vector<std::string>& problems) const
 {
   if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))

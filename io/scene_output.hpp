@@ -20,8 +20,8 @@ struct ParticleOutputSpec {
     return std::tuple{
         required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
         optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
-                 "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, and any "
-                 "history variable of a law")};
+                 "velocity, displacement, stress, pressure, von_mises, pore_pressure, effective_stress, volume, mass, cell, body, F, "
+                 "velocity_gradient, and any history variable of a law")};
   }
 };
 

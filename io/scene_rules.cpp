@@ -132,6 +132,26 @@ class Rules {
     for (std::size_t i = 1; i < scene_.stages.size(); ++i)
       if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
         add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress");
+    if (const auto* stage = scene_.stages.empty() ? nullptr : std::get_if<GeostaticSpec>(&scene_.stages.front());
+        stage != nullptr && stage->initial_stress)
+      initial_stress(*stage->initial_stress);
+  }
+
+  void initial_stress(const K0Spec& spec)
+  {
+    const auto known = names(scene_.bodies);
+    const std::string path = "stages[0].initial_stress";
+    for (std::size_t i = 0; i < spec.bodies.size(); ++i) {
+      known_word(fmt::format("{}.bodies[{}].body", path, i), "body", spec.bodies[i].body, known);
+      for (std::size_t j = 0; j < i; ++j)
+        if (spec.bodies[j].body == spec.bodies[i].body)
+          add(fmt::format("{}.bodies[{}].body", path, i), fmt::format("bodies[{}] is about \"{}\" already", j, spec.bodies[i].body));
+    }
+    for (const std::string& body : known)
+      if (spec.of(body).given() == 0)
+        add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table or from_friction is needed for the bodies that the list does "
+                              "not name",
+                              body));
   }
 
   void materials_and_bodies()
@@ -149,9 +169,13 @@ class Rules {
       if (body.shape)
         fits(path + ".shape", *body.shape);
       source_of_particles(path, body);
+      if (body.saturated_density && !scene_.water)
+        add(path + ".saturated_density", "there is no water in this scene: say where its table is, or leave this out");
     }
     if (scene_.initial)
       initial(*scene_.initial);
+    if (scene_.water)
+      water(*scene_.water);
   }
 
   /// A body is filled or taken from another run, and what it says is used.  Without a list only that run can tell which are taken.
@@ -178,6 +202,20 @@ class Rules {
     unused(body.shape.has_value(), "shape");
     unused(body.particles_per_cell.has_value(), "particles_per_cell");
     unused(!body.velocity.empty(), "velocity");
+    unused(body.saturated_density.has_value(), "saturated_density");
+  }
+
+  void water(const WaterSpec& water)
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < water.bodies.size(); ++i) {
+      known_word(fmt::format("water.bodies[{}]", i), "body", water.bodies[i], known);
+      if (std::find(water.bodies.begin(), water.bodies.begin() + static_cast<std::ptrdiff_t>(i), water.bodies[i]) !=
+          water.bodies.begin() + static_cast<std::ptrdiff_t>(i))
+        add(fmt::format("water.bodies[{}]", i), fmt::format("\"{}\" is named twice", water.bodies[i]));
+    }
+    if (std::none_of(scene_.loads.begin(), scene_.loads.end(), [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
+      add("water", "water has no weight without a load of type gravity");
   }
 
   void initial(const InitialSpec& initial)

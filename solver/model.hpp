@@ -32,6 +32,7 @@ struct StageState {
   std::int64_t first_step = 0;    ///< steps done when it began
   int balanced = 0;               ///< steps in balance, one after the other, up to now
   Real damping = 0;               ///< local, share of the unbalanced force
+  Real first_residual = 0;        ///< unbalanced force over the loads in its first step
   Real begin = 0, ramp_time = 0;  ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
   bool elastic = false;           ///< yielding suspended
   bool seeks_rest = false;        ///< ends at rest, or is damped
@@ -39,10 +40,11 @@ struct StageState {
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{
-        kept("number", &StageState::number),   kept("first_step", &StageState::first_step), kept("balanced", &StageState::balanced),
-        kept("damping", &StageState::damping), kept("begin", &StageState::begin),           kept("ramp_time", &StageState::ramp_time),
-        kept("elastic", &StageState::elastic), kept("seeks_rest", &StageState::seeks_rest), kept("done", &StageState::done)};
+    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
+                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
+                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
+                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest),
+                      kept("done", &StageState::done),         kept("first_residual", &StageState::first_residual)};
   }
 };
 
@@ -135,6 +137,7 @@ struct Model {
   Tally<D> tally;  ///< of the step at hand
   Transfer transfer;
   Loads<D> loads;
+  Water water;
   Walls<D> walls;
   Exits exits;
   Clock clock;
@@ -223,6 +226,15 @@ void follow_rows(Model<D, K>& m)
   m.followed.find(m.particles.id);
 }
 
+/// What the law of a body sees of the water at a time; nothing where it sees total stress.
+template <int D, Kernel<D> K>
+std::optional<PoreWater> pore_water(const Model<D, K>& m, Index body, Real time)
+{
+  if (!m.water.drains(body))
+    return std::nullopt;
+  return PoreWater{m.water, m.stage.ramp(time) * m.loads.gravity.table(time)};
+}
+
 /// M is a Model, or what an observer sees of it.  Every rank has to ask.
 template <class M>
 auto totals(const M& m)
@@ -261,6 +273,8 @@ void make_ready(Model<D, K>& m)
   }
   if (any_material(has_bulk_viscosity) && m.particles.viscous.empty())
     m.particles.viscous.assign(n, 0);
+  if (m.water.any() && m.particles.pore.empty())
+    m.particles.pore.assign(n, 0);
   if (m.transfer.musl)
     m.remapped.resize(m.nodes.sum.size());
   m.followed = FollowedRows(ids_of(m.loads.on_particles));

@@ -124,6 +124,17 @@ inline std::vector<SceneCase> scenes_of_all()
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
         .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
                 "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
+  all.push_back(
+      {"water",
+       {.more = "water: {table: {points: [[0, 0.9], [2, 0.4]]}, suction: 1.0e3, bodies: [low]}\n",
+        .law = all[5].parts.law,
+        .bodies = "bodies:\n"
+                  "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, "
+                  "saturated_density: 2100}\n"
+                  "  - {name: high, material: stuff, shape: {type: box, low: [1, 0], high: [2, 1]}, particles_per_cell: 3}\n",
+        .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
+        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, residual: 5.0e-2, initial_stress: {from_friction: true}}\n"
+                "  - {type: run, duration: 0.03}\n"}});
   SceneParts in_3d{.dimension = solid,
                    .law = all[5].parts.law,
                    .bodies =
