@@ -41,7 +41,7 @@ inline Real angle_over(Real degrees, Real factor) noexcept
 
 /// c / F and tan(phi) / F, at the peak and after softening: on every plane c + s tan(phi) falls to its F-th part.  The tip of the surface
 /// stays where it is, at c / tan(phi) by its normal stress.  So does the dilation, as far as friction is left to dilate with; a cut-off of
-/// tension falls like a cohesion, and one that a factor below 1 lifts above the tip is no longer one.
+/// tension falls like a cohesion, and ends at the tip where a factor below 1 lifts it there.
 template <class Law>
 void divide_soil_strength(Real factor, Law& law) noexcept
 {
@@ -52,11 +52,8 @@ void divide_soil_strength(Real factor, Law& law) noexcept
   if (law.residual_friction_angle)
     law.residual_friction_angle = angle_over(*law.residual_friction_angle, factor);
   law.dilation_angle = std::min({law.dilation_angle, law.friction_angle, law.residual_friction_angle.value_or(law.friction_angle)});
-  if (law.tension_cutoff) {
-    *law.tension_cutoff /= factor;
-    if (*law.tension_cutoff > law.tip_of_strength())
-      law.tension_cutoff.reset();
-  }
+  if (law.tension_cutoff)
+    law.tension_cutoff = std::min(*law.tension_cutoff / factor, law.tip_of_strength());
 }
 
 }  // namespace talus
