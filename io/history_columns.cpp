@@ -55,6 +55,8 @@ std::vector<CsvColumn> columns_of(const PointSpec& point, int dimension)
 
 std::vector<CsvColumn> columns_of(const FrontSpec& front) { return {{front.name, "m"}}; }
 
+std::vector<CsvColumn> columns_of(const MovedSpec& moved) { return {{moved.name, "m"}}; }
+
 std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries)
 {
   std::vector<std::string> names;

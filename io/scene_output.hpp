@@ -69,10 +69,26 @@ struct FrontSpec {
   }
 };
 
+/// How far the mass has come from where its displacement counts.
+struct MovedSpec {
+  std::string name;
+  Real mass_share = 0.99;
+  std::string body;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &MovedSpec::name, any, "-", "name of the column"),
+                      optional("mass_share", &MovedSpec::mass_share, within(0, 1), "-",
+                               "length of displacement that this share of the mass does not exceed; 1 is the particle that moved most"),
+                      optional("body", &MovedSpec::body, any, "-", "only this body; default all")};
+  }
+};
+
 struct HistoryOutputSpec {
   Real every{};
   std::vector<PointSpec> points;
   std::vector<FrontSpec> fronts;
+  std::vector<MovedSpec> moved;
   Where where;
   static constexpr auto fields()
   {
@@ -80,7 +96,8 @@ struct HistoryOutputSpec {
                                "time between rows; energies, momenta, mass, residual and reactions are always there"),
                       optional_list("points", &HistoryOutputSpec::points,
                                     "material points whose position, displacement, velocity and stress are written"),
-                      optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass")};
+                      optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass"),
+                      optional_list("moved", &HistoryOutputSpec::moved, "how far the mass has moved")};
   }
 };
 

@@ -238,6 +238,7 @@ class Rules {
     const auto bodies = names(scene_.bodies);
     different_names("outputs.history.points", history.points);
     different_names("outputs.history.fronts", history.fronts);
+    different_names("outputs.history.moved", history.moved);
     for (std::size_t i = 0; i < history.points.size(); ++i) {
       const std::string path = fmt::format("outputs.history.points[{}]", i);
       fits(path + ".at", history.points[i].at);
@@ -250,6 +251,8 @@ class Rules {
       if (scene_.dimension == 2 && (direction == Direction::z_plus || direction == Direction::z_minus))
         add(path + ".direction", "there is no z in 2 dimensions");
     }
+    for (std::size_t i = 0; i < history.moved.size(); ++i)
+      known_word(fmt::format("outputs.history.moved[{}].body", i), "body", history.moved[i].body, bodies);
     if (scene_.dimension == 2 || scene_.dimension == 3)
       different_columns(history);
   }
@@ -278,6 +281,9 @@ class Rules {
     for (std::size_t i = 0; i < history.fronts.size(); ++i)
       if (const FrontSpec& front = history.fronts[i]; is_first(history.fronts, i))
         note(fmt::format("outputs.history.fronts[{}]", i), "name", front.name, columns_of(front));
+    for (std::size_t i = 0; i < history.moved.size(); ++i)
+      if (const MovedSpec& moved = history.moved[i]; is_first(history.moved, i))
+        note(fmt::format("outputs.history.moved[{}]", i), "name", moved.name, columns_of(moved));
   }
 
   /// Of its name; others are found by different_names().
