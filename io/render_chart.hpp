@@ -16,7 +16,11 @@ struct Chart {
     std::string name;
     Real value;  ///< in the unit of y
   };
-  std::vector<Level> levels;  ///< horizontal lines
+  std::vector<Level> levels;     ///< horizontal lines
+  std::vector<Level> uprights;   ///< vertical lines, in the unit of x
+  std::string curve = "driven";  ///< name of the curve
+  bool marks = false;            ///< a mark at each row
+  bool log = false;              ///< y by its logarithm
   std::string title;
   std::filesystem::path out;  ///< .png
 };

@@ -14,6 +14,10 @@ Chart parse_chart(std::span<const std::string> arguments)
   OptionWords words(arguments);
   while (!words.empty()) {
     const std::string word = words.next("");
+    const auto line = [&] {
+      std::string name = words.next(word);
+      return Chart::Level{std::move(name), number<Real>(words.next(word), word)};
+    };
     if (word == "--x")
       chart.x = words.next(word);
     else if (word == "--y")
@@ -22,10 +26,17 @@ Chart parse_chart(std::span<const std::string> arguments)
       chart.title = words.next(word);
     else if (word == "--out")
       chart.out = words.next(word);
-    else if (word == "--level") {
-      std::string name = words.next(word);
-      chart.levels.push_back({std::move(name), number<Real>(words.next(word), word)});
-    } else if (!word.starts_with("--") && chart.table.empty())
+    else if (word == "--curve")
+      chart.curve = words.next(word);
+    else if (word == "--marks")
+      chart.marks = true;
+    else if (word == "--log")
+      chart.log = true;
+    else if (word == "--level")
+      chart.levels.push_back(line());
+    else if (word == "--upright")
+      chart.uprights.push_back(line());
+    else if (!word.starts_with("--") && chart.table.empty())
       chart.table = word;
     else
       throw Error(fmt::format("unknown option {}\n{}", word, usage()));
