@@ -130,9 +130,7 @@ void tell_difference(const T& before, const T& after, const std::string& path, s
 }
 
 /// A text in quotes that YAML reads back.
-std::string in_quotes(const fs::path& path) { return in_one_line(Node{.kind = Node::Kind::scalar, .quoted = true, .text = path.string()}); }
-
-std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
+std::string in_quotes(const fs::path& path)
 {
   Node text;
   text.kind = Node::Kind::scalar;
