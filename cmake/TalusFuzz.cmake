@@ -5,7 +5,7 @@
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
-              ONLY accuracy array_ hdf5 cell_count csv document field_reader gmsh_door gmsh_mesh gmsh_read history_columns memory mesh_groups msh_ progress_json reader scalars scene
+              ONLY accuracy array_ hdf5 cell_count csv document field_reader gdal_door gmsh_door gmsh_mesh gmsh_read history_columns map_crs memory mesh_groups module msh_ polygon_file progress_json raster_file reader scalars scene
                    shape study text_file vtk whole_file
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
