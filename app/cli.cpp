@@ -307,6 +307,7 @@ class CommandLine {
     only->check(CLI::PositiveNumber)->excludes(jobs);
     sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
     sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
+    sweep->add_flag("!--no-pictures", sweep_.pictures, "draw nothing");
     sweep->add_flag("--quick", sweep_.quick, "each case coarse and short: only to see that they run");
     sweep->add_flag("--quiet", sweep_.quiet, "no progress and no table");
     sweep->callback([this] { talus::sweep(sweep_); });
@@ -327,7 +328,7 @@ class CommandLine {
     number("--duration", fos_.duration, "of a trial [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
     fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(CLI::Range(0.0, 0.9));
     number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
-    number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 1e-4");
+    number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
     fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
     fos->add_option("--share", fos_.mass_share, "share of the mass that may move more than what is looked at; default 0.99")
         ->check(CLI::Range(0.0, 1.0));

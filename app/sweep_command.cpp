@@ -9,7 +9,7 @@
 
 #include "app/commands.hpp"
 #include "app/signals.hpp"
-#include "app/sweep_table.hpp"
+#include "app/sweep_findings.hpp"
 #include "core/exchange.hpp"
 #include "core/version.hpp"
 #include "io/reader.hpp"
@@ -197,8 +197,18 @@ void sweep(const SweepOptions& options)
   SweepTable table(plan);
   if (!options.list || fs::exists(plan.folder))
     table.update();
+  const auto find_out = [&](bool pictures) {
+    std::vector<std::string> warnings;
+    const std::string said = write_findings(plan, table, pictures, warnings);
+    if (!options.quiet)
+      fmt::print("{}", said);
+    for (const std::string& warning : warnings)
+      fmt::print(stderr, "warning: {}\n", warning);
+  };
   if (options.list) {
     list_cases(plan, table);
+    if (fs::exists(plan.folder))
+      find_out(false);
     return print_remarks(plan, table);
   }
   const auto left = std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state != CaseState::done; });
@@ -212,6 +222,7 @@ void sweep(const SweepOptions& options)
   all(chosen);
   if (!options.quiet)
     fmt::print("{}table in {}\n", table.print(), (plan.folder / "sweep.csv").string());
+  find_out(options.pictures && all.signal().empty());
   print_remarks(plan, table);
   conclude(plan, all, table, chosen);
 }

@@ -160,6 +160,30 @@ std::vector<Real> logarithms(const std::vector<Real>& values)
   return logs;
 }
 
+void put_on_paper(vtkChartXY* plot, const std::filesystem::path& out)
+{
+  vtkNew<vtkRenderWindow> window;
+  prepare(window, size);
+  vtkNew<vtkRenderer> paper;
+  paper->SetBackground(1, 1, 1);
+  window->AddRenderer(paper);
+  vtkNew<vtkContextActor> actor;
+  actor->GetScene()->AddItem(plot);
+  actor->GetScene()->SetRenderer(paper);
+  paper->AddActor(actor);
+  save(window, out);
+}
+
+void letter_chart(vtkChartXY* plot, const std::string& title)
+{
+  plot->SetTitle(title);
+  plot->GetTitleProperties()->SetFontSize(letter);
+  plot->SetShowLegend(true);
+  plot->GetLegend()->SetLabelSize(letter);
+  plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
+  plot->GetLegend()->SetVerticalAlignment(vtkChartLegend::BOTTOM);
+}
+
 }  // namespace
 
 void draw(const Chart& chart)
@@ -193,12 +217,7 @@ void draw(const Chart& chart)
   }
 
   vtkNew<vtkChartXY> plot;
-  plot->SetTitle(chart.title);
-  plot->GetTitleProperties()->SetFontSize(letter);
-  plot->SetShowLegend(true);
-  plot->GetLegend()->SetLabelSize(letter);
-  plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
-  plot->GetLegend()->SetVerticalAlignment(vtkChartLegend::BOTTOM);
+  letter_chart(plot, chart.title);
   letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", x_name, x_unit));
   letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit.name));
   show_span(plot->GetAxis(vtkAxis::BOTTOM), x.front(), x.back(), 0);
@@ -220,16 +239,53 @@ void draw(const Chart& chart)
   for (std::size_t i = 0; i < chart.uprights.size(); ++i)
     add(plot, curve(chart.uprights[i].name, std::vector<Real>(2, chart.uprights[i].value), {low, high}), levels.size() + i + 1);
 
-  vtkNew<vtkRenderWindow> window;
-  prepare(window, size);
-  vtkNew<vtkRenderer> paper;
-  paper->SetBackground(1, 1, 1);
-  window->AddRenderer(paper);
-  vtkNew<vtkContextActor> actor;
-  actor->GetScene()->AddItem(plot);
-  actor->GetScene()->SetRenderer(paper);
-  paper->AddActor(actor);
-  save(window, chart.out);
+  put_on_paper(plot, chart.out);
+}
+
+void draw(const Tornado& tornado)
+{
+  const auto [name, unit_name] = split(tornado.x);
+  Real low = tornado.base, high = tornado.base;
+  for (const Tornado::Bar& bar : tornado.bars) {
+    low = std::min({low, bar.low, bar.high});
+    high = std::max({high, bar.low, bar.high});
+  }
+  if (!(low < high))
+    high = low + std::max(std::abs(low), 1.0);
+  const ScaledUnit unit = scaled_unit(unit_name, std::max(std::abs(low), std::abs(high)));
+  vtkNew<vtkChartXY> plot;
+  letter_chart(plot, tornado.title);
+  letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", name, unit.name));
+  letter_axis(plot->GetAxis(vtkAxis::LEFT), "");
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), unit.factor * low, unit.factor * high, headroom);
+  const auto count = static_cast<Real>(tornado.bars.size());
+  vtkAxis* const keys = plot->GetAxis(vtkAxis::LEFT);
+  keys->SetBehavior(vtkAxis::FIXED);
+  keys->SetRange(0, count + 1);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> words;
+  const float thick = static_cast<float>(std::min(40.0, 0.5 * size[1] / (count + 1))) * oversampling;
+  for (std::size_t i = 0; i < tornado.bars.size(); ++i) {
+    const Tornado::Bar& bar = tornado.bars[i];
+    const Real height = count - static_cast<Real>(i);
+    places->InsertNextValue(height);
+    words->InsertNextValue(bar.name);
+    for (const std::size_t end : {0U, 1U}) {
+      vtkPlot* const drawn = add(plot,
+                                 curve(end == 0 ? "at the low value" : "at the high value",
+                                       {unit.factor * tornado.base, unit.factor * (end == 0 ? bar.low : bar.high)}, {height, height}),
+                                 0);
+      const Colour& colour = palette[end];
+      drawn->SetColor(colour[0], colour[1], colour[2], 255);
+      drawn->SetWidth(thick);
+      drawn->SetLegendVisibility(i == 0);
+    }
+  }
+  keys->SetCustomTickPositions(places, words);
+  vtkPlot* const line = add(plot, curve("all in the middle", std::vector<Real>(2, unit.factor * tornado.base), {0, count + 1}), 0);
+  line->SetColor(0, 0, 0, 255);
+  line->SetWidth(oversampling);
+  put_on_paper(plot, tornado.out);
 }
 
 }  // namespace talus::render

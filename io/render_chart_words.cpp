@@ -46,4 +46,30 @@ Chart parse_chart(std::span<const std::string> arguments)
   return chart;
 }
 
+Tornado parse_tornado(std::span<const std::string> arguments)
+{
+  Tornado tornado;
+  OptionWords words(arguments);
+  while (!words.empty()) {
+    const std::string word = words.next("");
+    if (word == "--x")
+      tornado.x = words.next(word);
+    else if (word == "--title")
+      tornado.title = words.next(word);
+    else if (word == "--out")
+      tornado.out = words.next(word);
+    else if (word == "--base")
+      tornado.base = number<Real>(words.next(word), word);
+    else if (word == "--bar") {
+      std::string name = words.next(word);
+      const Real low = number<Real>(words.next(word), word), high = number<Real>(words.next(word), word);
+      tornado.bars.push_back({std::move(name), low, high});
+    } else
+      throw Error(fmt::format("unknown option {}\n{}", word, usage()));
+  }
+  if (tornado.bars.empty() || tornado.x.empty() || tornado.out.empty())
+    throw Error("a tornado needs --bar, --x and --out\n" + usage());
+  return tornado;
+}
+
 }  // namespace talus::render
