@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "app/fos_search.hpp"
+#include "core/error.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::fos_test {
@@ -205,7 +206,7 @@ TEST_F(FosProgram, SaysWhatKeepsStrengthFromBeingDivided)
 TEST_F(FosProgram, ATrialThatBreaksOffHasFailed)
 {
   std::string scene = bank_scene(at_rest);
-  scene.replace(scene.find("on_exit: delete\n"), 16, "watch: {speed_limit: 0.5}\n");
+  scene.replace(scene.find("on_exit: delete\n"), 16, "watch: {speed: 0.5, on_speed: stop}\n");
   write("bank.yaml", scene);
   const Outcome outcome = fos("--from 1 --to 8 --width 7 --jobs 2");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
