@@ -1,5 +1,5 @@
 #pragma once
-// history.csv: balances, reactions, followed points and fronts at each output time.
+// history.csv: balances, reactions, followed points, fronts and how far the mass has moved at each output time.
 #include "app/accounts.hpp"
 #include "io/csv.hpp"
 #include "io/scene.hpp"
@@ -15,6 +15,10 @@ std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bo
 /// root; every rank has to ask.
 template <int D>
 Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
+
+/// Length of displacement [m] that a share of the mass does not exceed, alike.
+template <int D>
+Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
 
 /// What a row owes to the rows before.
 template <int D>

@@ -293,6 +293,7 @@ class Rules {
     const auto bodies = names(scene_.bodies);
     different_names("outputs.history.points", history.points);
     different_names("outputs.history.fronts", history.fronts);
+    different_names("outputs.history.moved", history.moved);
     for (std::size_t i = 0; i < history.points.size(); ++i) {
       const std::string path = fmt::format("outputs.history.points[{}]", i);
       fits(path + ".at", history.points[i].at);
@@ -312,6 +313,8 @@ class Rules {
         if (!history.walls[i].on.empty() && history.walls[j].on == history.walls[i].on)
           add(path, fmt::format("\"{}\" is asked for by outputs.history.walls[{}] already", history.walls[i].on, j));
     }
+    for (std::size_t i = 0; i < history.moved.size(); ++i)
+      known_word(fmt::format("outputs.history.moved[{}].body", i), "body", history.moved[i].body, bodies);
     if (scene_.dimension == 2 || scene_.dimension == 3)
       different_columns(history);
   }
@@ -345,6 +348,9 @@ class Rules {
           std::none_of(history.walls.begin(), history.walls.begin() + static_cast<std::ptrdiff_t>(i),
                        [&](const WallSpec& earlier) { return earlier.on == wall.on; }))
         note(fmt::format("outputs.history.walls[{}]", i), "on", wall.on, columns_of(wall, scene_.dimension));
+    for (std::size_t i = 0; i < history.moved.size(); ++i)
+      if (const MovedSpec& moved = history.moved[i]; is_first(history.moved, i))
+        note(fmt::format("outputs.history.moved[{}]", i), "name", moved.name, columns_of(moved));
   }
 
   /// Of its name; others are found by different_names().
