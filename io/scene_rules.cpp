@@ -25,6 +25,8 @@ class Rules {
     materials_and_bodies();
     loads_and_boundaries();
     outputs();
+    const auto of_stages = broken_stage_rules(scene_);
+    findings_.insert(findings_.end(), of_stages.begin(), of_stages.end());
     return std::move(findings_);
   }
 
@@ -130,8 +132,9 @@ class Rules {
     if (!scene_.stages.empty() && scene_.time.end != 0)
       add("time.end", "the stages say when the run ends: leave this out");
     for (std::size_t i = 1; i < scene_.stages.size(); ++i)
-      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
-        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress");
+      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]);
+          stage != nullptr && stage->initial_stress && stage->appear.empty())
+        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress, or one in which bodies appear: theirs");
   }
 
   void materials_and_bodies()
