@@ -1,5 +1,6 @@
 #pragma once
 // The blocks `loads` and `boundaries` of a scene.
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -135,6 +136,12 @@ using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionS
 inline const std::vector<std::string>& during_of(const BoundarySpec& boundary)
 {
   return std::visit([](const auto& spec) -> const std::vector<std::string>& { return spec.during; }, boundary);
+}
+/// Whether it acts in a stage of that name.
+inline bool acts_in(const BoundarySpec& boundary, const std::string& stage)
+{
+  const auto& during = during_of(boundary);
+  return during.empty() || std::find(during.begin(), during.end(), stage) != during.end();
 }
 
 }  // namespace talus

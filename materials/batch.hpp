@@ -113,6 +113,11 @@ AnyBatch make_any_batch(const L& law, Index begin, Index end, const std::string&
     return make_batch(law, begin, end, name, where);
 }
 
+inline void begin_anew(Index begin, Index end, AnyBatch& batch)
+{
+  std::visit([&](auto& typed) { begin_anew(begin, end, typed); }, batch);
+}
+
 /// One history variable of all particles of a body: column[i] is a Real or a Sym3.
 template <class State, class Value>
 struct HistoryColumn {
