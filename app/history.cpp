@@ -158,8 +158,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   }
   FollowedRows followed(state_.followed);
   followed.find(frame.particles.id);
-  for (const std::int64_t id : state_.followed)
-    add_point(frame, followed.row(id), row);
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    add_point(frame, spec_.points[k], followed.row(state_.followed[k]), row);
   for (const FrontSpec& spec : spec_.fronts)
     row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
   for (const WallSpec& spec : spec_.walls)
@@ -208,10 +208,19 @@ void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Rea
 }
 
 template <int D>
-void HistoryWriter<D>::add_point(const Frame<D>& frame, Index at, std::vector<Real>& row)
+void HistoryWriter<D>::follow_anew(const std::string& body, const Frame<D>& now)
+{
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    if (spec_.points[k].body == body)
+      state_.followed[k] = nearest_particle(spec_.points[k], now.bodies, now.particles, *now.ranks);
+}
+
+template <int D>
+void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
 {
   std::vector<Real> here;
-  if (at != none) {
+  const bool is_there = at != none && (point_spec.body.empty() || frame.bodies[body_of(frame.bodies, at)].name == point_spec.body);
+  if (is_there) {
     const auto p = static_cast<std::size_t>(at);
     put<D>(frame.particles.x[p], here);
     put<D>(frame.particles.x[p] - frame.particles.x0[p], here);

@@ -43,6 +43,8 @@ class HistoryWriter {
   /// Goes on in a file that is there, behind the time of `now`.
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
+  /// Points of this body follow the particle that is nearest now.
+  void follow_anew(const std::string& body, const Frame<D>& now);
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
   void flush() const { file_->flush(); }                          ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
@@ -50,7 +52,7 @@ class HistoryWriter {
 
  private:
   void add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
-  static void add_point(const Frame<D>& frame, Index at, std::vector<Real>& row);
+  static void add_point(const Frame<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;

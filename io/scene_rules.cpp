@@ -25,6 +25,8 @@ class Rules {
     materials_and_bodies();
     loads_and_boundaries();
     outputs();
+    const auto of_stages = broken_stage_rules(scene_);
+    findings_.insert(findings_.end(), of_stages.begin(), of_stages.end());
     return std::move(findings_);
   }
 
@@ -130,17 +132,17 @@ class Rules {
     if (!scene_.stages.empty() && scene_.time.end != 0)
       add("time.end", "the stages say when the run ends: leave this out");
     for (std::size_t i = 1; i < scene_.stages.size(); ++i)
+      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]);
+          stage != nullptr && stage->initial_stress && stage->appear.empty())
+        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress, or one in which bodies appear: theirs");
+    for (std::size_t i = 0; i < scene_.stages.size(); ++i)
       if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
-        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress");
-    if (const auto* stage = scene_.stages.empty() ? nullptr : std::get_if<GeostaticSpec>(&scene_.stages.front());
-        stage != nullptr && stage->initial_stress)
-      initial_stress(*stage->initial_stress);
+        initial_stress(fmt::format("stages[{}].initial_stress", i), static_cast<Index>(i), *stage->initial_stress);
   }
 
-  void initial_stress(const K0Spec& spec)
+  void initial_stress(const std::string& path, Index number, const K0Spec& spec)
   {
     const auto known = names(scene_.bodies);
-    const std::string path = "stages[0].initial_stress";
     for (std::size_t i = 0; i < spec.bodies.size(); ++i) {
       known_word(fmt::format("{}.bodies[{}].body", path, i), "body", spec.bodies[i].body, known);
       for (std::size_t j = 0; j < i; ++j)
@@ -148,7 +150,7 @@ class Rules {
           add(fmt::format("{}.bodies[{}].body", path, i), fmt::format("bodies[{}] is about \"{}\" already", j, spec.bodies[i].body));
     }
     for (const std::string& body : known)
-      if (spec.of(body).given() == 0)
+      if (presence_of(body, scene_.stages).from == number && spec.of(body).given() == 0)
         add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table or from_friction is needed for the bodies that the list does "
                               "not name",
                               body));
