@@ -95,17 +95,29 @@ void join(Exchange& ranks, ParticleTraction<D>& load)
 template <int D>
 class WallBuilder {
  public:
-  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, std::vector<std::string> names, Complaints& complaints, Walls<D>& walls)
-      : mesh_(mesh), has_particles_(has_particles), names_(std::move(names)), complaints_(complaints), walls_(walls)
+  WallBuilder(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Complaints& complaints, Setup<D>& setup)
+      : folder_(folder_of(scene)),
+        mesh_(mesh),
+        has_particles_(has_particles),
+        names_(wall_names(scene.boundaries)),
+        complaints_(complaints),
+        setup_(setup),
+        walls_(setup.walls)
   {}
 
   void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
   void operator()(const VelocitySpec& spec)
   {
     Wall<D> wall = wall_of(spec, WallKind::velocity);
-    wall.velocity = vector_of<D>(spec.velocity);
-    wall.table = spec.table;
+    set_motion(spec, wall);
     on_nodes(spec, std::move(wall));
+  }
+  void operator()(const CompliantBaseSpec& spec)
+  {
+    Wall<D> wall = wall_of(spec, WallKind::compliant_base);
+    wall.halfspace = {spec.density, spec.s_wave, spec.p_wave};
+    set_motion(spec, wall);
+    on_facets(spec, std::move(wall));
   }
   void operator()(const RollerSpec& spec) { on_facets(spec, wall_of(spec, WallKind::roller)); }
   void operator()(const FrictionSpec& spec)
@@ -126,6 +138,27 @@ class WallBuilder {
     return wall;
   }
   template <class Spec>
+  void set_motion(const Spec& spec, Wall<D>& wall)
+  {
+    wall.velocity = vector_of<D>(spec.velocity);
+    wall.table = spec.table;
+    if (!spec.record)
+      return;
+    try {
+      wall.record = read_record((folder_ / spec.record->file).lexically_normal(), *spec.record);
+    } catch (const SceneErrors& e) {
+      return complaints_.add(spec.where, "record.file", e);
+    }
+    setup_.notes.push_back(describe(*spec.record, *wall.record));
+    constexpr Real noticed = 0.01;  // share of the peak
+    const Real left = std::abs(wall.record->velocity.back());
+    if (left > noticed * wall.record->peak_velocity())
+      setup_.warnings.push_back(
+          fmt::format("{}: \"{}\" ends with {:.3g} m/s, and its velocity stays so after its end; record.baseline takes "
+                      "such a drift off",
+                      to_string(spec.where), spec.record->file, left));
+  }
+  template <class Spec>
   void on_nodes(const Spec& spec, Wall<D> wall)
   {
     if (const auto nodes = mesh_.node_set(spec.on))
@@ -142,11 +175,13 @@ class WallBuilder {
       complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
   }
 
+  std::filesystem::path folder_;
   const Mesh<D>& mesh_;
   const Filled<D>& has_particles_;
   std::vector<std::string> names_;  // of the walls, in the order of the boundaries
   std::size_t next_ = 0;
   Complaints& complaints_;
+  Setup<D>& setup_;
   Walls<D>& walls_;
 };
 
@@ -338,7 +373,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   setup.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
   const Filled<D> has_particles(mesh, setup.particles, ranks);
-  WallBuilder<D> walls(mesh, has_particles, wall_names(scene.boundaries), complaints, setup.walls);
+  WallBuilder<D> walls(scene, mesh, has_particles, complaints, setup);
   for (const BoundarySpec& boundary : scene.boundaries)
     std::visit(walls, boundary);
   LoadBuilder<D> loads(mesh, has_particles, ranks, complaints, setup);

@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "core/table.hpp"
+#include "io/record_file.hpp"
 
 namespace talus {
 
@@ -93,13 +94,46 @@ struct VelocitySpec {
   std::string on;
   std::vector<Real> velocity;
   Table table;
+  std::optional<RecordSpec> record;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
-                      required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension"),
-                      optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]")};
+                      required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension; with a record its direction"),
+                      optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
+                      group("record", &VelocitySpec::record,
+                            "motion from a file in the place of a table; it begins with the first stage that is not geostatic, and before "
+                            "there is none")};
   }
+  void check(std::vector<std::string>& problems) const;
+};
+
+/// Dashpots to a halfspace, and the wave that comes up from it.
+struct CompliantBaseSpec {
+  static constexpr std::string_view name = "compliant_base";
+  std::string on;
+  Real density{}, s_wave{}, p_wave{};
+  std::vector<Real> velocity;
+  Table table;
+  std::optional<RecordSpec> record;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("on", &CompliantBaseSpec::on, any, "-",
+                 "facet group above a halfspace: held in geostatic stages, then it carries what it carried, waves leave through it and one "
+                 "comes up"),
+        required("density", &CompliantBaseSpec::density, positive, "kg/m^3", "of the halfspace"),
+        required("s_wave", &CompliantBaseSpec::s_wave, positive, "m/s", "speed of shear waves in the halfspace"),
+        required("p_wave", &CompliantBaseSpec::p_wave, positive, "m/s", "speed of pressure waves in the halfspace"),
+        optional("velocity", &CompliantBaseSpec::velocity, any, "m/s",
+                 "of the particles in the wave that comes up, half of what an outcrop of the halfspace would show: one number per "
+                 "dimension; with a record its direction; default none"),
+        optional("table", &CompliantBaseSpec::table, any, "-",
+                 "factor of velocity in time: list of [time, factor], from the beginning of the first stage that is not geostatic"),
+        group("record", &CompliantBaseSpec::record, "motion from a file in the place of a table, from the same time on")};
+  }
+  void check(std::vector<std::string>& problems) const;
 };
 
 struct FrictionSpec {
@@ -115,6 +149,6 @@ struct FrictionSpec {
   }
 };
 
-using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec>;
+using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec, CompliantBaseSpec>;
 
 }  // namespace talus

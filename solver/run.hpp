@@ -111,6 +111,7 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
              .ramp_time = stage.ramp,
              .elastic = stage.elastic,
              .seeks_rest = stage.residual || stage.damping > 0};
+  m.walls.begin_stage(stage.residual.has_value(), m.clock.time);
   if (stage.k0)
     set_k0_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(m.clock.time, 1), *stage.k0, m.order, m.bodies, m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m), .remapped = m.transfer.musl};

@@ -1,6 +1,8 @@
 #include "solver/walls.hpp"
 
 #include <algorithm>
+#include <bit>
+#include <map>
 
 namespace talus {
 
@@ -8,6 +10,16 @@ namespace {
 
 /// Cosine of the angle below which two facets belong to one smooth surface.
 constexpr Real smooth = 0.8660254037844387;
+/// Dashpots of a facet's area against plane waves that leave through it [Lysmer & Kuhlemeyer 1969]: density times the speed of the wave,
+/// p across the facet and s along it.
+template <int D>
+Mat<D> impedance(const Halfspace& ground, const Vec<D>& area)
+{
+  const Real size = area.norm();
+  const Vec<D> normal = area / size;
+  return ground.density * size * (ground.s_wave * Mat<D>::Identity() + (ground.p_wave - ground.s_wave) * normal * normal.transpose());
+}
+
 /// Sweeps over the planes of an edge or corner; each sweep contracts the violation by the cosine of their angle or better.
 constexpr int sweeps = 20;
 
@@ -24,6 +36,19 @@ typename Walls<D>::NodeRule& Walls<D>::rule(const Mesh<D>& mesh, Index node)
     rules_.push_back({.node = node, .place = mesh.node(node), .rollers = {}, .frictions = {}});
   }
   return rules_[static_cast<std::size_t>(at)];
+}
+
+template <int D>
+void Walls<D>::add_dashpot(const Mesh<D>& mesh, Index node, Index wall, const Mat<D>& resistance)
+{
+  Index& base = rule(mesh, node).base;
+  if (base == none) {
+    base = wall;
+    dashpots_.push_back({.node = node, .row = n_dashpots_++, .place = mesh.node(node), .parts = {{wall, resistance}}});
+  } else {
+    const auto at = std::find_if(dashpots_.begin(), dashpots_.end(), [&](const Dashpot& dashpot) { return dashpot.node == node; });
+    at->parts.push_back({wall, resistance});
+  }
 }
 
 template <int D>
@@ -46,6 +71,15 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> fac
   const bool roller = wall.kind == WallKind::roller;
   walls_.push_back(std::move(wall));
   facets_.insert(facets_.end(), facets.begin(), facets.end());
+  if (walls_.back().kind == WallKind::compliant_base) {
+    std::map<Index, Mat<D>> resistance;
+    for (const Facet facet : facets)
+      for (const Index n : mesh.nodes_of(facet))
+        resistance.try_emplace(n, Mat<D>::Zero()).first->second += impedance<D>(walls_.back().halfspace, mesh.area_vector(facet)) / D;
+    for (const auto& [node, of_node] : resistance)
+      add_dashpot(mesh, node, number, of_node);
+    return;
+  }
   for (const Facet facet : facets) {
     const Vec<D> area = mesh.area_vector(facet);
     for (const Index n : mesh.nodes_of(facet)) {
@@ -69,6 +103,11 @@ void Walls<D>::restrict_to(const Share& share)
     rule.node = share.local_node(rule.node);
     rule.counted = rule.node != none && share.owns_node(rule.node);
     return rule.node == none;
+  });
+  std::erase_if(dashpots_, [&](Dashpot& dashpot) {
+    dashpot.node = share.local_node(dashpot.node);
+    dashpot.counted = dashpot.node != none && share.owns_node(dashpot.node);
+    return dashpot.node == none;
   });
   std::erase_if(facets_, [&](Facet& facet) {
     facet.cell = share.local_cell(facet.cell);
@@ -102,6 +141,70 @@ void Walls<D>::settle()
 }
 
 template <int D>
+void Walls<D>::begin_stage(bool geostatic, Real time) noexcept
+{
+  if (geostatic)
+    shaking_ = {};
+  else if (!shaking_.begun)
+    shaking_ = {.begun = true, .begin = time, .reaction = {}};
+}
+
+template <int D>
+void Walls<D>::find_reactions(Real dt, Exchange& ranks, const Nodes<D>& nodes)
+{
+  std::vector<std::int64_t> bits(D * n_dashpots_, 0);  // each number is told by one rank, the others add nothing to it
+  for (const Dashpot& dashpot : dashpots_) {
+    const auto n = static_cast<std::size_t>(dashpot.node);
+    const Vec<D> reaction = -nodes.sum[n].mass / dt * nodes.motion[n].change;
+    for (int d = 0; d < D && dashpot.counted && nodes.active[n]; ++d)
+      bits[D * dashpot.row + static_cast<std::size_t>(d)] = std::bit_cast<std::int64_t>(reaction[d]);
+  }
+  ranks.sum(bits);
+  for (const std::int64_t number : bits)
+    shaking_.reaction.push_back(std::bit_cast<Real>(number));
+  shaking_.knows_reactions = true;
+}
+
+/// Implicit in the velocity at the end of the step, as a node may be lighter than what the dashpot carries off in a step:
+///   m (v - v_free) / dt = C (2 v_up - v) + reaction.
+/// The halfspace takes C v off and brings C 2 v_up, of which one half is the wave itself and one what it would reflect [Joyner & Chen 1975].
+template <int D>
+void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
+{
+  if (!shaking_.begun || n_dashpots_ == 0)
+    return;
+  if (!shaking_.knows_reactions)
+    find_reactions(dt, ranks, nodes);
+  for (Dashpot& dashpot : dashpots_) {
+    const auto n = static_cast<std::size_t>(dashpot.node);
+    dashpot.impulse.setZero();
+    if (!nodes.active[n])
+      continue;
+    const Real mass = nodes.sum[n].mass;
+    NodeMotion<D>& motion = nodes.motion[n];
+    Mat<D> inertia = mass * Mat<D>::Identity();
+    Vec<D> momentum = mass * motion.v + dt * Eigen::Map<const Vec<D>>(&shaking_.reaction[D * dashpot.row]);
+    for (const auto& part : dashpot.parts) {
+      inertia += dt * part.resistance;
+      momentum += dt * part.resistance * (2 * prescribed(walls_[static_cast<std::size_t>(part.wall)], end));
+    }
+    const Vec<D> by = inertia.inverse() * momentum - motion.v;
+    motion.v += by, motion.change += by;
+    dashpot.impulse = mass * by;
+  }
+}
+
+template <int D>
+Vec<D> Walls<D>::prescribed(const Wall<D>& wall, Real time) const noexcept
+{
+  const bool counts_from_shaking = wall.record || wall.kind == WallKind::compliant_base;
+  if (counts_from_shaking && !shaking_.begun)
+    return Vec<D>::Zero();
+  const Real since = counts_from_shaking ? time - shaking_.begin : time;
+  return (wall.record ? (*wall.record)(since) : wall.table(since)) * wall.velocity;
+}
+
+template <int D>
 void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
 {
   const Vec<D> v_free = v, v_old = v - change;
@@ -122,8 +225,8 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
     v += by;
   };
   rubs = false;
-  if (rule.whole != none) {
-    push(rule.whole, constrained(rule, end, v) - v);
+  if (const Index whole = whole_of(rule); whole != none) {
+    push(whole, constrained(rule, end, v) - v);
   } else {
     for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
       bool touched = false;
@@ -161,6 +264,13 @@ void Walls<D>::apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work)
     if (nodes.active[n])
       act(rule, end, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
   }
+  for (const Dashpot& dashpot : dashpots_) {
+    const auto n = static_cast<std::size_t>(dashpot.node);
+    if (!shaking_.begun || !dashpot.counted || !nodes.active[n])
+      continue;
+    pushed_[static_cast<std::size_t>(dashpot.parts.front().wall)].add({dashpot.impulse, moment<D>(dashpot.place, dashpot.impulse)});
+    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change)});
+  }
 }
 
 template <int D>
@@ -195,9 +305,9 @@ void Walls<D>::keep_impulses()
 template <int D>
 Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) const
 {
-  if (rule.whole != none) {
-    const Wall<D>& wall = walls_[static_cast<std::size_t>(rule.whole)];
-    return wall.kind == WallKind::fixed ? Vec<D>(Vec<D>::Zero()) : Vec<D>(wall.velocity * wall.table(time));
+  if (const Index whole = whole_of(rule); whole != none) {
+    const Wall<D>& wall = walls_[static_cast<std::size_t>(whole)];
+    return wall.kind == WallKind::velocity ? prescribed(wall, time) : Vec<D>(Vec<D>::Zero());
   }
   Vec<D> held = v;
   for (const Plane& plane : rule.frictions)
@@ -233,7 +343,7 @@ template <int D>
 std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
 {
   std::vector<Facet> closed = facets_;
-  const auto whole = [&](Index n) { return binds(n) && rule_of(n).whole != none; };
+  const auto whole = [&](Index n) { return binds(n) && (rule_of(n).whole != none || rule_of(n).base != none); };
   for (const Facet facet : mesh.boundary_facets()) {
     const auto nodes = mesh.nodes_of(facet);
     if (std::all_of(nodes.begin(), nodes.end(), whole))
