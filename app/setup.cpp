@@ -7,6 +7,7 @@
 #include "app/fields.hpp"
 #include "app/guards.hpp"
 #include "app/seed.hpp"
+#include "app/upright.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
 #include "io/history_columns.hpp"
@@ -34,7 +35,8 @@ class Filled {
     ranks.sum(filled_);  // no cell is filled by two ranks
   }
   bool operator()(Index cell) const { return (filled_[word_of(cell)] & bit_of(cell)) != 0; }
-  /// A facet inside the mesh belongs to the side that has material, if only one has.
+  /// A facet inside the mesh belongs to the side that has material, if only one
+  /// has.
   Facet seen_from_material(Facet facet) const
   {
     const Index other = mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)];
@@ -59,7 +61,8 @@ class Filled {
   std::vector<std::int64_t> filled_;
 };
 
-/// What each rank has found behind facets, its own particles, becomes that of all.  Every rank has to ask.
+/// What each rank has found behind facets, its own particles, becomes that of
+/// all.  Every rank has to ask.
 template <int D>
 void join(Exchange& ranks, ParticleTraction<D>& load)
 {
@@ -95,15 +98,28 @@ void join(Exchange& ranks, ParticleTraction<D>& load)
 template <int D>
 class WallBuilder {
  public:
-  WallBuilder(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Complaints& complaints, Setup<D>& setup)
+  WallBuilder(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, Complaints& complaints,
+              Setup<D>& setup)
       : folder_(folder_of(scene)),
         mesh_(mesh),
         has_particles_(has_particles),
-        names_(wall_names(scene.boundaries)),
+        up_(upright_of(scene).head<D>()),
+        ranks_(ranks),
         complaints_(complaints),
         setup_(setup),
         walls_(setup.walls)
   {}
+  /// Free fields come last: they stand on others.
+  void add(const std::vector<BoundarySpec>& boundaries)
+  {
+    const auto names = wall_names(boundaries);
+    for (const bool free_fields : {false, true})
+      for (std::size_t i = 0; i < names.size(); ++i)
+        if (std::holds_alternative<FreeFieldSpec>(boundaries[i]) == free_fields) {
+          name_ = names[i];
+          std::visit(*this, boundaries[i]);
+        }
+  }
 
   void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
   void operator()(const VelocitySpec& spec)
@@ -119,6 +135,45 @@ class WallBuilder {
     set_motion(spec, wall);
     on_facets(spec, std::move(wall));
   }
+  void operator()(const FreeFieldSpec& spec)
+  {
+    Wall<D> wall = wall_of(spec, WallKind::free_field);
+    const auto found = mesh_.facet_set(spec.on);
+    if (!found)
+      return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+    const std::vector<Facet> facets = has_particles_.seen_from_material(*found);
+    constexpr Real upright = 0.01;  // cosine between a facet's normal and the upright
+    Index lowest = none;
+    for (const Facet facet : facets) {
+      const Vec<D> area = mesh_.area_vector(facet);
+      if (std::abs(area.dot(up_)) > upright * area.norm())
+        return complaints_.add(spec.where, "on", fmt::format("the facets of \"{}\" are not all upright", spec.on));
+      for (const Index n : mesh_.nodes_of(facet))
+        if (lowest == none || mesh_.node(n).dot(up_) < mesh_.node(lowest).dot(up_))
+          lowest = n;
+    }
+    const auto column = column_beside<D>(mesh_, facets, up_, setup_.particles, setup_.materials, ranks_);
+    wall.foot = lowest == none ? none : walls_.holder_of(lowest);
+    if (!column)
+      return complaints_.add(spec.where, "on",
+                             fmt::format("behind the facets of \"{}\", from their foot up, there "
+                                         "must be particles of laws that have an elastic "
+                                         "shear modulus",
+                                         spec.on));
+    if (wall.foot == none)
+      return complaints_.add(spec.where, "on",
+                             fmt::format("no boundary of type fixed, velocity or compliant_base "
+                                         "holds the foot of \"{}\"",
+                                         spec.on));
+    wall.column = *column;
+    const Halfspace &lowest_layer = wall.column.layer.front().ground, &highest_layer = wall.column.layer.back().ground;
+    setup_.notes.push_back(
+        fmt::format("free field \"{}\": {} layers over {:.4g} m, shear waves "
+                    "{:.4g} m/s at the foot and {:.4g} m/s at the ground",
+                    spec.on, wall.column.layer.size(), wall.column.level.back() - wall.column.level.front(), lowest_layer.s_wave,
+                    highest_layer.s_wave));
+    walls_.add(std::move(wall), mesh_, facets);
+  }
   void operator()(const RollerSpec& spec) { on_facets(spec, wall_of(spec, WallKind::roller)); }
   void operator()(const FrictionSpec& spec)
   {
@@ -132,7 +187,7 @@ class WallBuilder {
   Wall<D> wall_of(const Spec& spec, WallKind kind)
   {
     Wall<D> wall;
-    wall.name = names_[next_++];
+    wall.name = name_;
     wall.kind = kind;
     wall.where = spec.where;
     return wall;
@@ -154,7 +209,8 @@ class WallBuilder {
     const Real left = std::abs(wall.record->velocity.back());
     if (left > noticed * wall.record->peak_velocity())
       setup_.warnings.push_back(
-          fmt::format("{}: \"{}\" ends with {:.3g} m/s, and its velocity stays so after its end; record.baseline takes "
+          fmt::format("{}: \"{}\" ends with {:.3g} m/s, and its velocity stays "
+                      "so after its end; record.baseline takes "
                       "such a drift off",
                       to_string(spec.where), spec.record->file, left));
   }
@@ -178,8 +234,9 @@ class WallBuilder {
   std::filesystem::path folder_;
   const Mesh<D>& mesh_;
   const Filled<D>& has_particles_;
-  std::vector<std::string> names_;  // of the walls, in the order of the boundaries
-  std::size_t next_ = 0;
+  std::string name_;  // of the wall at hand
+  Vec<D> up_;
+  Exchange& ranks_;
   Complaints& complaints_;
   Setup<D>& setup_;
   Walls<D>& walls_;
@@ -227,10 +284,14 @@ class LoadBuilder {
     }
     if (loaded == 0)
       return complaints_.add(spec.where, "on",
-                             fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
+                             fmt::format("there are no particles behind the "
+                                         "facets of \"{}\" to carry the load",
+                                         spec.on));
     if (loaded < area * (1 - 1e-9))  // sums of the same areas differ by round-off only
-      setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
-                                            to_string(spec.where), 100 * (1 - loaded / area), spec.on));
+      setup_.warnings.push_back(
+          fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and "
+                      "carries no load",
+                      to_string(spec.where), 100 * (1 - loaded / area), spec.on));
     if (spec.carried_by == Carrier::particles) {
       auto load = carried_by_particles<D>(mesh_, facets, setup_.particles);
       join(ranks_, load);
@@ -291,10 +352,10 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
   for (const Stage& stage : setup.stages)
     for (std::size_t b = 0; stage.k0 && b < setup.bodies.size(); ++b)
       if (!can_start_from_stress(setup.materials[b]))
-        complaints.add(
-            stage.where, "initial_stress",
-            fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
-                        law_name(setup.materials[b]), setup.bodies[b].name));
+        complaints.add(stage.where, "initial_stress",
+                       fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; "
+                                   "leave initial_stress out and let gravity grow (ramp)",
+                                   law_name(setup.materials[b]), setup.bodies[b].name));
 }
 
 }  // namespace
@@ -343,7 +404,8 @@ bool wants_displacement(const OutputSpec& outputs)
   return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
 }
 
-/// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
+/// The reader has checked the fields of files, but not the one of the picture,
+/// which may name a component behind a colon.
 void check_picture(const Scene& scene, Complaints& complaints)
 {
   if (!scene.outputs.particles)
@@ -373,9 +435,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   setup.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
   const Filled<D> has_particles(mesh, setup.particles, ranks);
-  WallBuilder<D> walls(scene, mesh, has_particles, complaints, setup);
-  for (const BoundarySpec& boundary : scene.boundaries)
-    std::visit(walls, boundary);
+  WallBuilder<D>(scene, mesh, has_particles, ranks, complaints, setup).add(scene.boundaries);
   LoadBuilder<D> loads(mesh, has_particles, ranks, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);

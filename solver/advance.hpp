@@ -256,6 +256,7 @@ void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
   m.energy.damping += work.damping;
   m.energy.walls += walls.other + beyond.other;
   m.energy.friction += walls.friction + beyond.friction;
+  m.energy.waves += walls.waves;
   m.energy.nodes += work.kinetic_after - work.kinetic_before + beyond.friction + beyond.other;
   m.energy.loads += t.work_on_mesh.value() + t.work_on_particles.value();
   m.energy.internal += t.internal.value();

@@ -10,17 +10,8 @@ namespace {
 
 /// Cosine of the angle below which two facets belong to one smooth surface.
 constexpr Real smooth = 0.8660254037844387;
-/// Dashpots of a facet's area against plane waves that leave through it [Lysmer & Kuhlemeyer 1969]: density times the speed of the wave,
-/// p across the facet and s along it.
-template <int D>
-Mat<D> impedance(const Halfspace& ground, const Vec<D>& area)
-{
-  const Real size = area.norm();
-  const Vec<D> normal = area / size;
-  return ground.density * size * (ground.s_wave * Mat<D>::Identity() + (ground.p_wave - ground.s_wave) * normal * normal.transpose());
-}
-
-/// Sweeps over the planes of an edge or corner; each sweep contracts the violation by the cosine of their angle or better.
+/// Sweeps over the planes of an edge or corner; each sweep contracts the
+/// violation by the cosine of their angle or better.
 constexpr int sweeps = 20;
 
 }  // namespace
@@ -39,16 +30,57 @@ typename Walls<D>::NodeRule& Walls<D>::rule(const Mesh<D>& mesh, Index node)
 }
 
 template <int D>
-void Walls<D>::add_dashpot(const Mesh<D>& mesh, Index node, Index wall, const Mat<D>& resistance)
+typename Walls<D>::Parts Walls<D>::base_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const
 {
-  Index& base = rule(mesh, node).base;
-  if (base == none) {
-    base = wall;
-    dashpots_.push_back({.node = node, .row = n_dashpots_++, .place = mesh.node(node), .parts = {{wall, resistance}}});
-  } else {
-    const auto at = std::find_if(dashpots_.begin(), dashpots_.end(), [&](const Dashpot& dashpot) { return dashpot.node == node; });
-    at->parts.push_back({wall, resistance});
+  Parts parts;
+  for (const Facet facet : facets)
+    for (const Index n : mesh.nodes_of(facet))
+      parts.try_emplace(n, typename Dashpot::Part{number}).first->second.resistance +=
+          impedance<D>(walls_[static_cast<std::size_t>(number)].halfspace, mesh.area_vector(facet)) / D;
+  return parts;
+}
+
+/// A facet that no ground lies beside, above the column, has no part.
+template <int D>
+typename Walls<D>::Parts Walls<D>::side_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const
+{
+  const SoilColumn<D>& column = walls_[static_cast<std::size_t>(number)].column;
+  Parts parts;
+  for (const Facet facet : facets) {
+    Real height = 0;
+    for (const Index n : mesh.nodes_of(facet))
+      height += column.up.dot(mesh.node(n)) / D;
+    if (height > column.level.back())
+      continue;
+    const std::size_t layer = column.layer_at(height);
+    const Vec<D> share = mesh.area_vector(facet) / D;
+    for (const Index n : mesh.nodes_of(facet)) {
+      auto& part = parts.try_emplace(n, typename Dashpot::Part{number}).first->second;
+      part.resistance += column.layer[layer].filled * impedance<D>(column.layer[layer].ground, share);
+      part.face.emplace_back(layer, share);
+    }
   }
+  return parts;
+}
+
+template <int D>
+void Walls<D>::add_dashpots(const Mesh<D>& mesh, Parts parts)
+{
+  std::map<Index, std::size_t> known;
+  for (std::size_t k = 0; k < dashpots_.size(); ++k)
+    known.emplace(dashpots_[k].node, k);
+  for (auto& [node, part] : parts) {
+    if (const auto at = known.find(node); at != known.end())
+      dashpots_[at->second].parts.push_back(std::move(part));
+    else
+      dashpots_.push_back({.node = node, .row = n_dashpots_++, .place = mesh.node(node), .parts = {std::move(part)}});
+  }
+}
+
+template <int D>
+Index Walls<D>::holder_of(Index node) const noexcept
+{
+  return !binds(node) ? none : rule_of(node).whole != none ? rule_of(node).whole : rule_of(node).base;
 }
 
 template <int D>
@@ -68,23 +100,26 @@ template <int D>
 void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets)
 {
   const auto number = static_cast<Index>(walls_.size());
-  const bool roller = wall.kind == WallKind::roller;
+  const bool roller = wall.kind != WallKind::friction;
   walls_.push_back(std::move(wall));
   facets_.insert(facets_.end(), facets.begin(), facets.end());
   if (walls_.back().kind == WallKind::compliant_base) {
-    std::map<Index, Mat<D>> resistance;
-    for (const Facet facet : facets)
-      for (const Index n : mesh.nodes_of(facet))
-        resistance.try_emplace(n, Mat<D>::Zero()).first->second += impedance<D>(walls_.back().halfspace, mesh.area_vector(facet)) / D;
-    for (const auto& [node, of_node] : resistance)
-      add_dashpot(mesh, node, number, of_node);
-    return;
+    Parts parts = base_parts(number, mesh, facets);
+    for (const auto& [node, part] : parts)
+      if (rule(mesh, node).base == none)
+        rule(mesh, node).base = number;
+    return add_dashpots(mesh, std::move(parts));
+  }
+  if (walls_.back().kind == WallKind::free_field) {
+    free_fields_.push_back(number);
+    add_dashpots(mesh, side_parts(number, mesh, facets));
   }
   for (const Facet facet : facets) {
     const Vec<D> area = mesh.area_vector(facet);
     for (const Index n : mesh.nodes_of(facet)) {
       auto& planes = roller ? rule(mesh, n).rollers : rule(mesh, n).frictions;
-      // until settle(), a plane's normal is the sum of the area vectors it stands for
+      // until settle(), a plane's normal is the sum of the area vectors it
+      // stands for
       const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) {
         return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm();
       });
@@ -123,7 +158,10 @@ void Walls<D>::settle()
   for (NodeRule& rule : rules_) {
     for (Plane& plane : rule.frictions)
       plane.normal.normalize();
-    std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span already adds nothing
+    // those that let go later come last, so that the others stand without them
+    std::stable_partition(rule.rollers.begin(), rule.rollers.end(), [&](const Plane& plane) { return !lets_go(plane.wall); });
+    std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span
+                               // already adds nothing
     for (Plane plane : rule.rollers) {
       plane.normal.normalize();
       for (const Plane& other : basis)
@@ -141,18 +179,19 @@ void Walls<D>::settle()
 }
 
 template <int D>
-void Walls<D>::begin_stage(bool geostatic, Real time) noexcept
+void Walls<D>::begin_stage(bool geostatic, Real time)
 {
   if (geostatic)
     shaking_ = {};
   else if (!shaking_.begun)
-    shaking_ = {.begun = true, .begin = time, .reaction = {}};
+    shaking_ = {.begun = true, .begin = time, .reaction = {}, .columns = {}};
 }
 
 template <int D>
 void Walls<D>::find_reactions(Real dt, Exchange& ranks, const Nodes<D>& nodes)
 {
-  std::vector<std::int64_t> bits(D * n_dashpots_, 0);  // each number is told by one rank, the others add nothing to it
+  std::vector<std::int64_t> bits(D * n_dashpots_,
+                                 0);  // each number is told by one rank, the others add nothing to it
   for (const Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
     const Vec<D> reaction = -nodes.sum[n].mass / dt * nodes.motion[n].change;
@@ -162,12 +201,74 @@ void Walls<D>::find_reactions(Real dt, Exchange& ranks, const Nodes<D>& nodes)
   ranks.sum(bits);
   for (const std::int64_t number : bits)
     shaking_.reaction.push_back(std::bit_cast<Real>(number));
+  for (const Index wall : free_fields_)
+    shaking_.columns.push_back(walls_[static_cast<std::size_t>(wall)].column.at_rest());
   shaking_.knows_reactions = true;
 }
 
-/// Implicit in the velocity at the end of the step, as a node may be lighter than what the dashpot carries off in a step:
-///   m (v - v_free) / dt = C (2 v_up - v) + reaction.
-/// The halfspace takes C v off and brings C 2 v_up, of which one half is the wave itself and one what it would reflect [Joyner & Chen 1975].
+template <int D>
+bool Walls<D>::fits() const
+{
+  if (!shaking_.knows_reactions)
+    return shaking_.reaction.empty() && shaking_.columns.empty();
+  if (shaking_.reaction.size() != D * n_dashpots_ || shaking_.columns.size() != free_fields_.size())
+    return false;
+  for (std::size_t k = 0; k < free_fields_.size(); ++k) {
+    const ColumnMotion of_scene = walls_[static_cast<std::size_t>(free_fields_[k])].column.at_rest(), &kept_one = shaking_.columns[k];
+    if (kept_one.velocity.size() != of_scene.velocity.size() || kept_one.traction.size() != of_scene.traction.size())
+      return false;
+  }
+  return true;
+}
+
+/// The columns move on by themselves; what they do to the model in this step is
+/// what their stress was at its beginning, as that of the particles, and their
+/// velocity at its end.
+template <int D>
+void Walls<D>::advance_columns(Real end, Real dt)
+{
+  columns_then_ = shaking_.columns;
+  for (std::size_t k = 0; k < free_fields_.size(); ++k) {
+    const Wall<D>& side = walls_[static_cast<std::size_t>(free_fields_[k])];
+    const Wall<D>& below = walls_[static_cast<std::size_t>(side.foot)];
+    Foot<D> foot;
+    if (below.kind != WallKind::fixed)
+      foot.velocity = prescribed(below, end);
+    if (below.kind == WallKind::compliant_base)
+      foot.halfspace = below.halfspace;
+    advance(side.column, foot, dt, shaking_.columns[k]);
+  }
+}
+
+template <int D>
+Vec<D> Walls<D>::wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real end) const noexcept
+{
+  const Wall<D>& wall = walls_[static_cast<std::size_t>(part.wall)];
+  if (wall.kind == WallKind::compliant_base)
+    return prescribed(wall, end);
+  return wall.column.velocity_at(wall.column.up.dot(place), shaking_.columns[free_field_number(part.wall)]);
+}
+
+template <int D>
+Vec<D> Walls<D>::drive(const typename Dashpot::Part& part, const Vec<D>& wave) const noexcept
+{
+  const Wall<D>& wall = walls_[static_cast<std::size_t>(part.wall)];
+  if (wall.kind == WallKind::compliant_base)
+    return part.resistance * (2 * wave);
+  Vec<D> force = part.resistance * wave;
+  for (const auto& [layer, area] : part.face)
+    force += wall.column.force_on(area, layer, columns_then_[free_field_number(part.wall)]);
+  return force;
+}
+
+/// Implicit in the velocity at the end of the step, as a node may be lighter
+/// than what the dashpot carries off in a step:
+///   m (v - v_free) / dt = C (2 v_up - v) + reaction              of a base
+///   m (v - v_free) / dt = C (v_ff - v) + s_ff n A + reaction      of a side
+/// The halfspace takes C v off and brings 2 C v_up, of which one half is the
+/// wave itself and one the wave that it would send back [Joyner & Chen 1975].
+/// Beside, only what differs from the free field (ff) leaves [Zienkiewicz,
+/// Bicanic & Shen 1988].
 template <int D>
 void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
 {
@@ -175,9 +276,11 @@ void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
     return;
   if (!shaking_.knows_reactions)
     find_reactions(dt, ranks, nodes);
+  advance_columns(end, dt);
   for (Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
     dashpot.impulse.setZero();
+    dashpot.brought = 0;
     if (!nodes.active[n])
       continue;
     const Real mass = nodes.sum[n].mass;
@@ -186,7 +289,9 @@ void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
     Vec<D> momentum = mass * motion.v + dt * Eigen::Map<const Vec<D>>(&shaking_.reaction[D * dashpot.row]);
     for (const auto& part : dashpot.parts) {
       inertia += dt * part.resistance;
-      momentum += dt * part.resistance * (2 * prescribed(walls_[static_cast<std::size_t>(part.wall)], end));
+      const Vec<D> wave = wave_at(part, dashpot.place, end);
+      momentum += dt * drive(part, wave);
+      dashpot.brought += dt * wave.dot(part.resistance * wave);
     }
     const Vec<D> by = inertia.inverse() * momentum - motion.v;
     motion.v += by, motion.change += by;
@@ -231,13 +336,15 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
     for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
       bool touched = false;
       for (const Plane& plane : rule.rollers)
-        push(plane.wall, -v.dot(plane.normal) * plane.normal);
+        if (holds(plane))
+          push(plane.wall, -v.dot(plane.normal) * plane.normal);
       for (const Plane& plane : rule.frictions) {
         const Real into = v.dot(plane.normal);
         if (into <= 0)
           continue;
         push(plane.wall, -into * plane.normal);
-        const Real slip = v.norm(), limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
+        const Real slip = v.norm(),
+                   limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
         const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
         push(plane.wall, rub);
         rubbed += rub;
@@ -252,7 +359,7 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
   const Real friction = mass * rubbed.dot(v_mid);
   change = v - v_old;
   if (rule.counted)
-    work.add({friction, mass * (v - v_free).dot(v_mid) - friction});
+    work.add({friction, mass * (v - v_free).dot(v_mid) - friction, 0});
 }
 
 template <int D>
@@ -269,7 +376,7 @@ void Walls<D>::apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work)
     if (!shaking_.begun || !dashpot.counted || !nodes.active[n])
       continue;
     pushed_[static_cast<std::size_t>(dashpot.parts.front().wall)].add({dashpot.impulse, moment<D>(dashpot.place, dashpot.impulse)});
-    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change)});
+    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change), dashpot.brought});
   }
 }
 
@@ -313,7 +420,8 @@ Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) c
   for (const Plane& plane : rule.frictions)
     held -= std::max(held.dot(plane.normal), Real{0}) * plane.normal;
   for (const Plane& plane : rule.rollers)
-    held -= held.dot(plane.normal) * plane.normal;
+    if (holds(plane))
+      held -= held.dot(plane.normal) * plane.normal;
   return held;
 }
 
