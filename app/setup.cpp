@@ -35,8 +35,7 @@ class Filled {
     ranks.sum(filled_);  // no cell is filled by two ranks
   }
   bool operator()(Index cell) const { return (filled_[word_of(cell)] & bit_of(cell)) != 0; }
-  /// A facet inside the mesh belongs to the side that has material, if only one
-  /// has.
+  /// A facet inside the mesh belongs to the side that has material, if only one has.
   Facet seen_from_material(Facet facet) const
   {
     const Index other = mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)];
@@ -61,8 +60,7 @@ class Filled {
   std::vector<std::int64_t> filled_;
 };
 
-/// What each rank has found behind facets, its own particles, becomes that of
-/// all.  Every rank has to ask.
+/// What each rank has found behind facets, its own particles, becomes that of all.  Every rank has to ask.
 template <int D>
 void join(Exchange& ranks, ParticleTraction<D>& load)
 {
@@ -155,23 +153,18 @@ class WallBuilder {
     const auto column = column_beside<D>(mesh_, facets, up_, setup_.particles, setup_.materials, ranks_);
     wall.foot = lowest == none ? none : walls_.holder_of(lowest);
     if (!column)
-      return complaints_.add(spec.where, "on",
-                             fmt::format("behind the facets of \"{}\", from their foot up, there "
-                                         "must be particles of laws that have an elastic "
-                                         "shear modulus",
-                                         spec.on));
+      return complaints_.add(
+          spec.where, "on",
+          fmt::format("behind the facets of \"{}\", from their foot up, there must be particles of laws that have an elastic shear modulus",
+                      spec.on));
     if (wall.foot == none)
       return complaints_.add(spec.where, "on",
-                             fmt::format("no boundary of type fixed, velocity or compliant_base "
-                                         "holds the foot of \"{}\"",
-                                         spec.on));
+                             fmt::format("no boundary of type fixed, velocity or compliant_base holds the foot of \"{}\"", spec.on));
     wall.column = *column;
     const Halfspace &lowest_layer = wall.column.layer.front().ground, &highest_layer = wall.column.layer.back().ground;
-    setup_.notes.push_back(
-        fmt::format("free field \"{}\": {} layers over {:.4g} m, shear waves "
-                    "{:.4g} m/s at the foot and {:.4g} m/s at the ground",
-                    spec.on, wall.column.layer.size(), wall.column.level.back() - wall.column.level.front(), lowest_layer.s_wave,
-                    highest_layer.s_wave));
+    setup_.notes.push_back(fmt::format(
+        "free field \"{}\": {} layers over {:.4g} m, shear waves {:.4g} m/s at the foot and {:.4g} m/s at the ground", spec.on,
+        wall.column.layer.size(), wall.column.level.back() - wall.column.level.front(), lowest_layer.s_wave, highest_layer.s_wave));
     walls_.add(std::move(wall), mesh_, facets);
   }
   void operator()(const RollerSpec& spec) { on_facets(spec, wall_of(spec, WallKind::roller)); }
@@ -209,9 +202,7 @@ class WallBuilder {
     const Real left = std::abs(wall.record->velocity.back());
     if (left > noticed * wall.record->peak_velocity())
       setup_.warnings.push_back(
-          fmt::format("{}: \"{}\" ends with {:.3g} m/s, and its velocity stays "
-                      "so after its end; record.baseline takes "
-                      "such a drift off",
+          fmt::format("{}: \"{}\" ends with {:.3g} m/s, and its velocity stays so after its end; record.baseline takes such a drift off",
                       to_string(spec.where), spec.record->file, left));
   }
   template <class Spec>
@@ -284,14 +275,10 @@ class LoadBuilder {
     }
     if (loaded == 0)
       return complaints_.add(spec.where, "on",
-                             fmt::format("there are no particles behind the "
-                                         "facets of \"{}\" to carry the load",
-                                         spec.on));
+                             fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
     if (loaded < area * (1 - 1e-9))  // sums of the same areas differ by round-off only
-      setup_.warnings.push_back(
-          fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and "
-                      "carries no load",
-                      to_string(spec.where), 100 * (1 - loaded / area), spec.on));
+      setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
+                                            to_string(spec.where), 100 * (1 - loaded / area), spec.on));
     if (spec.carried_by == Carrier::particles) {
       auto load = carried_by_particles<D>(mesh_, facets, setup_.particles);
       join(ranks_, load);
@@ -352,10 +339,10 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
   for (const Stage& stage : setup.stages)
     for (std::size_t b = 0; stage.k0 && b < setup.bodies.size(); ++b)
       if (!can_start_from_stress(setup.materials[b]))
-        complaints.add(stage.where, "initial_stress",
-                       fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; "
-                                   "leave initial_stress out and let gravity grow (ramp)",
-                                   law_name(setup.materials[b]), setup.bodies[b].name));
+        complaints.add(
+            stage.where, "initial_stress",
+            fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
+                        law_name(setup.materials[b]), setup.bodies[b].name));
 }
 
 }  // namespace
@@ -404,8 +391,7 @@ bool wants_displacement(const OutputSpec& outputs)
   return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
 }
 
-/// The reader has checked the fields of files, but not the one of the picture,
-/// which may name a component behind a colon.
+/// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
 void check_picture(const Scene& scene, Complaints& complaints)
 {
   if (!scene.outputs.particles)

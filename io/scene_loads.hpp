@@ -36,12 +36,11 @@ struct BodyForceSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("acceleration", &BodyForceSpec::acceleration, any, "m/s^2",
-                               "force per mass: one number or formula of x, y, z and the time t "
-                               "per dimension, such as \"3 * sin(pi * x) * cos(8 * t)\""),
-                      optional_choice("place", &BodyForceSpec::place,
-                                      "x, y, z of a particle are where it is now or where it "
-                                      "was at the start (for manufactured solutions)")};
+    return std::tuple{
+        required("acceleration", &BodyForceSpec::acceleration, any, "m/s^2",
+                 "force per mass: one number or formula of x, y, z and the time t per dimension, such as \"3 * sin(pi * x) * cos(8 * t)\""),
+        optional_choice("place", &BodyForceSpec::place,
+                        "x, y, z of a particle are where it is now or where it was at the start (for manufactured solutions)")};
   }
 };
 
@@ -61,13 +60,11 @@ struct TractionSpec {
   {
     return std::tuple{
         required("on", &TractionSpec::on, any, "-", "facet group"),
-        optional("traction", &TractionSpec::traction, any, "Pa",
-                 "force per initial area, fixed direction, one number per "
-                 "dimension"),
+        optional("traction", &TractionSpec::traction, any, "Pa", "force per initial area, fixed direction, one number per dimension"),
         optional("pressure", &TractionSpec::pressure, any, "Pa", "pressure normal to the surface as it deforms, positive pushes"),
-        optional_choice("carried_by", &TractionSpec::carried_by,
-                        "particles: the first layer of particles behind the facets carries "
-                        "the load and takes it along; mesh: the facets keep it"),
+        optional_choice(
+            "carried_by", &TractionSpec::carried_by,
+            "particles: the first layer of particles behind the facets carries the load and takes it along; mesh: the facets keep it"),
         optional("table", &TractionSpec::table, any, "-", "factor in time: list of [time, factor]")};
   }
   void check(std::vector<std::string>& problems) const;
@@ -101,13 +98,13 @@ struct VelocitySpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
-                      required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension; with a record its direction"),
-                      optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
-                      group("record", &VelocitySpec::record,
-                            "motion from a file in the place of a table; it begins with the "
-                            "first stage that is not geostatic, and before "
-                            "there is none")};
+    return std::tuple{
+        required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
+        required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension; with a record its direction"),
+        optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
+        group(
+            "record", &VelocitySpec::record,
+            "motion from a file in the place of a table; it begins with the first stage that is not geostatic, and before there is none")};
   }
   void check(std::vector<std::string>& problems) const;
 };
@@ -123,23 +120,19 @@ struct CompliantBaseSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &CompliantBaseSpec::on, any, "-",
-                               "facet group above a halfspace: held in geostatic stages, then it "
-                               "carries what it carried, waves leave through it and one "
-                               "comes up"),
-                      required("density", &CompliantBaseSpec::density, positive, "kg/m^3", "of the halfspace"),
-                      required("s_wave", &CompliantBaseSpec::s_wave, positive, "m/s", "speed of shear waves in the halfspace"),
-                      required("p_wave", &CompliantBaseSpec::p_wave, positive, "m/s", "speed of pressure waves in the halfspace"),
-                      optional("velocity", &CompliantBaseSpec::velocity, any, "m/s",
-                               "of the particles in the wave that comes up, half of what an "
-                               "outcrop of the halfspace would show: one number per "
-                               "dimension; with a record its direction; default none"),
-                      optional("table", &CompliantBaseSpec::table, any, "-",
-                               "factor of velocity in time: list of [time, factor], from the "
-                               "beginning of the first stage that is not geostatic"),
-                      group("record", &CompliantBaseSpec::record,
-                            "motion from a file in the place of a table, from the same time "
-                            "on")};
+    return std::tuple{
+        required("on", &CompliantBaseSpec::on, any, "-",
+                 "facet group above a halfspace: held in geostatic stages, then it carries what it carried, waves leave through it and one "
+                 "comes up"),
+        required("density", &CompliantBaseSpec::density, positive, "kg/m^3", "of the halfspace"),
+        required("s_wave", &CompliantBaseSpec::s_wave, positive, "m/s", "speed of shear waves in the halfspace"),
+        required("p_wave", &CompliantBaseSpec::p_wave, positive, "m/s", "speed of pressure waves in the halfspace"),
+        optional("velocity", &CompliantBaseSpec::velocity, any, "m/s",
+                 "of the particles in the wave that comes up, half of what an outcrop of the halfspace would show: one number per "
+                 "dimension; with a record its direction; default none"),
+        optional("table", &CompliantBaseSpec::table, any, "-",
+                 "factor of velocity in time: list of [time, factor], from the beginning of the first stage that is not geostatic"),
+        group("record", &CompliantBaseSpec::record, "motion from a file in the place of a table, from the same time on")};
   }
   void check(std::vector<std::string>& problems) const;
 };
@@ -153,8 +146,7 @@ struct FrictionSpec {
   {
     return std::tuple{required("on", &FrictionSpec::on, any, "-", "facet group that acts as a wall: no penetration, free separation"),
                       required("coefficient", &FrictionSpec::coefficient, non_negative, "-",
-                               "Coulomb friction coefficient, tangent of the wall friction "
-                               "angle")};
+                               "Coulomb friction coefficient, tangent of the wall friction angle")};
   }
 };
 
@@ -166,9 +158,8 @@ struct FreeFieldSpec {
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FreeFieldSpec::on, any, "-",
-                               "facet group of an upright side: a roller in geostatic stages, then "
-                               "level ground like that beside the side goes on behind "
-                               "it, moved by the base of the model, and waves leave through it")};
+                               "facet group of an upright side: a roller in geostatic stages, then level ground like that beside the side "
+                               "goes on behind it, moved by the base of the model, and waves leave through it")};
   }
 };
 

@@ -39,9 +39,7 @@ class Rules {
     only_of("umls", scene_.umls.has_value());
     only_of("projected", scene_.projected.has_value());
     if (scene_.kernel == "projected" && scene_.transfer.scheme == TransferScheme::apic)
-      add("transfer.scheme",
-          "apic takes its matrix from the weights of particles, which "
-          "projected does not make; take tpic or aflip");
+      add("transfer.scheme", "apic takes its matrix from the weights of particles, which projected does not make; take tpic or aflip");
   }
 
   void add(std::string path, std::string message) { findings_.push_back({std::move(path), std::move(message)}); }
@@ -94,9 +92,7 @@ class Rules {
   void fits(const std::string& path, const Polygon& polygon)
   {
     if (scene_.dimension == 3 && polygon.extrude.empty() && !polygon.points.empty())
-      add(path,
-          "missing key \"extrude\" [m]: in 3 dimensions a polygon has [z "
-          "from, z to]");
+      add(path, "missing key \"extrude\" [m]: in 3 dimensions a polygon has [z from, z to]");
     if (scene_.dimension == 2 && !polygon.extrude.empty())
       add(path + ".extrude", "a polygon is extruded in 3 dimensions only");
   }
@@ -158,8 +154,7 @@ class Rules {
       initial(*scene_.initial);
   }
 
-  /// A body is filled or taken from another run, and what it says is used.
-  /// Without a list only that run can tell which are taken.
+  /// A body is filled or taken from another run, and what it says is used.  Without a list only that run can tell which are taken.
   void source_of_particles(const std::string& path, const BodySpec& body)
   {
     const auto& list = scene_.initial ? scene_.initial->bodies : std::vector<TakenSpec>{};
@@ -177,9 +172,7 @@ class Rules {
       return;
     const auto unused = [&](bool given, std::string_view key) {
       if (given)
-        add(fmt::format("{}.{}", path, key), fmt::format("the particles of this body come from initial.from: "
-                                                         "leave {} out",
-                                                         key));
+        add(fmt::format("{}.{}", path, key), fmt::format("the particles of this body come from initial.from: leave {} out", key));
     };
     unused(!body.region.empty(), "region");
     unused(body.shape.has_value(), "shape");
@@ -232,10 +225,8 @@ class Rules {
       const bool gives_way =
           std::holds_alternative<CompliantBaseSpec>(scene_.boundaries[i]) || std::holds_alternative<FreeFieldSpec>(scene_.boundaries[i]);
       if (gives_way && gravity && !begins_at_rest())
-        add(path, fmt::format("it carries on what it carried at rest, and nothing "
-                              "says what that is: let the stages begin with a "
-                              "geostatic one, take the state from another run "
-                              "(initial), or leave loads[{}] out",
+        add(path, fmt::format("it carries on what it carried at rest, and nothing says what that is: let the stages begin with a geostatic "
+                              "one, take the state from another run (initial), or leave loads[{}] out",
                               *gravity));
     }
   }
@@ -279,8 +270,7 @@ class Rules {
       different_columns(history);
   }
 
-  /// A table with two columns of one name is read differently by different
-  /// programs.
+  /// A table with two columns of one name is read differently by different programs.
   void different_columns(const HistoryOutputSpec& history)
   {
     std::map<std::string, std::string> giver;  // of each column
@@ -289,9 +279,8 @@ class Rules {
       for (const CsvColumn& column : columns) {
         const auto [known, is_new] = giver.try_emplace(column.name, path);
         if (!is_new && !told)
-          add(fmt::format("{}.{}", path, key), fmt::format("its column \"{}\" of history.csv is there already: "
-                                                           "{} has it",
-                                                           column.name, known->second));
+          add(fmt::format("{}.{}", path, key),
+              fmt::format("its column \"{}\" of history.csv is there already: {} has it", column.name, known->second));
         told = told || !is_new;
       }
     };
@@ -325,8 +314,7 @@ class Rules {
     }
   }
 
-  /// Those of every particle, and the history variables of the laws in this
-  /// scene.
+  /// Those of every particle, and the history variables of the laws in this scene.
   std::vector<std::string> particle_field_names() const
   {
     std::vector<std::string> known(particle_fields.begin(), particle_fields.end());

@@ -48,10 +48,8 @@ Vec<D> SoilColumn<D>::velocity_at(Real height, const ColumnMotion& motion) const
   return (1 - share) * row<D>(motion.velocity, l) + share * row<D>(motion.velocity, l + 1);
 }
 
-/// Stress of a motion u(h): along the axis a of the column lambda a.u' in all
-/// directions and 2 mu a.u' along a, and mu between a and the rest of u'.  With
-/// n across a its traction is (lambda a.u') n + (mu n.u') a, and the traction
-/// on horizontal planes gives both terms.
+/// Stress of a motion u(h): along the axis a of the column lambda a.u' in all directions and 2 mu a.u' along a, and mu between a and the
+/// rest of u'.  With n across a its traction is (lambda a.u') n + (mu n.u') a, and the traction on horizontal planes gives both terms.
 template <int D>
 Vec<D> SoilColumn<D>::force_on(const Vec<D>& area, std::size_t at_layer, const ColumnMotion& motion) const noexcept
 {

@@ -10,8 +10,7 @@ namespace {
 
 /// Cosine of the angle below which two facets belong to one smooth surface.
 constexpr Real smooth = 0.8660254037844387;
-/// Sweeps over the planes of an edge or corner; each sweep contracts the
-/// violation by the cosine of their angle or better.
+/// Sweeps over the planes of an edge or corner; each sweep contracts the violation by the cosine of their angle or better.
 constexpr int sweeps = 20;
 
 }  // namespace
@@ -118,8 +117,7 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> fac
     const Vec<D> area = mesh.area_vector(facet);
     for (const Index n : mesh.nodes_of(facet)) {
       auto& planes = roller ? rule(mesh, n).rollers : rule(mesh, n).frictions;
-      // until settle(), a plane's normal is the sum of the area vectors it
-      // stands for
+      // until settle(), a plane's normal is the sum of the area vectors it stands for
       const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) {
         return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm();
       });
@@ -160,8 +158,7 @@ void Walls<D>::settle()
       plane.normal.normalize();
     // those that let go later come last, so that the others stand without them
     std::stable_partition(rule.rollers.begin(), rule.rollers.end(), [&](const Plane& plane) { return !lets_go(plane.wall); });
-    std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span
-                               // already adds nothing
+    std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span already adds nothing
     for (Plane plane : rule.rollers) {
       plane.normal.normalize();
       for (const Plane& other : basis)
@@ -190,8 +187,7 @@ void Walls<D>::begin_stage(bool geostatic, Real time)
 template <int D>
 void Walls<D>::find_reactions(Real dt, Exchange& ranks, const Nodes<D>& nodes)
 {
-  std::vector<std::int64_t> bits(D * n_dashpots_,
-                                 0);  // each number is told by one rank, the others add nothing to it
+  std::vector<std::int64_t> bits(D * n_dashpots_, 0);  // each number is told by one rank, the others add nothing to it
   for (const Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
     const Vec<D> reaction = -nodes.sum[n].mass / dt * nodes.motion[n].change;
@@ -221,9 +217,8 @@ bool Walls<D>::fits() const
   return true;
 }
 
-/// The columns move on by themselves; what they do to the model in this step is
-/// what their stress was at its beginning, as that of the particles, and their
-/// velocity at its end.
+/// The columns move on by themselves; what they do to the model in this step is what their stress was at its beginning, as that of the
+/// particles, and their velocity at its end.
 template <int D>
 void Walls<D>::advance_columns(Real end, Real dt)
 {
@@ -261,14 +256,11 @@ Vec<D> Walls<D>::drive(const typename Dashpot::Part& part, const Vec<D>& wave) c
   return force;
 }
 
-/// Implicit in the velocity at the end of the step, as a node may be lighter
-/// than what the dashpot carries off in a step:
+/// Implicit in the velocity at the end of the step, as a node may be lighter than what the dashpot carries off in a step:
 ///   m (v - v_free) / dt = C (2 v_up - v) + reaction              of a base
 ///   m (v - v_free) / dt = C (v_ff - v) + s_ff n A + reaction      of a side
-/// The halfspace takes C v off and brings 2 C v_up, of which one half is the
-/// wave itself and one the wave that it would send back [Joyner & Chen 1975].
-/// Beside, only what differs from the free field (ff) leaves [Zienkiewicz,
-/// Bicanic & Shen 1988].
+/// The halfspace takes C v off and brings 2 C v_up, of which one half is the wave itself and one the wave that it would send back [Joyner &
+/// Chen 1975].  Beside, only what differs from the free field (ff) leaves [Zienkiewicz, Bicanic & Shen 1988].
 template <int D>
 void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
 {
@@ -343,8 +335,7 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
         if (into <= 0)
           continue;
         push(plane.wall, -into * plane.normal);
-        const Real slip = v.norm(),
-                   limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
+        const Real slip = v.norm(), limit = walls_[static_cast<std::size_t>(plane.wall)].friction * into;  // v is tangential now
         const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
         push(plane.wall, rub);
         rubbed += rub;
