@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int map_width = 1280, lowest_map = 420, highest_map = 1100;                            // pixels
-constexpr Real left_letters = 6.5, below_letters = 3.6, above_letters = 2.6, right_letters = 8;  // around the panel
+constexpr Real left_letters = 6.5, below_letters = 3.6, above_letters = 2.6, right_letters = 9;  // around the panel
 constexpr int wanted_contours = 20;
 
 /// A colour in doubles while it is mixed.
@@ -239,8 +239,8 @@ class MapPainter {
       const Panel panel{place.left / size[0], place.bottom / size[1], place.right / size[0], place.top / size[1]};
       add_colour_bar(sheet, scale, std::string(kind.title), std::string(kind.unit), panel, size);
       const Real y = 0.9 * sheet.letter();
-      add_length(sheet, place.width() / (shown_.high[0] - shown_.low[0]), 0.2 * place.width(), {place.left, y});
-      sheet.text(fmt::format("contours of the ground every {:g} m", step_), place.right, y, Side::right);
+      add_length(sheet, place.width() / (shown_.high[0] - shown_.low[0]), 0.2 * place.width(), {1.2 * sheet.letter(), y});
+      sheet.text(fmt::format("contours of the ground every {:g} m", step_), size[0] - 0.6 * sheet.letter(), y, Side::right);
     });
   }
 
