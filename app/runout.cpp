@@ -9,6 +9,7 @@
 
 #include "app/reach.hpp"
 #include "app/results.hpp"
+#include "app/traps.hpp"
 #include "io/raster_file.hpp"
 #include "io/whole_file.hpp"
 
@@ -90,7 +91,13 @@ void raise(std::vector<Real>& to, const std::vector<Real>& values)
 }
 
 /// Over a sum that may be nothing.
-Real over(Real sum, Real whole) { return whole > 0 ? sum / whole : no_value; }
+Real over(Real sum, Real whole) { return std::isgreater(whole, 0) ? sum / whole : no_value; }  // NaN is nothing, too
+
+void write_map(const fs::path& file, const Raster& raster)
+{
+  const TrapsPaused paused;
+  write_raster(file, raster);
+}
 
 std::vector<Real> without_zeros(std::vector<Real> values)
 {
@@ -389,7 +396,7 @@ std::vector<std::string> Runout<D>::see(const Frame<D>& frame, bool last)
   if (!frame_due)
     return {};
   const fs::path file = frame_file(frames_++);
-  frame.ranks->together([&] { write_raster(file, raster(without_zeros(thickness_), "m")); });
+  frame.ranks->together([&] { write_map(file, raster(without_zeros(thickness_), "m")); });
   return {fs::path(map_folder) / file.filename()};
 }
 
@@ -514,7 +521,7 @@ std::vector<std::string> Runout<D>::write_maps(const Frame<D>& frame)
       if (ending == std::string_view(".csv") && !spec_->csv)
         continue;
       const fs::path file = fs::path(map_folder) / (std::string(map.kind.name) + ending);
-      frame.ranks->together([&] { write_raster(folder_ / file, raster(map.values, map.kind.unit)); });
+      frame.ranks->together([&] { write_map(folder_ / file, raster(map.values, map.kind.unit)); });
       files.push_back(file);
     }
   const std::array<Real, 2> origin = map_ ? map_->origin : std::array<Real, 2>{0, 0};

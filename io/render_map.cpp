@@ -384,6 +384,9 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
     return settings.only.empty() ? by_default : std::find(settings.only.begin(), settings.only.end(), name) != settings.only.end();
   };
   std::optional<MapPainter> painter;
+  const std::vector<fs::path> sections = wanted("sections", true) ? sections_in(settings.folder) : std::vector<fs::path>();
+  if (sections.empty() && !settings.only.empty() && wanted("sections", false))
+    throw Error(fmt::format("--only sections: there are none in {}", (settings.folder / "sections").string()));
   for (const MapKind& kind : map_kinds) {
     if (!wanted(kind.name, !is_surface(kind.name)))
       continue;
@@ -401,12 +404,11 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
     painter->draw(raster, kind, settings.range.value_or(extent.range(false)), "", png);
     written(png);
   }
-  if (wanted("sections", true))
-    for (const fs::path& file : sections_in(settings.folder)) {
-      const fs::path png = folder_for(settings) / fmt::format("section_{}.png", file.stem().string());
-      draw_section(settings, file, png);
-      written(png);
-    }
+  for (const fs::path& file : sections) {
+    const fs::path png = folder_for(settings) / fmt::format("section_{}.png", file.stem().string());
+    draw_section(settings, file, png);
+    written(png);
+  }
 }
 
 }  // namespace talus::render
