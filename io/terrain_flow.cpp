@@ -9,7 +9,7 @@ namespace talus {
 
 namespace {
 
-bool is_in_domain(const TerrainInput& input, const Place& place)
+bool is_in_domain(const TerrainInput& input, const MapPlace& place)
 {
   if (!input.is_line)
     return input.domain.contains(place);
@@ -19,17 +19,17 @@ bool is_in_domain(const TerrainInput& input, const Place& place)
 }
 
 /// The lowest place on the smallest circle around that has one lower than its centre.
-std::optional<Place> lower_place(const TerrainInput& input, const Place& from, Real stride)
+std::optional<MapPlace> lower_place(const TerrainInput& input, const MapPlace& from, Real stride)
 {
   const int directions = input.is_line ? 2 : 36;
   constexpr Real widest = 8;  // strides
   const auto& [along_x, along_y] = input.frame.along;
   for (Real radius = stride; radius <= widest * stride; radius *= 2) {
-    std::optional<Place> best;
+    std::optional<MapPlace> best;
     Real lowest = input.ground(from);
     for (int i = 0; i < directions; ++i) {
       const Real angle = 2 * std::numbers::pi * i / directions, c = std::cos(angle), s = std::sin(angle);
-      const Place place{from[0] + radius * (c * along_x - s * along_y), from[1] + radius * (c * along_y + s * along_x)};
+      const MapPlace place{from[0] + radius * (c * along_x - s * along_y), from[1] + radius * (c * along_y + s * along_x)};
       if (!is_in_domain(input, place))
         continue;
       if (const Real height = input.ground(place); height < lowest)
@@ -42,7 +42,7 @@ std::optional<Place> lower_place(const TerrainInput& input, const Place& from, R
 }
 
 /// Thickness of a layer, none where it gives way.
-Real thickness_at(const TerrainInput& input, std::size_t layer, const Place& place)
+Real thickness_at(const TerrainInput& input, std::size_t layer, const MapPlace& place)
 {
   if (!is_in_domain(input, place) || (input.within[layer] && !input.within[layer]->contains(place)))
     return 0;
@@ -56,12 +56,12 @@ Real thickness_at(const TerrainInput& input, std::size_t layer, const Place& pla
 
 }  // namespace
 
-std::optional<Place> centre_of_layer(const TerrainInput& input, std::size_t layer)
+std::optional<MapPlace> centre_of_layer(const TerrainInput& input, std::size_t layer)
 {
   constexpr Index samples = 200;  // along each axis
   Real total = 0;
-  Place sum{};
-  const auto add = [&](const Place& place) {
+  MapPlace sum{};
+  const auto add = [&](const MapPlace& place) {
     const Real thickness = thickness_at(input, layer, place);
     total += thickness;
     sum[0] += thickness * place[0], sum[1] += thickness * place[1];
@@ -76,12 +76,12 @@ std::optional<Place> centre_of_layer(const TerrainInput& input, std::size_t laye
   }
   if (total == 0)
     return std::nullopt;
-  return Place{sum[0] / total, sum[1] / total};
+  return MapPlace{sum[0] / total, sum[1] / total};
 }
 
-Line steepest_descent(const TerrainInput& input, const Place& from, Real stride)
+MapLine steepest_descent(const TerrainInput& input, const MapPlace& from, Real stride)
 {
-  Line line{from};
+  MapLine line{from};
   while (const auto next = lower_place(input, line.back(), stride))
     line.push_back(*next);
   return line;
@@ -95,7 +95,7 @@ EnergyLines::EnergyLines(std::vector<std::array<Real, 3>> sources, Real fall) : 
       highest_.push_back(source);
 }
 
-Real EnergyLines::height(const Place& place) const noexcept
+Real EnergyLines::height(const MapPlace& place) const noexcept
 {
   Real best = -std::numeric_limits<Real>::infinity();
   for (const auto& [x, y, z] : highest_)

@@ -9,17 +9,17 @@
 namespace talus {
 
 /// Mean place of a layer, by its thickness; nothing if it has none.
-std::optional<Place> centre_of_layer(const TerrainInput& input, std::size_t layer);
+std::optional<MapPlace> centre_of_layer(const TerrainInput& input, std::size_t layer);
 
 /// From a place down over the ground, in strides that get longer where the ground has pits, until no place up to eight strides around is lower.
-Line steepest_descent(const TerrainInput& input, const Place& from, Real stride);
+MapLine steepest_descent(const TerrainInput& input, const MapPlace& from, Real stride);
 
 /// Lines that fall from sources (east, north, height) in all directions, by `fall` [m] for each metre.
 class EnergyLines {
  public:
   EnergyLines(std::vector<std::array<Real, 3>> sources, Real fall);
   /// Of the highest line over a place.
-  Real height(const Place& place) const noexcept;
+  Real height(const MapPlace& place) const noexcept;
 
  private:
   std::vector<std::array<Real, 3>> highest_;  ///< those above which no line of another passes, from the highest down

@@ -27,7 +27,7 @@ constexpr std::string_view extent_unit = D == 2 ? "m" : "m2";
 template <int D>
 constexpr std::string_view volume_unit = D == 2 ? "m2" : "m3";
 
-std::string in_words(const Place& place) { return fmt::format("({:.10g}, {:.10g})", place[0], place[1]); }
+std::string in_words(const MapPlace& place) { return fmt::format("({:.10g}, {:.10g})", place[0], place[1]); }
 
 template <int D>
 Real extent(const Plan<D>& plan, Index c)
@@ -43,7 +43,7 @@ Real extent(const Plan<D>& plan, Index c)
 
 /// From where to where something goes along x, or east and north.
 template <int D>
-std::string span_in_words(const std::pair<Place, Place>& bounds)
+std::string span_in_words(const std::pair<MapPlace, MapPlace>& bounds)
 {
   const auto& [low, high] = bounds;
   return D == 2 ? fmt::format("{:.10g} to {:.10g}", low[0], high[0])
@@ -107,9 +107,9 @@ class TerrainMaker {
                      fmt::format("size {} m of a strip", finer.size), mesh_);
   }
 
-  Line line_of(const FinerSpec& finer)
+  MapLine line_of(const FinerSpec& finer)
   {
-    Line line;
+    MapLine line;
     for (const auto& place : finer.along)
       line.push_back({place[0], place.size() > 1 ? place[1] : 0});
     if (input_.on_map && std::any_of(finer.along.begin(), finer.along.end(), [](const auto& place) { return place.size() != 2; }))
@@ -117,15 +117,15 @@ class TerrainMaker {
     return line;
   }
 
-  Line line_down_from(const FinerSpec& finer)
+  MapLine line_down_from(const FinerSpec& finer)
   {
     const auto centre = centre_of_layer(input_, layer_named(finer.down_from));
     if (!centre)
       complain(finer.where, fmt::format("down_from: layer \"{}\" has no thickness", finer.down_from));
-    return centre ? steepest_descent(input_, *centre, 2 * sizes_.size) : Line{};
+    return centre ? steepest_descent(input_, *centre, 2 * sizes_.size) : MapLine{};
   }
 
-  Place place_of(Index node) const { return on_map<D>(input_.frame, plan_.nodes[node]); }
+  MapPlace place_of(Index node) const { return on_map<D>(input_.frame, plan_.nodes[node]); }
 
   void measure_plan()
   {
@@ -171,7 +171,7 @@ class TerrainMaker {
   {
     ground_.resize(plan_.nodes.size());
     Index blank = 0;
-    Place first{};
+    MapPlace first{};
     for (Index n = 0; n < static_cast<Index>(ground_.size()); ++n) {
       ground_[n] = input_.ground(place_of(n));
       if (std::isfinite(ground_[n]))
@@ -251,8 +251,8 @@ class TerrainMaker {
                                                       layer.name, domain_in_words(), why.empty() ? "on " + upper : why));
     }
     if (blank.columns > 0)
-      note(fmt::format("layer \"{}\" has no thickness where its bottom is not known, over {:.4g} {} of the plan", layer.name,
-                       blank.extent, extent_unit<D>));
+      note(fmt::format("layer \"{}\" has no thickness where its bottom is not known, over {:.4g} {} of the plan", layer.name, blank.extent,
+                       extent_unit<D>));
     if (crossed.columns > 0)
       note(fmt::format("layer \"{}\" has no thickness where its bottom lies above {}, over {:.4g} {} of the plan, by {:.4g} m at most",
                        layer.name, upper, crossed.extent, extent_unit<D>, crossed.largest));
@@ -340,7 +340,7 @@ class TerrainMaker {
       Real sum = 0, weights = 0;
       for (std::size_t o = 0; o < input_.obstacles.size(); ++o) {
         Real nearest = infinity;
-        for (const Line& ring : input_.obstacles[o].rings)
+        for (const MapLine& ring : input_.obstacles[o].rings)
           nearest = std::min(nearest, distance(ring, place_of(n)));
         const Real weight = 1 / (nearest * nearest + 1e-6);
         sum += weight * spec_.obstacles[o].height;
@@ -509,8 +509,8 @@ std::string terrain_in_words(const Mesh<D>& mesh, std::string_view margin)
     const MapFrame& frame = *mesh.map();
     const auto& low = mesh.low();
     const auto& high = mesh.high();
-    const Place from = D == 2 ? frame.to_map(low[0]) : frame.to_map(low[0], low[1]);
-    const Place to = D == 2 ? frame.to_map(high[0]) : frame.to_map(high[0], high[1]);
+    const MapPlace from = D == 2 ? frame.to_map(low[0]) : frame.to_map(low[0], low[1]);
+    const MapPlace to = D == 2 ? frame.to_map(high[0]) : frame.to_map(high[0], high[1]);
     text += fmt::format("{}on the map from {} to {}{}{}, heights {:.6g} to {:.6g} m\n", margin, in_words(from), in_words(to),
                         frame.crs.empty() ? "" : ", ", frame.crs.substr(0, 60), low[D - 1], high[D - 1]);
   }
