@@ -20,7 +20,7 @@ struct PlanSizes {
   Real operator()(const MapPlace& place) const noexcept;
 };
 
-/// MapPlace on the map of a node of the plan.
+/// Place on the map of a node of the plan.
 template <int D>
 MapPlace on_map(const MapFrame& frame, const Vec<D - 1>& x) noexcept
 {
