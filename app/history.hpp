@@ -21,11 +21,12 @@ template <int D>
 struct HistoryState {
   std::vector<std::int64_t> followed;  ///< id of the particle of each point
   std::vector<Vec<D>> impulse;         ///< of each wall at the row before [N s]
+  std::vector<Vec3> angular;           ///< its moment about the origin [N m s]
   Real time = 0;                       ///< of the row before [s]
   static constexpr auto fields()
   {
     return std::tuple{kept("followed", &HistoryState::followed), kept("impulse", &HistoryState::impulse),
-                      kept("time", &HistoryState::time)};
+                      kept("angular", &HistoryState::angular), kept("time", &HistoryState::time)};
   }
 };
 
@@ -44,6 +45,7 @@ class HistoryWriter {
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
+  void add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
   static void add_point(const Frame<D>& frame, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;

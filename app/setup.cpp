@@ -300,7 +300,7 @@ namespace {
 
 bool wants_displacement(const OutputSpec& outputs)
 {
-  if (outputs.history && !outputs.history->points.empty())
+  if (outputs.runout || (outputs.history && !outputs.history->points.empty()))
     return true;
   if (!outputs.particles)
     return false;

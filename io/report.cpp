@@ -153,6 +153,8 @@ std::string to_json(const RunSummary& s)
   json["cost"] = cost(s);
   json["balances"] = balances(s);
   json["watch"] = to_object(s.watch);
+  if (!s.runout.empty())
+    json["runout"] = to_object(s.runout);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
   json["scene"] = {{"file", s.scene_file}, {"digest", s.scene_digest}, {"text", s.scene_text}, {"set", s.overrides}};

@@ -135,6 +135,7 @@ struct RunSummary {
   std::optional<MomentumAudit> momentum, angular_momentum;
   std::optional<MassAudit> mass;
   WatchSummary watch;
+  std::vector<NamedValue> runout;  ///< at the last look, where the scene asks for it
 
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< written by the run, relative to its folder

@@ -68,6 +68,20 @@ void GeostaticSpec::check(std::vector<std::string>& problems) const
     problems.push_back(fmt::format("ramp {} s is longer than the stage, {} s", ramp, duration));
 }
 
+void SectionSpec::check(std::vector<std::string>& problems) const
+{
+  if (name.find('/') != name.npos || name.starts_with('.'))
+    problems.push_back(fmt::format("name \"{}\" cannot be that of a file", name));
+  if (along.size() < 2)
+    problems.push_back("along needs two corners at least");
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    if (along[i].size() != 2)
+      problems.push_back(fmt::format("along[{}] needs two numbers, not {}", i, along[i].size()));
+    else if (i > 0 && along[i] == along[i - 1])
+      problems.push_back(fmt::format("along[{}] is the corner before it", i));
+  }
+}
+
 void PictureSpec::check(std::vector<std::string>& problems) const
 {
   if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))

@@ -231,6 +231,23 @@ class Rules {
     known_word("outputs.picture.field", "field", outputs.picture.field, particle_field_names());
     if (outputs.history)
       history(*outputs.history);
+    if (outputs.runout)
+      runout(*outputs.runout);
+  }
+
+  void runout(const RunoutSpec& runout)
+  {
+    const auto bodies = names(scene_.bodies);
+    known_fields("outputs.runout.bodies", runout.bodies, bodies, "body");
+    known_fields("outputs.runout.eroded", runout.eroded, bodies, "body");
+    for (std::size_t i = 0; i < runout.eroded.size(); ++i)
+      if (!runout.bodies.empty() && std::find(runout.bodies.begin(), runout.bodies.end(), runout.eroded[i]) == runout.bodies.end())
+        add(fmt::format("outputs.runout.eroded[{}]", i), fmt::format("\"{}\" is not among outputs.runout.bodies", runout.eroded[i]));
+    different_names("outputs.runout.sections", runout.sections);
+    if (scene_.dimension == 2 && (runout.frames_every || runout.csv))
+      add(runout.csv ? "outputs.runout.csv" : "outputs.runout.frames_every", "there are maps in 3 dimensions only");
+    if (scene_.dimension == 2 && !runout.sections.empty())
+      add("outputs.runout.sections", "there is one section in 2 dimensions, the plane itself, and it is always written: leave this out");
   }
 
   void history(const HistoryOutputSpec& history)
@@ -249,6 +266,13 @@ class Rules {
       const Direction direction = history.fronts[i].direction;
       if (scene_.dimension == 2 && (direction == Direction::z_plus || direction == Direction::z_minus))
         add(path + ".direction", "there is no z in 2 dimensions");
+    }
+    for (std::size_t i = 0; i < history.walls.size(); ++i) {
+      const std::string path = fmt::format("outputs.history.walls[{}].on", i);
+      known_word(path, "wall", history.walls[i].on, wall_names(scene_.boundaries));
+      for (std::size_t j = 0; j < i; ++j)
+        if (!history.walls[i].on.empty() && history.walls[j].on == history.walls[i].on)
+          add(path, fmt::format("\"{}\" is asked for by outputs.history.walls[{}] already", history.walls[i].on, j));
     }
     if (scene_.dimension == 2 || scene_.dimension == 3)
       different_columns(history);
@@ -278,6 +302,11 @@ class Rules {
     for (std::size_t i = 0; i < history.fronts.size(); ++i)
       if (const FrontSpec& front = history.fronts[i]; is_first(history.fronts, i))
         note(fmt::format("outputs.history.fronts[{}]", i), "name", front.name, columns_of(front));
+    for (std::size_t i = 0; i < history.walls.size(); ++i)
+      if (const WallSpec& wall = history.walls[i];
+          std::none_of(history.walls.begin(), history.walls.begin() + static_cast<std::ptrdiff_t>(i),
+                       [&](const WallSpec& earlier) { return earlier.on == wall.on; }))
+        note(fmt::format("outputs.history.walls[{}]", i), "on", wall.on, columns_of(wall, scene_.dimension));
   }
 
   /// Of its name; others are found by different_names().
@@ -288,10 +317,11 @@ class Rules {
                         [&](const Item& item) { return item.name == items[i].name; });
   }
 
-  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known)
+  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                    std::string_view what = "field")
   {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      known_word(fmt::format("{}[{}]", path, i), "field", wanted[i], known);
+      known_word(fmt::format("{}[{}]", path, i), what, wanted[i], known);
       if (!wanted[i].empty() && std::find(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(i), wanted[i]) !=
                                     wanted.begin() + static_cast<std::ptrdiff_t>(i))
         add(fmt::format("{}[{}]", path, i), fmt::format("\"{}\" is asked for twice", wanted[i]));

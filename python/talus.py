@@ -545,6 +545,15 @@ class Run:
         return Table(self.folder / "history.csv")
 
     @property
+    def runout(self) -> Table:
+        """runout.csv: a row for each look."""
+        return Table(self.folder / "runout.csv")
+
+    def section(self, name: str) -> Table:
+        """A section through the maps of the run-out; "plane" in 2-D."""
+        return Table(self.folder / "sections" / f"{name}.csv")
+
+    @property
     def particles(self) -> Series:
         """Particle files: a series of `Particles`."""
         bodies = self.bodies

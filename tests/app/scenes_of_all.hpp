@@ -134,6 +134,12 @@ inline std::vector<SceneCase> scenes_of_all()
                    .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
                    .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"};
   all.push_back({"solid", in_3d});
+  SceneParts runs_out = in_3d;
+  runs_out.outputs +=
+      ", walls: [{on: y_min}]}\n  runout: {every: 0.004, frames_every: 0.02, cell: 0.3, moved: 0.01, threshold: 0.05, eroded: [low], csv: true, sections: "
+      "[{name: axis, "
+      "along: [[0, 0], [1, 2]]}]";
+  all.push_back({"run_out", runs_out});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
   in_3d.law = SceneParts{}.law;
   all.push_back({"solid_umls", in_3d});
