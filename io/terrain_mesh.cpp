@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "io/cell_count.hpp"
+#include "io/terrain_flow.hpp"
 #include "io/terrain_input.hpp"
 #include "io/terrain_plan.hpp"
 #include "mesh/quality.hpp"
@@ -26,7 +27,7 @@ constexpr std::string_view extent_unit = D == 2 ? "m" : "m2";
 template <int D>
 constexpr std::string_view volume_unit = D == 2 ? "m2" : "m3";
 
-std::string in_words(const Place& place) { return fmt::format("({:.10g}, {:.10g})", place[0], place[1]); }
+std::string in_words(const MapPlace& place) { return fmt::format("({:.10g}, {:.10g})", place[0], place[1]); }
 
 template <int D>
 Real extent(const Plan<D>& plan, Index c)
@@ -42,7 +43,7 @@ Real extent(const Plan<D>& plan, Index c)
 
 /// From where to where something goes along x, or east and north.
 template <int D>
-std::string span_in_words(const std::pair<Place, Place>& bounds)
+std::string span_in_words(const std::pair<MapPlace, MapPlace>& bounds)
 {
   const auto& [low, high] = bounds;
   return D == 2 ? fmt::format("{:.10g} to {:.10g}", low[0], high[0])
@@ -68,7 +69,7 @@ class TerrainMaker {
     check_size();
     sizes_.size = *mesh_.size;
     for (const FinerSpec& finer : spec_.refine)
-      sizes_.strips.push_back({finer.along.empty() ? steepest_descent(finer) : line_of(finer), finer.width, finer.size});
+      sizes_.strips.push_back({finer.along.empty() ? line_down_from(finer) : line_of(finer), finer.width, finer.size});
     throw_if_any();
     plan_ = make_plan<D>(input_, sizes_, mesh_.where);
     if (plan_.cells.empty())
@@ -106,9 +107,9 @@ class TerrainMaker {
                      fmt::format("size {} m of a strip", finer.size), mesh_);
   }
 
-  Line line_of(const FinerSpec& finer)
+  MapLine line_of(const FinerSpec& finer)
   {
-    Line line;
+    MapLine line;
     for (const auto& place : finer.along)
       line.push_back({place[0], place.size() > 1 ? place[1] : 0});
     if (input_.on_map && std::any_of(finer.along.begin(), finer.along.end(), [](const auto& place) { return place.size() != 2; }))
@@ -116,7 +117,15 @@ class TerrainMaker {
     return line;
   }
 
-  Place place_of(Index node) const { return on_map<D>(input_.frame, plan_.nodes[node]); }
+  MapLine line_down_from(const FinerSpec& finer)
+  {
+    const auto centre = centre_of_layer(input_, layer_named(finer.down_from));
+    if (!centre)
+      complain(finer.where, fmt::format("down_from: layer \"{}\" has no thickness", finer.down_from));
+    return centre ? steepest_descent(input_, *centre, 2 * sizes_.size) : MapLine{};
+  }
+
+  MapPlace place_of(Index node) const { return on_map<D>(input_.frame, plan_.nodes[node]); }
 
   void measure_plan()
   {
@@ -161,21 +170,21 @@ class TerrainMaker {
   void ground()
   {
     ground_.resize(plan_.nodes.size());
-    Index unknown = 0;
-    Place first{};
+    Index blank = 0;
+    MapPlace first{};
     for (Index n = 0; n < static_cast<Index>(ground_.size()); ++n) {
       ground_[n] = input_.ground(place_of(n));
       if (std::isfinite(ground_[n]))
         continue;
-      if (unknown++ == 0)
+      if (blank++ == 0)
         first = place_of(n);
     }
-    if (unknown > 0)
+    if (blank > 0)
       complain(spec_.ground.where,
                fmt::format(
                    "the ground is not known at {} of {} places, the first at {}; what is meshed goes from {}: make the domain smaller or "
                    "the ground larger",
-                   unknown, ground_.size(), in_words(first), domain_in_words()));
+                   blank, ground_.size(), in_words(first), domain_in_words()));
   }
 
   Real height_of_cells(const std::optional<Real>& own, Index node) const
@@ -202,7 +211,7 @@ class TerrainMaker {
   {
     const LayerSpec& layer = spec_.layers[l];
     const std::vector<std::uint8_t> own = nodes_of(inside_[l]);
-    Count unknown, crossed, closed, kept;
+    Count blank, crossed, closed, kept;
     std::vector<Real> bottom = above;
     for (Index n = 0; n < static_cast<Index>(bottom.size()); ++n) {
       const Real here = input_.bottoms[l](place_of(n)), thickness = above[n] - here;
@@ -214,7 +223,7 @@ class TerrainMaker {
       }
       constexpr Real touching = 1e-3;  // of a cell: surfaces that are meant to meet
       if (std::isnan(here))
-        unknown.add(share, 0);
+        blank.add(share, 0);
       else if (thickness < -touching * least)
         crossed.add(share, -thickness);
       else if (thickness < least && thickness > touching * least)
@@ -222,11 +231,11 @@ class TerrainMaker {
       else if (thickness >= least)
         kept.add(share, thickness), bottom[n] = here;
     }
-    report(layer, l, unknown, crossed, closed, kept);
+    report(layer, l, blank, crossed, closed, kept);
     return bottom;
   }
 
-  void report(const LayerSpec& layer, std::size_t l, const Count& unknown, const Count& crossed, const Count& closed, const Count& kept)
+  void report(const LayerSpec& layer, std::size_t l, const Count& blank, const Count& crossed, const Count& closed, const Count& kept)
   {
     const std::string upper = l == 0 ? "the ground" : fmt::format("the bottom of layer \"{}\"", spec_.layers[l - 1].name);
     if (kept.columns == 0) {
@@ -235,15 +244,15 @@ class TerrainMaker {
         if (count.columns > 0)
           why += fmt::format("{}{} over {:.4g} {}", why.empty() ? "" : ", ", what, count.extent, extent_unit<D>);
       };
-      add(unknown, "not known");
+      add(blank, "not known");
       add(crossed, fmt::format("above {} (by {:.4g} m at most)", upper, crossed.largest));
       add(closed, fmt::format("less than a quarter of a cell below {} ({:.4g} m at most)", upper, closed.largest));
       return complain(layer.bottom.where, fmt::format("layer \"{}\" has no thickness anywhere in what is meshed, {}: its bottom is {}",
                                                       layer.name, domain_in_words(), why.empty() ? "on " + upper : why));
     }
-    if (unknown.columns > 0)
-      note(fmt::format("layer \"{}\" has no thickness where its bottom is not known, over {:.4g} {} of the plan", layer.name,
-                       unknown.extent, extent_unit<D>));
+    if (blank.columns > 0)
+      note(fmt::format("layer \"{}\" has no thickness where its bottom is not known, over {:.4g} {} of the plan", layer.name, blank.extent,
+                       extent_unit<D>));
     if (crossed.columns > 0)
       note(fmt::format("layer \"{}\" has no thickness where its bottom lies above {}, over {:.4g} {} of the plan, by {:.4g} m at most",
                        layer.name, upper, crossed.extent, extent_unit<D>, crossed.largest));
@@ -271,28 +280,15 @@ class TerrainMaker {
       return;
     const Real fall = std::tan(*spec_.air->reach * std::numbers::pi / 180);
     const std::size_t l = layer_named(spec_.air->of);
-    struct Source {
-      Place place;
-      Real height;
-    };
-    std::vector<Source> sources, highest;
     const auto own = nodes_of(inside_[l]);
+    std::vector<std::array<Real, 3>> sources;
     for (Index n = 0; n < static_cast<Index>(plan_.nodes.size()); ++n)
       if (own[n] != 0 && thickness(l, n) > 0)
-        sources.push_back({place_of(n), ground_[n]});
-    std::sort(sources.begin(), sources.end(), [](const Source& a, const Source& b) { return a.height > b.height; });
-    const auto line_over = [&](const Place& place) {
-      Real best = -infinity;
-      for (const Source& source : highest)
-        best = std::max(best, source.height - fall * std::hypot(place[0] - source.place[0], place[1] - source.place[1]));
-      return best;
-    };
-    for (const Source& source : sources)
-      if (line_over(source.place) < source.height)  // no other line passes above its own
-        highest.push_back(source);
+        sources.push_back({place_of(n)[0], place_of(n)[1], ground_[n]});
+    const EnergyLines lines(std::move(sources), fall);
     std::vector<std::uint8_t> reached(plan_.nodes.size());
     for (Index n = 0; n < static_cast<Index>(reached.size()); ++n)
-      reached[n] = line_over(place_of(n)) >= ground_[n] || (own[n] != 0 && thickness(l, n) > 0) ? 1 : 0;
+      reached[n] = lines.height(place_of(n)) >= ground_[n] ? 1 : 0;
     for (std::size_t c = 0; c < has_air_.size(); ++c)
       has_air_[c] = std::any_of(plan_.cells[c].begin(), plan_.cells[c].end(), [&](Index n) { return reached[n] != 0; }) ? 1 : 0;
   }
@@ -344,7 +340,7 @@ class TerrainMaker {
       Real sum = 0, weights = 0;
       for (std::size_t o = 0; o < input_.obstacles.size(); ++o) {
         Real nearest = infinity;
-        for (const Line& ring : input_.obstacles[o].rings)
+        for (const MapLine& ring : input_.obstacles[o].rings)
           nearest = std::min(nearest, distance(ring, place_of(n)));
         const Real weight = 1 / (nearest * nearest + 1e-6);
         sum += weight * spec_.obstacles[o].height;
@@ -482,83 +478,6 @@ class TerrainMaker {
           count, data.cells.size(), poor, worst, in_words(on_map<D>(input_.frame, Vec<D - 1>(where.template head<D - 1>())))));
   }
 
-  // --- the line of steepest descent
-
-  /// From the centre of a layer's thickness down over the ground, until no place around is lower.
-  Line steepest_descent(const FinerSpec& finer)
-  {
-    const std::size_t l = layer_named(finer.down_from);
-    const auto start = centre_of(l);
-    if (!start) {
-      complain(finer.where, fmt::format("down_from: layer \"{}\" has no thickness", finer.down_from));
-      return {};
-    }
-    Line line{*start};
-    const Real stride = 2 * sizes_.size;
-    while (const auto next = lower_place(line.back(), stride))
-      line.push_back(*next);
-    return line;
-  }
-
-  bool is_in_domain(const Place& place) const
-  {
-    if constexpr (D == 3)
-      return input_.domain.contains(place);
-    const Real x =
-        (place[0] - input_.frame.origin[0]) * input_.frame.along[0] + (place[1] - input_.frame.origin[1]) * input_.frame.along[1];
-    return x >= input_.from && x <= input_.to;
-  }
-
-  /// The lowest place on the smallest circle around that has one lower than its centre; larger circles lead over small pits.
-  std::optional<Place> lower_place(const Place& from, Real stride) const
-  {
-    constexpr int directions = D == 3 ? 36 : 2;
-    constexpr Real widest = 8;  // strides
-    for (Real radius = stride; radius <= widest * stride; radius *= 2) {
-      std::optional<Place> best;
-      Real lowest = input_.ground(from);
-      for (int i = 0; i < directions; ++i) {
-        const Real angle = 2 * std::numbers::pi * i / directions;
-        const auto& along = input_.frame.along;
-        const Place place{from[0] + radius * (std::cos(angle) * along[0] - std::sin(angle) * along[1]),
-                          from[1] + radius * (std::cos(angle) * along[1] + std::sin(angle) * along[0])};
-        const Real height = is_in_domain(place) ? input_.ground(place) : infinity;
-        if (height < lowest)
-          lowest = height, best = place;
-      }
-      if (best)
-        return best;
-    }
-    return std::nullopt;
-  }
-
-  /// Of the thickness of a layer, sampled.
-  std::optional<Place> centre_of(std::size_t l) const
-  {
-    constexpr Index samples = 200;  // along each axis
-    Real total = 0;
-    Place sum{};
-    const auto [low, high] = D == 2 ? std::pair<Place, Place>{{input_.from, 0}, {input_.to, 0}} : bounds_of(input_.domain);
-    for (Index j = 0; j < (D == 2 ? 1 : samples); ++j)
-      for (Index i = 0; i < samples; ++i) {
-        const Real x = low[0] + (high[0] - low[0]) * (i + 0.5) / samples, y = low[1] + (high[1] - low[1]) * (j + 0.5) / samples;
-        const Place place = D == 2 ? input_.frame.to_map(x) : Place{x, y};
-        if (!is_in_domain(place) || (input_.within[l] && !input_.within[l]->contains(place)))
-          continue;
-        Real above = input_.ground(place);
-        for (std::size_t k = 0; k < l; ++k)
-          if (const Real bottom = input_.bottoms[k](place); bottom < above)
-            above = bottom;
-        if (const Real thick = above - input_.bottoms[l](place); thick > 0) {
-          total += thick;
-          sum[0] += thick * place[0], sum[1] += thick * place[1];
-        }
-      }
-    if (total == 0)
-      return std::nullopt;
-    return Place{sum[0] / total, sum[1] / total};
-  }
-
   const MeshSpec& mesh_;
   const TerrainSpec& spec_;
   TerrainInput input_;
@@ -590,8 +509,8 @@ std::string terrain_in_words(const Mesh<D>& mesh, std::string_view margin)
     const MapFrame& frame = *mesh.map();
     const auto& low = mesh.low();
     const auto& high = mesh.high();
-    const Place from = D == 2 ? frame.to_map(low[0]) : frame.to_map(low[0], low[1]);
-    const Place to = D == 2 ? frame.to_map(high[0]) : frame.to_map(high[0], high[1]);
+    const MapPlace from = D == 2 ? frame.to_map(low[0]) : frame.to_map(low[0], low[1]);
+    const MapPlace to = D == 2 ? frame.to_map(high[0]) : frame.to_map(high[0], high[1]);
     text += fmt::format("{}on the map from {} to {}{}{}, heights {:.6g} to {:.6g} m\n", margin, in_words(from), in_words(to),
                         frame.crs.empty() ? "" : ", ", frame.crs.substr(0, 60), low[D - 1], high[D - 1]);
   }

@@ -23,7 +23,7 @@ std::vector<Area> areas_of(const TerrainInput& input)
 /// Ends of the line, outlines on it, and corners of lines where there is room for a node.
 std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
 {
-  const Place from = input.frame.to_map(input.from), to = input.frame.to_map(input.to);
+  const MapPlace from = input.frame.to_map(input.from), to = input.frame.to_map(input.to);
   std::vector<Real> x{input.from, input.to};
   for (const Area& area : areas_of(input))
     for (const Real share : crossings(area, from, to))
@@ -89,10 +89,10 @@ Plan<3> grid_of(const TerrainInput& input, Real size)
   return {std::move(data.nodes), std::move(data.cells)};
 }
 
-Polygon local(const Line& ring, const MapFrame& frame)
+Polygon local(const MapLine& ring, const MapFrame& frame)
 {
   Polygon polygon;
-  for (const Place& place : ring)
+  for (const MapPlace& place : ring)
     polygon.points.push_back({place[0] - frame.origin[0], place[1] - frame.origin[1]});
   return polygon;
 }
@@ -124,10 +124,10 @@ Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const W
   if (input.is_rectangle && areas.empty() && sizes.strips.empty())
     return grid_of(input, sizes.size);
   std::vector<Polygon> polygons;
-  for (const Line& ring : input.domain.rings)
+  for (const MapLine& ring : input.domain.rings)
     polygons.push_back(local(ring, input.frame));
   for (const Area& area : areas)
-    for (const Line& ring : area.rings)
+    for (const MapLine& ring : area.rings)
       polygons.push_back(local(ring, input.frame));
   const auto size = [&](const Vec<2>& x) { return sizes(on_map<3>(input.frame, x)); };
   return inside(gmsh().mesh_plan(polygons, size, sizes.size, where), input);
@@ -135,7 +135,7 @@ Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const W
 
 }  // namespace
 
-Real PlanSizes::operator()(const Place& place) const noexcept
+Real PlanSizes::operator()(const MapPlace& place) const noexcept
 {
   constexpr Real growth = 1.0 / 3;  // of an edge over its length
   Real least = size;

@@ -8,21 +8,21 @@ namespace talus {
 
 /// A strip in which cells are smaller.
 struct Strip {
-  Line along;   ///< on the map
-  Real width;   ///< [m]
-  Real inside;  ///< edge length [m]
+  MapLine along;  ///< on the map
+  Real width;     ///< [m]
+  Real inside;    ///< edge length [m]
 };
 
 /// Edge lengths over the map [m].
 struct PlanSizes {
   Real size;
   std::vector<Strip> strips;
-  Real operator()(const Place& place) const noexcept;
+  Real operator()(const MapPlace& place) const noexcept;
 };
 
 /// Place on the map of a node of the plan.
 template <int D>
-Place on_map(const MapFrame& frame, const Vec<D - 1>& x) noexcept
+MapPlace on_map(const MapFrame& frame, const Vec<D - 1>& x) noexcept
 {
   if constexpr (D == 2)
     return frame.to_map(x[0]);
