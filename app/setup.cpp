@@ -6,6 +6,8 @@
 #include "app/expression.hpp"
 #include "app/fields.hpp"
 #include "app/guards.hpp"
+#include "app/history.hpp"
+#include "app/runout.hpp"
 #include "app/seed.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
@@ -324,6 +326,29 @@ void check_picture(const Scene& scene, Complaints& complaints)
       complaints.add(scene.where, "outputs.picture.field", fmt::format("there is no field \"{}\"{}", name, suggestion(name, known)));
 }
 
+/// Sections that leave the mesh, walls of the history that have no area.
+template <int D>
+void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, Complaints& complaints)
+{
+  if (const auto& history = scene.outputs.history)
+    for (const WallSpec& wall : history->walls)
+      if (!facets_of_wall(mesh, wall.on))
+        complaints.add(wall.where, "on", fmt::format("wall \"{}\" is on nodes, not on facets: it has no area", wall.on));
+  if (D == 2 || !scene.outputs.runout)
+    return;
+  const PlanAxes axes = plan_axes<D>(gravity);
+  for (const SectionSpec& section : scene.outputs.runout->sections)
+    for (std::size_t i = 0; i < section.along.size(); ++i)
+      for (std::size_t d = 0; d < 2; ++d) {
+        const Real shift = mesh.map() ? mesh.map()->origin[d] : 0;
+        const Real low = mesh.low()[axes.plan[d]] + shift, high = mesh.high()[axes.plan[d]] + shift;
+        if (const Real x = section.along[i][d]; !(low <= x && x <= high))
+          complaints.add(
+              section.where, "along",
+              fmt::format("corner {} is outside of the mesh: {:.10g} m does not lie between {:.10g} and {:.10g} m", i + 1, x, low, high));
+      }
+}
+
 }  // namespace
 
 template <int D>
@@ -347,6 +372,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);
   check_picture(scene, complaints);
+  check_outputs<D>(scene, mesh, setup.loads.gravity.acceleration, complaints);
   ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
 
   setup.transfer = transfer_of(scene.transfer);
