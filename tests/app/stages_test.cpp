@@ -144,7 +144,8 @@ TEST_F(Stages, ABodyAppearsWithTheStressOfItsWeight)
     run(scene);
     const HistoryTable table = history("out");
     Real largest = 0;
-    for (const Real speed : table["top_vy"].value())
+    const std::span<const Real> speeds = *table["top_vy"];
+    for (const Real speed : speeds)
       largest = std::isfinite(speed) ? std::max(largest, std::abs(speed)) : largest;
     EXPECT_TRUE(std::isnan(table["top_y"].value().front())) << "it is not there yet";
     EXPECT_NEAR(table["top_y"].value().back(), 4, 0.2);
