@@ -21,6 +21,26 @@ void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& 
         f(static_cast<std::size_t>(row));
 }
 
+/// The value that a share of the mass does not exceed, from value and mass of particles of all ranks.  NaN where there are none, and on ranks
+/// beside the root.
+Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Exchange& ranks)
+{
+  std::vector<std::pair<Real, Real>> all;
+  for (const std::vector<Vec<2>>& of_rank : gather_rows<Vec<2>>(ranks, here))
+    for (const Vec<2>& one : of_rank)
+      all.emplace_back(one[0], one[1]);
+  if (all.empty())
+    return not_there;
+  std::sort(all.begin(), all.end());
+  const Real total = std::accumulate(all.begin(), all.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
+  std::size_t i = 0;
+  Real mass = all[0].second;
+  const Real wanted = share * total * (1 - 1e-12);  // sums of the same masses in another order
+  while (mass < wanted && i + 1 < all.size())
+    mass += all[++i].second;
+  return all[i].first;
+}
+
 template <int D>
 void put(const Vec<D>& v, std::vector<Real>& row)
 {
@@ -79,20 +99,15 @@ Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particl
   const Real sign = static_cast<Index>(spec.direction) % 2 == 0 ? 1 : -1;
   std::vector<Vec<2>> here;  // coordinate along the direction, mass
   for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({sign * particles.x[p][axis], particles.mass[p]}); });
-  std::vector<std::pair<Real, Real>> reach;
-  for (const std::vector<Vec<2>>& of_rank : gather_rows<Vec<2>>(ranks, here))
-    for (const Vec<2>& one : of_rank)
-      reach.emplace_back(one[0], one[1]);
-  if (reach.empty())
-    return not_there;
-  std::sort(reach.begin(), reach.end());
-  const Real total = std::accumulate(reach.begin(), reach.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
-  std::size_t i = 0;
-  Real mass = reach[0].second;
-  const Real wanted = spec.mass_share * total * (1 - 1e-12);  // sums of the same masses in another order
-  while (mass < wanted && i + 1 < reach.size())
-    mass += reach[++i].second;
-  return sign * reach[i].first;
+  return sign * not_exceeded_by(spec.mass_share, here, ranks);
+}
+
+template <int D>
+Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+{
+  std::vector<Vec<2>> here;  // length of displacement, mass
+  for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({(particles.x[p] - particles.x0[p]).norm(), particles.mass[p]}); });
+  return not_exceeded_by(spec.mass_share, here, ranks);
 }
 
 template <int D>
@@ -108,6 +123,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(columns_of(front_spec));
   for (const WallSpec& wall : spec.walls)
     add(columns_of(wall, D));
+  for (const MovedSpec& moved_spec : spec.moved)
+    add(columns_of(moved_spec));
   return all;
 }
 
@@ -148,8 +165,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   }
   FollowedRows followed(state_.followed);
   followed.find(frame.particles.id);
-  for (const std::int64_t id : state_.followed)
-    add_point(frame, followed.row(id), row);
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    add_point(frame, spec_.points[k], followed.row(state_.followed[k]), row);
   for (const FrontSpec& spec : spec_.fronts)
     row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
   for (const WallSpec& spec : spec_.walls)
@@ -158,6 +175,8 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
     state_.impulse[w] = frame.walls.walls()[w].impulse;
     state_.angular[w] = frame.walls.walls()[w].angular;
   }
+  for (const MovedSpec& spec : spec_.moved)
+    row.push_back(moved(spec, frame.bodies, frame.particles, *frame.ranks));
   frame.ranks->together([&] { file_->append(row); });
   state_.time = clock.time;
 }
@@ -194,10 +213,19 @@ void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Rea
 }
 
 template <int D>
-void HistoryWriter<D>::add_point(const Frame<D>& frame, Index at, std::vector<Real>& row)
+void HistoryWriter<D>::follow_anew(const std::string& body, const Frame<D>& now)
+{
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    if (spec_.points[k].body == body)
+      state_.followed[k] = nearest_particle(spec_.points[k], now.bodies, now.particles, *now.ranks);
+}
+
+template <int D>
+void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
 {
   std::vector<Real> here;
-  if (at != none) {
+  const bool is_there = at != none && (point_spec.body.empty() || frame.bodies[body_of(frame.bodies, at)].name == point_spec.body);
+  if (is_there) {
     const auto p = static_cast<std::size_t>(at);
     put<D>(frame.particles.x[p], here);
     put<D>(frame.particles.x[p] - frame.particles.x0[p], here);
@@ -218,6 +246,8 @@ template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Bo
 template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
 template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
 template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
+template Real moved<2>(const MovedSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
+template Real moved<3>(const MovedSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
 template class HistoryWriter<2>;
 template class HistoryWriter<3>;
 
