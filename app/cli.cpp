@@ -55,6 +55,7 @@ class CommandLine {
     add_surface();
     add_diff();
     add_sweep();
+    add_fos();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
     add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
     add_bench();
@@ -321,9 +322,39 @@ class CommandLine {
     only->check(CLI::PositiveNumber)->excludes(jobs);
     sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
     sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
+    sweep->add_flag("!--no-pictures", sweep_.pictures, "draw nothing");
     sweep->add_flag("--quick", sweep_.quick, "each case coarse and short: only to see that they run");
     sweep->add_flag("--quiet", sweep_.quiet, "no progress and no table");
     sweep->callback([this] { talus::sweep(sweep_); });
+  }
+
+  void add_fos()
+  {
+    CLI::App* fos =
+        app_.add_subcommand("fos", "find the factor of safety of a scene: by how much its strength can be divided before it fails");
+    fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic stage")->type_name(scene_value)->required();
+    fos->add_option("--out", fos_.out, "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
+    const auto number = [&](const char* name, auto& value, const char* help) {
+      return fos->add_option(name, value, help)->check(CLI::PositiveNumber);
+    };
+    number("--from", fos_.range.from, "lowest factor that is tried first; default 0.5");
+    number("--to", fos_.range.to, "highest factor that is tried first; default 3");
+    number("--width", fos_.range.width, "how close holding and failing factors come; default 0.02");
+    number("--duration", fos_.duration, "of a trial [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
+    fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(CLI::Range(0.0, 0.9));
+    number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
+    number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
+    fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
+    fos->add_option("--share", fos_.mass_share, "share of the mass that may move more than what is looked at; default 0.99")
+        ->check(CLI::Range(0.0, 1.0));
+    fos->add_option("--set", fos_.set, set_help);
+    fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(CLI::Range(1, 1024));
+    fos->add_option("--threads", fos_.threads, "threads of each; default the cores over the trials at a time")->check(CLI::Range(1, 1024));
+    fos->add_option("--launcher", fos_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
+    fos->add_flag("!--no-pictures", fos_.pictures, "draw nothing");
+    fos->add_flag("--quick", fos_.quick, "each run coarse and short: only to see that they run");
+    fos->add_flag("--quiet", fos_.quiet, "only the factor");
+    fos->callback([this] { find_fos(fos_); });
   }
 
   void add_suite(const std::string& name, const std::string& help, SuiteOptions& options)
@@ -391,6 +422,7 @@ class CommandLine {
   SurfaceOptions surface_;
   DiffOptions diff_;
   SweepOptions sweep_;
+  FosOptions fos_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
   std::vector<std::string> manual_words_;

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.hpp"
+#include "app/fos_search.hpp"
 
 namespace talus {
 
@@ -142,11 +142,29 @@ struct SweepOptions {
   std::optional<int> only;              ///< number of the one case to run
   std::optional<std::string> launcher;  ///< words before the program, such as "mpirun -n 4"
   bool list = false;                    ///< run nothing
-  bool quick = false, quiet = false;
+  bool quick = false, quiet = false, pictures = true;
 };
 /// Runs the cases of a study that are not done yet, each as a process of its own in a folder of its own, and keeps a table of them.  SceneErrors
 /// with all that is wrong with any case, before anything runs; RunError if some failed; Stopped by a signal, or because cases were; EnvironmentError.
 void sweep(const SweepOptions& options);
+
+struct FosOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> set;
+  std::optional<std::filesystem::path> out;
+  FosRange range;
+  FosCriterion criterion;
+  std::optional<Real> duration;     ///< of a trial [s]
+  Real damping = 0.3;               ///< of a trial, as stages have it
+  Real mass_share = 0.99;           ///< whose displacement counts, as outputs.history.moved has it
+  std::vector<std::string> bodies;  ///< whose strength is divided; empty: of all that have some
+  std::optional<int> jobs, threads;
+  std::optional<std::string> launcher;
+  bool quick = false, quiet = false, pictures = true;
+};
+/// Finds the factor by which the strength of bodies can be divided before they fail: runs the scene until it is at rest, then trials from there, and
+/// leaves fos.csv, fos.json and pictures.  SceneErrors, RunError, Stopped, EnvironmentError as above.
+void find_fos(const FosOptions& options);
 
 struct BenchOptions {
   std::vector<std::string> kernels, transfers, laws, precisions;

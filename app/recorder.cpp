@@ -111,6 +111,21 @@ void Recorder<D>::open(const Frame<D>& frame)
   name_lists();
 }
 
+/// Bodies that were not there before.
+template <int D>
+void Recorder<D>::welcome(const Frame<D>& frame)
+{
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].particles > 0)
+      continue;
+    bodies_[b] = summary_of(frame, b);
+    if (history_ && bodies_[b].particles > 0)
+      history_->follow_anew(bodies_[b].name, frame);
+  }
+  if (history_)
+    history_state_ = history_->state();
+}
+
 /// Of the files the run writes those that are there from the beginning.
 template <int D>
 void Recorder<D>::name_lists()
@@ -209,6 +224,8 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
   if (first)
     open(frame);
+  else if (moment == Moment::stage_begins)
+    welcome(frame);
   if (moment == Moment::stage_begins)
     stage_start_ = frame.clock.time;
   if (moment == Moment::stage_begins && outputs_.runout && !runout_.has_begun() && frame.stage_name != "geostatic") {

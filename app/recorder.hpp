@@ -59,9 +59,12 @@ class Recorder {
   /// What has been written is on the disk when it returns.
   void flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
+  /// What a stage has changed before it begins, a line for each.
+  void changed(const std::vector<std::string>& lines) { changes_.insert(changes_.end(), lines.begin(), lines.end()); }
 
   const LastSeen<D>& last_seen() const noexcept { return last_; }
   std::span<const StageResult> stages() const noexcept { return stages_; }
+  const std::vector<std::string>& changes() const noexcept { return changes_; }
   /// Written to the folder, relative to it.
   std::span<const std::string> files() const noexcept { return std::span(files_).subspan(static_cast<std::size_t>(elsewhere_.files)); }
   std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
@@ -86,6 +89,7 @@ class Recorder {
                       kept("done_before", &Recorder::done_before_),
                       kept("last", &Recorder::last_),
                       kept("stages", &Recorder::stages_),
+                      kept("changes", &Recorder::changes_),
                       kept("files", &Recorder::files_),
                       kept("elsewhere", &Recorder::elsewhere_),
                       kept("last_output", &Recorder::last_output_),
@@ -97,6 +101,7 @@ class Recorder {
 
  private:
   void open(const Frame<D>& frame);
+  void welcome(const Frame<D>& frame);
   void go_on(const Frame<D>& frame);
   std::vector<std::string> drop_later(const Frame<D>& frame);
   void name_lists();
@@ -127,6 +132,7 @@ class Recorder {
   std::int64_t step_begin_ = 0;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
+  std::vector<std::string> changes_;
   std::vector<std::string> files_;
   Elsewhere elsewhere_;
   std::string last_output_;  // relative as well

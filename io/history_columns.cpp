@@ -65,6 +65,8 @@ std::vector<CsvColumn> columns_of(const WallSpec& wall, int dimension)
   return all;
 }
 
+std::vector<CsvColumn> columns_of(const MovedSpec& moved) { return {{moved.name, "m"}}; }
+
 std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries)
 {
   std::vector<std::string> names;

@@ -20,8 +20,8 @@ struct ParticleOutputSpec {
     return std::tuple{
         required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
         optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
-                 "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, and any "
-                 "history variable of a law")};
+                 "velocity, displacement, stress, pressure, von_mises, pore_pressure, effective_stress, volume, mass, cell, body, F, "
+                 "velocity_gradient, and any history variable of a law")};
   }
 };
 
@@ -80,11 +80,27 @@ struct WallSpec {
   }
 };
 
+/// How far the mass has come from where its displacement counts.
+struct MovedSpec {
+  std::string name;
+  Real mass_share = 0.99;
+  std::string body;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &MovedSpec::name, any, "-", "name of the column"),
+                      optional("mass_share", &MovedSpec::mass_share, within(0, 1), "-",
+                               "length of displacement that this share of the mass does not exceed; 1 is the particle that moved most"),
+                      optional("body", &MovedSpec::body, any, "-", "only this body; default all")};
+  }
+};
+
 struct HistoryOutputSpec {
   Real every{};
   std::vector<PointSpec> points;
   std::vector<FrontSpec> fronts;
   std::vector<WallSpec> walls;
+  std::vector<MovedSpec> moved;
   Where where;
   static constexpr auto fields()
   {
@@ -94,7 +110,8 @@ struct HistoryOutputSpec {
                                     "material points whose position, displacement, velocity and stress are written"),
                       optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass"),
                       optional_list("walls", &HistoryOutputSpec::walls,
-                                    "walls whose push, shear, area in touch, pressure and point of attack are written")};
+                                    "walls whose push, shear, area in touch, pressure and point of attack are written"),
+                      optional_list("moved", &HistoryOutputSpec::moved, "how far the mass has moved")};
   }
 };
 

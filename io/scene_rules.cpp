@@ -25,6 +25,8 @@ class Rules {
     materials_and_bodies();
     loads_and_boundaries();
     outputs();
+    const auto of_stages = broken_stage_rules(scene_);
+    findings_.insert(findings_.end(), of_stages.begin(), of_stages.end());
     return std::move(findings_);
   }
 
@@ -130,8 +132,28 @@ class Rules {
     if (!scene_.stages.empty() && scene_.time.end != 0)
       add("time.end", "the stages say when the run ends: leave this out");
     for (std::size_t i = 1; i < scene_.stages.size(); ++i)
+      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]);
+          stage != nullptr && stage->initial_stress && stage->appear.empty())
+        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress, or one in which bodies appear: theirs");
+    for (std::size_t i = 0; i < scene_.stages.size(); ++i)
       if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
-        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress");
+        initial_stress(fmt::format("stages[{}].initial_stress", i), static_cast<Index>(i), *stage->initial_stress);
+  }
+
+  void initial_stress(const std::string& path, Index number, const K0Spec& spec)
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < spec.bodies.size(); ++i) {
+      known_word(fmt::format("{}.bodies[{}].body", path, i), "body", spec.bodies[i].body, known);
+      for (std::size_t j = 0; j < i; ++j)
+        if (spec.bodies[j].body == spec.bodies[i].body)
+          add(fmt::format("{}.bodies[{}].body", path, i), fmt::format("bodies[{}] is about \"{}\" already", j, spec.bodies[i].body));
+    }
+    for (const std::string& body : known)
+      if (presence_of(body, scene_.stages).from == number && spec.of(body).given() == 0)
+        add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table or from_friction is needed for the bodies that the list does "
+                              "not name",
+                              body));
   }
 
   void materials_and_bodies()
@@ -149,9 +171,13 @@ class Rules {
       if (body.shape)
         fits(path + ".shape", *body.shape);
       source_of_particles(path, body);
+      if (body.saturated_density && !scene_.water)
+        add(path + ".saturated_density", "there is no water in this scene: say where its table is, or leave this out");
     }
     if (scene_.initial)
       initial(*scene_.initial);
+    if (scene_.water)
+      water(*scene_.water);
   }
 
   /// A body is filled or taken from another run, and what it says is used.  Without a list only that run can tell which are taken.
@@ -178,6 +204,20 @@ class Rules {
     unused(body.shape.has_value(), "shape");
     unused(body.particles_per_cell.has_value(), "particles_per_cell");
     unused(!body.velocity.empty(), "velocity");
+    unused(body.saturated_density.has_value(), "saturated_density");
+  }
+
+  void water(const WaterSpec& water)
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < water.bodies.size(); ++i) {
+      known_word(fmt::format("water.bodies[{}]", i), "body", water.bodies[i], known);
+      if (std::find(water.bodies.begin(), water.bodies.begin() + static_cast<std::ptrdiff_t>(i), water.bodies[i]) !=
+          water.bodies.begin() + static_cast<std::ptrdiff_t>(i))
+        add(fmt::format("water.bodies[{}]", i), fmt::format("\"{}\" is named twice", water.bodies[i]));
+    }
+    if (std::none_of(scene_.loads.begin(), scene_.loads.end(), [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
+      add("water", "water has no weight without a load of type gravity");
   }
 
   void initial(const InitialSpec& initial)
@@ -216,9 +256,25 @@ class Rules {
       if (const auto* load = std::get_if<TractionSpec>(&scene_.loads[i]))
         fits(path + ".traction", load->traction);
     }
-    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i) {
+      const std::string path = fmt::format("boundaries[{}]", i);
       if (const auto* boundary = std::get_if<VelocitySpec>(&scene_.boundaries[i]))
-        fits(fmt::format("boundaries[{}].velocity", i), boundary->velocity);
+        fits(path + ".velocity", boundary->velocity);
+      if (const auto* boundary = std::get_if<CompliantBaseSpec>(&scene_.boundaries[i]))
+        fits(path + ".velocity", boundary->velocity);
+      const bool gives_way =
+          std::holds_alternative<CompliantBaseSpec>(scene_.boundaries[i]) || std::holds_alternative<FreeFieldSpec>(scene_.boundaries[i]);
+      if (gives_way && gravity && !begins_at_rest())
+        add(path, fmt::format("it carries on what it carried at rest, and nothing says what that is: let the stages begin with a geostatic "
+                              "one, take the state from another run (initial), or leave loads[{}] out",
+                              *gravity));
+    }
+  }
+
+  /// In balance with its loads, as far as the scene tells.
+  bool begins_at_rest() const
+  {
+    return scene_.initial || (!scene_.stages.empty() && std::holds_alternative<GeostaticSpec>(scene_.stages.front()));
   }
 
   void outputs()
@@ -255,6 +311,7 @@ class Rules {
     const auto bodies = names(scene_.bodies);
     different_names("outputs.history.points", history.points);
     different_names("outputs.history.fronts", history.fronts);
+    different_names("outputs.history.moved", history.moved);
     for (std::size_t i = 0; i < history.points.size(); ++i) {
       const std::string path = fmt::format("outputs.history.points[{}]", i);
       fits(path + ".at", history.points[i].at);
@@ -274,6 +331,8 @@ class Rules {
         if (!history.walls[i].on.empty() && history.walls[j].on == history.walls[i].on)
           add(path, fmt::format("\"{}\" is asked for by outputs.history.walls[{}] already", history.walls[i].on, j));
     }
+    for (std::size_t i = 0; i < history.moved.size(); ++i)
+      known_word(fmt::format("outputs.history.moved[{}].body", i), "body", history.moved[i].body, bodies);
     if (scene_.dimension == 2 || scene_.dimension == 3)
       different_columns(history);
   }
@@ -307,6 +366,9 @@ class Rules {
           std::none_of(history.walls.begin(), history.walls.begin() + static_cast<std::ptrdiff_t>(i),
                        [&](const WallSpec& earlier) { return earlier.on == wall.on; }))
         note(fmt::format("outputs.history.walls[{}]", i), "on", wall.on, columns_of(wall, scene_.dimension));
+    for (std::size_t i = 0; i < history.moved.size(); ++i)
+      if (const MovedSpec& moved = history.moved[i]; is_first(history.moved, i))
+        note(fmt::format("outputs.history.moved[{}]", i), "name", moved.name, columns_of(moved));
   }
 
   /// Of its name; others are found by different_names().

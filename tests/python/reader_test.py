@@ -186,6 +186,8 @@ class OfARun(unittest.TestCase):
             talus.Particles(self.folder / "out" / "mesh.vtu")
         with self.assertRaises(FileNotFoundError):
             talus.Run(self.folder / "nowhere")
+        with self.assertRaisesRegex(FileNotFoundError, "sweep.csv is not there: nothing has written a table"):
+            talus.Sweep(self.folder)
 
     def test_what_is_not_there_is_named_with_what_is(self):
         last = self.run_.particles[-1]
