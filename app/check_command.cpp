@@ -9,6 +9,7 @@
 #include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
+#include "io/terrain_mesh.hpp"
 
 namespace talus {
 
@@ -88,6 +89,7 @@ void tell_cost(Scene scene, bool quick, Times times)
   const auto warnings = setup.warnings;
   const Index particles = setup.particles.size(), cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup);
+  const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
   for (const Body& body : setup.bodies)
     bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
@@ -98,7 +100,8 @@ void tell_cost(Scene scene, bool quick, Times times)
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));
   for (const std::string& warning : warnings)
     fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}", scene.title, D, scene.kernel, cells, nodes, particles, bodies);
+  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, cells, nodes, particles,
+             terrain, bodies);
   fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
              static_cast<Real>(cost.steps) * particles / million);
   fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,

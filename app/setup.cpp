@@ -348,6 +348,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
 {
   Complaints complaints(scene);
   Setup<D> setup;
+  setup.warnings = mesh.notes();
   Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
   setup.particles = std::move(seeds.particles);
   setup.n_particles = seeds.n_particles;

@@ -26,12 +26,15 @@ void GridSpec::check(std::vector<std::string>& problems) const { check_corners(l
 
 void MeshSpec::check(std::vector<std::string>& problems) const
 {
-  exactly_one("file, geometry, regions or grid", !file.empty() + !geometry.empty() + !regions.empty() + grid.has_value(), problems);
+  exactly_one("file, geometry, regions, grid or terrain",
+              !file.empty() + !geometry.empty() + !regions.empty() + grid.has_value() + terrain.has_value(), problems);
   const bool meshed = !geometry.empty() || !regions.empty();
-  if (meshed && !size)
-    problems.push_back("missing key \"size\" [m]: geometry and regions are meshed");
-  if (!meshed && (size || !refine.empty()))
-    problems.push_back(fmt::format("{} is for geometry and regions only", size ? "size" : "refine"));
+  if ((meshed || terrain) && !size)
+    problems.push_back(fmt::format("missing key \"size\" [m]: {} meshed", terrain ? "terrain is" : "geometry and regions are"));
+  if (!meshed && !terrain && size)
+    problems.push_back("size is for geometry, regions and terrain only");
+  if (!meshed && !refine.empty())
+    problems.push_back(fmt::format("refine is for geometry and regions only{}", terrain ? "; terrain has a refine of its own" : ""));
   if (!file.empty() && std::filesystem::path(file).extension() != ".msh")
     problems.push_back(fmt::format("file \"{}\" does not end in .msh; a .geo or .step file is given as geometry", file));
   static constexpr std::array<std::string_view, 6> kinds{".geo", ".step", ".stp", ".brep", ".iges", ".igs"};
