@@ -39,6 +39,27 @@ std::string describe_disk_use(const FileSizes& one, const DiskUse& use)
   return text + "\n";
 }
 
+/// A line for each thing that a stage changes.
+template <int D>
+std::string describe_changes(const Setup<D>& setup)
+{
+  std::string text;
+  for (std::size_t s = 0; s < setup.changes.size(); ++s) {
+    const StageChange<D>& change = setup.changes[s];
+    const auto add = [&](const std::string& what) { text += fmt::format("  stage {} \"{}\": {}\n", s, setup.stages[s].name, what); };
+    const auto name = [&](Index b) -> const std::string& { return setup.bodies[static_cast<std::size_t>(b)].name; };
+    for (const Index b : change.vanish)
+      add(fmt::format("body \"{}\" vanishes", name(b)));
+    for (const auto& [b, becomes] : change.renew)
+      add(fmt::format("body \"{}\" {}", name(b), becomes));
+    for (const Index b : change.appear)
+      add(fmt::format("body \"{}\" appears, {} particles", name(b), change.coming.bodies[static_cast<std::size_t>(b)].size()));
+    for (const std::string& what : change.told)
+      add(what);
+  }
+  return text;
+}
+
 std::string describe_time(const std::vector<StageTrial>& trials, Real preparing, Index particles)
 {
   if (trials.empty())
@@ -87,14 +108,18 @@ void tell_cost(Scene scene, bool quick, Times times)
   if (quick)
     shorten(first_step(mesh, setup), setup.stages, scene.outputs);
   const auto warnings = setup.warnings;
-  const Index particles = setup.particles.size(), cells = mesh.n_cells(), nodes = mesh.n_nodes();
+  const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup);
   const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
-  for (const Body& body : setup.bodies)
-    bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+    if (const Body& body = setup.bodies[b]; presence_of(body.name, scene.stages).from == 0)
+      bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
+  bodies += describe_changes(setup);
   if (setup.origin)
     bodies += describe(*setup.origin);
+  for (const std::string& note : setup.notes)
+    bodies += fmt::format("  {}\n", note);
   const bool measured = times == Times::measured;
   const auto trials = measured ? try_stages(scene, mesh, setup) : std::vector<StageTrial>{};
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));

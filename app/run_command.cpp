@@ -106,6 +106,7 @@ class Run {
     if (quick_)
       shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
     stages_ = setup.stages;
+    notes_ = setup.notes;
     if (from_)
       check_durations(*from_, stages_, options_.set);
     check_sources(setup);
@@ -134,7 +135,11 @@ class Run {
                            checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
                          }};
     fs::path taken;
-    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles};
+    const auto laws = setup.laws;
+    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
+    audience.changed = [&](const Frame<D>& frame, const Stage& stage, const StageNews& news) {
+      recorder.changed(tell(frame, stage, news));
+    };
     if (from_)
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
@@ -290,6 +295,8 @@ class Run {
                  threads(), threads() == 1 ? "" : "s");
     if (!options_.quiet && summary_.origin)
       fmt::print("{}", describe(*summary_.origin));
+    for (std::size_t n = 0; n < notes_.size() && !options_.quiet; ++n)
+      fmt::print("  {}\n", notes_[n]);
     std::fflush(stdout);
   }
 
@@ -314,6 +321,26 @@ class Run {
     if (!options_.quiet && world().is_root())
       fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
                  frame.clock.step, frame.clock.time);
+  }
+
+  /// What a stage has changed; returns it as lines for the summary.
+  std::vector<std::string> tell(const Frame<D>& frame, const Stage& stage, const StageNews& news)
+  {
+    const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", frame.clock.time, stage.name);
+    std::vector<std::string> lines;
+    for (const std::string& what : news.told)
+      lines.push_back(when + what);
+    for (const std::string& what : news.warnings)
+      summary_.warnings.push_back(when + what);
+    if (!world().is_root())
+      return lines;
+    for (const std::string& what : news.warnings)
+      fmt::print(stderr, "warning: {}{}\n", when, what);
+    for (const std::string& line : lines)
+      if (!options_.quiet)
+        fmt::print("{}\n", line);
+    std::fflush(stdout);
+    return lines;
   }
 
   Moves<D> moves_of_shares(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
@@ -379,6 +406,7 @@ class Run {
   Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
   std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
   std::vector<Stage> stages_;
+  std::vector<std::string> notes_;   // of the set-up
   RunSummary summary_;               // as it begins
   std::optional<fs::path> initial_;  // what bodies begin with
   bool began_ = false;               // the folder is this run's

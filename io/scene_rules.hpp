@@ -14,6 +14,8 @@ struct Finding {
 
 /// What is wrong with a scene as a whole, apart from its mesh.  The scene may be half read: what is empty is passed over.
 std::vector<Finding> broken_rules(const Scene& scene);
+/// Of them those about what stages change: names, and what is there when.
+std::vector<Finding> broken_stage_rules(const Scene& scene);
 
 /// Names a scene may give as kernel.
 std::vector<std::string> kernel_names();

@@ -42,7 +42,7 @@ void check_names(std::string_view what, const std::vector<Spec>& list, Messages&
 
 }  // namespace
 
-void SectionSpec::check(Messages& problems) const
+void TerrainSectionSpec::check(Messages& problems) const
 {
   check_place("from", from, problems);
   check_place("to", to, problems);

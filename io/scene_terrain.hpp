@@ -11,13 +11,13 @@
 namespace talus {
 
 /// The plan of a scene in two dimensions: a straight line on the map.
-struct SectionSpec {
+struct TerrainSectionSpec {
   std::vector<Real> from, to;
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("from", &SectionSpec::from, any, "m", "[east, north] of x = 0"),
-                      required("to", &SectionSpec::to, any, "m", "[east, north] of the other end; x grows towards it")};
+    return std::tuple{required("from", &TerrainSectionSpec::from, any, "m", "[east, north] of x = 0"),
+                      required("to", &TerrainSectionSpec::to, any, "m", "[east, north] of the other end; x grows towards it")};
   }
   void check(std::vector<std::string>& problems) const;
 };
@@ -108,7 +108,7 @@ struct TerrainSpec {
   std::string domain_file;
   std::vector<Real> origin;
   std::string crs;
-  std::optional<SectionSpec> section;
+  std::optional<TerrainSectionSpec> section;
   std::vector<LayerSpec> layers;
   std::optional<AirSpec> air;
   std::vector<FinerSpec> refine;

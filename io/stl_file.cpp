@@ -56,9 +56,9 @@ TriangleSheet read_binary(std::string_view bytes, const std::filesystem::path& f
 /// Blanks before it go too.
 std::string_view take_word(std::string_view& line)
 {
-  constexpr auto blanks = " \t\r";
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(blanks));
+  constexpr auto between = " \t\r";
+  line.remove_prefix(std::min(line.find_first_not_of(between), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(between));
   line.remove_prefix(word.size());
   return word;
 }
@@ -98,7 +98,7 @@ TriangleSheet read_stl(const std::filesystem::path& file)
   const std::size_t told = bytes.size() < heading + 4 ? 0 : value_at<std::uint32_t>(bytes, heading);
   // Binary files may begin with the word of the others.
   const bool is_binary = bytes.size() >= heading + 4 && bytes.size() == heading + 4 + told * per_triangle;
-  if (!is_binary && !bytes.starts_with("solid"))
+  if (!is_binary && (!bytes.starts_with("solid") || bytes.find('\0') != bytes.npos))
     refuse(file, 0,
            bytes.size() < heading + 4 ? "this is no STL file: it neither begins with 'solid' nor has the heading of a binary one"
                                       : fmt::format("of {} triangles of a binary STL file there would be {} bytes, not {}", told,

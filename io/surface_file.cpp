@@ -173,7 +173,8 @@ void FileReader::drop_undeclared(Raster& raster)
       ++dropped;
     }
   if (dropped > 0)
-    mend(fmt::format("{} cells have the value {:g}, which is taken for none, though the file does not declare it", dropped, example));
+    mend(fmt::format("{} cell{} the value {:g}, which is taken for none, though the file does not declare it", dropped,
+                     dropped == 1 ? " has" : "s have", example));
 }
 
 bool FileReader::is_plausible(const Raster& raster)
@@ -254,6 +255,12 @@ Index merge_places(std::vector<std::array<Real, 3>>& points)
   return static_cast<Index>(merged);
 }
 
+std::string merged_in_words(Index merged)
+{
+  return fmt::format("{} where another lies on the plan; each such place gets the mean of their elevations",
+                     merged == 1 ? "1 point lies" : fmt::format("{} points lie", merged));
+}
+
 /// Linear over Delaunay's triangles; nothing: the points lie on a line.
 std::optional<SurfaceRead> over_triangles(std::vector<std::array<Real, 3>> points)
 {
@@ -271,7 +278,7 @@ std::optional<SurfaceRead> FileReader::read_point_surface()
   if (auto raster = as_raster(points))
     return from_raster(std::move(*raster));
   if (const Index merged = merge_places(points); merged > 0)
-    mend(fmt::format("{} points lie where another lies on the plan; each such place gets their mean elevation", merged));
+    mend(merged_in_words(merged));
   auto surface = over_triangles(std::move(points));
   if (surface)
     surface->name = file_;
@@ -289,8 +296,12 @@ std::optional<SurfaceRead> FileReader::read_stl_surface()
     return std::nullopt;
   }
   const Real farthest = std::max({std::abs(extent.west), std::abs(extent.east), std::abs(extent.south), std::abs(extent.north)});
-  // Coordinates of a binary file have 24 bits, those of an ascii one are usually written with as few.
-  if (const Real step = std::ldexp(1.0, std::ilogb(farthest) - 23); step > 0.05)
+  // Coordinates of a binary file have 24 bits, and those of an ascii one often come from there.
+  const auto is_single = [](const auto& corner) {
+    return std::all_of(corner.begin(), corner.end(), [](Real x) { return x == static_cast<Real>(static_cast<float>(x)); });
+  };
+  if (const Real step = std::ldexp(1.0, std::ilogb(farthest) - 23);
+      step > 0.05 && std::all_of(sheet.corners.begin(), sheet.corners.end(), is_single))
     mend(fmt::format("places {:.0f} m away from zero are exact to {:.2g} m only in an STL file", farthest, step));
   const Real spacing = std::sqrt((extent.east - extent.west) * (extent.north - extent.south) / static_cast<Real>(sheet.triangles.size()));
   return SurfaceRead{surface_of(std::move(sheet)), file_, extent, spacing};
@@ -333,8 +344,7 @@ std::optional<SurfaceRead> read_given_points(const SurfaceSpec& spec, const MapP
   for (const auto& point : spec.points)
     points.push_back({point[0], point[1], point[2]});
   if (const Index merged = merge_places(points); merged > 0)
-    repairs.push_back(fmt::format("{}: {} points lie where another lies on the plan; each such place gets their mean elevation",
-                                  to_string(spec.where), merged));
+    repairs.push_back(fmt::format("{}: {}", to_string(spec.where), merged_in_words(merged)));
   auto surface = over_triangles(std::move(points));
   if (!surface)
     complain("the points lie on one line, and span no surface");

@@ -8,13 +8,14 @@ namespace talus {
 
 /// Sums over a stage since it began [J], except where noted.
 struct EnergyLedger {
-  Real gravity{};                         ///< work of gravity
-  Real loads{};                           ///< work of tractions and pressures
-  Real walls{};                           ///< work of walls other than friction: prescribed motion, inelastic arrival
-  Real friction{};                        ///< work of friction, <= 0
-  Real damping{};                         ///< work of local damping, <= 0
-  Real nodes{};                           ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
-  Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
+  Real gravity{};   ///< work of gravity
+  Real loads{};     ///< work of tractions and pressures
+  Real walls{};     ///< work of walls other than friction: prescribed motion, inelastic arrival
+  Real friction{};  ///< work of friction, <= 0
+  Real waves{};     ///< energy that waves brought to walls that give way: part of the work of walls, and a measure of it
+  Real damping{};   ///< work of local damping, <= 0
+  Real nodes{};     ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
+  Real internal{};  ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
   Real carried_away{};                    ///< kinetic energy of the particles that were deleted
@@ -26,6 +27,7 @@ struct EnergyLedger {
                       kept("loads", &EnergyLedger::loads),
                       kept("walls", &EnergyLedger::walls),
                       kept("friction", &EnergyLedger::friction),
+                      kept("waves", &EnergyLedger::waves),
                       kept("damping", &EnergyLedger::damping),
                       kept("nodes", &EnergyLedger::nodes),
                       kept("internal", &EnergyLedger::internal),
@@ -86,11 +88,12 @@ template <int D>
 struct MomentumLedger {
   Push<D> loads;  ///< gravity, tractions, forces of place
   Push<D> damping;
-  Push<D> rest;  ///< of the motion that is taken out at the end of stages that seek rest
+  Push<D> rest;     ///< of the motion that is taken out at the end of stages that seek rest
+  Push<D> changes;  ///< of what stages place and take away: bodies, and mass where a density changes
   static constexpr auto fields()
   {
-    return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping),
-                      kept("rest", &MomentumLedger::rest)};
+    return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping), kept("rest", &MomentumLedger::rest),
+                      kept("changes", &MomentumLedger::changes)};
   }
 };
 
@@ -101,6 +104,8 @@ struct MassLedger {
   Real deleted{};   ///< left the mesh, or failed [kg]
   Real failed{};    ///< of it what failed [kg]
   Index deleted_count{}, failed_count{};
+  Real placed{}, taken{};  ///< by stages: bodies that appeared and vanished, and what a new density made heavier and lighter [kg]
+  Index placed_count{}, taken_count{};
   Push<D> carried_away;       ///< momentum of what was deleted
   std::int64_t held_count{};  ///< times a particle was set back onto a closed wall
   Real held_most{};           ///< farthest such set-back [m]
@@ -112,10 +117,16 @@ struct MassLedger {
                       kept("failed", &MassLedger::failed),
                       kept("deleted_count", &MassLedger::deleted_count),
                       kept("failed_count", &MassLedger::failed_count),
+                      kept("placed", &MassLedger::placed),
+                      kept("taken", &MassLedger::taken),
+                      kept("placed_count", &MassLedger::placed_count),
+                      kept("taken_count", &MassLedger::taken_count),
                       kept("carried_away", &MassLedger::carried_away),
                       kept("held_count", &MassLedger::held_count),
                       kept("held_most", &MassLedger::held_most)};
   }
+  /// That should be there [kg].
+  Real due() const noexcept { return start + placed - deleted - taken; }
 };
 
 /// What particles take along that are deleted, and what was done to those that stay; numbers of particles are whole.

@@ -55,7 +55,7 @@ const stage_table = (stages) =>
     'Stages',
     ['stage', 'result', 'steps', 'simulated', 'unbalanced / loads', 'when it began'],
     stages.map((stage, k) => [
-      `${k} ${stage.kind}`,
+      `${k} ${stage.name ?? stage.kind}`,
       stage.result || '–',
       whole(stage.steps),
       with_unit(stage['duration [s]'], 's'),
@@ -108,6 +108,7 @@ export function show_overview(element, run, remarks) {
           )
         : null,
       summary?.stages?.length ? stage_table(summary.stages) : null,
+      summary?.changes?.length ? el('ul', {class: 'changes'}, summary.changes.map((change) => el('li', {}, change))) : null,
       body_table(summary?.bodies?.length ? summary.bodies : (run.particles?.bodies ?? [])),
     ].filter(Boolean),
   );
