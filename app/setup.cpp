@@ -221,8 +221,10 @@ class WallBuilder {
 template <int D>
 class LoadBuilder {
  public:
-  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, Complaints& complaints, Setup<D>& setup)
-      : mesh_(mesh), has_particles_(has_particles), ranks_(ranks), complaints_(complaints), setup_(setup)
+  /// `has_particles`: of all bodies, those as well that appear later; `at_start`: of the others.
+  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, const Filled<D>& at_start, Exchange& ranks, Complaints& complaints,
+              Setup<D>& setup)
+      : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), complaints_(complaints), setup_(setup)
   {}
 
   void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
@@ -252,7 +254,7 @@ class LoadBuilder {
     const auto found = mesh_.facet_set(spec.on);
     if (!found)
       return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
-    const std::vector<Facet> facets = has_particles_.seen_from_material(*found);
+    const std::vector<Facet> facets = at_start_.seen_from_material(*found);
     Real area = 0, loaded = 0;
     for (const Facet& facet : facets) {
       area += mesh_.area_vector(facet).norm();
@@ -285,7 +287,7 @@ class LoadBuilder {
   }
 
   const Mesh<D>& mesh_;
-  const Filled<D>& has_particles_;
+  const Filled<D>&has_particles_, &at_start_;
   Exchange& ranks_;
   Complaints& complaints_;
   Setup<D>& setup_;
@@ -537,7 +539,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   WallBuilder<D> walls(mesh, at_start, wall_names(scene.boundaries), first_stage, complaints, setup.warnings, setup.walls);
   for (const BoundarySpec& boundary : scene.boundaries)
     std::visit(walls, boundary);
-  LoadBuilder<D> loads(mesh, has_particles, ranks, complaints, setup);
+  LoadBuilder<D> loads(mesh, has_particles, at_start, ranks, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);

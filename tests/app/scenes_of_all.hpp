@@ -137,7 +137,7 @@ inline std::vector<SceneCase> scenes_of_all()
         .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3, during: [one, three]}, {type: roller, on: x_min, during: "
                       "[two]}, {type: fixed, on: x_max}, {type: fixed, on: y_max}]\n",
         .time = "time: {max_step: 1.4e-3}\nstages:\n  - {type: run, name: one, duration: 0.014}\n"
-                "  - {type: run, name: two, duration: 0.014, appear: [fill], change: [{body: low, material: other}]}\n"
+                "  - {type: run, name: two, duration: 0.0098, appear: [fill], change: [{body: low, material: other}]}\n"
                 "  - {type: run, name: three, duration: 0.014, damping: 0.2, vanish: [stone], weaken: [{factor: 1.5}]}\n",
         .outputs = ", points: [{name: top, at: [0.5, 1.6], body: fill}], fronts: [{name: toe, direction: +x}]"}});
   SceneParts in_3d{.dimension = solid,
