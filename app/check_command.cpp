@@ -5,9 +5,11 @@
 #include "app/duration.hpp"
 #include "app/quick.hpp"
 #include "app/trial.hpp"
+#include "app/water.hpp"
 #include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
+#include "io/terrain_mesh.hpp"
 
 namespace talus {
 
@@ -81,6 +83,17 @@ std::string describe_time(const std::vector<StageTrial>& trials, Real preparing,
                     duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
 }
 
+/// Which stress the law of a body sees, where there is water.
+template <int D>
+std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Body& body)
+{
+  if (!setup.water.any())
+    return "";
+  if (!setup.water.drains(static_cast<Index>(&body - setup.bodies.data())))
+    return ", total stress";
+  return fmt::format(", effective stress, {} below the water table", count_wet(mesh, setup.water, body, setup.particles));
+}
+
 enum class Times : std::uint8_t { left_out, measured };
 
 /// What a run would find wrong, and what it would cost.
@@ -97,19 +110,23 @@ void tell_cost(Scene scene, bool quick, Times times)
   const auto warnings = setup.warnings;
   const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup);
+  const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
   for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-    if (presence_of(scene.bodies[b].name, scene.stages).from == 0)
-      bodies += fmt::format("  body \"{}\": {} particles\n", setup.bodies[b].name, setup.bodies[b].size());
+    if (const Body& body = setup.bodies[b]; presence_of(body.name, scene.stages).from == 0)
+      bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
   bodies += describe_changes(setup);
   if (setup.origin)
     bodies += describe(*setup.origin);
+  for (const std::string& note : setup.notes)
+    bodies += fmt::format("  {}\n", note);
   const bool measured = times == Times::measured;
   const auto trials = measured ? try_stages(scene, mesh, setup) : std::vector<StageTrial>{};
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));
   for (const std::string& warning : warnings)
     fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}", scene.title, D, scene.kernel, cells, nodes, particles, bodies);
+  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, cells, nodes, particles,
+             terrain, bodies);
   fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
              static_cast<Real>(cost.steps) * particles / million);
   fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,

@@ -64,6 +64,7 @@ Model<D, K> build(const Scene& scene, Part<D> part, Setup<D> setup)
   m.materials = std::move(setup.materials);
   m.walls = std::move(setup.walls);
   m.loads = std::move(setup.loads);
+  m.water = std::move(setup.water);
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
   m.guards = setup.guards;

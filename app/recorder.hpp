@@ -4,24 +4,13 @@
 
 #include "app/history.hpp"
 #include "app/progress.hpp"
+#include "app/runout.hpp"
+#include "app/schedule.hpp"
 #include "app/simulate.hpp"
 #include "io/report.hpp"
 #include "io/vtk.hpp"
 
 namespace talus {
-
-/// Times at which something is written: 0, every, 2 every, ...
-class Schedule {
- public:
-  explicit Schedule(Real every) : every_(every) {}
-  /// True once for each of these times that has come.
-  bool due(Real time);
-  static constexpr auto fields() { return std::tuple{kept("next", &Schedule::next_)}; }
-
- private:
-  Real every_;
-  Real next_ = 0;
-};
 
 /// State of the run when it was last seen sound.
 template <int D>
@@ -83,6 +72,7 @@ class Recorder {
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
   const RanksSummary& ranks() const noexcept { return ranks_; }  ///< as of the end of the last stage
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
+  const Runout<D>& runout() const noexcept { return runout_; }
   static constexpr auto fields()
   {
     return std::tuple{kept("accounts", &Recorder::accounts_),
@@ -104,6 +94,7 @@ class Recorder {
                       kept("elsewhere", &Recorder::elsewhere_),
                       kept("last_output", &Recorder::last_output_),
                       kept("bodies", &Recorder::bodies_),
+                      kept("runout", &Recorder::runout_),
                       kept("output_seconds", &Recorder::output_seconds_),
                       kept("bytes_per_particle", &Recorder::bytes_per_particle_)};
   }
@@ -118,6 +109,8 @@ class Recorder {
   void write(const Frame<D>& frame, bool last);
   void write_particles_file(const Frame<D>& frame);
   void write_mesh_file(const Frame<D>& frame);
+  void write_runout(const Frame<D>& frame, bool last);
+  void name(const std::string& file);
   std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
 
@@ -144,6 +137,7 @@ class Recorder {
   Elsewhere elsewhere_;
   std::string last_output_;  // relative as well
   std::vector<BodySummary> bodies_;
+  Runout<D> runout_;
   Real output_seconds_ = 0, bytes_per_particle_ = 0;
 };
 

@@ -354,16 +354,26 @@ class Seeder {
       p.volume_ratio.assign(n, 1);
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
     }
-    if (from.viscous.empty())
-      return;
-    if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
-      p.viscous.assign(n, 0);
-    for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
-      if (has_bulk_viscosity(seeds_.materials[taken.body]))
-        p.viscous.set(row, from.viscous[there]);
-      else
-        p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
-    });
+    if (!from.viscous.empty()) {
+      if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
+        p.viscous.assign(n, 0);
+      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+        if (has_bulk_viscosity(seeds_.materials[taken.body]))
+          p.viscous.set(row, from.viscous[there]);
+        else
+          p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
+      });
+    }
+    if (!from.pore.empty()) {
+      if (scene_.water)
+        p.pore.assign(n, 0);
+      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+        if (!scene_.water)  // it is gone, and the effective stress is all there is
+          p.stress.set(row, add_diagonal(p.stress[row], from.pore[there]));
+        else if (is_drained(*scene_.water, seeds_.bodies[taken.body].name))
+          p.pore.set(row, from.pore[there]);  // of others the stress stays in total
+      });
+    }
   }
 
   /// One law of a body there.

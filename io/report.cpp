@@ -34,6 +34,8 @@ Json to_object(const StageSummary& stage)
       {"kind", stage.kind}, {"name", stage.name}, {"result", stage.result}, {"steps", stage.steps}, {"duration [s]", stage.duration}};
   if (stage.residual)
     object["residual"] = *stage.residual;
+  if (stage.first_residual)
+    object["residual_at_begin"] = *stage.first_residual;
   return object;
 }
 
@@ -160,6 +162,8 @@ std::string to_json(const RunSummary& s)
   json["cost"] = cost(s);
   json["balances"] = balances(s);
   json["watch"] = to_object(s.watch);
+  if (!s.runout.empty())
+    json["runout"] = to_object(s.runout);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
   json["scene"] = {{"file", s.scene_file}, {"digest", s.scene_digest}, {"text", s.scene_text}, {"set", s.overrides}};

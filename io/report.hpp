@@ -36,10 +36,11 @@ struct BodySummary {
 struct StageSummary {
   std::string kind;  ///< "geostatic" or "run"
   std::int64_t steps{};
-  Real duration{};               ///< simulated [s]
-  std::optional<Real> residual;  ///< unbalanced nodal force over total load at the end, where the stage looks for it
-  std::string result;            ///< "reached", "not converged", ...
-  std::string name{};            ///< that the scene gave to it, or the same as the kind
+  Real duration{};                          ///< simulated [s]
+  std::optional<Real> residual;             ///< unbalanced nodal force over total load at the end, where the stage looks for it
+  std::string result;                       ///< "reached", "not converged", ...
+  std::optional<Real> first_residual = {};  ///< the same in the first step: how far the stage began from balance
+  std::string name{};                       ///< that the scene gave to it, or the same as the kind
 };
 
 /// How well a balance closes: |sum that should vanish| over the named scale.
@@ -139,6 +140,7 @@ struct RunSummary {
   std::optional<MomentumAudit> momentum, angular_momentum;
   std::optional<MassAudit> mass;
   WatchSummary watch;
+  std::vector<NamedValue> runout;  ///< at the last look, where the scene asks for it
 
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< written by the run, relative to its folder

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
+#include <string>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,10 +15,55 @@
 
 namespace talus {
 
-/// Stress at the start: vertical stress from the weight above, horizontal stress k0 times it.
-struct K0Spec {
-  Real k0{};
-  static constexpr auto fields() { return std::tuple{required("k0", &K0Spec::k0, non_negative, "-", "horizontal over vertical stress")}; }
+/// Horizontal over vertical stress, effective stresses where the law sees these: one number, by depth, or by the friction of the law.
+struct K0Rule {
+  std::optional<Real> k0;
+  std::vector<std::vector<Real>> k0_table;
+  bool from_friction = false;
+  Real ocr = 1;
+  int given() const noexcept { return (k0 ? 1 : 0) + (k0_table.empty() ? 0 : 1) + (from_friction ? 1 : 0); }
+  void check_rule(std::vector<std::string>& problems) const;
+};
+
+/// The fields of a struct that inherits K0Rule, to be joined with its own by std::tuple_cat.
+template <class Spec>
+constexpr auto k0_fields()
+{
+  std::optional<Real> Spec::*const k0 = &Spec::k0;
+  std::vector<std::vector<Real>> Spec::*const table = &Spec::k0_table;
+  bool Spec::*const from_friction = &Spec::from_friction;
+  Real Spec::*const ocr = &Spec::ocr;
+  return std::tuple{
+      optional("k0", k0, non_negative, "-", "horizontal over vertical stress, of effective stresses where there is water"),
+      optional("k0_table", table, non_negative, "m, -",
+               "the same by depth below the ground, [[depth, k0], ...]: linear in between, constant outside"),
+      optional("from_friction", from_friction, any, "-",
+               "the same from the angle of friction phi of the law, (1 - sin phi) ocr^(sin phi) (Jaky; Mayne & Kulhawy), at most passive"),
+      optional("ocr", ocr, at_least(1), "-", "overconsolidation ratio, for from_friction")};
+}
+
+/// One body whose ratio differs from that of the others.
+struct K0OfBody : K0Rule {
+  std::string body;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(std::tuple{required("body", &K0OfBody::body, any, "-", "name of a body")}, k0_fields<K0OfBody>());
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+/// Stress at the start: vertical stress from the weight above, horizontal stress in a given ratio to it.
+struct K0Spec : K0Rule {
+  std::vector<K0OfBody> bodies;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(k0_fields<K0Spec>(), std::tuple{optional_list("bodies", &K0Spec::bodies, "bodies with a ratio of their own")});
+  }
+  void check(std::vector<std::string>& problems) const;
+  /// That of a body: its own, or that of all.
+  const K0Rule& of(const std::string& body) const noexcept;
 };
 
 /// A body that goes on as another material.

@@ -64,8 +64,9 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   apply(m.loads, time + dt, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.own, m.nodes);                //  5
-  integrate(gravity, dt, m.nodes);                      //  6
+  m.slaves.lump(m.mesh, m.own, m.nodes);  //  5
+  integrate(gravity, dt, m.nodes);        //  6
+  m.walls.give_way(time + dt, dt, *m.ranks, m.nodes);
   m.walls.apply(time + dt, m.nodes, m.tally.at_nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);
@@ -177,7 +178,8 @@ void respond(Model<D, K>& m, Index body, Index block, Real dt)
 {
   AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
   if (const auto rows = m.order.rows(body, block); !rows.empty() && !averages_volume(material))
-    m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, rows, dt, m.stage.elastic, m.averaged, m.particles, m.health);
+    m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, rows, dt, m.stage.elastic, m.averaged,
+                                                            pore_water(m, body, m.clock.time + dt), m.particles, m.health);
 }
 
 /// What is of a body as a whole: volumes averaged before the stress, heat after it; and what the particles report.
@@ -189,8 +191,8 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
     if (averages_volume(material)) {
       average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
       parallel_for_uneven(m.order.blocks, [&](Index block) {
-        m.stress_sums[m.order.key(body, block)] =
-            update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic, m.averaged, m.particles, m.health);
+        m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic,
+                                                                m.averaged, pore_water(m, body, m.clock.time + dt), m.particles, m.health);
       });
     }
     if (m.heat)
@@ -255,6 +257,7 @@ void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
   m.energy.damping += work.damping;
   m.energy.walls += walls.other + beyond.other;
   m.energy.friction += walls.friction + beyond.friction;
+  m.energy.waves += walls.waves;
   m.energy.nodes += work.kinetic_after - work.kinetic_before + beyond.friction + beyond.other;
   m.energy.loads += t.work_on_mesh.value() + t.work_on_particles.value();
   m.energy.internal += t.internal.value();

@@ -32,6 +32,7 @@ struct StageState {
   std::int64_t first_step = 0;    ///< steps done when it began
   int balanced = 0;               ///< steps in balance, one after the other, up to now
   Real damping = 0;               ///< local, share of the unbalanced force
+  Real first_residual = 0;        ///< unbalanced force over the loads in its first step
   Real begin = 0, ramp_time = 0;  ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
   bool elastic = false;           ///< yielding suspended
   bool seeks_rest = false;        ///< ends at rest, or is damped
@@ -39,10 +40,11 @@ struct StageState {
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{
-        kept("number", &StageState::number),   kept("first_step", &StageState::first_step), kept("balanced", &StageState::balanced),
-        kept("damping", &StageState::damping), kept("begin", &StageState::begin),           kept("ramp_time", &StageState::ramp_time),
-        kept("elastic", &StageState::elastic), kept("seeks_rest", &StageState::seeks_rest), kept("done", &StageState::done)};
+    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
+                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
+                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
+                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest),
+                      kept("done", &StageState::done),         kept("first_residual", &StageState::first_residual)};
   }
 };
 
@@ -83,6 +85,7 @@ struct WantedColumns {
   bool applied = false;       ///< forces on particles
   bool volume_ratio = false;  ///< a law averages its volume
   bool viscous = false;       ///< a law has bulk viscosity
+  bool pore = false;          ///< there is water
 };
 /// Makes those that are not there as they are of particles at rest; what comes from another run is kept.
 template <int D>
@@ -97,6 +100,8 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.volume_ratio.resize(n, 1);
   if (wanted.viscous && particles.viscous.empty())
     particles.viscous.assign(n, 0);
+  if (wanted.pore && particles.pore.empty())
+    particles.pore.assign(n, 0);
 }
 
 /// What the guards have seen since the start of the run.
@@ -158,6 +163,7 @@ struct Model {
   Tally<D> tally;  ///< of the step at hand
   Transfer transfer;
   Loads<D> loads;
+  Water water;
   Walls<D> walls;
   Exits exits;
   Clock clock;
@@ -246,6 +252,15 @@ void follow_rows(Model<D, K>& m)
   m.followed.find(m.particles.id);
 }
 
+/// What the law of a body sees of the water at a time; nothing where it sees total stress.
+template <int D, Kernel<D> K>
+std::optional<PoreWater> pore_water(const Model<D, K>& m, Index body, Real time)
+{
+  if (!m.water.drains(body))
+    return std::nullopt;
+  return PoreWater{m.water, m.stage.ramp(time) * m.loads.gravity.table(time)};
+}
+
 /// The particles are others now, in cells that are known: what goes by rows and cells follows.  Every rank has to.
 template <int D, Kernel<D> K>
 void take_rows(Model<D, K>& m)
@@ -300,7 +315,8 @@ void make_ready(Model<D, K>& m, std::span<const std::vector<AnyBatch>> to_come =
   m.columns = {.affine = m.transfer.own_affine_field(),
                .applied = m.loads.any_on_particles(),
                .volume_ratio = any_material(averages_volume),
-               .viscous = any_material(has_bulk_viscosity)};
+               .viscous = any_material(has_bulk_viscosity),
+               .pore = m.water.any()};
   fill_columns(m.columns, m.particles);
   if (any_material(conducts_heat))
     m.share.alone() ? m.heat.emplace(m.mesh) : m.heat.emplace(*m.ranks, m.mesh, m.share);

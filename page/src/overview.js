@@ -53,13 +53,14 @@ function remark_list(remarks) {
 const stage_table = (stages) =>
   table(
     'Stages',
-    ['stage', 'result', 'steps', 'simulated', 'residual'],
+    ['stage', 'result', 'steps', 'simulated', 'unbalanced / loads', 'when it began'],
     stages.map((stage, k) => [
       `${k} ${stage.name ?? stage.kind}`,
       stage.result || '–',
       whole(stage.steps),
       with_unit(stage['duration [s]'], 's'),
       stage.residual === undefined ? '–' : number(stage.residual, 3),
+      stage.residual_at_begin === undefined ? '–' : number(stage.residual_at_begin, 3),
     ]),
   );
 
