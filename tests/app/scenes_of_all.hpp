@@ -124,6 +124,15 @@ inline std::vector<SceneCase> scenes_of_all()
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
         .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
                 "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
+  all.push_back(
+      {"shaking",
+       {.law = all[5].parts.law,
+        .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1.1]}, particles_per_cell: 3}\n",
+        .boundaries = "boundaries:\n  - {type: free_field, on: x_min}\n  - {type: free_field, on: x_max}\n"
+                      "  - {type: compliant_base, on: y_min, density: 2500, s_wave: 40, p_wave: 80, velocity: [0.2, 0.1], table: [[0, 0], "
+                      "[0.02, 1], [0.04, 0]]}\n",
+        .time = "stages:\n  - {type: geostatic, duration: 5, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
+                "  - {type: run, duration: 0.05}\n"}});
   SceneParts in_3d{.dimension = solid,
                    .law = all[5].parts.law,
                    .bodies =
