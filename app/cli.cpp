@@ -49,11 +49,13 @@ class CommandLine {
     add_mesh();
     add_drive();
     add_render();
+    add_map();
     add_report();
     add_watch();
     add_surface();
     add_diff();
     add_sweep();
+    add_fos();
     add_suite("verify", "run the benchmarks against their references; write verify.json and a report", verify_);
     add_suite("tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
     add_bench();
@@ -226,16 +228,30 @@ class CommandLine {
     }
   }
 
+  static void add_movie(CLI::App& command, MovieOptions& options, const char* help)
+  {
+    CLI::Option* movie = command.add_option("--movie", options.movie, help);
+    command.add_option("--fps", options.per_second, "pictures per second of the movie; default 10")
+        ->needs(movie)
+        ->check(CLI::Range(0.1, 100.0));
+    command.add_flag("--keep-frames", options.keep_frames, "leave the pictures of the movie as numbered files in --out")->needs(movie);
+  }
+
+  void add_map()
+  {
+    CLI::App* map = app_.add_subcommand("map", "draw the maps of a run-out over a hillshade of the ground, and its sections");
+    map->add_option("folder", map_.folder, "results of a run with outputs.runout")->type_name(folder_value)->required();
+    add_words(*map, render::map_options, map_.words);
+    add_movie(*map, map_, "a .mp4 or .gif of the thickness, by ffmpeg; needs outputs.runout.frames_every");
+    map->callback([this] { draw_maps(map_); });
+  }
+
   void add_render()
   {
     CLI::App* render = app_.add_subcommand("render", "draw pictures of a run, or a movie");
     render->add_option("folder", render_.folder, "results of a run")->type_name(folder_value)->required();
     add_words(*render, render::picture_options, render_.words);
-    CLI::Option* movie = render->add_option("--movie", render_.movie, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
-    render->add_option("--fps", render_.per_second, "pictures per second of the movie; default 10")
-        ->needs(movie)
-        ->check(CLI::Range(0.1, 100.0));
-    render->add_flag("--keep-frames", render_.keep_frames, "leave the pictures of the movie as numbered files in --out")->needs(movie);
+    add_movie(*render, render_, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
     render->callback([this] { render_results(render_); });
   }
 
@@ -306,9 +322,39 @@ class CommandLine {
     only->check(CLI::PositiveNumber)->excludes(jobs);
     sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
     sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
+    sweep->add_flag("!--no-pictures", sweep_.pictures, "draw nothing");
     sweep->add_flag("--quick", sweep_.quick, "each case coarse and short: only to see that they run");
     sweep->add_flag("--quiet", sweep_.quiet, "no progress and no table");
     sweep->callback([this] { talus::sweep(sweep_); });
+  }
+
+  void add_fos()
+  {
+    CLI::App* fos =
+        app_.add_subcommand("fos", "find the factor of safety of a scene: by how much its strength can be divided before it fails");
+    fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic stage")->type_name(scene_value)->required();
+    fos->add_option("--out", fos_.out, "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
+    const auto number = [&](const char* name, auto& value, const char* help) {
+      return fos->add_option(name, value, help)->check(CLI::PositiveNumber);
+    };
+    number("--from", fos_.range.from, "lowest factor that is tried first; default 0.5");
+    number("--to", fos_.range.to, "highest factor that is tried first; default 3");
+    number("--width", fos_.range.width, "how close holding and failing factors come; default 0.02");
+    number("--duration", fos_.duration, "of a trial [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
+    fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(CLI::Range(0.0, 0.9));
+    number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
+    number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
+    fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
+    fos->add_option("--share", fos_.mass_share, "share of the mass that may move more than what is looked at; default 0.99")
+        ->check(CLI::Range(0.0, 1.0));
+    fos->add_option("--set", fos_.set, set_help);
+    fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(CLI::Range(1, 1024));
+    fos->add_option("--threads", fos_.threads, "threads of each; default the cores over the trials at a time")->check(CLI::Range(1, 1024));
+    fos->add_option("--launcher", fos_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
+    fos->add_flag("!--no-pictures", fos_.pictures, "draw nothing");
+    fos->add_flag("--quick", fos_.quick, "each run coarse and short: only to see that they run");
+    fos->add_flag("--quiet", fos_.quiet, "only the factor");
+    fos->callback([this] { find_fos(fos_); });
   }
 
   void add_suite(const std::string& name, const std::string& help, SuiteOptions& options)
@@ -370,11 +416,13 @@ class CommandLine {
   DriveOptions drive_;
   MeshOptions mesh_;
   RenderOptions render_;
+  MapOptions map_;
   ReportOptions report_;
   WatchOptions watch_;
   SurfaceOptions surface_;
   DiffOptions diff_;
   SweepOptions sweep_;
+  FosOptions fos_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;
   std::vector<std::string> manual_words_;

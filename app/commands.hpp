@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types.hpp"
+#include "app/fos_search.hpp"
 
 namespace talus {
 
@@ -63,16 +63,26 @@ struct DriveOptions {
 /// (a picture leaves the CSV it was drawn from beside it).
 void drive_law(const DriveOptions& options);
 
-struct RenderOptions {
-  std::filesystem::path folder;
-  std::vector<std::string> words;              ///< render::picture_options and what follows them
+struct MovieOptions {
   std::optional<std::filesystem::path> movie;  ///< a .mp4 or .gif of all pictures
   Real per_second = 10;                        ///< pictures of the movie
   bool keep_frames = false;
 };
+
+struct RenderOptions : MovieOptions {
+  std::filesystem::path folder;
+  std::vector<std::string> words;  ///< render::picture_options and what follows them
+};
 /// Draws the results in a folder; what is not asked for is as the scene says.  Error with all that is wrong with the words, before anything is
 /// drawn; EnvironmentError.
 void render_results(const RenderOptions& options);
+
+struct MapOptions : MovieOptions {
+  std::filesystem::path folder;
+  std::vector<std::string> words;  ///< render::map_options and what follows them
+};
+/// Draws the maps and sections of a run with outputs.runout.  Errors as above.
+void draw_maps(const MapOptions& options);
 
 struct ReportOptions {
   std::filesystem::path folder;
@@ -132,11 +142,29 @@ struct SweepOptions {
   std::optional<int> only;              ///< number of the one case to run
   std::optional<std::string> launcher;  ///< words before the program, such as "mpirun -n 4"
   bool list = false;                    ///< run nothing
-  bool quick = false, quiet = false;
+  bool quick = false, quiet = false, pictures = true;
 };
 /// Runs the cases of a study that are not done yet, each as a process of its own in a folder of its own, and keeps a table of them.  SceneErrors
 /// with all that is wrong with any case, before anything runs; RunError if some failed; Stopped by a signal, or because cases were; EnvironmentError.
 void sweep(const SweepOptions& options);
+
+struct FosOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> set;
+  std::optional<std::filesystem::path> out;
+  FosRange range;
+  FosCriterion criterion;
+  std::optional<Real> duration;     ///< of a trial [s]
+  Real damping = 0.3;               ///< of a trial, as stages have it
+  Real mass_share = 0.99;           ///< whose displacement counts, as outputs.history.moved has it
+  std::vector<std::string> bodies;  ///< whose strength is divided; empty: of all that have some
+  std::optional<int> jobs, threads;
+  std::optional<std::string> launcher;
+  bool quick = false, quiet = false, pictures = true;
+};
+/// Finds the factor by which the strength of bodies can be divided before they fail: runs the scene until it is at rest, then trials from there, and
+/// leaves fos.csv, fos.json and pictures.  SceneErrors, RunError, Stopped, EnvironmentError as above.
+void find_fos(const FosOptions& options);
 
 struct BenchOptions {
   std::vector<std::string> kernels, transfers, laws, precisions;

@@ -1,5 +1,5 @@
 #pragma once
-// history.csv: balances, reactions, followed points and fronts at each output time.
+// history.csv: balances, reactions, followed points, fronts and how far the mass has moved at each output time.
 #include "app/accounts.hpp"
 #include "io/csv.hpp"
 #include "io/scene.hpp"
@@ -16,16 +16,25 @@ std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bo
 template <int D>
 Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
 
+/// Length of displacement [m] that a share of the mass does not exceed, alike.
+template <int D>
+Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
+
+/// The facets that a wall of the history stands on: the second wall on a group is called GROUP_2.
+template <int D>
+std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std::string& wall);
+
 /// What a row owes to the rows before.
 template <int D>
 struct HistoryState {
   std::vector<std::int64_t> followed;  ///< id of the particle of each point
   std::vector<Vec<D>> impulse;         ///< of each wall at the row before [N s]
+  std::vector<Vec3> angular;           ///< its moment about the origin [N m s]
   Real time = 0;                       ///< of the row before [s]
   static constexpr auto fields()
   {
     return std::tuple{kept("followed", &HistoryState::followed), kept("impulse", &HistoryState::impulse),
-                      kept("time", &HistoryState::time)};
+                      kept("angular", &HistoryState::angular), kept("time", &HistoryState::time)};
   }
 };
 
@@ -38,19 +47,24 @@ class HistoryWriter {
   /// Goes on in a file that is there, behind the time of `now`.
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
+  /// Points of this body follow the particle that is nearest now.
+  void follow_anew(const std::string& body, const Frame<D>& now);
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
   void flush() const { file_->flush(); }                          ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
-  static void add_point(const Frame<D>& frame, Index at, std::vector<Real>& row);
+  void add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
+  static void add_point(const Frame<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;
   std::optional<HistoryFile> file_;
 };
 
+extern template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
+extern template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
 extern template class HistoryWriter<2>;
 extern template class HistoryWriter<3>;
 

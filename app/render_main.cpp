@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "io/render.hpp"
 #include "io/render_chart.hpp"
+#include "io/render_map.hpp"
 #include "io/render_surface.hpp"
 
 namespace {
@@ -33,12 +34,27 @@ void draw_chart(std::span<const std::string> words)
   announce(chart.out);
 }
 
+void draw_tornado(std::span<const std::string> words)
+{
+  const auto tornado = render::parse_tornado(words);
+  render::draw(tornado);
+  announce(tornado.out);
+}
+
 void write_surfaces(std::span<const std::string> words)
 {
   std::vector<std::string> problems;
   const auto settings = render::parse_surface(words, problems);
   render::require_none(problems);
   render::make_surfaces(settings, announce);
+}
+
+void draw_maps(std::span<const std::string> words)
+{
+  std::vector<std::string> problems;
+  const auto settings = render::parse_maps(words, problems);
+  render::require_none(problems);
+  render::draw_maps(settings, [](const std::filesystem::path& picture) { announce(picture); });
 }
 
 void draw_pictures(std::span<const std::string> words)
@@ -62,8 +78,12 @@ int main(int argc, char** argv)
     }
     if (!arguments.empty() && arguments.front() == "chart")
       draw_chart(std::span(arguments).subspan(1));
+    else if (!arguments.empty() && arguments.front() == "tornado")
+      draw_tornado(std::span(arguments).subspan(1));
     else if (!arguments.empty() && arguments.front() == "surface")
       write_surfaces(std::span(arguments).subspan(1));
+    else if (!arguments.empty() && arguments.front() == "map")
+      draw_maps(std::span(arguments).subspan(1));
     else
       draw_pictures(arguments);
     return 0;

@@ -1,14 +1,11 @@
 #include "app/sweep_cases.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 
-#include "app/checkpoints.hpp"
 #include "app/quick.hpp"
-#include "app/results.hpp"
 #include "app/simulate.hpp"
 #include "app/summary.hpp"
 #include "io/document.hpp"
@@ -144,20 +141,6 @@ void check_on_mesh(const SweepPlan& plan, const std::vector<SweepCase*>& cases, 
   }
 }
 
-/// Time that the newest checkpoint of this case has reached [s]; nothing where there is none.
-std::optional<Real> time_kept(const SweepCase& one, bool quick)
-{
-  try {
-    const CheckpointList kept(one.folder);
-    const RunIdentity& run = kept.identity();
-    const bool same_mesh = one.mesh_digest.empty() || digest_text(static_cast<std::uint64_t>(run.mesh)) == one.mesh_digest;
-    if (run.quick == quick && run.set == one.changes && same_mesh)
-      return kept.clock().time;
-  } catch (const EnvironmentError&) {
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 SweepPlan plan_sweep(Study study, fs::path folder, bool quick)
@@ -165,7 +148,9 @@ SweepPlan plan_sweep(Study study, fs::path folder, bool quick)
   SweepPlan plan{std::move(study), std::move(folder), quick, {}, {}};
   CaseErrors errors;
   for (StudyCase& values : cases_of(plan.study)) {
-    SweepCase one{static_cast<int>(plan.cases.size()) + 1, std::move(values), {}, {}, {}, {}};
+    SweepCase one;
+    one.number = static_cast<int>(plan.cases.size()) + 1;
+    one.values = std::move(values);
     one.changes = changes_of(plan.study, one.values);
     one.folder = plan.folder / fmt::format("case_{:04}", one.number);
     try {
@@ -196,53 +181,5 @@ void check_cases(SweepPlan& plan, const std::vector<std::size_t>& chosen, CheckD
       check_on_mesh<3>(plan, cases, depth, errors);
   errors.throw_if_any(chosen.size());
 }
-
-CaseStatus status_of(const SweepCase& one, bool quick)
-{
-  CaseStatus status;
-  const fs::path file = one.folder / "summary.json";
-  if (std::error_code unknown; !fs::exists(file, unknown))
-    return status;
-  try {
-    status.summary = read_summary(file);
-  } catch (const EnvironmentError& e) {
-    status.why = e.what();
-    return status;
-  }
-  const SummaryBack& summary = status.summary;
-  const bool ended = summary.status == "done";
-  const bool same_scene = summary.scene_digest == one.scene_digest;
-  const bool same_mesh = one.mesh_digest.empty() || summary.mesh_digest == one.mesh_digest;
-  if (!same_scene || !same_mesh || (ended && summary.quick != quick)) {
-    status.why = !same_scene  ? "its results are of another scene or of other changes"
-                 : !same_mesh ? "its results are of another mesh"
-                 : quick      ? "its results are not of a quick run"
-                              : "its results are of a quick run";
-    status.summary = {};
-    return status;
-  }
-  if (ended) {
-    status.state = CaseState::done;
-  } else if (summary.status == "stopped" || summary.message == message_before_the_end) {
-    status.state = summary.status == "stopped" ? CaseState::stopped : CaseState::not_ended;
-    status.goes_on_from = time_kept(one, quick);
-  } else {
-    status.state = CaseState::failed;
-    status.why = summary.message;
-  }
-  return status;
-}
-
-bool is_at_work(const SweepCase& one)
-{
-  try {
-    const FolderLock mine(one.folder);
-    return false;
-  } catch (const EnvironmentError&) {
-    return true;
-  }
-}
-
-std::string in_words(const SweepCase& one) { return fmt::format("{}", fmt::join(one.changes, ", ")); }
 
 }  // namespace talus

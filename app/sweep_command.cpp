@@ -1,37 +1,24 @@
 // talus sweep
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <chrono>
-#include <csignal>
-#include <cstring>
 #include <deque>
 #include <map>
 #include <numeric>
-#include <sstream>
-#include <thread>
 
 #include "app/commands.hpp"
 #include "app/signals.hpp"
-#include "app/sweep_table.hpp"
+#include "app/sweep_findings.hpp"
 #include "core/exchange.hpp"
-#include "core/parallel.hpp"
 #include "core/version.hpp"
-#include "io/child_process.hpp"
 #include "io/reader.hpp"
-#include "io/whole_file.hpp"
 
 namespace talus {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr int run_was_stopped = 4;
 
 /// runs/<name>: of the file, or of the folder of a study.yaml.
 fs::path default_sweep_folder(const fs::path& study)
@@ -40,50 +27,11 @@ fs::path default_sweep_folder(const fs::path& study)
   return fs::path("runs") / (study.filename() == "study.yaml" && !folder.empty() ? folder.string() + "_study" : study.stem().string());
 }
 
-std::vector<std::string> split_at_blanks(const std::string& text)
-{
-  std::istringstream stream(text);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;)
-    words.push_back(word);
-  return words;
-}
-
-/// The end of what a run has said.
-std::string last_lines(const fs::path& log)
-{
-  constexpr std::ptrdiff_t most = 12;
-  std::istringstream stream(read_whole(log));
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);)
-    lines.push_back(line);
-  if (std::ssize(lines) > most)
-    lines.erase(lines.begin(), lines.end() - most);
-  return fmt::format("{}", fmt::join(lines, "\n    "));
-}
-
-/// How many cases run side by side, and with how many threads each.
-struct SideBySide {
-  std::size_t jobs;
-  std::optional<int> threads;  ///< nothing: the launcher's business
-};
-
-SideBySide divide_cores(const SweepOptions& options, std::size_t n_cases)
-{
-  const int cores = std::max(1, threads());
-  const int jobs =
-      options.only ? 1 : options.jobs.value_or(std::max(1, std::min(static_cast<int>(n_cases), cores / options.threads.value_or(1))));
-  SideBySide side{static_cast<std::size_t>(jobs), options.threads};
-  if (!options.threads && !options.launcher)
-    side.threads = std::max(1, cores / jobs);
-  return side;
-}
-
 /// Cases on their way from "to be run" to their end.
 class Sweep {
  public:
   Sweep(const SweepOptions& options, const SweepPlan& plan, const SideBySide& side, SweepTable& table)
-      : options_(options), plan_(plan), side_(side), table_(table)
+      : options_(options), plan_(plan), jobs_(side.jobs), table_(table), runs_(options.launcher, side.threads, plan.quick)
   {}
 
   /// Until all have ended, or a signal asks for the end.
@@ -93,14 +41,13 @@ class Sweep {
     std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(waiting),
                  [&](std::size_t i) { return table_.status(i).state != CaseState::done; });
     const StopRequests requests;
-    while (!running_.empty() || (!waiting.empty() && StopRequests::received().empty())) {
-      while (!waiting.empty() && running_.size() < side_.jobs && StopRequests::received().empty()) {
+    while (runs_.count() > 0 || (!waiting.empty() && StopRequests::received().empty())) {
+      while (!waiting.empty() && runs_.count() < jobs_ && StopRequests::received().empty()) {
         start(waiting.front());
         waiting.pop_front();
       }
       if (!StopRequests::received().empty() && !std::exchange(told_to_end_, true))
-        for (const Running& run : running_)
-          run.process.ask_to_end();
+        runs_.ask_to_end();
       look_after();
     }
     table_.update();
@@ -111,13 +58,6 @@ class Sweep {
   const std::string& signal() const noexcept { return signal_; }
 
  private:
-  struct Running {
-    std::size_t of;
-    ChildProcess process;
-    std::chrono::steady_clock::time_point begun;
-  };
-
-  fs::path log_of(std::size_t i) const { return plan_.cases[i].folder.string() + ".log"; }
   void say(std::size_t i, const std::string& what) const
   {
     if (options_.quiet)
@@ -134,30 +74,7 @@ class Sweep {
       return say(i, "is done");
     if (status.state == CaseState::not_ended && is_at_work(one))
       return say(i, "another process is at work on it");
-    std::vector<std::string> words = split_at_blanks(options_.launcher.value_or(""));
-    words.insert(words.end(), {fs::read_symlink("/proc/self/exe").string(), "run"});
-    if (status.goes_on_from) {
-      words.insert(words.end(), {"--resume", one.folder.string()});
-    } else {
-      words.insert(words.end(), {scene_of(plan_.study).string(), "--out", one.folder.string()});
-      for (const std::string& change : one.changes)
-        words.insert(words.end(), {"--set", change});
-      if (plan_.quick)
-        words.emplace_back("--quick");
-    }
-    words.emplace_back("--quiet");
-    if (side_.threads)
-      words.insert(words.end(), {"--threads", std::to_string(*side_.threads)});
-    const int log = ::open(log_of(i).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (log < 0)
-      throw EnvironmentError(fmt::format("cannot write {}: {}", log_of(i).string(), std::strerror(errno)));
-    try {
-      running_.push_back({i, ChildProcess(std::move(words), log), std::chrono::steady_clock::now()});
-    } catch (const EnvironmentError&) {
-      ::close(log);
-      throw;
-    }
-    ::close(log);
+    runs_.start(i, scene_of(plan_.study), one, status);
     say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins",
                        in_words(one), remark(status)));
   }
@@ -173,18 +90,9 @@ class Sweep {
   /// Waits a little; sees to those that have ended.
   void look_after()
   {
-    constexpr std::chrono::milliseconds a_little{30};
-    std::this_thread::sleep_for(a_little);
-    for (std::size_t k = 0; k < running_.size();) {
-      const auto code = running_[k].process.ended();
-      if (!code) {
-        ++k;
-        continue;
-      }
-      const auto [i, begun] = std::pair(running_[k].of, running_[k].begun);
-      running_.erase(running_.begin() + static_cast<std::ptrdiff_t>(k));
+    for (const ChildRuns::Ended& ended : runs_.look()) {
       table_.update();
-      end_of(i, *code, std::chrono::duration<Real>(std::chrono::steady_clock::now() - begun).count());
+      end_of(ended.number, ended.code, ended.seconds);
     }
   }
 
@@ -193,38 +101,19 @@ class Sweep {
     const CaseStatus& status = table_.status(i);
     if (code == 0 && status.state == CaseState::done)
       return say(i, fmt::format("done after {:.1f} s", seconds));
-    const bool before_its_first_step =
-        told_to_end_ && (code == ChildProcess::of_signal + SIGTERM || code == ChildProcess::of_signal + SIGINT);
+    const bool before_its_first_step = runs_.ended_before_its_first_step(code);
     if (code == run_was_stopped || before_its_first_step)
       return say(i, before_its_first_step ? "ended before its first step"
                                           : fmt::format("stopped at t = {:.6g} s", status.goes_on_from.value_or(0)));
-    failures_[i] = reason(i, code, status);
+    failures_[i] = runs_.why(plan_.cases[i], code, status);
     say(i, "FAILED, see below");
-  }
-
-  std::string reason(std::size_t i, int code, const CaseStatus& status) const
-  {
-    if (code == 0)
-      return fmt::format("it ran to its end, but {}: was the scene changed meanwhile?",
-                         status.why.empty() ? "its summary says otherwise" : status.why);
-    if (status.state == CaseState::failed)
-      return status.why;
-    if (code > ChildProcess::of_signal)
-      return fmt::format("ended by signal {}{}{}", code - ChildProcess::of_signal,
-                         code == ChildProcess::of_signal + SIGKILL ? " (where memory runs out the system kills; --jobs 1 needs less)" : "",
-                         status.goes_on_from ? "; it goes on from its last checkpoint when the sweep is run again" : "");
-    const std::string said = last_lines(log_of(i));
-    if (code == ChildProcess::not_started)
-      return fmt::format("cannot be started{}{}", options_.launcher ? ": is there no " + *options_.launcher + "?" : "",
-                         said.empty() ? "" : "\n    " + said);
-    return said.empty() ? fmt::format("ended with {}", code) : said;
   }
 
   const SweepOptions& options_;
   const SweepPlan& plan_;
-  SideBySide side_;
+  std::size_t jobs_;
   SweepTable& table_;
-  std::vector<Running> running_;
+  ChildRuns runs_;
   std::map<std::size_t, std::string> failures_;
   bool told_to_end_ = false;
   std::string signal_;
@@ -308,12 +197,23 @@ void sweep(const SweepOptions& options)
   SweepTable table(plan);
   if (!options.list || fs::exists(plan.folder))
     table.update();
+  const auto find_out = [&](bool pictures) {
+    std::vector<std::string> warnings;
+    const std::string said = write_findings(plan, table, pictures, warnings);
+    if (!options.quiet)
+      fmt::print("{}", said);
+    for (const std::string& warning : warnings)
+      fmt::print(stderr, "warning: {}\n", warning);
+  };
   if (options.list) {
     list_cases(plan, table);
+    if (fs::exists(plan.folder))
+      find_out(false);
     return print_remarks(plan, table);
   }
   const auto left = std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state != CaseState::done; });
-  const SideBySide side = divide_cores(options, static_cast<std::size_t>(left));
+  const SideBySide side =
+      divide_cores(options.only ? 1 : options.jobs, options.threads, options.launcher.has_value(), static_cast<std::size_t>(left));
   if (!options.quiet)
     fmt::print("{}: {} of {} case{} of {} to be run in {}, {} at a time{}\n", plan.study.file, left, chosen.size(),
                chosen.size() == 1 ? "" : "s", scene_of(plan.study).string(), plan.folder.string(), side.jobs,
@@ -322,6 +222,7 @@ void sweep(const SweepOptions& options)
   all(chosen);
   if (!options.quiet)
     fmt::print("{}table in {}\n", table.print(), (plan.folder / "sweep.csv").string());
+  find_out(options.pictures && all.signal().empty());
   print_remarks(plan, table);
   conclude(plan, all, table, chosen);
 }

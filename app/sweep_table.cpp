@@ -130,6 +130,23 @@ std::vector<CsvColumn> SweepTable::columns() const
   return all;
 }
 
+std::vector<std::string> SweepTable::number_headings() const
+{
+  std::vector<std::string> headings;
+  for (const CsvColumn& column : columns())
+    headings.push_back(csv_heading(column));
+  headings.erase(headings.begin(), headings.end() - std::ssize(names_));
+  return headings;
+}
+
+std::optional<Real> SweepTable::number(std::size_t i, std::size_t k) const
+{
+  const auto& numbers = rows_[i].numbers;
+  if (k >= numbers.size() || !numbers[k] || !std::isfinite(numbers[k]->value))
+    return std::nullopt;
+  return numbers[k]->value;
+}
+
 std::vector<std::string> SweepTable::words_of_case(std::size_t i) const
 {
   std::vector<std::string> all{std::to_string(plan_.cases[i].number)};

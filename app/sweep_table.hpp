@@ -15,6 +15,9 @@ class SweepTable {
   /// EnvironmentError.
   void update();
   const CaseStatus& status(std::size_t i) const { return status_[i]; }
+  /// Headings of the numbers, "toe [m]"; and one of them of a case, nothing where it is not known.
+  std::vector<std::string> number_headings() const;
+  std::optional<Real> number(std::size_t i, std::size_t k) const;
   /// Lines of columns for people.
   std::string print() const;
   /// Names of `collect` that no case knows of those that are done, with what was probably meant.

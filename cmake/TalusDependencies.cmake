@@ -14,6 +14,7 @@ find_package(MPI REQUIRED COMPONENTS C)
 target_compile_definitions(MPI::MPI_C INTERFACE OMPI_SKIP_MPICXX MPICH_SKIP_MPICXX)   # MPI's old C++ classes, which mpi.h would bring along
 find_package(yaml-cpp 0.7 REQUIRED)
 find_package(Gmsh 4.8 REQUIRED)
+find_package(GDAL 3.4 REQUIRED)
 find_package(METIS 5.1 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(VTK 9.1 REQUIRED QUIET COMPONENTS IOCore ${vtk_components})

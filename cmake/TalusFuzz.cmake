@@ -5,14 +5,14 @@
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
-              ONLY accuracy array_ hdf5 cell_count csv document field_reader gmsh_door gmsh_mesh gmsh_read history_columns memory mesh_groups msh_ progress_json reader scalars scene
-                   shape study text_file vtk whole_file
+              ONLY accuracy array_ hdf5 cell_count csv document field_reader gdal_door gmsh_door gmsh_mesh gmsh_read history_columns map_crs memory mesh_groups module msh_ point_file polygon_file progress_json raster_file reader scalars scene
+                   shape stl_file study surface_file terrain_ text_file vtk whole_file
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)
-talus_library(fuzz_solver FOLDER solver ONLY cell_order deal walls LINKS talus_mesh talus_fuzz_materials)
+talus_library(fuzz_solver FOLDER solver ONLY cell_order deal loads walls LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
-              ONLY accounts checkpoints disk_space duration expression fields history progress recorder results signals slices sound_state
+              ONLY accounts checkpoints disk_space duration expression fields history progress reach recorder results runout signals slices sound_state traps
               LINKS talus_fuzz_io talus_fuzz_solver
               PRIVATE muparser::muparser)
 

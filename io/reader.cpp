@@ -285,6 +285,21 @@ Scene read_scene_text(const std::filesystem::path& file, const std::string& text
   return scene;
 }
 
+std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
+                             std::span<const std::string_view> without)
+{
+  const Document document = read_document(file, read_text(file), overrides);
+  const Found found = find_nearest(document.root, path);
+  Node there = *found.node;
+  for (const std::string_view key : without)
+    if (const Node* const item = there.find(key)) {
+      const auto at = item - there.items.data();
+      there.keys.erase(there.keys.begin() + at);
+      there.items.erase(there.items.begin() + at);
+    }
+  return in_one_line(there);
+}
+
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides)
 {
   Document document = read_document(file, read_text(file), overrides);

@@ -20,6 +20,10 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
 /// The same of a text that was in `file`.
 Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides = {});
 
+/// What stands at a path of keys, in one line as an override takes it; without some keys of that mapping.  Empty where nothing stands.
+std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
+                             std::span<const std::string_view> without = {});
+
 /// The file of `talus drive`, read in the same way.
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 

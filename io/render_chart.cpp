@@ -12,6 +12,7 @@
 #include <vtkNew.h>
 #include <vtkPen.h>
 #include <vtkPlot.h>
+#include <vtkPlotPoints.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
 #include <vtkStringArray.h>
@@ -19,6 +20,7 @@
 #include <vtkTextProperty.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "core/units.hpp"
@@ -33,6 +35,7 @@ namespace {
 
 constexpr std::array<int, 2> size{960, 600};  // pixels
 constexpr int letter = 15 * oversampling;     // pixels
+constexpr float mark = 9;                     // pixels
 constexpr Real headroom = 0.05;               // of the span of y, above and below
 
 /// Colours of Okabe and Ito (2008), told apart with any kind of colour blindness.
@@ -71,7 +74,7 @@ vtkSmartPointer<vtkTable> curve(const std::string& name, const std::vector<Real>
   return table;
 }
 
-void add(vtkChartXY* chart, vtkTable* table, std::size_t number)
+vtkPlot* add(vtkChartXY* chart, vtkTable* table, std::size_t number)
 {
   vtkPlot* plot = chart->AddPlot(vtkChart::LINE);
   plot->SetInputData(table, 0, 1);
@@ -80,6 +83,7 @@ void add(vtkChartXY* chart, vtkTable* table, std::size_t number)
   plot->SetWidth((number == 0 ? 2.5F : 1.8F) * oversampling);
   if (number > 0)
     plot->GetPen()->SetLineType(number % 2 == 1 ? vtkPen::DASH_LINE : vtkPen::DASH_DOT_LINE);
+  return plot;
 }
 
 void letter_axis(vtkAxis* axis, const std::string& title)
@@ -108,6 +112,20 @@ void show_span(vtkAxis* axis, Real low, Real high, Real margin)
   axis->SetCustomTickPositions(places, words);
 }
 
+/// Marks the powers of ten of an axis that shows logarithms.
+void show_decades(vtkAxis* axis, Real low, Real high)
+{
+  axis->SetBehavior(vtkAxis::FIXED);
+  axis->SetRange(low, high);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> words;
+  for (Real decade = std::ceil(low); decade <= high; ++decade) {
+    places->InsertNextValue(decade);
+    words->InsertNextValue(fmt::format("{:g}", std::pow(10, decade)));
+  }
+  axis->SetCustomTickPositions(places, words);
+}
+
 /// Levels at one height share a line and a name.
 std::vector<Chart::Level> merged(const std::vector<Chart::Level>& levels)
 {
@@ -128,6 +146,42 @@ std::vector<Real> values_of(vtkDataArray* column, Real factor = 1)
   for (vtkIdType i = 0; i < column->GetNumberOfTuples(); ++i)
     values.push_back(factor * column->GetTuple1(i));
   return values;
+}
+
+/// To the base of ten.  What is not above zero lies a decade below what is.
+std::vector<Real> logarithms(const std::vector<Real>& values)
+{
+  Real least = 1;
+  for (const Real value : values)
+    least = value > 0 ? std::min(least, value) : least;
+  std::vector<Real> logs;
+  for (const Real value : values)
+    logs.push_back(std::log10(value > 0 ? value : 0.1 * least));
+  return logs;
+}
+
+void put_on_paper(vtkChartXY* plot, const std::filesystem::path& out)
+{
+  vtkNew<vtkRenderWindow> window;
+  prepare(window, size);
+  vtkNew<vtkRenderer> paper;
+  paper->SetBackground(1, 1, 1);
+  window->AddRenderer(paper);
+  vtkNew<vtkContextActor> actor;
+  actor->GetScene()->AddItem(plot);
+  actor->GetScene()->SetRenderer(paper);
+  paper->AddActor(actor);
+  save(window, out);
+}
+
+void letter_chart(vtkChartXY* plot, const std::string& title)
+{
+  plot->SetTitle(title);
+  plot->GetTitleProperties()->SetFontSize(letter);
+  plot->SetShowLegend(true);
+  plot->GetLegend()->SetLabelSize(letter);
+  plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
+  plot->GetLegend()->SetVerticalAlignment(vtkChartLegend::BOTTOM);
 }
 
 }  // namespace
@@ -151,35 +205,87 @@ void draw(const Chart& chart)
     low = std::min(low, level.value);
     high = std::max(high, level.value);
   }
-  const auto [factor, unit] = scaled_unit(y_unit, std::max(-low, high));
-  const std::vector<Real> x = values_of(column_of(table, chart.x)), y = values_of(y_column, factor);
+  const ScaledUnit unit = chart.log ? ScaledUnit{1, y_unit} : scaled_unit(y_unit, std::max(-low, high));
+  const std::vector<Real> x = values_of(column_of(table, chart.x));
+  std::vector<Real> y = values_of(y_column, unit.factor);
+  low *= unit.factor, high *= unit.factor;
+  if (chart.log) {
+    const std::vector<Real> shown = logarithms(y);
+    y = shown;
+    low = std::floor(*std::min_element(y.begin(), y.end())), high = std::ceil(*std::max_element(y.begin(), y.end()));
+    high = std::max(high, low + 1);
+  }
 
   vtkNew<vtkChartXY> plot;
-  plot->SetTitle(chart.title);
-  plot->GetTitleProperties()->SetFontSize(letter);
-  plot->SetShowLegend(true);
-  plot->GetLegend()->SetLabelSize(letter);
-  plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
-  plot->GetLegend()->SetVerticalAlignment(vtkChartLegend::BOTTOM);
+  letter_chart(plot, chart.title);
   letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", x_name, x_unit));
-  letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit));
+  letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit.name));
   show_span(plot->GetAxis(vtkAxis::BOTTOM), x.front(), x.back(), 0);
-  show_span(plot->GetAxis(vtkAxis::LEFT), factor * low, factor * high, headroom);
-  add(plot, curve("driven", x, y), 0);
+  if (chart.log)
+    show_decades(plot->GetAxis(vtkAxis::LEFT), low, high);
+  else
+    show_span(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
+  vtkPlot* const drawn = add(plot, curve(chart.curve, x, y), 0);
+  if (auto* marked = vtkPlotPoints::SafeDownCast(drawn); marked != nullptr && chart.marks) {
+    marked->SetMarkerStyle(vtkPlotPoints::CIRCLE);
+    marked->SetMarkerSize(mark * oversampling);
+  }
   const std::vector<Chart::Level> levels = merged(chart.levels);
   for (std::size_t i = 0; i < levels.size(); ++i)
-    add(plot, curve(levels[i].name, {x.front(), x.back()}, std::vector<Real>(2, factor * levels[i].value)), i + 1);
+    add(plot,
+        curve(levels[i].name, {x.front(), x.back()},
+              std::vector<Real>(2, chart.log ? std::log10(levels[i].value) : unit.factor * levels[i].value)),
+        i + 1);
+  for (std::size_t i = 0; i < chart.uprights.size(); ++i)
+    add(plot, curve(chart.uprights[i].name, std::vector<Real>(2, chart.uprights[i].value), {low, high}), levels.size() + i + 1);
 
-  vtkNew<vtkRenderWindow> window;
-  prepare(window, size);
-  vtkNew<vtkRenderer> paper;
-  paper->SetBackground(1, 1, 1);
-  window->AddRenderer(paper);
-  vtkNew<vtkContextActor> actor;
-  actor->GetScene()->AddItem(plot);
-  actor->GetScene()->SetRenderer(paper);
-  paper->AddActor(actor);
-  save(window, chart.out);
+  put_on_paper(plot, chart.out);
+}
+
+void draw(const Tornado& tornado)
+{
+  const auto [name, unit_name] = split(tornado.x);
+  Real low = tornado.base, high = tornado.base;
+  for (const Tornado::Bar& bar : tornado.bars) {
+    low = std::min({low, bar.low, bar.high});
+    high = std::max({high, bar.low, bar.high});
+  }
+  if (!(low < high))
+    high = low + std::max(std::abs(low), 1.0);
+  const ScaledUnit unit = scaled_unit(unit_name, std::max(std::abs(low), std::abs(high)));
+  vtkNew<vtkChartXY> plot;
+  letter_chart(plot, tornado.title);
+  letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", name, unit.name));
+  letter_axis(plot->GetAxis(vtkAxis::LEFT), "");
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), unit.factor * low, unit.factor * high, headroom);
+  const auto count = static_cast<Real>(tornado.bars.size());
+  vtkAxis* const keys = plot->GetAxis(vtkAxis::LEFT);
+  keys->SetBehavior(vtkAxis::FIXED);
+  keys->SetRange(0, count + 1);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> words;
+  const float thick = static_cast<float>(std::min(40.0, 0.5 * size[1] / (count + 1))) * oversampling;
+  for (std::size_t i = 0; i < tornado.bars.size(); ++i) {
+    const Tornado::Bar& bar = tornado.bars[i];
+    const Real height = count - static_cast<Real>(i);
+    places->InsertNextValue(height);
+    words->InsertNextValue(bar.name);
+    for (const std::size_t end : {0U, 1U}) {
+      vtkPlot* const drawn = add(plot,
+                                 curve(end == 0 ? "at the low value" : "at the high value",
+                                       {unit.factor * tornado.base, unit.factor * (end == 0 ? bar.low : bar.high)}, {height, height}),
+                                 0);
+      const Colour& colour = palette[end];
+      drawn->SetColor(colour[0], colour[1], colour[2], 255);
+      drawn->SetWidth(thick);
+      drawn->SetLegendVisibility(i == 0);
+    }
+  }
+  keys->SetCustomTickPositions(places, words);
+  vtkPlot* const line = add(plot, curve("all in the middle", std::vector<Real>(2, unit.factor * tornado.base), {0, count + 1}), 0);
+  line->SetColor(0, 0, 0, 255);
+  line->SetWidth(oversampling);
+  put_on_paper(plot, tornado.out);
 }
 
 }  // namespace talus::render

@@ -14,6 +14,10 @@ Chart parse_chart(std::span<const std::string> arguments)
   OptionWords words(arguments);
   while (!words.empty()) {
     const std::string word = words.next("");
+    const auto line = [&] {
+      std::string name = words.next(word);
+      return Chart::Level{std::move(name), number<Real>(words.next(word), word)};
+    };
     if (word == "--x")
       chart.x = words.next(word);
     else if (word == "--y")
@@ -22,10 +26,17 @@ Chart parse_chart(std::span<const std::string> arguments)
       chart.title = words.next(word);
     else if (word == "--out")
       chart.out = words.next(word);
-    else if (word == "--level") {
-      std::string name = words.next(word);
-      chart.levels.push_back({std::move(name), number<Real>(words.next(word), word)});
-    } else if (!word.starts_with("--") && chart.table.empty())
+    else if (word == "--curve")
+      chart.curve = words.next(word);
+    else if (word == "--marks")
+      chart.marks = true;
+    else if (word == "--log")
+      chart.log = true;
+    else if (word == "--level")
+      chart.levels.push_back(line());
+    else if (word == "--upright")
+      chart.uprights.push_back(line());
+    else if (!word.starts_with("--") && chart.table.empty())
       chart.table = word;
     else
       throw Error(fmt::format("unknown option {}\n{}", word, usage()));
@@ -33,6 +44,32 @@ Chart parse_chart(std::span<const std::string> arguments)
   if (chart.table.empty() || chart.x.empty() || chart.y.empty() || chart.out.empty())
     throw Error("a chart needs a table, --x, --y and --out\n" + usage());
   return chart;
+}
+
+Tornado parse_tornado(std::span<const std::string> arguments)
+{
+  Tornado tornado;
+  OptionWords words(arguments);
+  while (!words.empty()) {
+    const std::string word = words.next("");
+    if (word == "--x")
+      tornado.x = words.next(word);
+    else if (word == "--title")
+      tornado.title = words.next(word);
+    else if (word == "--out")
+      tornado.out = words.next(word);
+    else if (word == "--base")
+      tornado.base = number<Real>(words.next(word), word);
+    else if (word == "--bar") {
+      std::string name = words.next(word);
+      const Real low = number<Real>(words.next(word), word), high = number<Real>(words.next(word), word);
+      tornado.bars.push_back({std::move(name), low, high});
+    } else
+      throw Error(fmt::format("unknown option {}\n{}", word, usage()));
+  }
+  if (tornado.bars.empty() || tornado.x.empty() || tornado.out.empty())
+    throw Error("a tornado needs --bar, --x and --out\n" + usage());
+  return tornado;
 }
 
 }  // namespace talus::render

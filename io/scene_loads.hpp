@@ -1,5 +1,6 @@
 #pragma once
 // The blocks `loads` and `boundaries` of a scene.
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -72,20 +73,30 @@ struct TractionSpec {
 
 using LoadSpec = std::variant<GravitySpec, BodyForceSpec, TractionSpec>;
 
+/// What every boundary says of the stages in which it acts.
+inline constexpr std::string_view during_meaning = "names of the stages in which it acts; default all";
+
 struct FixedSpec {
   static constexpr std::string_view name = "fixed";
   std::string on;
+  std::vector<std::string> during;
   Where where;
-  static constexpr auto fields() { return std::tuple{required("on", &FixedSpec::on, any, "-", "node, facet or cell group held at rest")}; }
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &FixedSpec::on, any, "-", "node, facet or cell group held at rest"),
+                      optional("during", &FixedSpec::during, any, "-", during_meaning)};
+  }
 };
 
 struct RollerSpec {
   static constexpr std::string_view name = "roller";
   std::string on;
+  std::vector<std::string> during;
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free")};
+    return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free"),
+                      optional("during", &RollerSpec::during, any, "-", during_meaning)};
   }
 };
 
@@ -94,6 +105,7 @@ struct VelocitySpec {
   std::string on;
   std::vector<Real> velocity;
   Table table;
+  std::vector<std::string> during;
   std::optional<RecordSpec> record;
   Where where;
   static constexpr auto fields()
@@ -102,9 +114,9 @@ struct VelocitySpec {
         required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
         required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension; with a record its direction"),
         optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
-        group(
-            "record", &VelocitySpec::record,
-            "motion from a file in the place of a table; it begins with the first stage that is not geostatic, and before there is none")};
+        group("record", &VelocitySpec::record,
+              "motion from a file in the place of a table; it begins with the first stage that is not geostatic, and before there is none"),
+        optional("during", &VelocitySpec::during, any, "-", during_meaning)};
   }
   void check(std::vector<std::string>& problems) const;
 };
@@ -141,12 +153,14 @@ struct FrictionSpec {
   static constexpr std::string_view name = "friction";
   std::string on;
   Real coefficient{};
+  std::vector<std::string> during;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FrictionSpec::on, any, "-", "facet group that acts as a wall: no penetration, free separation"),
                       required("coefficient", &FrictionSpec::coefficient, non_negative, "-",
-                               "Coulomb friction coefficient, tangent of the wall friction angle")};
+                               "Coulomb friction coefficient, tangent of the wall friction angle"),
+                      optional("during", &FrictionSpec::during, any, "-", during_meaning)};
   }
 };
 
@@ -164,5 +178,25 @@ struct FreeFieldSpec {
 };
 
 using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec, CompliantBaseSpec, FreeFieldSpec>;
+
+/// Names of the stages in which it acts; empty: all, as always of those that give way to waves.
+inline const std::vector<std::string>& during_of(const BoundarySpec& boundary)
+{
+  static const std::vector<std::string> all;
+  return std::visit(
+      [](const auto& spec) -> const std::vector<std::string>& {
+        if constexpr (requires { spec.during; })
+          return spec.during;
+        else
+          return all;
+      },
+      boundary);
+}
+/// Whether it acts in a stage of that name.
+inline bool acts_in(const BoundarySpec& boundary, const std::string& stage)
+{
+  const auto& during = during_of(boundary);
+  return during.empty() || std::find(during.begin(), during.end(), stage) != during.end();
+}
 
 }  // namespace talus

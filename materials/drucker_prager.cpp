@@ -201,8 +201,12 @@ void DruckerPrager::check(std::vector<std::string>& problems) const
 {
   Elasticity::check(problems);
   check_softening(*this, problems);
-  if (const Real apex = tip(cone_of(friction_angle, cohesion)); tension_cutoff && *tension_cutoff > apex)
-    problems.push_back(fmt::format("tension_cutoff {} is above the tip of the cone, {:.6g} Pa", *tension_cutoff, apex));
+  if (tension_cutoff && *tension_cutoff > tip_of_strength())
+    problems.push_back(fmt::format("tension_cutoff {} is above the tip of the cone, {:.6g} Pa", *tension_cutoff, tip_of_strength()));
 }
+
+void DruckerPrager::divide_strength(Real factor) noexcept { divide_soil_strength(factor, *this); }
+
+Real DruckerPrager::tip_of_strength() const noexcept { return tip(cone_of(friction_angle, cohesion)); }
 
 }  // namespace talus

@@ -60,6 +60,10 @@ struct DruckerPrager : Elasticity {
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;
+  /// That of the Mohr-Coulomb soil that is matched.
+  void divide_strength(Real factor) noexcept;
+  /// Largest mean stress before anything softens [Pa].
+  Real tip_of_strength() const noexcept;
 
   struct State {
     Sym3 elastic_left = Sym3::Zero();

@@ -45,6 +45,9 @@ struct HerschelBulkley : WeaklyCompressible {
       problems.push_back(fmt::format("highest_rate needs a flow_index above 1, here {}", flow_index));
   }
 
+  /// The yield stress; what flows is as viscous as before.
+  void divide_strength(Real factor) noexcept { yield_stress /= factor; }
+
   using State = FluidHistory;
   struct Constants {
     Real slowest, fastest;  ///< shear rates between which the power law holds [1/s]

@@ -52,6 +52,12 @@ struct JohnsonCookMetal : Elasticity {
   };
   Constants constants() const noexcept;
   void check(std::vector<std::string>& problems) const;
+  /// At every plastic strain, rate and temperature; strain at fracture and pressure stay.
+  void divide_strength(Real factor) noexcept
+  {
+    yield_stress /= factor;
+    hardening_coefficient /= factor;
+  }
 
   /// Strength at a plastic strain [-], plastic strain rate [1/s] and temperature [K], in Pa of Cauchy stress.
   Real flow_stress(Real plastic_strain, Real plastic_rate, Real temperature) const noexcept;

@@ -115,6 +115,7 @@ void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<Lanes>& value
 ///   Real yield(const Mat3& stress, const State&) const noexcept     <= 0 on or inside the yield surface [Pa]
 ///   Real wave_speed(const Mat3& F, const State&, const Constants&) const noexcept   the bound where the history decides; told before the step
 ///   Real diffusivity(const Constants&) const noexcept               largest diffusivity, of momentum or heat [m^2/s]: bounds the step
+///   void divide_strength(Real factor) noexcept                      parameters whose shear strength is that over the factor
 ///   using Kinds = TypeList<...>;  std::variant<...> kind() const    laws to be run instead, where the parameters decide which history
 ///                                                                   there is; the law itself is the kind that has all of it
 ///   static constexpr bool isochoric = true                          plastic flow keeps the volume: its bodies average it by default

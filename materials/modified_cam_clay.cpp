@@ -155,4 +155,11 @@ void ModifiedCamClay::check(std::vector<std::string>& problems) const
     problems.push_back(fmt::format("compression_index {} must be above swelling_index {}", compression_index, swelling_index));
 }
 
+void ModifiedCamClay::divide_strength(Real factor) noexcept
+{
+  const Real sine = 3 * critical_state_slope / (6 + critical_state_slope);
+  const Real tangent = sine / std::sqrt(1 - sine * sine) / factor, weaker = tangent / std::sqrt(1 + tangent * tangent);
+  critical_state_slope = 6 * weaker / (3 - weaker);
+}
+
 }  // namespace talus

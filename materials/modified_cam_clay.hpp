@@ -43,6 +43,8 @@ struct ModifiedCamClay {
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;
+  /// tan(phi) of the friction angle in triaxial compression that M stands for, sin(phi) = 3 M / (6 + M); the preconsolidation stays.
+  void divide_strength(Real factor) noexcept;
 
   struct State {
     Sym3 elastic_left = Sym3::Zero();

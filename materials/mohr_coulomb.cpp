@@ -298,8 +298,12 @@ void MohrCoulomb::check(std::vector<std::string>& problems) const
 {
   Elasticity::check(problems);
   check_softening(*this, problems);
-  if (const Real tip = apex(strength_of(friction_angle, cohesion)); tension_cutoff && *tension_cutoff > tip)
-    problems.push_back(fmt::format("tension_cutoff {} is above the apex, {:.6g} Pa", *tension_cutoff, tip));
+  if (tension_cutoff && *tension_cutoff > tip_of_strength())
+    problems.push_back(fmt::format("tension_cutoff {} is above the apex, {:.6g} Pa", *tension_cutoff, tip_of_strength()));
 }
+
+void MohrCoulomb::divide_strength(Real factor) noexcept { divide_soil_strength(factor, *this); }
+
+Real MohrCoulomb::tip_of_strength() const noexcept { return apex(strength_of(friction_angle, cohesion)); }
 
 }  // namespace talus

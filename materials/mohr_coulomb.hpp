@@ -51,6 +51,9 @@ struct MohrCoulomb : Elasticity {
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;
+  void divide_strength(Real factor) noexcept;
+  /// The apex before anything softens [Pa].
+  Real tip_of_strength() const noexcept;
 
   struct State {
     Sym3 elastic_left = Sym3::Zero();

@@ -35,6 +35,12 @@ struct MuI : Elasticity {
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;
+  /// mu of every flow.
+  void divide_strength(Real factor) noexcept
+  {
+    static_friction /= factor;
+    limiting_friction /= factor;
+  }
 
   struct State {
     Sym3 elastic_left = Sym3::Zero();

@@ -2,6 +2,10 @@
 // Rules between the parameters that laws of soil share.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +30,30 @@ void check_softening(const Law& law, std::vector<std::string>& problems)
     problems.emplace_back("residual_friction_angle and residual_cohesion need softening_strain");
   if (law.softening_strain && !law.residual_friction_angle && !law.residual_cohesion)
     problems.emplace_back("softening_strain needs residual_friction_angle or residual_cohesion");
+}
+
+/// Angle [degrees] of which the tangent is that of `degrees` over `factor`.
+inline Real angle_over(Real degrees, Real factor) noexcept
+{
+  constexpr Real degree = std::numbers::pi / 180;
+  return factor == 1 ? degrees : std::atan(std::tan(degrees * degree) / factor) / degree;
+}
+
+/// c / F and tan(phi) / F, at the peak and after softening: on every plane c + s tan(phi) falls to its F-th part.  The tip of the surface
+/// stays where it is, at c / tan(phi) by its normal stress.  So does the dilation, as far as friction is left to dilate with; a cut-off of
+/// tension falls like a cohesion, and ends at the tip where a factor below 1 lifts it there.
+template <class Law>
+void divide_soil_strength(Real factor, Law& law) noexcept
+{
+  law.cohesion /= factor;
+  law.friction_angle = angle_over(law.friction_angle, factor);
+  if (law.residual_cohesion)
+    *law.residual_cohesion /= factor;
+  if (law.residual_friction_angle)
+    law.residual_friction_angle = angle_over(*law.residual_friction_angle, factor);
+  law.dilation_angle = std::min({law.dilation_angle, law.friction_angle, law.residual_friction_angle.value_or(law.friction_angle)});
+  if (law.tension_cutoff)
+    law.tension_cutoff = std::min(*law.tension_cutoff / factor, law.tip_of_strength());
 }
 
 }  // namespace talus

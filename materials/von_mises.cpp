@@ -91,6 +91,16 @@ Real VonMises::flow_stress(Real plastic_strain, Real plastic_rate) const noexcep
   return Hardening<Real>(*this, plastic_strain)(plastic_strain).value * factor;
 }
 
+void VonMises::divide_strength(Real factor) noexcept
+{
+  yield_stress /= factor;
+  hardening_modulus /= factor;
+  if (voce)
+    voce->saturation /= factor;
+  if (power)
+    power->coefficient /= factor;
+}
+
 template <class T>
 Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept
 {

@@ -61,6 +61,8 @@ struct VonMises : Elasticity {
                    group("voce", &Law::voce, "hardening Q (1 - exp(-b p)) that saturates"), group("power", &Law::power, "hardening K p^n"),
                    group("rate", &Law::rate, "factor 1 + (rate / D)^(1/q) on the strength, of the plastic strain rate")});
   }
+  /// At every plastic strain and rate.
+  void divide_strength(Real factor) noexcept;
 
   struct State {
     Sym3 elastic_left = Sym3::Zero();

@@ -107,6 +107,21 @@ TEST(Front, IsTheCoordinateThatAShareOfTheMassDoesNotPass)
   EXPECT_EQ(front(spec, bodies, particles), 1);
 }
 
+TEST(Moved, IsTheDisplacementThatAShareOfTheMassDoesNotExceed)
+{
+  const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};
+  auto particles = row_of_four();
+  for (std::size_t p = 0; p < 4; ++p)
+    particles.x0[p] = particles.x[p] - Vec<2>(3, 4) * std::vector<Real>{0.2, 0, 0.6, 0.4}[p];
+  MovedSpec spec;
+  spec.mass_share = 1;
+  EXPECT_NEAR(moved(spec, bodies, particles), 3, 1e-14);
+  spec.mass_share = 0.5;
+  EXPECT_NEAR(moved(spec, bodies, particles), 1, 1e-14);
+  spec.body = "right";
+  EXPECT_NEAR(moved(spec, bodies, particles), 2, 1e-14);
+}
+
 TEST(NearestParticle, IsLookedForInItsBody)
 {
   const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};

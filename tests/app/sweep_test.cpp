@@ -1,6 +1,12 @@
 // talus sweep: cases, each a run in a folder of its own, and their table.
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/sweep_findings.hpp"
+#include "io/raster_file.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::sweep_test {
@@ -153,6 +159,59 @@ TEST_F(SweepProgram, WrongWordsEndWithTwo)
   EXPECT_EQ(beyond.code, 2);
   EXPECT_THAT(beyond.err, HasSubstr("there is no case 3: study.yaml has 2"));
   EXPECT_FALSE(exists("out"));
+}
+
+TEST(SweepFindings, RankCorrelationIsThatOfRanksNotOfValues)
+{
+  const std::vector<Real> x{1, 2, 3, 4, 5}, grows{1, 10, 11, 1000, 1e6}, falls{5, 4, 3, 2, 1}, same(5, 7), mixed{2, 1, 4, 3, 5};
+  EXPECT_NEAR(rank_correlation(x, grows), 1, 1e-15);
+  EXPECT_NEAR(rank_correlation(x, falls), -1, 1e-15);
+  EXPECT_TRUE(std::isnan(rank_correlation(x, same)));
+  EXPECT_NEAR(rank_correlation(x, mixed), 1 - 6 * 4 / (5.0 * 24), 1e-15);  // 1 - 6 sum d^2 / (n (n^2 - 1))
+  EXPECT_NEAR(rank_correlation(std::vector<Real>{1, 1, 2}, std::vector<Real>{1, 2, 3}), std::sqrt(0.75), 1e-15)
+      << "ties share their mean rank";
+}
+
+TEST_F(SweepProgram, SamplesTellHowLikelyAndByWhichKey)
+{
+  write_study("  materials[0].youngs_modulus: {low: 1.0e5, high: 4.0e5}\n  time.end: {low: 0.01, high: 0.03}\n",
+              "combine: latin\nsamples: 6\ncollect: [steps, simulated_time]\nexceed: [{map: height, above: 2.5}]\n");
+  ASSERT_EQ(sweep("--jobs 2 --no-pictures").code, 0);
+  const std::string correlation = read("out/correlation.csv");
+  EXPECT_THAT(correlation, testing::StartsWith("number,materials[0].youngs_modulus,time.end,cases\n"));
+  EXPECT_THAT(correlation, testing::ContainsRegex("simulated_time \\[s\\],[-0-9.]+,1,6\n"));
+  std::istringstream curve(read("out/exceedance_simulated_time.csv"));
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(curve, line);)
+    lines.push_back(line);
+  ASSERT_EQ(lines.size(), 7U);
+  EXPECT_THAT(lines[0], testing::StartsWith("simulated_time [s],share_of_cases"));
+  EXPECT_THAT(lines[1], testing::EndsWith(",1"));
+  EXPECT_THAT(lines[4], testing::EndsWith(",0.5"));
+
+  EXPECT_THAT(sweep("--list").err, HasSubstr("study.yaml:8:10: exceed[0]: case 1 has no maps/height.tif"));
+  for (int number = 1; number <= 6; ++number)
+    write_raster(folder_ / fmt::format("out/case_{:04}/maps/height.tif", number),
+                 Raster{2, 1, 0, 0, 1, 1, {static_cast<Real>(number), number == 1 ? 9 : std::nan("")}, "", "m"});
+  const Outcome list = sweep("--list");
+  EXPECT_THAT(list.out, HasSubstr("share of 6 cases in which height exceeds 2.5")) << list.err;
+  const Raster share = read_raster(folder_ / "out/exceedance_height.tif");
+  EXPECT_NEAR(share.at(0, 0), 4.0 / 6, 1e-6);
+  EXPECT_NEAR(share.at(1, 0), 1.0 / 6, 1e-6);
+  write_raster(folder_ / "out/case_0002/maps/height.tif", Raster{2, 1, 0, 0, 2, 2, {1, 1}, "", "m"});
+  EXPECT_THAT(sweep("--list").err, HasSubstr("the maps of case 1 and case 2 lie on different grids"));
+}
+
+TEST_F(SweepProgram, ATornadoPutsTheKeyFirstThatMattersMost)
+{
+  write_study("  bodies[0].particles_per_cell: {low: 3, mode: 3, high: 4}\n  time.end: {low: 0.01, high: 0.03}\n",
+              "combine: tornado\ncollect: [simulated_time]\n");
+  const Outcome outcome = sweep("--jobs 2 --no-pictures");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_EQ(read("out/tornado_simulated_time.csv"),
+            "key,low value,high value,at low: simulated_time [s],at high: simulated_time [s],all in the middle: simulated_time [s]\n"
+            "time.end,0.01,0.03,0.01,0.03,0.02\nbodies[0].particles_per_cell,3,4,0.02,0.02,0.02\n");
+  EXPECT_EQ(rows().size(), 6U);
 }
 
 TEST_F(SweepProgram, TheExampleIsInOrder)

@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <numeric>
 
+#include "materials/strength.hpp"
 #include "tests/materials/samples.hpp"
 
 namespace talus::law_contract_test {
@@ -446,6 +447,72 @@ TYPED_TEST(LawContract, SampleKeepsItsOwnRules)
   if constexpr (requires { law.check(problems); })
     law.check(problems);
   EXPECT_TRUE(problems.empty()) << problems.front();
+}
+
+/// All numbers among the parameters, also those of groups.
+template <class T>
+void collect_numbers(const T& value, std::vector<Real>& numbers)
+{
+  if constexpr (std::is_same_v<T, Real>)
+    numbers.push_back(value);
+  else if constexpr (requires { value.has_value(); })
+    value ? collect_numbers(*value, numbers) : numbers.push_back(-1);
+  else if constexpr (HasFields<T>)
+    for_each_field<T>([&](const auto& field) { collect_numbers(value.*(field.member), numbers); });
+}
+
+TYPED_TEST(LawContract, StrengthIsDividedStepByStepAsAtOnceWithinItsOwnRules)
+{
+  if constexpr (HasStrength<TypeParam>) {
+    const auto over = [](std::initializer_list<Real> factors) {
+      TypeParam law = sample<TypeParam>();
+      for (const Real factor : factors)
+        law.divide_strength(factor);
+      return law;
+    };
+    const auto numbers_of = [](const TypeParam& law) {
+      std::vector<Real> numbers;
+      collect_numbers(law, numbers);
+      return numbers;
+    };
+    const auto as_it_was = numbers_of(over({})), same = numbers_of(over({1})), twice = numbers_of(over({2, 1.5})),
+               once = numbers_of(over({3}));
+    EXPECT_NE(once, as_it_was);
+    for (std::size_t k = 0; k < once.size(); ++k) {
+      EXPECT_NEAR(same[k], as_it_was[k], 1e-15 * std::abs(as_it_was[k]));
+      EXPECT_NEAR(twice[k], once[k], 1e-14 * std::abs(once[k]));
+    }
+    for (const Real factor : {0.3, 0.9, 1.0, 4.0}) {
+      testing::Problems problems;
+      const TypeParam law = over({factor});
+      if constexpr (requires { law.check(problems); })
+        law.check(problems);
+      EXPECT_TRUE(problems.empty()) << factor << ": " << problems.front();
+    }
+  }
+}
+
+TYPED_TEST(LawContract, IsWeakerUnderPressureByHavingItsStrengthDivided)
+{
+  if constexpr (HasStrength<TypeParam> && requires(TypeParam law, typename TypeParam::State state) {
+                  law.prestress(Mat3{}, state);
+                  law.yield(Mat3{}, state);
+                }) {
+    const TypeParam strong = sample<TypeParam>();
+    TypeParam weak = strong;
+    weak.divide_strength(1.2);
+    Dice dice(9);
+    int apart = 0;
+    for (int n = 0; n < 300; ++n) {
+      const Mat3 stress = -dice.real(3e4, 6e4) * Mat3::Identity() + dice.symmetric(3e4);
+      typename TypeParam::State state{};
+      strong.prestress(stress, state);
+      const Real before = strong.yield(stress, state), after = weak.yield(stress, state);
+      ASSERT_GT(after, before);
+      apart += before <= 0 && after > 0;
+    }
+    EXPECT_GT(apart, 10);
+  }
 }
 
 TYPED_TEST(LawContract, HistoryListsEveryByteOfTheState)

@@ -1,0 +1,240 @@
+#include "app/fos_trials.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "app/results.hpp"
+#include "app/setup.hpp"
+#include "app/summary.hpp"
+#include "app/upright.hpp"
+#include "core/words.hpp"
+#include "io/gmsh_mesh.hpp"
+#include "io/reader.hpp"
+#include "materials/strength.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of a trial's history and files of its particles.
+constexpr int rows_of_trial = 100, files_of_trial = 10;
+
+/// What stands of a body when it takes its particles from another run.
+constexpr std::array<std::string_view, 4> keys_of_filling{"region", "shape", "particles_per_cell", "velocity"};
+
+fs::path default_fos_folder(const fs::path& scene) { return default_results(scene).string() + "_fos"; }
+
+std::size_t stages_until_rest(const Scene& scene)
+{
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    if (std::holds_alternative<GeostaticSpec>(scene.stages[i]))
+      count = i + 1;
+  return count;
+}
+
+Index material_number(const Scene& scene, const std::string& name)
+{
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const MaterialSpec& m) { return m.name == name; });
+  return static_cast<Index>(found - scene.materials.begin());
+}
+
+bool has_strength(const MaterialSpec& material)
+{
+  return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
+}
+
+/// Bodies whose strength is divided, with their materials.
+void choose_bodies(const FosOptions& options, FosPlan& plan)
+{
+  const Scene& scene = plan.spec;
+  std::vector<std::string> known;
+  for (const BodySpec& body : scene.bodies)
+    known.push_back(body.name);
+  for (const std::string& name : options.bodies)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(fmt::format("--bodies: there is no body \"{}\"{}", name, suggestion(name, known)));
+  std::vector<Problem> problems;
+  for (const BodySpec& body : scene.bodies) {
+    const Index number = material_number(scene, body.material);
+    const MaterialSpec& material = scene.materials[static_cast<std::size_t>(number)];
+    const bool asked = std::find(options.bodies.begin(), options.bodies.end(), body.name) != options.bodies.end();
+    if (asked && !has_strength(material))
+      problems.push_back({body.where, fmt::format("--bodies: its material \"{}\" has no strength to divide", material.name), ""});
+    if (asked || (options.bodies.empty() && has_strength(material))) {
+      plan.bodies.push_back(body.name);
+      if (std::find(plan.materials.begin(), plan.materials.end(), number) == plan.materials.end())
+        plan.materials.push_back(number);
+    }
+  }
+  for (const BodySpec& body : scene.bodies) {
+    const bool chosen = std::find(plan.bodies.begin(), plan.bodies.end(), body.name) != plan.bodies.end();
+    const Index number = material_number(scene, body.material);
+    if (!chosen && std::find(plan.materials.begin(), plan.materials.end(), number) != plan.materials.end())
+      problems.push_back(
+          {body.where, fmt::format("its material \"{}\" is that of a body in --bodies too: give it one of its own", body.material), ""});
+  }
+  if (plan.bodies.empty() && problems.empty())
+    problems.push_back({scene.where, "no body has a material with strength that could be divided", ""});
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+}
+
+/// What particles and materials say of the state before.
+template <int D>
+AtRest measured(const FosPlan& plan)
+{
+  const Scene& scene = plan.spec;
+  AtRest before;
+  for (const LoadSpec& load : scene.loads)
+    if (const auto* gravity = std::get_if<GravitySpec>(&load))
+      before.gravity = Eigen::Map<const Eigen::VectorXd>(gravity->acceleration.data(), std::ssize(gravity->acceleration)).norm();
+  const Mesh<D> mesh = load_mesh<D>(scene.mesh, folder_of(scene));
+  const Setup<D> setup = set_up(scene, mesh);
+  const Vec<D> up = upright_of(scene).template head<D>();
+  Real low = std::numeric_limits<Real>::infinity(), high = -low;
+  before.wave_speed = low;
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+    const Body& body = setup.bodies[b];
+    if (std::find(plan.bodies.begin(), plan.bodies.end(), body.name) == plan.bodies.end())
+      continue;
+    before.wave_speed = std::min(before.wave_speed, wave_speed(setup.materials[b], Mat3::Identity()));
+    for (Index row = body.begin; row < body.end; ++row) {
+      const Real at = up.dot(setup.particles.x[static_cast<std::size_t>(row)]);
+      low = std::min(low, at), high = std::max(high, at);
+    }
+  }
+  before.height = high - low;
+  return before;
+}
+
+/// One number of a material and those inside its groups: those that differ, as changes.
+template <class T>
+void tell_difference(const T& before, const T& after, const std::string& path, std::vector<std::string>& changes)
+{
+  if constexpr (std::is_same_v<T, Real>) {
+    if (before != after)
+      changes.push_back(fmt::format("{}={}", path, after));
+  } else if constexpr (requires { before.has_value(); }) {
+    if (before && after)
+      tell_difference(*before, *after, path, changes);
+  } else if constexpr (HasFields<T>) {
+    for_each_field<T>([&](const auto& field) {
+      tell_difference(before.*(field.member), after.*(field.member), fmt::format("{}.{}", path, field.key), changes);
+    });
+  }
+}
+
+/// A text in quotes that YAML reads back.
+std::string in_quotes(const fs::path& path)
+{
+  Node text;
+  text.kind = Node::Kind::scalar;
+  text.quoted = true;
+  text.text = path.string();
+  return in_one_line(text);
+}
+
+std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
+{
+  return scene_digest(read_scene(plan.scene, changes));
+}
+
+}  // namespace
+
+std::vector<std::string> divided(const FosPlan& plan, Real factor)
+{
+  std::vector<std::string> changes;
+  for (const Index number : plan.materials)
+    std::visit(
+        [&](const auto& law) {
+          auto weaker = law;
+          divide_strength(weaker, factor);
+          tell_difference(law, weaker, fmt::format("materials[{}]", number), changes);
+        },
+        plan.spec.materials[static_cast<std::size_t>(number)].law);
+  return changes;
+}
+
+PlannedRun trial_of(const FosPlan& plan, Real factor, int times_as_long)
+{
+  const Real duration = plan.duration * times_as_long;
+  PlannedRun run;
+  run.changes = plan.of_state;
+  const auto add = [&](const std::vector<std::string>& more) { run.changes.insert(run.changes.end(), more.begin(), more.end()); };
+  add(divided(plan, factor));
+  add({fmt::format("stages=[{{type: run, duration: {}, damping: {}}}]", duration, plan.damping),
+       fmt::format("outputs.history.every={}", duration / rows_of_trial),
+       fmt::format("outputs.particles.every={}", duration / files_of_trial)});
+  run.folder = plan.folder / fmt::format("trial_{}", factor);
+  run.scene_digest = digest_of_changed(plan, run.changes);
+  return run;
+}
+
+FosPlan plan_fos(const FosOptions& options)
+{
+  FosPlan plan;
+  plan.scene = options.scene;
+  plan.folder = options.out.value_or(default_fos_folder(options.scene));
+  plan.set = options.set;
+  plan.quick = options.quick;
+  plan.spec = read_scene(options.scene, options.set);
+  const Scene& scene = plan.spec;
+  const std::size_t n_stages = stages_until_rest(scene);
+  if (n_stages == 0) {
+    Where where = scene.where;
+    where.path = "stages";
+    throw SceneErrors(where, "there is no stage of type geostatic: strength is divided in the state at rest that such a stage finds");
+  }
+  choose_bodies(options, plan);
+  plan.before = scene.dimension == 2 ? measured<2>(plan) : measured<3>(plan);
+  if (!(plan.before.gravity > 0) && !options.duration)
+    throw Error("--duration is needed where there is no gravity: how long a trial lasts follows from it");
+  plan.duration = options.duration.value_or(usual_duration(plan.before));
+  plan.damping = options.damping;
+
+  std::vector<std::string> stages;
+  for (std::size_t i = 0; i < n_stages; ++i)
+    stages.push_back(written_in_scene(options.scene, options.set, fmt::format("stages[{}]", i)));
+  plan.at_rest.changes = options.set;
+  plan.at_rest.changes.push_back(fmt::format("stages=[{}]", fmt::join(stages, ", ")));
+  plan.at_rest.changes.emplace_back("outputs.checkpoint.at_end=true");
+  plan.at_rest.folder = plan.folder / "at_rest";
+  plan.at_rest.scene_digest = digest_of_changed(plan, plan.at_rest.changes);
+
+  plan.of_state = options.set;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    plan.of_state.push_back(
+        fmt::format("bodies[{}]={}", b, written_in_scene(options.scene, options.set, fmt::format("bodies[{}]", b), keys_of_filling)));
+  const fs::path state =
+      fs::absolute(plan.at_rest.folder)
+          .lexically_normal()
+          .lexically_relative(fs::absolute(folder_of(scene)).lexically_normal());  // so that scene and results can be moved together
+  plan.of_state.push_back(fmt::format("initial={{from: {}}}", in_quotes(state)));
+  std::vector<std::string> moved;
+  for (const std::string& body : options.bodies) {
+    plan.columns.push_back("moved_" + body);
+    moved.push_back(
+        fmt::format("{{name: {}, body: {}, mass_share: {}}}", in_quotes(plan.columns.back()), in_quotes(body), options.mass_share));
+  }
+  if (options.bodies.empty()) {
+    plan.columns.emplace_back("moved");
+    moved.push_back(fmt::format("{{name: moved, mass_share: {}}}", options.mass_share));
+  }
+  plan.of_state.push_back(fmt::format("outputs.history.moved=[{}]", fmt::join(moved, ", ")));
+  plan.keeps_strain = std::any_of(plan.materials.begin(), plan.materials.end(), [&](Index number) {
+    return std::visit(
+        []<class L>(const L&) {
+          return requires(typename L::State state) { state.plastic_strain; };
+        },
+        scene.materials[static_cast<std::size_t>(number)].law);
+  });
+  plan.of_state.push_back(fmt::format("outputs.particles.fields=[velocity, displacement{}]", plan.keeps_strain ? ", plastic_strain" : ""));
+  return plan;
+}
+
+}  // namespace talus
