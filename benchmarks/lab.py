@@ -97,16 +97,6 @@ class Run:
         path = self.folder / "ending.json"
         return tuple(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else (0, "")
 
-    @functools.cached_property
-    def found(self):
-        """What `talus fos` found: fos.json."""
-        return json.loads((self.folder / "fos.json").read_text(encoding="utf-8"))
-
-    def trial(self, factor):
-        """The run of `talus fos` with the strength divided by `factor`, one of those of `found`."""
-        name = next(trial["folder"] for trial in self.found["trials"] if trial["factor"] == factor)
-        return Run(self.case, f"{self.label}/{name}", self._folder / name, self._future)
-
     def failure(self):
         """Waits; the words of a run that failed, or None."""
         try:
@@ -114,6 +104,36 @@ class Run:
         except RunFailed as failed:
             return str(failed)
         return None
+
+
+class Search(Run):
+    """A search of `talus fos`, with all its runs; as a run it is its trial with the highest factor that holds."""
+
+    @functools.cached_property
+    def found(self):
+        """fos.json."""
+        return json.loads((self.folder / "fos.json").read_text(encoding="utf-8"))
+
+    def trial(self, factor):
+        """The run with the strength divided by `factor`, one of those of `found`."""
+        name = next(trial["folder"] for trial in self.found["trials"] if trial["factor"] == factor)
+        return Run(self.case, f"{self.label}/{name}", self._folder / name, self._future)
+
+    @functools.cached_property
+    def _holds(self):
+        return self.trial(self.found["highest_that_holds"])
+
+    @property
+    def history(self):
+        return self._holds.history
+
+    @property
+    def summary(self):
+        return self._holds.summary
+
+    @property
+    def frames(self):
+        return self._holds.frames
 
 
 @dataclasses.dataclass
@@ -178,7 +198,7 @@ class Lab:
         self.figures, self.orders = [], []
 
     def fos(self, scene, label, settings, **options):
-        """As run(), of `talus fos` with options such as width=0.05: its results are `found` and `trial(factor)`, not a run's own."""
+        """As run(), of `talus fos` with options such as width=0.05; returns a Search."""
         words = [word for key, value in options.items() for word in (f"--{key}", str(value))]
         return self.run(scene, label, settings, command=("fos", "--jobs", "1", "--no-pictures", *words))
 
@@ -198,7 +218,7 @@ class Lab:
             if handle and known != inputs:
                 raise ValueError(f"two different runs are called {case}/{label}")
             if not handle:
-                handle = Run(case, label, out, self._pool.submit(self._work, path, out, words, inputs, may_fail, command))
+                handle = (Search if command[0] == "fos" else Run)(case, label, out, self._pool.submit(self._work, path, out, words, inputs, may_fail, command))
                 self._handles[case, label] = inputs, handle
         return handle
 
