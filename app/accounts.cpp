@@ -53,6 +53,10 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
       before_.carried_away += stage_.carried_away, before_.plastic_deleted += stage_.plastic_deleted;
       transfer_before_ += stage_.transfer(kinetic_end_);
       taken_out_before_ += taken_out_;
+      // What differs between the end of the one stage and the beginning of the next has come or gone with bodies.
+      const Real came = frame.energy.kinetic_start - (kinetic_end_ - taken_out_);
+      (came > 0 ? kinetic_begin_ : before_.carried_away) += std::abs(came);
+      before_.plastic_deleted += plastic_end_ - frame.energy.plastic_start;
     }
     begun_ = true;
     taken_out_ = 0;
@@ -60,6 +64,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
   if (moment == Moment::stage_done) {
     taken_out_ = frame.energy.set_to_rest;
     kinetic_end_ = totals(frame).kinetic + taken_out_;
+    plastic_end_ = plastic_work(frame);
   }
   stage_ = frame.energy;
 }
@@ -90,7 +95,7 @@ template <int D>
 MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
 {
   const MomentumLedger<D>& given = frame.momentum;
-  MomentumNow<D> now{start_, momentum_of(frame), given.loads + given.damping + given.rest + -1 * frame.mass.carried_away};
+  MomentumNow<D> now{start_, momentum_of(frame), given.loads + given.damping + given.rest + given.changes + -1 * frame.mass.carried_away};
   for (const Wall<D>& wall : frame.walls.walls())
     now.given += Push<D>::of(wall.impulse, wall.angular);
   return now;

@@ -7,9 +7,10 @@ namespace talus {
 /// Energies since the start of the run [J].  Works are signed as done on the bodies; losses are positive.
 /// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + carried_away + transfer + defect.
 struct EnergyNow {
-  Real kinetic_start{}, kinetic{}, strain{}, plastic{};  ///< strain, plastic: of deleted particles too
-  Real friction{}, damping{};                            ///< damping: with the motion that is taken out at the end of a geostatic stage
-  Real carried_away{};                                   ///< kinetic energy of what left the mesh or failed, and was deleted
+  Real kinetic_start{}, kinetic{};  ///< kinetic_start: at the start, and what bodies brought that appeared
+  Real strain{}, plastic{};         ///< of particles that are gone too
+  Real friction{}, damping{};       ///< damping: with the motion that is taken out at the end of a geostatic stage
+  Real carried_away{};              ///< kinetic energy of what left the mesh, failed, or was taken away by a stage
   Real gravity{}, loads{}, walls{};
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
@@ -72,6 +73,7 @@ class Accounts {
                       kept("plastic_begin", &Accounts::plastic_begin_),
                       kept("transfer_before", &Accounts::transfer_before_),
                       kept("kinetic_end", &Accounts::kinetic_end_),
+                      kept("plastic_end", &Accounts::plastic_end_),
                       kept("taken_out", &Accounts::taken_out_),
                       kept("taken_out_before", &Accounts::taken_out_before_),
                       kept("stage", &Accounts::stage_),
@@ -82,7 +84,8 @@ class Accounts {
  private:
   EnergyLedger before_;  // stages that are over, their kinetic_start and plastic_start unused
   Real kinetic_begin_ = 0, plastic_begin_ = 0, transfer_before_ = 0;
-  Real kinetic_end_ = 0, taken_out_ = 0, taken_out_before_ = 0;
+  Real kinetic_end_ = 0, plastic_end_ = 0;  // of the stage before
+  Real taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;
   bool begun_ = false;
   Push<D> start_;  // momentum at the start of the run

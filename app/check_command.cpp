@@ -5,9 +5,11 @@
 #include "app/duration.hpp"
 #include "app/quick.hpp"
 #include "app/trial.hpp"
+#include "app/water.hpp"
 #include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
+#include "io/terrain_mesh.hpp"
 
 namespace talus {
 
@@ -37,6 +39,27 @@ std::string describe_disk_use(const FileSizes& one, const DiskUse& use)
   return text + "\n";
 }
 
+/// A line for each thing that a stage changes.
+template <int D>
+std::string describe_changes(const Setup<D>& setup)
+{
+  std::string text;
+  for (std::size_t s = 0; s < setup.changes.size(); ++s) {
+    const StageChange<D>& change = setup.changes[s];
+    const auto add = [&](const std::string& what) { text += fmt::format("  stage {} \"{}\": {}\n", s, setup.stages[s].name, what); };
+    const auto name = [&](Index b) -> const std::string& { return setup.bodies[static_cast<std::size_t>(b)].name; };
+    for (const Index b : change.vanish)
+      add(fmt::format("body \"{}\" vanishes", name(b)));
+    for (const auto& [b, becomes] : change.renew)
+      add(fmt::format("body \"{}\" {}", name(b), becomes));
+    for (const Index b : change.appear)
+      add(fmt::format("body \"{}\" appears, {} particles", name(b), change.coming.bodies[static_cast<std::size_t>(b)].size()));
+    for (const std::string& what : change.told)
+      add(what);
+  }
+  return text;
+}
+
 std::string describe_time(const std::vector<StageTrial>& trials, Real preparing, Index particles)
 {
   if (trials.empty())
@@ -60,6 +83,17 @@ std::string describe_time(const std::vector<StageTrial>& trials, Real preparing,
                     duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
 }
 
+/// Which stress the law of a body sees, where there is water.
+template <int D>
+std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Body& body)
+{
+  if (!setup.water.any())
+    return "";
+  if (!setup.water.drains(static_cast<Index>(&body - setup.bodies.data())))
+    return ", total stress";
+  return fmt::format(", effective stress, {} below the water table", count_wet(mesh, setup.water, body, setup.particles));
+}
+
 enum class Times : std::uint8_t { left_out, measured };
 
 /// What a run would find wrong, and what it would cost.
@@ -74,11 +108,14 @@ void tell_cost(Scene scene, bool quick, Times times)
   if (quick)
     shorten(first_step(mesh, setup), setup.stages, scene.outputs);
   const auto warnings = setup.warnings;
-  const Index particles = setup.particles.size(), cells = mesh.n_cells(), nodes = mesh.n_nodes();
+  const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup);
+  const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
-  for (const Body& body : setup.bodies)
-    bodies += fmt::format("  body \"{}\": {} particles\n", body.name, body.size());
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+    if (const Body& body = setup.bodies[b]; presence_of(body.name, scene.stages).from == 0)
+      bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
+  bodies += describe_changes(setup);
   if (setup.origin)
     bodies += describe(*setup.origin);
   const bool measured = times == Times::measured;
@@ -86,7 +123,8 @@ void tell_cost(Scene scene, bool quick, Times times)
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));
   for (const std::string& warning : warnings)
     fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}", scene.title, D, scene.kernel, cells, nodes, particles, bodies);
+  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, cells, nodes, particles,
+             terrain, bodies);
   fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
              static_cast<Real>(cost.steps) * particles / million);
   fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 4;
+constexpr std::int64_t format = 5;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
@@ -143,6 +143,15 @@ void check_fit(const State<D>& state, const std::vector<bool>& columns, std::int
     return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
   };
   must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
+}
+
+/// Bodies have other laws in another stage.
+void take_laws_of(const StageState& stage, std::span<const std::vector<AnyBatch>> laws, std::vector<AnyBatch>& materials)
+{
+  if (laws.empty())
+    return;
+  must(stage.number >= 0 && std::cmp_less(stage.number, laws.size()), "stages");
+  materials = laws[static_cast<std::size_t>(stage.number)];
 }
 
 /// EnvironmentError: a state that nothing sound comes of.
@@ -344,6 +353,7 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
       if constexpr (!std::is_same_v<Part, std::vector<Body>> && !std::is_same_v<Part, Particles<D>>)
         recall(arrays, name, part);
     });
+    take_laws_of(state.stage, limits.laws, state.materials);
     const std::int64_t n = recall_slice(arrays, ranks.rank(), ranks.size(), state.bodies, state.materials, state.particles);
     check_fit(state, columns, n, limits);
     std::vector<std::string> faults;
@@ -375,6 +385,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
       check_count(arrays, "bodies", kept.bodies.size(), "bodies");
       recall(arrays, "clock", kept.clock);
       recall(arrays, "stage", kept.stage);
+      take_laws_of(kept.stage, kept.laws, kept.materials);
       recall_slice(arrays, 0, 1, kept.bodies, kept.materials, kept.particles);
       std::vector<std::string> faults;
       find_faults(kept.clock, faults);

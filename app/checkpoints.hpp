@@ -60,7 +60,8 @@ class Checkpoints {
 
 /// What a state must fit to be one of this scene.
 struct StateLimits {
-  Index cells, stages, particles;  ///< particles: at the start
+  Index cells, stages, particles;                 ///< particles: of all bodies as they are placed
+  std::span<const std::vector<AnyBatch>> laws{};  ///< of the bodies in each stage
 };
 
 /// The bodies of a run, read by themselves.
@@ -71,6 +72,7 @@ struct KeptBodies {
   std::vector<AnyBatch> materials;
   Clock clock;
   StageState stage;
+  std::vector<std::vector<AnyBatch>> laws;  ///< of each stage, to be there already
 };
 
 /// Checkpoints to go on from, the newest first.
@@ -96,7 +98,7 @@ class CheckpointList {
     std::filesystem::path file;
     std::string reasons;
   };
-  /// The bodies of the newest state that is whole.  Their number, their laws and the precision of the particles must be there already.
+  /// The bodies of the newest state that is whole.  Their number, the laws and the precision of the particles must be there already.
   /// EnvironmentError: none is whole, or they are others.
   template <int D>
   Read read(KeptBodies<D>& kept) const;

@@ -49,6 +49,7 @@ class CommandLine {
     add_mesh();
     add_drive();
     add_render();
+    add_map();
     add_report();
     add_watch();
     add_surface();
@@ -227,16 +228,30 @@ class CommandLine {
     }
   }
 
+  static void add_movie(CLI::App& command, MovieOptions& options, const char* help)
+  {
+    CLI::Option* movie = command.add_option("--movie", options.movie, help);
+    command.add_option("--fps", options.per_second, "pictures per second of the movie; default 10")
+        ->needs(movie)
+        ->check(CLI::Range(0.1, 100.0));
+    command.add_flag("--keep-frames", options.keep_frames, "leave the pictures of the movie as numbered files in --out")->needs(movie);
+  }
+
+  void add_map()
+  {
+    CLI::App* map = app_.add_subcommand("map", "draw the maps of a run-out over a hillshade of the ground, and its sections");
+    map->add_option("folder", map_.folder, "results of a run with outputs.runout")->type_name(folder_value)->required();
+    add_words(*map, render::map_options, map_.words);
+    add_movie(*map, map_, "a .mp4 or .gif of the thickness, by ffmpeg; needs outputs.runout.frames_every");
+    map->callback([this] { draw_maps(map_); });
+  }
+
   void add_render()
   {
     CLI::App* render = app_.add_subcommand("render", "draw pictures of a run, or a movie");
     render->add_option("folder", render_.folder, "results of a run")->type_name(folder_value)->required();
     add_words(*render, render::picture_options, render_.words);
-    CLI::Option* movie = render->add_option("--movie", render_.movie, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
-    render->add_option("--fps", render_.per_second, "pictures per second of the movie; default 10")
-        ->needs(movie)
-        ->check(CLI::Range(0.1, 100.0));
-    render->add_flag("--keep-frames", render_.keep_frames, "leave the pictures of the movie as numbered files in --out")->needs(movie);
+    add_movie(*render, render_, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
     render->callback([this] { render_results(render_); });
   }
 
@@ -401,6 +416,7 @@ class CommandLine {
   DriveOptions drive_;
   MeshOptions mesh_;
   RenderOptions render_;
+  MapOptions map_;
   ReportOptions report_;
   WatchOptions watch_;
   SurfaceOptions surface_;

@@ -63,16 +63,26 @@ struct DriveOptions {
 /// (a picture leaves the CSV it was drawn from beside it).
 void drive_law(const DriveOptions& options);
 
-struct RenderOptions {
-  std::filesystem::path folder;
-  std::vector<std::string> words;              ///< render::picture_options and what follows them
+struct MovieOptions {
   std::optional<std::filesystem::path> movie;  ///< a .mp4 or .gif of all pictures
   Real per_second = 10;                        ///< pictures of the movie
   bool keep_frames = false;
 };
+
+struct RenderOptions : MovieOptions {
+  std::filesystem::path folder;
+  std::vector<std::string> words;  ///< render::picture_options and what follows them
+};
 /// Draws the results in a folder; what is not asked for is as the scene says.  Error with all that is wrong with the words, before anything is
 /// drawn; EnvironmentError.
 void render_results(const RenderOptions& options);
+
+struct MapOptions : MovieOptions {
+  std::filesystem::path folder;
+  std::vector<std::string> words;  ///< render::map_options and what follows them
+};
+/// Draws the maps and sections of a run with outputs.runout.  Errors as above.
+void draw_maps(const MapOptions& options);
 
 struct ReportOptions {
   std::filesystem::path folder;

@@ -64,10 +64,11 @@ Model<D, K> build(const Scene& scene, Part<D> part, Setup<D> setup)
   m.materials = std::move(setup.materials);
   m.walls = std::move(setup.walls);
   m.loads = std::move(setup.loads);
+  m.water = std::move(setup.water);
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
   m.guards = setup.guards;
-  make_ready(m);
+  make_ready(m, setup.laws);
   return std::move(m);
 }
 
@@ -124,7 +125,13 @@ template <int D, Kernel<D> K>
 class Simulation {
  public:
   Simulation(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience, const Moves<D>& moves)
-      : scene_(scene), audience_(audience), moves_(moves), stages_(setup.stages), limits_(setup.limits)
+      : scene_(scene),
+        audience_(audience),
+        moves_(moves),
+        stages_(setup.stages),
+        changes_(std::exchange(setup.changes, {})),
+        laws_(setup.laws),
+        limits_(setup.limits)
   {
     if (may_move())
       rest_ = without_particles(setup);
@@ -137,7 +144,7 @@ class Simulation {
   {
     if (audience_.take_over) {
       audience_.take_over(state_of(*model_));
-      adopt_state(*model_);
+      adopt();
     }
     audience_.ready(frame());
     begin_shares(world().max(moves_.mesh_seconds + build_seconds_));
@@ -147,14 +154,35 @@ class Simulation {
         run_on({});
       number = model_->stage.number + 1;
     }
-    for (; number < static_cast<Index>(stages_.size()); ++number)
+    for (; number < static_cast<Index>(stages_.size()); ++number) {
+      enter(number);
       run_on(number);
+    }
   }
 
  private:
   bool may_move() const { return !world().alone() && moves_.every != 0; }
   const Stage& stage_at_hand() const { return stages_[static_cast<std::size_t>(model_->stage.number)]; }
   Frame<D> frame() const { return frame_of(*model_, stage_at_hand()); }
+
+  /// All that the stage of that number changes between two steps.
+  void enter(Index number)
+  {
+    const auto n = static_cast<std::size_t>(number);
+    if (n >= changes_.size() || !changes_[n].any())
+      return;
+    const StageNews news = talus::enter(*model_, changes_[n], laws_[n], stages_[n]);
+    audience_.changed(frame(), stages_[n], news);
+  }
+
+  /// A state that has been put into the model, which was built for the first stage.
+  void adopt()
+  {
+    adopt_state(*model_);
+    const auto n = static_cast<std::size_t>(model_->stage.number);
+    if (n < changes_.size() && changes_[n].walls)
+      take_walls(*model_, *changes_[n].walls);
+  }
 
   /// To the end of the stage of that number, which begins; without a number, of that which is on its way.
   void run_on(std::optional<Index> begins)
@@ -260,7 +288,7 @@ class Simulation {
     restrict_to(part.share, setup);
     model_.emplace(build<D, K>(scene_, std::move(part), std::move(setup)));
     put_into(state_of(*model_), std::move(state));
-    adopt_state(*model_);
+    adopt();
     model_->migration.count_from(migrated);
     watch.lap(seconds);
     told.seconds = world().max(seconds);
@@ -281,6 +309,8 @@ class Simulation {
   const Audience<D>& audience_;
   const Moves<D>& moves_;
   std::vector<Stage> stages_;
+  std::vector<StageChange<D>> changes_;
+  std::vector<std::vector<AnyBatch>> laws_;
   StepLimits limits_;
   Setup<D> rest_;  // of the whole mesh, where shares may move
   std::optional<Model<D, K>> model_;

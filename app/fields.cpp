@@ -96,6 +96,14 @@ Column particle_column(const Frame<D>& frame, std::span<const Index> rows, std::
       for (int k = 0; k < 6; ++k)
         out[static_cast<std::size_t>(k)] = static_cast<float>(p.stress[r][k]);
     });
+  if (name == "effective_stress")
+    return column_of(name, "Pa", 6, rows, [&](std::size_t r, std::span<float> out) {
+      const Sym3 stress = p.pore.empty() ? Sym3(p.stress[r]) : add_diagonal(p.stress[r], p.pore[r]);
+      for (int k = 0; k < 6; ++k)
+        out[static_cast<std::size_t>(k)] = static_cast<float>(stress[k]);
+    });
+  if (name == "pore_pressure")
+    return scalars(name, "Pa", rows, [&](std::size_t r) { return p.pore.empty() ? Real{0} : Real{p.pore[r]}; });
   if (name == "pressure")
     return scalars(name, "Pa", rows, [&](std::size_t r) { return -(p.stress[r][0] + p.stress[r][1] + p.stress[r][2]) / 3; });
   if (name == "von_mises")

@@ -47,6 +47,28 @@ void put(const Vec<D>& v, std::vector<Real>& row)
   row.insert(row.end(), v.begin(), v.end());
 }
 
+/// The part of a wall with mass at its nodes: area vectors out of the mesh [m^(D-1)], their moduli and those times the places of the nodes.
+template <int D>
+struct Touched {
+  Vec<D> area = Vec<D>::Zero(), place = Vec<D>::Zero();
+  Real measure{};
+};
+
+/// Where the line of action of a force [N] with that moment [N m] about the origin crosses a plane through `place`; NaN if it never does.
+template <int D>
+Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, const Vec<D>& place)
+{
+  const Real through = force.dot(normal);
+  if (through == 0)
+    return Vec<D>::Constant(not_there);
+  Vec3 push = Vec3::Zero();
+  push.template head<D>() = force;
+  const Vec3 cross(push[1] * moment[2] - push[2] * moment[1], push[2] * moment[0] - push[0] * moment[2],
+                   push[0] * moment[1] - push[1] * moment[0]);
+  const Vec<D> foot = cross.template head<D>() / push.squaredNorm();  // the point of the line nearest to the origin
+  return foot + (place - foot).dot(normal) / through * force;
+}
+
 }  // namespace
 
 template <int D>
@@ -92,6 +114,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(columns_of(point, D));
   for (const FrontSpec& front_spec : spec.fronts)
     add(columns_of(front_spec));
+  for (const WallSpec& wall : spec.walls)
+    add(columns_of(wall, D));
   for (const MovedSpec& moved_spec : spec.moved)
     add(columns_of(moved_spec));
   return all;
@@ -102,6 +126,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
 {
   start.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
   state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
+  state_.angular.assign(start.walls.walls().size(), Vec3::Zero());
   for (const PointSpec& point : spec_.points)
     state_.followed.push_back(nearest_particle(point, start.bodies, start.particles, *start.ranks));
 }
@@ -130,25 +155,72 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
     const Vec<D>& impulse = frame.walls.walls()[w].impulse;
     put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
-    state_.impulse[w] = impulse;
   }
   FollowedRows followed(state_.followed);
   followed.find(frame.particles.id);
-  for (const std::int64_t id : state_.followed)
-    add_point(frame, followed.row(id), row);
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    add_point(frame, spec_.points[k], followed.row(state_.followed[k]), row);
   for (const FrontSpec& spec : spec_.fronts)
     row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
+  for (const WallSpec& spec : spec_.walls)
+    add_wall(frame, spec, elapsed, row);
+  for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
+    state_.impulse[w] = frame.walls.walls()[w].impulse;
+    state_.angular[w] = frame.walls.walls()[w].angular;
+  }
   for (const MovedSpec& spec : spec_.moved)
     row.push_back(moved(spec, frame.bodies, frame.particles, *frame.ranks));
   frame.ranks->together([&] { file_->append(row); });
   state_.time = clock.time;
 }
 
+/// Its mean push since the row before, where the line of that push crosses the wall, and on how much of the wall there is mass now.
 template <int D>
-void HistoryWriter<D>::add_point(const Frame<D>& frame, Index at, std::vector<Real>& row)
+void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
+{
+  const auto walls = frame.walls.walls();
+  const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall<D>& one) { return one.name == spec.on; });
+  const auto w = static_cast<std::size_t>(wall - walls.begin());
+  // A second wall on a group is called GROUP_2.
+  const std::string group = frame.mesh.facet_set(spec.on) ? spec.on : spec.on.substr(0, spec.on.rfind('_'));
+  const MeshTraction<D> on_nodes = carried_by_mesh(frame.mesh, frame.mesh.facet_set(group).value_or(std::vector<Facet>()));
+  ExactSums<Touched<D>> sum;
+  for (std::size_t i = 0; i < on_nodes.node.size(); ++i) {
+    const Index n = on_nodes.node[i];
+    const bool counted = frame.share.alone() || frame.share.owns_node(n);
+    if (counted && frame.nodes.active[static_cast<std::size_t>(n)] != 0)
+      sum.add({on_nodes.area[i], on_nodes.measure[i] * frame.mesh.node(n), on_nodes.measure[i]});
+  }
+  frame.ranks->sum(sum);
+  const Touched<D> touched = sum.value();
+  const Real area = touched.area.norm();
+  const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // on the wall
+  if (!(area > 0) || force.norm() == 0) {
+    const Real none_or_unknown = force.norm() == 0 ? 0 : not_there;  // what has just left it has pushed, in a direction that is gone
+    row.insert(row.end(), {none_or_unknown, none_or_unknown, area, area > 0 ? 0 : not_there});
+    row.insert(row.end(), D, not_there);
+    return;
+  }
+  const Vec<D> normal = touched.area / area;
+  const Real push = force.dot(normal);
+  row.insert(row.end(), {push, (force - push * normal).norm(), area, push / area});
+  put<D>(attack<D>(force, Vec3((state_.angular[w] - wall->angular) / elapsed), normal, touched.place / touched.measure), row);
+}
+
+template <int D>
+void HistoryWriter<D>::follow_anew(const std::string& body, const Frame<D>& now)
+{
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    if (spec_.points[k].body == body)
+      state_.followed[k] = nearest_particle(spec_.points[k], now.bodies, now.particles, *now.ranks);
+}
+
+template <int D>
+void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
 {
   std::vector<Real> here;
-  if (at != none) {
+  const bool is_there = at != none && (point_spec.body.empty() || frame.bodies[body_of(frame.bodies, at)].name == point_spec.body);
+  if (is_there) {
     const auto p = static_cast<std::size_t>(at);
     put<D>(frame.particles.x[p], here);
     put<D>(frame.particles.x[p] - frame.particles.x0[p], here);

@@ -25,11 +25,12 @@ template <int D>
 struct HistoryState {
   std::vector<std::int64_t> followed;  ///< id of the particle of each point
   std::vector<Vec<D>> impulse;         ///< of each wall at the row before [N s]
+  std::vector<Vec3> angular;           ///< its moment about the origin [N m s]
   Real time = 0;                       ///< of the row before [s]
   static constexpr auto fields()
   {
     return std::tuple{kept("followed", &HistoryState::followed), kept("impulse", &HistoryState::impulse),
-                      kept("time", &HistoryState::time)};
+                      kept("angular", &HistoryState::angular), kept("time", &HistoryState::time)};
   }
 };
 
@@ -42,13 +43,16 @@ class HistoryWriter {
   /// Goes on in a file that is there, behind the time of `now`.
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
+  /// Points of this body follow the particle that is nearest now.
+  void follow_anew(const std::string& body, const Frame<D>& now);
   void append(const Frame<D>& frame, const Accounts<D>& accounts);
   void flush() const { file_->flush(); }                          ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
-  static void add_point(const Frame<D>& frame, Index at, std::vector<Real>& row);
+  void add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
+  static void add_point(const Frame<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;

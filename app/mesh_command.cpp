@@ -6,6 +6,7 @@
 #include "io/gmsh_mesh.hpp"
 #include "io/gmsh_write.hpp"
 #include "io/reader.hpp"
+#include "io/terrain_mesh.hpp"
 #include "mesh/quality.hpp"
 
 namespace talus {
@@ -46,7 +47,9 @@ Asked asked(const MeshOptions& options)
 template <int D>
 void show(const Mesh<D>& mesh, const MeshOptions& options)
 {
-  fmt::print("{}", to_string(quality(mesh)));
+  for (const std::string& note : mesh.notes())
+    fmt::print(stderr, "warning: {}\n", note);
+  fmt::print("{}{}", to_string(quality(mesh)), terrain_in_words(mesh, ""));
   fmt::print("groups\n");
   for (const std::string& name : mesh.cell_set_names())
     fmt::print("  {:<28} {:>9} cells\n", name, mesh.cell_set(name)->size());

@@ -34,6 +34,9 @@ void shorten(Real dt, std::vector<Stage>& stages, OutputSpec& outputs)
   fewer(outputs.particles);
   fewer(outputs.mesh);
   fewer(outputs.history);
+  fewer(outputs.runout);
+  if (outputs.runout && outputs.runout->frames_every)
+    outputs.runout->frames_every = std::max(*outputs.runout->frames_every * share, total * share / most_outputs);
 }
 
 }  // namespace talus

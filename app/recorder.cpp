@@ -1,5 +1,6 @@
 #include "app/recorder.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "app/disk_space.hpp"
@@ -79,15 +80,6 @@ RanksSummary ranks_of(const Frame<D>& frame, const Traffic& begin, std::int64_t 
 
 }  // namespace
 
-bool Schedule::due(Real time)
-{
-  constexpr Real round_off = 1e-9;
-  if (!std::isfinite(every_) || !(time >= next_ * every_ - round_off * every_))
-    return false;
-  next_ = std::floor(time / every_ + round_off) + 1;
-  return true;
-}
-
 template <int D>
 Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet,
                       std::string made_by)
@@ -100,7 +92,8 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       mesh_times_(every(outputs.mesh)),
       history_times_(every(outputs.history)),
       particle_series_(folder_ / "particles.pvd", made_by_),
-      mesh_series_(folder_ / "mesh.pvd", made_by_)
+      mesh_series_(folder_ / "mesh.pvd", made_by_),
+      runout_(folder_, outputs.runout)
 {}
 
 template <int D>
@@ -118,12 +111,29 @@ void Recorder<D>::open(const Frame<D>& frame)
   name_lists();
 }
 
+/// Bodies that were not there before.
+template <int D>
+void Recorder<D>::welcome(const Frame<D>& frame)
+{
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].particles > 0)
+      continue;
+    bodies_[b] = summary_of(frame, b);
+    if (history_ && bodies_[b].particles > 0)
+      history_->follow_anew(bodies_[b].name, frame);
+  }
+  if (history_)
+    history_state_ = history_->state();
+}
+
 /// Of the files the run writes those that are there from the beginning.
 template <int D>
 void Recorder<D>::name_lists()
 {
   if (outputs_.history)
     files_.push_back("history.csv");
+  if (runout_.has_begun())
+    files_.push_back("runout.csv");
   if (outputs_.particles)
     files_.push_back("particles.pvd");
   if (outputs_.mesh)
@@ -137,6 +147,7 @@ void Recorder<D>::go_on(const Frame<D>& frame)
   traffic_begin_ = frame.ranks->traffic(), step_begin_ = frame.clock.step;
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
+  runout_.go_on(frame);
   progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
 }
 
@@ -168,6 +179,8 @@ std::vector<std::string> Recorder<D>::drop_later(const Frame<D>& frame)
     check_series(particle_series_, particle_files_ - elsewhere_.particle_files, "particles.pvd");
   if (outputs_.mesh)
     check_series(mesh_series_, mesh_files_ - elsewhere_.mesh_files, "mesh.pvd");
+  if (!runout_.drop_later() && elsewhere_.time < 0)
+    missing.push_back(fmt::format("{} lacks rows that had been written", (folder_ / "runout.csv").string()));
   for (int n = particle_files_; fs::remove(particle_file(n)); ++n) {
   }
   for (int n = mesh_files_; fs::remove(mesh_file(n)); ++n) {
@@ -190,7 +203,7 @@ bool Recorder<D>::fits(std::size_t walls, Index particles) const
   if (!outputs_.history)
     return true;
   const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may not be there any more
-  return history_state_.impulse.size() == walls && history_state_.followed.size() == outputs_.history->points.size() &&
+  return history_state_.impulse.size() == walls && history_state_.angular.size() == walls && history_state_.followed.size() == outputs_.history->points.size() &&
          std::ranges::all_of(history_state_.followed, known);
 }
 
@@ -199,6 +212,7 @@ void Recorder<D>::flush() const
 {
   if (history_)
     history_->flush();
+  runout_.flush();
 }
 
 template <int D>
@@ -210,8 +224,14 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
   if (first)
     open(frame);
+  else if (moment == Moment::stage_begins)
+    welcome(frame);
   if (moment == Moment::stage_begins)
     stage_start_ = frame.clock.time;
+  if (moment == Moment::stage_begins && outputs_.runout && !runout_.has_begun() && frame.stage_name != "geostatic") {
+    runout_.begin(frame);
+    name("runout.csv");
+  }
   if (moment == Moment::step_done)
     progress_.step(done_before_ + frame.clock.time - stage_start_,
                    done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(frame.stage_number))),
@@ -220,6 +240,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   StopWatch watch;
   if (first || moment != Moment::stage_begins)  // the beginning of a later stage is the end of the one before
     write(frame, moment == Moment::stage_done);
+  write_runout(frame, moment == Moment::stage_done);
   watch.lap(output_seconds_);
 
   warn(frame);
@@ -307,6 +328,27 @@ void Recorder<D>::write_mesh_file(const Frame<D>& frame)
   frame.ranks->together([&] { mesh_series_.append(frame.clock.time, file); });
   mesh_time_ = frame.clock.time;
   files_.push_back(file.filename().string());
+}
+
+template <int D>
+void Recorder<D>::write_runout(const Frame<D>& frame, bool last)
+{
+  if (!runout_.has_begun())
+    return;
+  for (const std::string& file : runout_.see(frame, last))
+    name(file);
+  if (last)
+    for (const std::string& file : runout_.write_maps(frame))
+      name(file);
+}
+
+/// A file that may have been written before.
+template <int D>
+void Recorder<D>::name(const std::string& file)
+{
+  const auto named = files();
+  if (std::find(named.begin(), named.end(), file) == named.end())
+    files_.push_back(file);
 }
 
 template class Recorder<2>;

@@ -4,24 +4,13 @@
 
 #include "app/history.hpp"
 #include "app/progress.hpp"
+#include "app/runout.hpp"
+#include "app/schedule.hpp"
 #include "app/simulate.hpp"
 #include "io/report.hpp"
 #include "io/vtk.hpp"
 
 namespace talus {
-
-/// Times at which something is written: 0, every, 2 every, ...
-class Schedule {
- public:
-  explicit Schedule(Real every) : every_(every) {}
-  /// True once for each of these times that has come.
-  bool due(Real time);
-  static constexpr auto fields() { return std::tuple{kept("next", &Schedule::next_)}; }
-
- private:
-  Real every_;
-  Real next_ = 0;
-};
 
 /// State of the run when it was last seen sound.
 template <int D>
@@ -70,9 +59,12 @@ class Recorder {
   /// What has been written is on the disk when it returns.
   void flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
+  /// What a stage has changed before it begins, a line for each.
+  void changed(const std::vector<std::string>& lines) { changes_.insert(changes_.end(), lines.begin(), lines.end()); }
 
   const LastSeen<D>& last_seen() const noexcept { return last_; }
   std::span<const StageResult> stages() const noexcept { return stages_; }
+  const std::vector<std::string>& changes() const noexcept { return changes_; }
   /// Written to the folder, relative to it.
   std::span<const std::string> files() const noexcept { return std::span(files_).subspan(static_cast<std::size_t>(elsewhere_.files)); }
   std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
@@ -80,6 +72,7 @@ class Recorder {
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
   const RanksSummary& ranks() const noexcept { return ranks_; }  ///< as of the end of the last stage
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
+  const Runout<D>& runout() const noexcept { return runout_; }
   static constexpr auto fields()
   {
     return std::tuple{kept("accounts", &Recorder::accounts_),
@@ -96,16 +89,19 @@ class Recorder {
                       kept("done_before", &Recorder::done_before_),
                       kept("last", &Recorder::last_),
                       kept("stages", &Recorder::stages_),
+                      kept("changes", &Recorder::changes_),
                       kept("files", &Recorder::files_),
                       kept("elsewhere", &Recorder::elsewhere_),
                       kept("last_output", &Recorder::last_output_),
                       kept("bodies", &Recorder::bodies_),
+                      kept("runout", &Recorder::runout_),
                       kept("output_seconds", &Recorder::output_seconds_),
                       kept("bytes_per_particle", &Recorder::bytes_per_particle_)};
   }
 
  private:
   void open(const Frame<D>& frame);
+  void welcome(const Frame<D>& frame);
   void go_on(const Frame<D>& frame);
   std::vector<std::string> drop_later(const Frame<D>& frame);
   void name_lists();
@@ -113,6 +109,8 @@ class Recorder {
   void write(const Frame<D>& frame, bool last);
   void write_particles_file(const Frame<D>& frame);
   void write_mesh_file(const Frame<D>& frame);
+  void write_runout(const Frame<D>& frame, bool last);
+  void name(const std::string& file);
   std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
 
@@ -134,10 +132,12 @@ class Recorder {
   std::int64_t step_begin_ = 0;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
+  std::vector<std::string> changes_;
   std::vector<std::string> files_;
   Elsewhere elsewhere_;
   std::string last_output_;  // relative as well
   std::vector<BodySummary> bodies_;
+  Runout<D> runout_;
   Real output_seconds_ = 0, bytes_per_particle_ = 0;
 };
 

@@ -1,17 +1,14 @@
 // talus render
 #include <fmt/format.h>
 
-#include "app/commands.hpp"
+#include "app/film.hpp"
 #include "app/rendered_run.hpp"
 #include "app/upright.hpp"
 #include "io/launch_render.hpp"
-#include "io/movie.hpp"
 
 namespace talus {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 using Words = std::vector<std::string>;
 
@@ -62,44 +59,6 @@ void add_movie_defaults(Words& words)
     words.insert(words.end(), {"--range", "whole"});
 }
 
-void check_movie(const RenderOptions& options, Words& problems)
-{
-  if (!options.movie)
-    return;
-  if (const std::string problem = movie_problem(*options.movie); !problem.empty())
-    problems.push_back("--movie: " + problem);
-  if (has_option(options.words, "--out") && !options.keep_frames)
-    problems.emplace_back("--out: of a movie it says where the pictures go that --keep-frames keeps");
-}
-
-std::vector<fs::path> draw(const Words& words)
-{
-  std::vector<fs::path> pictures;
-  for (const RenderedFile& file : launch_render(words))
-    pictures.push_back(file.path);
-  return pictures;
-}
-
-/// A folder that is gone afterwards.
-struct Passing {
-  fs::path folder;
-  ~Passing()
-  {
-    std::error_code ignored;
-    fs::remove_all(folder, ignored);
-  }
-};
-
-void film(const RenderOptions& options, Words words)
-{
-  require_movie_maker();
-  if (options.keep_frames)
-    return make_movie(draw(words), options.per_second, *options.movie);
-  const Passing frames{options.movie->string() + ".frames"};
-  words.insert(words.end(), {"--out", frames.folder.string()});
-  make_movie(draw(words), options.per_second, *options.movie);
-}
-
 }  // namespace
 
 void render_results(const RenderOptions& options)
@@ -109,15 +68,13 @@ void render_results(const RenderOptions& options)
   if (options.movie)
     add_movie_defaults(words);
   render::check(render::parse_picture(words, problems), run.facts, problems);
-  check_movie(options, problems);
+  check_movie(options, options.words, problems);
   render::require_none(problems);
-  if (options.movie) {
+  if (options.movie)
     film(options, std::move(words));
-    fmt::print("{}\n", options.movie->string());
-  } else {
-    for (const fs::path& file : draw(words))
-      fmt::print("{}\n", file.string());
-  }
+  else
+    for (const RenderedFile& file : launch_render(words))
+      fmt::print("{}\n", file.path.string());
 }
 
 }  // namespace talus

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "io/render.hpp"
 #include "io/render_chart.hpp"
+#include "io/render_map.hpp"
 #include "io/render_surface.hpp"
 
 namespace {
@@ -48,6 +49,14 @@ void write_surfaces(std::span<const std::string> words)
   render::make_surfaces(settings, announce);
 }
 
+void draw_maps(std::span<const std::string> words)
+{
+  std::vector<std::string> problems;
+  const auto settings = render::parse_maps(words, problems);
+  render::require_none(problems);
+  render::draw_maps(settings, [](const std::filesystem::path& picture) { announce(picture); });
+}
+
 void draw_pictures(std::span<const std::string> words)
 {
   std::vector<std::string> problems;
@@ -73,6 +82,8 @@ int main(int argc, char** argv)
       draw_tornado(std::span(arguments).subspan(1));
     else if (!arguments.empty() && arguments.front() == "surface")
       write_surfaces(std::span(arguments).subspan(1));
+    else if (!arguments.empty() && arguments.front() == "map")
+      draw_maps(std::span(arguments).subspan(1));
     else
       draw_pictures(arguments);
     return 0;

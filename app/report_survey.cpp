@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/differences.hpp"
+#include "app/reach.hpp"
 #include "core/error.hpp"
 
 namespace talus {
@@ -39,8 +40,6 @@ std::optional<ValueRange> finite_range(const std::vector<Real>& values)
   return range;
 }
 
-Vec3 on_the_level(const Vec3& d, const Vec3& up) { return d - d.dot(up) * up; }
-
 /// Of the pairs of places of one body.
 std::optional<MovedMass> moved_mass(const std::vector<Vec3>& then, const std::vector<Vec3>& now, Real furthest, const Vec3& up)
 {
@@ -53,20 +52,15 @@ std::optional<MovedMass> moved_mass(const std::vector<Vec3>& then, const std::ve
     return std::nullopt;
   moved.count = static_cast<std::int64_t>(rows.size());
   moved.low = moved.high = now[rows.front()];
-  moved.crest = then[rows.front()];
+  std::vector<Vec3> from, to;
   for (const std::size_t p : rows) {
     moved.low = moved.low.cwiseMin(now[p]);
     moved.high = moved.high.cwiseMax(now[p]);
-    if (then[p].dot(up) > moved.crest.dot(up))
-      moved.crest = then[p];
+    from.push_back(then[p]), to.push_back(now[p]);
   }
-  moved.length = -1;
-  for (const std::size_t p : rows)
-    if (const Real length = on_the_level(now[p] - moved.crest, up).norm(); length > moved.length) {
-      moved.length = length;
-      moved.toe = now[p];
-    }
-  moved.height = (moved.crest - moved.toe).dot(up);
+  const Reach reach = *reach_of(from, to, std::vector<Real>(rows.size(), 1), up, 1);
+  moved.crest = reach.crown, moved.toe = reach.front;
+  moved.height = reach.height, moved.length = reach.length;
   return moved;
 }
 

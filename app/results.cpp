@@ -71,8 +71,9 @@ namespace {
 /// Files that a run writes, and the pictures drawn of them.
 bool is_result(const fs::path& file)
 {
-  static constexpr std::array<std::string_view, 10> names{"summary.json", "history.csv", "particles.pvd", "mesh.pvd",    "mesh.msh",
-                                                          "mesh.vtu",     "scene.yaml",  initial_file,    progress_file, report_file};
+  static constexpr std::array<std::string_view, 11> names{"summary.json", "history.csv", "runout.csv", "particles.pvd",
+                                                          "mesh.pvd",     "mesh.msh",    "mesh.vtu",   "scene.yaml",
+                                                          initial_file,   progress_file, report_file};
   const std::string name = file.filename().string();
   for (const std::string_view known : names)
     if (name == known)
@@ -104,7 +105,7 @@ void remove_leftovers(const fs::path& folder)
 namespace {
 
 /// Whole folders that go when their run is started again.
-constexpr std::array<std::string_view, 2> folders_of_results{"pictures", checkpoint_folder};
+constexpr std::array<std::string_view, 4> folders_of_results{"pictures", checkpoint_folder, map_folder, section_folder};
 
 /// EnvironmentError: the folder lies in one of those.
 void check_place(const fs::path& folder)

@@ -9,6 +9,8 @@ namespace talus {
 
 /// In the folder of a run.
 inline constexpr auto checkpoint_folder = "checkpoints";
+/// There too: maps over the plan, and sections through them.
+inline constexpr auto map_folder = "maps", section_folder = "sections";
 /// There too: the state of another run that this one began with, to go on without that run.
 inline constexpr auto initial_file = "initial.h5";
 

@@ -134,7 +134,11 @@ class Run {
                            checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
                          }};
     fs::path taken;
-    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles};
+    const auto laws = setup.laws;
+    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
+    audience.changed = [&](const Frame<D>& frame, const Stage& stage, const StageNews& news) {
+      recorder.changed(tell(frame, stage, news));
+    };
     if (from_)
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
@@ -314,6 +318,26 @@ class Run {
     if (!options_.quiet && world().is_root())
       fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
                  frame.clock.step, frame.clock.time);
+  }
+
+  /// What a stage has changed; returns it as lines for the summary.
+  std::vector<std::string> tell(const Frame<D>& frame, const Stage& stage, const StageNews& news)
+  {
+    const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", frame.clock.time, stage.name);
+    std::vector<std::string> lines;
+    for (const std::string& what : news.told)
+      lines.push_back(when + what);
+    for (const std::string& what : news.warnings)
+      summary_.warnings.push_back(when + what);
+    if (!world().is_root())
+      return lines;
+    for (const std::string& what : news.warnings)
+      fmt::print(stderr, "warning: {}{}\n", when, what);
+    for (const std::string& line : lines)
+      if (!options_.quiet)
+        fmt::print("{}\n", line);
+    std::fflush(stdout);
+    return lines;
   }
 
   Moves<D> moves_of_shares(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)

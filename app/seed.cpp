@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/expression.hpp"
+#include "app/laws_in_force.hpp"
 #include "app/setup.hpp"
 #include "core/parallel.hpp"
 #include "io/memory.hpp"
@@ -19,19 +20,6 @@ namespace {
 Real density_of(const MaterialSpec& material)
 {
   return std::visit([](const auto& law) { return law.density; }, material.law);
-}
-
-AnyBatch batch_of(const MaterialSpec& material, const BodySpec& body, Index begin, Index end)
-{
-  AnyBatch batch =
-      std::visit([&](const auto& law) { return make_any_batch(law, begin, end, material.name, material.where); }, material.law);
-  std::visit(
-      [&]<class L>(Batch<L>& typed) {
-        typed.viscosity = material.bulk_viscosity;
-        typed.averages_volume = body.f_bar.value_or(is_isochoric<L>());
-      },
-      batch);
-  return batch;
 }
 
 template <int D>
@@ -69,7 +57,7 @@ class Seeder {
     if (!points)
       complain_of_count(spec);
     const auto cells = cells_of(spec);
-    const MaterialSpec* material = material_of(spec);
+    const MaterialSpec* material = first_material(spec);
     if (!points || !cells || material == nullptr)
       return;
     const Index begin = seeds_.particles.size();
@@ -85,14 +73,14 @@ class Seeder {
                       fmt::format("the body has no particles: {}",
                                   spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
-    seeds_.materials.push_back(batch_of(*material, spec, begin, end));
+    seeds_.materials.push_back(first_law(spec, begin, end));
     set_velocity(spec, begin, end);
   }
 
   /// The body begins as the one of that number there.
   void add(const BodySpec& spec, InitialState<D>& initial, Index from)
   {
-    const MaterialSpec* material = material_of(spec);
+    const MaterialSpec* material = first_material(spec);
     if (material == nullptr)
       return;
     const Body& source = initial.there.bodies[static_cast<std::size_t>(from)];
@@ -102,7 +90,7 @@ class Seeder {
     if (begin == end)
       complaints_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
     const Body body{spec.name, begin, end, spec.where};
-    AnyBatch batch = batch_of(*material, spec, begin, end);
+    AnyBatch batch = first_law(spec, begin, end);
     copy(initial.there.particles, rows, density_of(*material) / density(law_there), begin, seeds_.n_particles);
     seeds_.n_particles += source.size();
     find_cells(body, source);
@@ -126,8 +114,17 @@ class Seeder {
   void settle(const InitialState<D>& initial, std::vector<std::string>& warnings)
   {
     carry_columns(initial.there.particles);
-    for (const Taken& taken : taken_)
-      settle_stress(taken, initial.there.clock.dt, warnings);
+    for (const auto& [body, law, rows] : taken_) {
+      constexpr Real worth_a_word = 0.01;
+      const Body& here = seeds_.bodies[body];
+      const AnyBatch& material = seeds_.materials[body];
+      const Real change = settle_stress(here, law, initial.there.clock.dt, ranks_, seeds_.materials[body], seeds_.particles);
+      if (change > worth_a_word)
+        warnings.push_back(fmt::format(
+            "{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest there: law \"{}\" makes another "
+            "of the same state, with the constants of this scene",
+            to_string(here.where), here.name, 100 * change, law_name(material)));
+    }
     seeds_.origin = initial.origin;
     if (ranks_.alone())
       return;
@@ -167,11 +164,14 @@ class Seeder {
     return cells;
   }
 
-  const MaterialSpec* material_of(const BodySpec& spec) const
+  Index first_stage(const BodySpec& spec) const { return presence_of(spec.name, scene_.stages).from; }
+  /// If it is not there the reader has complained.
+  const MaterialSpec* first_material(const BodySpec& spec) const { return material_of(scene_, spec, first_stage(spec)); }
+  AnyBatch first_law(const BodySpec& spec, Index begin, Index end) const
   {
-    const auto found =
-        std::find_if(scene_.materials.begin(), scene_.materials.end(), [&](const MaterialSpec& m) { return m.name == spec.material; });
-    return found == scene_.materials.end() ? nullptr : &*found;  // the reader has complained
+    AnyBatch batch = law_in_force(scene_, spec, first_stage(spec));
+    begin_anew(begin, end, batch);
+    return batch;
   }
 
   /// f(x) for the particles of a cell that lie in the shape.
@@ -354,16 +354,26 @@ class Seeder {
       p.volume_ratio.assign(n, 1);
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
     }
-    if (from.viscous.empty())
-      return;
-    if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
-      p.viscous.assign(n, 0);
-    for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
-      if (has_bulk_viscosity(seeds_.materials[taken.body]))
-        p.viscous.set(row, from.viscous[there]);
-      else
-        p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
-    });
+    if (!from.viscous.empty()) {
+      if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
+        p.viscous.assign(n, 0);
+      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+        if (has_bulk_viscosity(seeds_.materials[taken.body]))
+          p.viscous.set(row, from.viscous[there]);
+        else
+          p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
+      });
+    }
+    if (!from.pore.empty()) {
+      if (scene_.water)
+        p.pore.assign(n, 0);
+      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+        if (!scene_.water)  // it is gone, and the effective stress is all there is
+          p.stress.set(row, add_diagonal(p.stress[row], from.pore[there]));
+        else if (is_drained(*scene_.water, seeds_.bodies[taken.body].name))
+          p.pore.set(row, from.pore[there]);  // of others the stress stays in total
+      });
+    }
   }
 
   /// One law of a body there.
@@ -372,31 +382,6 @@ class Seeder {
     std::string law;   ///< there
     std::vector<Index> rows;
   };
-
-  /// The body keeps its stress if its law can start from one; the elastic strain that belongs to it is found anew where the law makes another
-  /// of the one there, because its constants have changed.  Any other law has the stress that it makes of the deformation.
-  void settle_stress(const Taken& taken, Real dt, std::vector<std::string>& warnings)
-  {
-    constexpr Real round_off = 1e-6;  // stresses in single precision
-    constexpr Real worth_a_word = 0.01;
-    const Body& body = seeds_.bodies[taken.body];
-    AnyBatch& material = seeds_.materials[taken.body];
-    const auto stress_of_law = [&](bool take_over) { return fit_stress(body, material, dt, take_over, seeds_.particles); };
-    const auto fits = [&](const StressFit& fit) { return fit.apart <= round_off * fit.largest; };
-    if (law_name(material) == taken.law && fits(stress_of_law(false)))
-      return;
-    if (can_start_from_stress(material))
-      start_from_stress(body, material, seeds_.particles);
-    const StressFit fit = stress_of_law(false);
-    if (fits(fit))
-      return;
-    stress_of_law(true);
-    if (fit.apart > worth_a_word * fit.largest)
-      warnings.push_back(fmt::format(
-          "{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest there: law \"{}\" makes another "
-          "of the same state, with the constants of this scene",
-          to_string(body.where), body.name, 100 * fit.apart / fit.largest, law_name(material)));
-  }
 
   const Scene& scene_;
   const Mesh<D>& mesh_;
@@ -407,9 +392,16 @@ class Seeder {
   std::vector<Taken> taken_;
 };
 
-/// Cells that hold particles of two bodies: material there is counted twice, unless the shapes only touch.
+/// Whether two bodies are there in the same stage.
+bool meet(const Scene& scene, const std::string& a, const std::string& b)
+{
+  const Presence one = presence_of(a, scene.stages), other = presence_of(b, scene.stages);
+  return one.from < other.until && other.from < one.until;
+}
+
+/// Cells that hold particles of two bodies at once: material there is counted twice, unless the shapes only touch.
 template <int D>
-void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, Exchange& ranks, std::vector<std::string>& warnings)
+void warn_of_shared_cells(const Scene& scene, const Seeds<D>& seeds, Index n_cells, Exchange& ranks, std::vector<std::string>& warnings)
 {
   std::vector<Index> owner(static_cast<std::size_t>(n_cells), none), counted(owner);
   for (std::size_t b = 0; b < seeds.bodies.size(); ++b) {
@@ -424,7 +416,7 @@ void warn_of_shared_cells(const Seeds<D>& seeds, Index n_cells, Exchange& ranks,
     }
     ranks.sum(shared);  // no cell is filled by two ranks
     for (std::size_t other = 0; other < b; ++other)
-      if (shared[other] > 0)
+      if (shared[other] > 0 && meet(scene, seeds.bodies[other].name, seeds.bodies[b].name))
         warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(seeds.bodies[b].where),
                                        seeds.bodies[other].name, seeds.bodies[b].name, shared[other], shared[other] == 1 ? "" : "s"));
   }
@@ -456,11 +448,12 @@ Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complain
     seeder.settle(*initial, warnings);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
-      if (!scene.bodies[i].region.empty() && scene.bodies[i].region == scene.bodies[j].region)
+      if (!scene.bodies[i].region.empty() && scene.bodies[i].region == scene.bodies[j].region &&
+          meet(scene, scene.bodies[i].name, scene.bodies[j].name))
         complaints.add(scene.bodies[i].where, "region",
                        fmt::format("body \"{}\" fills the cell group \"{}\" already", scene.bodies[j].name, scene.bodies[i].region));
   Seeds<D> seeds = seeder.take();
-  warn_of_shared_cells(seeds, mesh.n_cells(), ranks, warnings);
+  warn_of_shared_cells(scene, seeds, mesh.n_cells(), ranks, warnings);
   return seeds;
 }
 

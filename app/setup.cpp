@@ -6,11 +6,15 @@
 #include "app/expression.hpp"
 #include "app/fields.hpp"
 #include "app/guards.hpp"
+#include "app/k0.hpp"
+#include "app/laws_in_force.hpp"
 #include "app/seed.hpp"
+#include "app/water.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
 #include "io/history_columns.hpp"
 #include "io/scene_rules.hpp"
+#include "materials/strength.hpp"
 
 namespace talus {
 
@@ -22,35 +26,81 @@ Vec<D> vector_of(const std::vector<Real>& numbers)
   return numbers.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(Eigen::Map<const Vec<D>>(numbers.data()));
 }
 
-/// Which cells have material at the start, on any rank.  Every rank has to ask.
+/// Which cells have material, on any rank, where bodies are placed.  Every rank has to ask.
 template <int D>
 class Filled {
  public:
-  Filled(const Mesh<D>& mesh, const Particles<D>& particles, Exchange& ranks)
+  /// By the bodies that are `there`, by their names.
+  template <class There>
+  Filled(const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies, Exchange& ranks, There&& there)
       : mesh_(mesh), filled_(static_cast<std::size_t>(mesh.n_cells() / cells_in_word + 1), 0)
   {
-    for (const Index c : particles.cell)
-      filled_[word_of(c)] |= bit_of(c);
+    for (const Body& body : bodies)
+      for (Index row = body.begin; there(body.name) && row < body.end; ++row) {
+        const Index c = particles.cell[static_cast<std::size_t>(row)];
+        filled_[word_of(c)] |= bit_of(c);
+      }
     ranks.sum(filled_);  // no cell is filled by two ranks
   }
   bool operator()(Index cell) const { return (filled_[word_of(cell)] & bit_of(cell)) != 0; }
-  /// A facet inside the mesh belongs to the side that has material, if only one has.
-  Facet seen_from_material(Facet facet) const
-  {
-    const Index other = mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)];
-    if (other == none || (*this)(facet.cell) || !(*this)(other))
-      return facet;
-    const auto& back = mesh_.neighbours(other);
-    return {other, static_cast<Index>(std::find(back.begin(), back.end(), facet.cell) - back.begin())};
-  }
+  /// Facets of a group inside the mesh belong to the side that has material, if only one has; where neither has, to that which material
+  /// reaches first, from cell to cell and not through the group: so it comes to an obstacle from outside.
   std::vector<Facet> seen_from_material(std::vector<Facet> facets) const
   {
-    for (Facet& facet : facets)
-      facet = seen_from_material(facet);
+    std::vector<Index> way;  // found when it is needed
+    for (Facet& facet : facets) {
+      const Index other = across(facet);
+      if (other == none || ((*this)(facet.cell) && (*this)(other)))
+        continue;
+      if (way.empty() && !(*this)(facet.cell) && !(*this)(other))
+        way = cells_from_material(facets);
+      const auto far = [&](Index cell) { return (*this)(cell) ? 0 : way.empty() ? 1 : way[static_cast<std::size_t>(cell)]; };
+      if (far(other) < far(facet.cell))
+        facet = back(facet);
+    }
     return facets;
+  }
+  /// Facets with material on both sides.
+  Index inside_material(const std::vector<Facet>& facets) const
+  {
+    return static_cast<Index>(std::count_if(
+        facets.begin(), facets.end(), [&](Facet facet) { return across(facet) != none && (*this)(facet.cell) && (*this)(across(facet)); }));
   }
 
  private:
+  Index across(Facet facet) const { return mesh_.neighbours(facet.cell)[static_cast<std::size_t>(facet.local)]; }
+  /// The same facet, seen from its other cell.
+  Facet back(Facet facet) const
+  {
+    const auto& neighbours = mesh_.neighbours(across(facet));
+    return {across(facet), static_cast<Index>(std::find(neighbours.begin(), neighbours.end(), facet.cell) - neighbours.begin())};
+  }
+  /// Of each cell how many cells away the nearest material is, the facets being closed.
+  std::vector<Index> cells_from_material(const std::vector<Facet>& closed) const
+  {
+    std::vector<std::uint8_t> shut(static_cast<std::size_t>(mesh_.n_cells()), 0);
+    const auto shut_one = [&](Facet facet) { shut[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local); };
+    for (const Facet facet : closed) {
+      shut_one(facet);
+      if (across(facet) != none)
+        shut_one(back(facet));
+    }
+    std::vector<Index> far(shut.size(), std::numeric_limits<Index>::max()), next;
+    for (Index c = 0; c < mesh_.n_cells(); ++c)
+      if ((*this)(c))
+        far[static_cast<std::size_t>(c)] = 0, next.push_back(c);
+    for (std::size_t i = 0; i < next.size(); ++i)
+      for (Index local = 0; local <= D; ++local) {
+        const auto c = static_cast<std::size_t>(next[i]);
+        const Index other = across({next[i], local});
+        if (other == none || (shut[c] >> local & 1) != 0 || far[static_cast<std::size_t>(other)] <= far[c] + 1)
+          continue;
+        far[static_cast<std::size_t>(other)] = far[c] + 1;
+        next.push_back(other);
+      }
+    return far;
+  }
+
   static constexpr Index cells_in_word = 32;
   static std::size_t word_of(Index cell) { return static_cast<std::size_t>(cell / cells_in_word); }
   static std::int64_t bit_of(Index cell) { return std::int64_t{1} << (cell % cells_in_word); }
@@ -91,12 +141,19 @@ void join(Exchange& ranks, ParticleTraction<D>& load)
   }
 }
 
-/// Boundaries, one after the other -> walls.
+/// Boundaries, one after the other -> walls of a stage, called by its name.
 template <int D>
 class WallBuilder {
  public:
-  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, std::vector<std::string> names, Complaints& complaints, Walls<D>& walls)
-      : mesh_(mesh), has_particles_(has_particles), names_(std::move(names)), complaints_(complaints), walls_(walls)
+  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, std::vector<std::string> names, const std::string& stage,
+              Complaints& complaints, std::vector<std::string>& warnings, Walls<D>& walls)
+      : mesh_(mesh),
+        has_particles_(has_particles),
+        names_(std::move(names)),
+        stage_(stage),
+        complaints_(complaints),
+        warnings_(warnings),
+        walls_(walls)
   {}
 
   void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
@@ -128,33 +185,48 @@ class WallBuilder {
   template <class Spec>
   void on_nodes(const Spec& spec, Wall<D> wall)
   {
-    if (const auto nodes = mesh_.node_set(spec.on))
+    const auto nodes = mesh_.node_set(spec.on);
+    if (nodes && acts_in(spec, stage_))
       walls_.add(std::move(wall), mesh_, *nodes);
+    else if (nodes)
+      walls_.add(std::move(wall));
     else
       complaints_.unknown_group(spec.where, "on", "node, facet or cell", spec.on, mesh_.node_set_names());
   }
   template <class Spec>
   void on_facets(const Spec& spec, Wall<D> wall)
   {
-    if (const auto facets = mesh_.facet_set(spec.on))
+    const auto facets = mesh_.facet_set(spec.on);
+    if (facets && acts_in(spec, stage_)) {
+      if (const Index inside = has_particles_.inside_material(*facets); inside > 0 && wall.kind == WallKind::friction)
+        warnings_.push_back(fmt::format(
+            "{}: {} of the {} facets of \"{}\" have material on both sides{}: a friction wall holds that on one of them, and "
+            "which is not said",
+            to_string(spec.where), inside, facets->size(), spec.on, stage_.empty() ? "" : fmt::format(" in stage \"{}\"", stage_)));
       walls_.add(std::move(wall), mesh_, has_particles_.seen_from_material(*facets));
-    else
+    } else if (facets) {
+      walls_.add(std::move(wall));
+    } else
       complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
   }
 
   const Mesh<D>& mesh_;
   const Filled<D>& has_particles_;
   std::vector<std::string> names_;  // of the walls, in the order of the boundaries
+  const std::string& stage_;
   std::size_t next_ = 0;
   Complaints& complaints_;
+  std::vector<std::string>& warnings_;
   Walls<D>& walls_;
 };
 
 template <int D>
 class LoadBuilder {
  public:
-  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, Complaints& complaints, Setup<D>& setup)
-      : mesh_(mesh), has_particles_(has_particles), ranks_(ranks), complaints_(complaints), setup_(setup)
+  /// `has_particles`: of all bodies, those as well that appear later; `at_start`: of the others.
+  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, const Filled<D>& at_start, Exchange& ranks, Complaints& complaints,
+              Setup<D>& setup)
+      : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), complaints_(complaints), setup_(setup)
   {}
 
   void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
@@ -184,7 +256,7 @@ class LoadBuilder {
     const auto found = mesh_.facet_set(spec.on);
     if (!found)
       return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
-    const std::vector<Facet> facets = has_particles_.seen_from_material(*found);
+    const std::vector<Facet> facets = at_start_.seen_from_material(*found);
     Real area = 0, loaded = 0;
     for (const Facet& facet : facets) {
       area += mesh_.area_vector(facet).norm();
@@ -217,49 +289,178 @@ class LoadBuilder {
   }
 
   const Mesh<D>& mesh_;
-  const Filled<D>& has_particles_;
+  const Filled<D>&has_particles_, &at_start_;
   Exchange& ranks_;
   Complaints& complaints_;
   Setup<D>& setup_;
 };
 
-Stage stage_of(const std::string& name, Real duration, Real damping, const Where& where)
-{
-  Stage stage;
-  stage.name = name;
-  stage.duration = duration;
-  stage.damping = damping;
-  stage.where = where;
-  return stage;
-}
-Stage stage_of(const RunSpec& spec) { return stage_of("run", spec.duration, spec.damping, spec.where); }
+Stage stage_of(const RunSpec& spec) { return {.duration = spec.duration, .damping = spec.damping, .where = spec.where}; }
 Stage stage_of(const GeostaticSpec& spec)
 {
-  return {.name = "geostatic",
-          .duration = spec.duration,
+  return {.duration = spec.duration,
           .damping = spec.damping,
           .ramp = spec.ramp,
           .elastic = spec.elastic,
           .residual = spec.residual,
-          .k0 = spec.initial_stress ? std::optional(spec.initial_stress->k0) : std::nullopt,
+          .k0 = {},
           .reset_displacement = spec.reset_displacement,
           .where = spec.where};
+}
+Stage stage_of(const StageSpec& spec)
+{
+  Stage stage = std::visit([](const auto& s) { return stage_of(s); }, spec);
+  stage.name = name_of(spec);
+  stage.kind = std::visit([]<class Spec>(const Spec&) { return std::string(Spec::name); }, spec);
+  return stage;
+}
+
+/// The numbers of bodies that are named.
+std::vector<Index> numbers_of(const std::vector<std::string>& names, const std::vector<Body>& bodies)
+{
+  std::vector<Index> numbers;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (std::find(names.begin(), names.end(), bodies[b].name) != names.end())
+      numbers.push_back(static_cast<Index>(b));
+  return numbers;
 }
 
 template <int D>
 void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
 {
   if (scene.stages.empty())
-    setup.stages.push_back(stage_of("run", scene.time.end, 0, scene.time.where));
+    setup.stages.push_back({.name = "run", .duration = scene.time.end, .where = scene.time.where});
   for (const StageSpec& spec : scene.stages)
-    setup.stages.push_back(std::visit([](const auto& s) { return stage_of(s); }, spec));
-  for (const Stage& stage : setup.stages)
-    for (std::size_t b = 0; stage.k0 && b < setup.bodies.size(); ++b)
-      if (!can_start_from_stress(setup.materials[b]))
+    setup.stages.push_back(stage_of(spec));
+  for (std::size_t s = 0; s < scene.stages.size(); ++s) {
+    Stage& stage = setup.stages[s];
+    const auto* spec = std::get_if<GeostaticSpec>(&scene.stages[s]);
+    if (spec == nullptr || !spec->initial_stress)
+      continue;
+    stage.k0 = k0_of_bodies(*spec->initial_stress, scene, complaints);
+    if (s > 0)
+      stage.k0_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.bodies);
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+      const Index from = presence_of(setup.bodies[b].name, scene.stages).from;
+      if (std::cmp_equal(from, s) && !can_start_from_stress(setup.materials[b]))
         complaints.add(
             stage.where, "initial_stress",
             fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
                         law_name(setup.materials[b]), setup.bodies[b].name));
+    }
+  }
+}
+
+/// Whether a law has strength, as far as its scene is concerned.
+bool has_strength(const MaterialSpec& material)
+{
+  return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
+}
+
+/// What the laws of bodies say to what stages want of them.
+void check_laws(const Scene& scene, Complaints& complaints)
+{
+  const auto body_of = [&](const std::string& name) {
+    return std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) { return body.name == name; });
+  };
+  for (std::size_t s = 0; s < scene.stages.size(); ++s) {
+    const auto stage = static_cast<Index>(s);
+    for (const NewMaterialSpec& change : changes_of(scene.stages[s]).change) {
+      const MaterialSpec &before = *material_of(scene, *body_of(change.body), stage - 1),
+                         &after = *material_of(scene, *body_of(change.body), stage);
+      const auto name = [](const MaterialSpec& material) { return std::visit([]<class L>(const L&) { return L::name; }, material.law); };
+      const auto can = laws_that_start_from_stress();
+      if (name(before) != name(after) && std::find(can.begin(), can.end(), name(after)) == can.end())
+        complaints.add(change.where, "material",
+                       fmt::format("the body comes from law \"{}\", and law \"{}\" cannot start from its stress; of other laws {} can",
+                                   name(before), name(after), or_list(can)));
+    }
+    for (const WeakenSpec& weaken : changes_of(scene.stages[s]).weaken) {
+      const bool any = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) {
+        return (weaken.body.empty() || body.name == weaken.body) && presence_of(body.name, scene.stages).in(stage) &&
+               has_strength(*material_of(scene, body, stage));
+      });
+      if (!any)
+        complaints.add(weaken.where, weaken.body.empty() ? "" : "body",
+                       weaken.body.empty() ? std::string("no body of this stage has a law with shear strength")
+                                           : fmt::format("the law of body \"{}\" has no shear strength", weaken.body));
+    }
+  }
+}
+
+/// In words what becomes of the law of a body in a stage; empty if it stays what it is.
+std::string renewal(const Scene& scene, const BodySpec& body, Index stage)
+{
+  if (stage == 0 || !presence_of(body.name, scene.stages).in(stage - 1))
+    return {};
+  const MaterialSpec &before = *material_of(scene, body, stage - 1), &after = *material_of(scene, body, stage);
+  const Real weaker = weakened_by(scene, body, stage) / (&before == &after ? weakened_by(scene, body, stage - 1) : 1);
+  const bool changes = &before != &after, weakens = weaker != 1 && has_strength(after);
+  std::string text = changes ? fmt::format("goes on as \"{}\"", after.name) : "";
+  if (weakens)
+    text += fmt::format("{}has its strength divided by {:.6g}", changes ? " and " : "", weaker);
+  return text;
+}
+
+/// Bodies that come are not where others are, as far as it is known where these will be.
+template <int D>
+void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks, Complaints& complaints)
+{
+  CellOrder order;
+  for (std::size_t s = 1; s < scene.stages.size(); ++s)
+    for (const std::string& name : changes_of(scene.stages[s]).appear) {
+      if (order.row.empty())
+        sort_by_cell(setup.particles.cell, setup.particles.id, setup.bodies, mesh.n_cells(), order);
+      const auto volumes = [&](const auto& chosen) {
+        return volume_in_cells(mesh, setup.particles, order,
+                               [&](Index b) { return chosen(setup.bodies[static_cast<std::size_t>(b)].name); });
+      };
+      const auto its = volumes([&](const std::string& body) { return body == name; });
+      const auto there =
+          volumes([&](const std::string& body) { return body != name && presence_of(body, scene.stages).in(static_cast<Index>(s)); });
+      if (const Overlap<D> taken = overlap<D>(mesh, there, its, ranks); taken.share() > most_overlap)
+        complaints.add(where_of(scene.stages[s]), "appear", fmt::format("body \"{}\" cannot appear: {}", name, describe(taken)));
+    }
+}
+
+/// What the stages change, the bodies being there that appear later: these are taken away.
+template <int D>
+void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+{
+  const std::size_t n = setup.stages.size();
+  setup.changes.resize(n);
+  setup.laws = laws_of_stages(scene);
+  const auto said = [&](std::size_t s) -> const StageChanges& { return changes_of(scene.stages[s]); };
+  const bool bodies_differ = std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) {
+    return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty();
+  });
+  const bool walls_differ = bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                                                         [](const BoundarySpec& boundary) { return !during_of(boundary).empty(); });
+  const auto names = wall_names(scene.boundaries);
+  Complaints none_left(scene);  // groups have been looked at
+  for (std::size_t s = 1; s < n; ++s) {
+    StageChange<D>& change = setup.changes[s];
+    change.appear = numbers_of(said(s).appear, setup.bodies);
+    change.vanish = numbers_of(said(s).vanish, setup.bodies);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      if (std::string becomes = renewal(scene, scene.bodies[b], static_cast<Index>(s)); !becomes.empty())
+        change.renew.push_back({static_cast<Index>(b), std::move(becomes)});
+    if (!walls_differ)
+      continue;
+    const auto there = [&](const std::string& body) { return presence_of(body, scene.stages).in(static_cast<Index>(s)); };
+    const Filled<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
+    change.walls.emplace();
+    WallBuilder<D> walls(mesh, filled, names, said(s).label, none_left, setup.warnings, *change.walls);
+    for (std::size_t w = 0; w < names.size(); ++w) {
+      std::visit(walls, scene.boundaries[w]);
+      const bool acted = acts_in(scene.boundaries[w], said(s - 1).label), acts = acts_in(scene.boundaries[w], said(s).label);
+      if (acted != acts)
+        change.told.push_back(fmt::format("wall \"{}\" {}", names[w], acts ? "acts from here on" : "is gone"));
+    }
+  }
+  for (std::size_t s = 1; s < n; ++s)
+    if (!setup.changes[s].appear.empty())
+      setup.changes[s].coming = take_out_bodies<D>(setup.changes[s].appear, setup.bodies, setup.materials, setup.particles);
 }
 
 }  // namespace
@@ -300,12 +501,24 @@ namespace {
 
 bool wants_displacement(const OutputSpec& outputs)
 {
-  if (outputs.history && !outputs.history->points.empty())
+  if (outputs.runout || (outputs.history && !outputs.history->points.empty()))
     return true;
   if (!outputs.particles)
     return false;
   const auto fields = particle_fields_of(outputs);
   return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+}
+
+/// A table that no drained body reaches down to is hardly meant.  Every rank has to ask.
+template <int D>
+void warn_if_dry(const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+{
+  std::int64_t wet = 0;
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+    if (setup.water.drains(static_cast<Index>(b)))
+      wet += count_wet(mesh, setup.water, setup.bodies[b], setup.particles);
+  if (ranks.sum(wet) == 0)
+    setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
 }
 
 /// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
@@ -331,20 +544,31 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
 {
   Complaints complaints(scene);
   Setup<D> setup;
+  setup.warnings = mesh.notes();
   Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
   setup.particles = std::move(seeds.particles);
   setup.n_particles = seeds.n_particles;
   setup.bodies = std::move(seeds.bodies);
   setup.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
-  const Filled<D> has_particles(mesh, setup.particles, ranks);
-  WallBuilder<D> walls(mesh, has_particles, wall_names(scene.boundaries), complaints, setup.walls);
+  const Filled<D> has_particles(mesh, setup.particles, setup.bodies, ranks, [](const std::string&) { return true; });
+  const Filled<D> at_start(mesh, setup.particles, setup.bodies, ranks,
+                           [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
+  const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
+  WallBuilder<D> walls(mesh, at_start, wall_names(scene.boundaries), first_stage, complaints, setup.warnings, setup.walls);
   for (const BoundarySpec& boundary : scene.boundaries)
     std::visit(walls, boundary);
-  LoadBuilder<D> loads(mesh, has_particles, ranks, complaints, setup);
+  LoadBuilder<D> loads(mesh, has_particles, at_start, ranks, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);
+  setup.water = water_of(
+      scene, mesh, setup.bodies, [&](Index cell) { return has_particles(cell); }, complaints, setup.warnings);
+  saturate(scene, mesh, setup.water, setup.bodies, setup.particles);
+  if (setup.water.any())
+    warn_if_dry(mesh, ranks, setup);
+  check_laws(scene, complaints);
+  check_room(scene, mesh, setup, ranks, complaints);
   check_picture(scene, complaints);
   ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
 
@@ -358,6 +582,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
       (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
     setup.particles.x0 = setup.particles.x;
   setup.guards = guards_of(scene, mesh, setup, ranks);
+  set_changes(scene, mesh, ranks, setup);
   return setup;
 }
 
@@ -365,6 +590,7 @@ template <int D>
 void restrict_to(const Share& share, Setup<D>& setup)
 {
   setup.walls.restrict_to(share);
+  restrict_to(share, setup.water);
   for (MeshTraction<D>& load : setup.loads.on_mesh)
     restrict_to(share, load);
 }

@@ -2,6 +2,7 @@
 // Scene + Mesh -> everything a model is made of that does not depend on the kernel.
 #include <filesystem>
 
+#include "app/stage_changes.hpp"
 #include "io/report.hpp"
 #include "io/scene.hpp"
 #include "solver/run.hpp"
@@ -10,15 +11,18 @@ namespace talus {
 
 template <int D>
 struct Setup {
-  Particles<D> particles;
-  Index n_particles = 0;  ///< of all ranks
+  Particles<D> particles;  ///< of the bodies that are there at the start
+  Index n_particles = 0;   ///< of all bodies, on all ranks
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
   Walls<D> walls;
   Loads<D> loads;
+  Water water;
   Transfer transfer;
   Exits exits;
   std::vector<Stage> stages;
+  std::vector<StageChange<D>> changes;      ///< of each stage
+  std::vector<std::vector<AnyBatch>> laws;  ///< of all bodies in each stage, without particles
   StepLimits limits;
   Guards guards;
   std::vector<std::string> warnings;

@@ -15,6 +15,8 @@ struct Audience {
   std::function<void(const Frame<D>&, const StageResult&)> stage_done;
   /// If set: puts the state of an earlier run in the place of that at the start.
   std::function<void(const State<D>&)> take_over = {};
+  /// Told what a stage has changed, before it begins.
+  std::function<void(const Frame<D>&, const Stage&, const StageNews&)> changed = [](const Frame<D>&, const Stage&, const StageNews&) {};
   /// Told when all is there that the run needs, before anything is done.
   std::function<void(const Frame<D>&)> ready = [](const Frame<D>&) {};
 };

@@ -46,10 +46,7 @@ void adopt_state(Model<D, K>& m)
 {
   if (!m.share.alone())
     take_own_particles(*m.ranks, m.share, m.bodies, m.materials, m.particles);
-  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
-  follow_rows(m);
-  if (!m.share.alone())
-    m.migration.agree_on_columns(m.particles);
+  take_rows(m);
 }
 
 /// A state by itself, between two models.

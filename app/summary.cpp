@@ -1,6 +1,8 @@
 #include "app/summary.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
@@ -67,8 +69,12 @@ Closure closure_of(const EnergyNow& e) { return {share(e.unexplained(), e.larges
 template <int D>
 MassAudit audit(const MassLedger<D>& mass, Real there)
 {
-  const Real end = mass.start - mass.deleted;
-  return {mass.start, there, mass.deleted, mass.deleted_count, {share(there - end, mass.start), exactly, "mass at the start"}};
+  MassAudit audit{.start = mass.start, .end = there, .removed = mass.deleted, .particles_removed = mass.deleted_count};
+  audit.placed = mass.placed, audit.particles_placed = mass.placed_count;
+  audit.taken = mass.taken, audit.particles_taken = mass.taken_count;
+  audit.closure = {share(there - mass.due(), mass.start + mass.placed), exactly,
+                   mass.placed > 0 ? "mass at the start and placed" : "mass at the start"};
+  return audit;
 }
 
 template <int D>
@@ -91,6 +97,24 @@ EnergyAudit audit(const Recorder<D>& recorder)
   }
   audit.closure = closure_of(total);
   return audit;
+}
+
+/// What people ask first of a slide; nothing where nothing has moved.
+std::string run_out_lines(const std::vector<NamedValue>& runout)
+{
+  const auto value = [&](std::string_view name) {
+    const auto found = std::find_if(runout.begin(), runout.end(), [&](const NamedValue& number) { return number.name == name; });
+    return found == runout.end() ? 0 : found->value;
+  };
+  if (!(value("volume") > 0))
+    return runout.empty() ? "" : "run-out: nothing has moved\n";
+  std::string text =
+      fmt::format("run-out: H {:.4g} m, L {:.4g} m, H/L {:.3g} (angle of reach {:.3g} deg); of the centre of mass H/L {:.3g}\n", value("H"),
+                  value("L"), value("H/L"), value("angle_of_reach"), value("centre_H/L"));
+  const auto volume = std::find_if(runout.begin(), runout.end(), [](const NamedValue& number) { return number.name == "volume"; });
+  text += fmt::format("  moved {:.4g} {}, at most {:.3g} m thick, at most {:.3g} m/s; ", volume->value, volume->unit,
+                      value("largest_thickness"), value("largest_speed"));
+  return text + (std::isnan(value("stopped")) ? "still moving\n" : fmt::format("stopped at t = {:.4g} s\n", value("stopped")));
 }
 
 template <class Vector>
@@ -178,14 +202,18 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
 {
   const LastSeen<D>& last = recorder.last_seen();
   s.bodies = recorder.bodies();
+  s.runout = recorder.runout().numbers();
   s.files.assign(recorder.files().begin(), recorder.files().end());
   for (const StageResult& stage : recorder.stages()) {
-    const bool geostatic = stage.name == "geostatic";
-    s.stages.push_back({stage.name, stage.steps, stage.end - stage.start, geostatic ? std::optional(stage.residual) : std::nullopt,
+    const bool geostatic = stage.kind == "geostatic";
+    const auto if_sought = [&](Real residual) { return geostatic ? std::optional(residual) : std::nullopt; };
+    s.stages.push_back({stage.kind, stage.steps, stage.end - stage.start, if_sought(stage.residual),
                         quick       ? "quick"
                         : geostatic ? "at rest"
-                                    : "done"});
+                                    : "done",
+                        if_sought(stage.first_residual), stage.name});
   }
+  s.changes = recorder.changes();
   s.steps = last.clock.step;
   s.simulated_time = last.clock.time;
   const Timings& t = last.timings;
@@ -251,7 +279,16 @@ std::string table(const Recorder<D>& recorder)
   line("open/dissip.", [](const EnergyNow& b) {
     return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.unexplained(), b.dissipated())) : std::string("-");
   });
+  text += run_out_lines(recorder.runout().numbers());
+  for (const StageResult& stage : recorder.stages())
+    if (stage.kind == "geostatic")
+      text += fmt::format("stage {}: unbalanced force {:.3g} of the loads, {:.3g} when it began\n", stage.name, stage.residual,
+                          stage.first_residual);
   text += fmt::format("mass {:.6g} kg", last.mass.start);
+  if (last.mass.placed > 0)
+    text += fmt::format(", and {:.6g} kg ({} particles) that stages placed", last.mass.placed, last.mass.placed_count);
+  if (last.mass.taken > 0)
+    text += fmt::format(", of which stages took {:.6g} kg ({} particles)", last.mass.taken, last.mass.taken_count);
   if (last.mass.deleted_count > 0)
     text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh or failed", last.mass.deleted, last.mass.deleted_count);
   return text + fmt::format("\naudit: {}; {}; {}; {}\n", in_words("mass", audit(last.mass, last.mass_there).closure),

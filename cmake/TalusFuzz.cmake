@@ -5,8 +5,8 @@
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
-              ONLY accuracy array_ hdf5 cell_count csv document field_reader gdal_door gmsh_door gmsh_mesh gmsh_read history_columns map_crs memory mesh_groups module msh_ polygon_file progress_json raster_file reader scalars scene
-                   shape study text_file vtk whole_file
+              ONLY accuracy array_ hdf5 cell_count csv document field_reader gdal_door gmsh_door gmsh_mesh gmsh_read history_columns map_crs memory mesh_groups module msh_ point_file polygon_file progress_json raster_file reader scalars scene
+                   shape stl_file study surface_file terrain_ text_file vtk whole_file
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)

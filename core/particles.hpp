@@ -42,6 +42,7 @@ struct Particles {
   std::vector<Real> applied_at;    ///< applied . x before the move [J]
   Rows<Real> volume_ratio;         ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
   ParticleColumn<Real> viscous;    ///< artificial viscous pressure, part of `stress` [Pa]
+  ParticleColumn<Real> pore;       ///< pore pressure, part of `stress`; 0 in bodies whose laws see total stress [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
   const ParticleColumn<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
@@ -81,7 +82,7 @@ struct Particles {
         plain("volume0", "m^D", self.volume0), plain("volume", "m^D", self.volume);
     kept("affine", "1/s", self.C), plain("start", "m", self.x0), kept("applied", "N", self.applied),
         plain("applied_at", "J", self.applied_at);
-    plain("volume_ratio", "-", self.volume_ratio), kept("viscous_pressure", "Pa", self.viscous);
+    plain("volume_ratio", "-", self.volume_ratio), kept("viscous_pressure", "Pa", self.viscous), kept("pore_pressure", "Pa", self.pore);
   }
 };
 

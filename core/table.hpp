@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Piecewise linear in time between (time, value) points, constant before the first and after the last.  Times increase strictly.
+/// Piecewise linear in time, or in depth, between (time, value) points, constant before the first and after the last.  Times increase strictly.
 /// Without points it is the constant one, so a load without a table acts in full from the start.
 struct Table {
   std::vector<std::array<Real, 2>> points;  ///< {time [s], factor or value}

@@ -23,6 +23,17 @@ Preset preset_of(Accuracy accuracy)
   return {.cells = 1, .particles_2d = 4, .particles_3d = 4, .cfl = 0.4};
 }
 
+void scale_cells(TerrainSpec& terrain, Real factor)
+{
+  for (LayerSpec& layer : terrain.layers)
+    if (layer.size)
+      *layer.size *= factor;
+  if (terrain.air && terrain.air->size)
+    *terrain.air->size *= factor;
+  for (FinerSpec& finer : terrain.refine)
+    finer.size *= factor;
+}
+
 }  // namespace
 
 void scale_cells(MeshSpec& mesh, Real factor)
@@ -34,6 +45,8 @@ void scale_cells(MeshSpec& mesh, Real factor)
   if (mesh.grid)
     for (Index& count : mesh.grid->cells)
       count = std::max<Index>(1, static_cast<Index>(std::lround(count / factor)));
+  if (mesh.terrain)
+    scale_cells(*mesh.terrain, factor);
 }
 
 void settle_accuracy(Scene& scene)

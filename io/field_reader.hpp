@@ -138,33 +138,34 @@ class FieldReader {
       mapping.check_later([&object](std::vector<std::string>& problems) { object.check(problems); });
   }
 
+  /// A field may be that of a base: it tells which.
   template <class T, class Value>
-  void read_field(Mapping& mapping, const Parameter<T, Value>& field, T& object)
+  void read_field(Mapping& mapping, const Parameter<T, Value>& field, std::type_identity_t<T>& object)
   {
     read_key(mapping, field.key, field.need, {field.range, field.unit}, object.*field.member);
   }
   template <class T, class Value>
-  void read_field(Mapping& mapping, const Choice<T, Value>& field, T& object)
+  void read_field(Mapping& mapping, const Choice<T, Value>& field, std::type_identity_t<T>& object)
   {
     read_key(mapping, field.key, field.need, {}, object.*field.member);
   }
   template <class T, class Value>
-  void read_field(Mapping& mapping, const Group<T, Value>& field, T& object)
+  void read_field(Mapping& mapping, const Group<T, Value>& field, std::type_identity_t<T>& object)
   {
     read_key(mapping, field.key, Need::required, {}, object.*field.member);
   }
   template <class T, class Value>
-  void read_field(Mapping& mapping, const Group<T, std::optional<Value>>& field, T& object)
+  void read_field(Mapping& mapping, const Group<T, std::optional<Value>>& field, std::type_identity_t<T>& object)
   {
     read_key(mapping, field.key, Need::optional, {}, object.*field.member);
   }
   template <class T, class Item>
-  void read_field(Mapping& mapping, const List<T, Item>& field, T& object)
+  void read_field(Mapping& mapping, const List<T, Item>& field, std::type_identity_t<T>& object)
   {
     read_key(mapping, field.key, field.need, {}, object.*field.member);
   }
   template <class T, class Value>
-  void read_field(Mapping& mapping, const Alternative<T, Value>& field, T& object)
+  void read_field(Mapping& mapping, const Alternative<T, Value>& field, std::type_identity_t<T>& object)
   {
     read_alternative(mapping, field.key, object.*field.member);
   }

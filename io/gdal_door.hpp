@@ -13,6 +13,8 @@ struct GdalPart {
   Raster (*read_raster)(const std::filesystem::path&);
   /// To a path of any extension.  EnvironmentError says only what went wrong: the name of the file is not yet the one it will have.
   void (*write_geotiff)(const std::filesystem::path&, const Raster&);
+  /// Delaunay's triangles of points on the plan; none where all of them lie on a line.
+  std::vector<std::array<Index, 3>> (*triangulate)(const std::vector<std::array<Real, 3>>& points);
   PolygonFile (*read_polygons)(const std::filesystem::path&);
   std::optional<CrsFacts> (*crs_facts)(const std::string&);
   bool (*same_plan)(const std::string&, const std::string&);

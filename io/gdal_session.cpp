@@ -10,6 +10,29 @@
 
 namespace talus {
 
+namespace {
+
+std::string code_of(OGRSpatialReferenceH crs)
+{
+  const char *const authority = OSRGetAuthorityName(crs, nullptr), *const code = OSRGetAuthorityCode(crs, nullptr);
+  return authority != nullptr && code != nullptr ? fmt::format("{}:{}", authority, code) : "";
+}
+
+/// A .prj has no code in it, but is usually one of those that have.
+std::string code_of_the_same(OGRSpatialReferenceH crs)
+{
+  constexpr int sure = 90;  // of 100: the same but for names
+  int count = 0;
+  int* confidence = nullptr;
+  OGRSpatialReferenceH* const matches = OSRFindMatches(crs, nullptr, &count, &confidence);
+  const std::string code = count > 0 && *confidence >= sure ? code_of(*matches) : "";
+  OSRFreeSRSArray(matches);
+  CPLFree(confidence);
+  return code;
+}
+
+}  // namespace
+
 GdalSession::GdalSession()
 {
   static std::once_flag known;
@@ -56,12 +79,12 @@ std::string text_of(OGRSpatialReferenceH crs)
 {
   if (crs == nullptr)
     return {};
-  // A .prj has no code in it, but is usually one that has.
-  const Crs identified(OSRClone(crs));
-  OSRAutoIdentifyEPSG(identified.get());
-  const char* const authority = OSRGetAuthorityName(identified.get(), nullptr);
-  if (const char* const code = OSRGetAuthorityCode(identified.get(), nullptr); authority != nullptr && code != nullptr)
-    return fmt::format("{}:{}", authority, code);
+  const std::string code = code_of(crs);
+  if (!code.empty())
+    return code;
+  const std::string known = code_of_the_same(crs);
+  if (!known.empty())
+    return known;
   constexpr std::array<const char*, 2> newest{"FORMAT=WKT2", nullptr};
   char* text = nullptr;
   const bool written = OSRExportToWktEx(crs, &text, newest.data()) == OGRERR_NONE;

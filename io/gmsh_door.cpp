@@ -4,14 +4,19 @@
 
 namespace talus {
 
+const GmshPart& gmsh()
+{
+  static const auto& part = *static_cast<const GmshPart*>(open_module("gmsh", "talus_gmsh_part", "makes meshes with gmsh"));
+  return part;
+}
+
 template <int D>
 const GmshFunctions<D>& gmsh()
 {
-  static const auto& part = *static_cast<const GmshPart*>(open_module("gmsh", "talus_gmsh_part", "makes meshes with gmsh"));
   if constexpr (D == 2)
-    return part.in_2d;
+    return gmsh().in_2d;
   else
-    return part.in_3d;
+    return gmsh().in_3d;
 }
 
 template const GmshFunctions<2>& gmsh<2>();

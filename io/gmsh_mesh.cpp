@@ -8,6 +8,7 @@
 #include "io/gmsh_door.hpp"
 #include "io/gmsh_read.hpp"
 #include "io/mesh_groups.hpp"
+#include "io/terrain_mesh.hpp"
 #include "mesh/generate.hpp"
 
 namespace talus {
@@ -50,7 +51,9 @@ MeshData<D> make_unnamed(const MeshSpec& spec, const std::filesystem::path& dire
     return gmsh<D>().mesh_regions(spec);
   if (spec.grid)
     return make_grid<D>(*spec.grid, spec);
-  throw SceneErrors(spec.where, "the mesh needs one of file, geometry, regions and grid");
+  if (spec.terrain)
+    return make_terrain<D>(spec, directory);
+  throw SceneErrors(spec.where, "the mesh needs one of file, geometry, regions, grid and terrain");
 }
 
 /// f(), with std::invalid_argument located.

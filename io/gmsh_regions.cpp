@@ -246,6 +246,25 @@ MeshData<D> mesh_regions(const MeshSpec& spec)
   });
 }
 
+MeshData<2> mesh_plan(const std::vector<Polygon>& polygons, const std::function<Real(const Vec<2>&)>& size, Real largest,
+                      const Where& where)
+{
+  GmshSession session(where);
+  return session.run([&] {
+    gmsh::model::add("plan");
+    std::vector<Named> parts;
+    for (const Polygon& polygon : polygons) {
+      const RegionSpec region{fmt::format("polygon {}", parts.size() + 1), polygon, where};
+      parts.push_back({region.name, ShapeMaker<2>(region)(polygon)});
+    }
+    share_faces(2, parts);
+    session.check("cutting polygons along each other");
+    session.set_sizes([&size](Real x, Real y) { return size(Vec<2>(x, y)); }, largest);
+    session.generate(2);
+    return session.take<2>();
+  });
+}
+
 template MeshData<2> mesh_geometry<2>(const MeshSpec&, const std::filesystem::path&);
 template MeshData<3> mesh_geometry<3>(const MeshSpec&, const std::filesystem::path&);
 template MeshData<2> mesh_regions<2>(const MeshSpec&);

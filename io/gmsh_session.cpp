@@ -121,6 +121,14 @@ void GmshSession::set_sizes(const MeshSpec& spec, bool points_count)
 template void GmshSession::set_sizes<2>(const MeshSpec&, bool);
 template void GmshSession::set_sizes<3>(const MeshSpec&, bool);
 
+void GmshSession::set_sizes(const std::function<Real(Real x, Real y)>& size, Real largest)
+{
+  gmsh::option::setNumber("Mesh.MeshSizeMax", largest);
+  gmsh::option::setNumber("Mesh.MeshSizeFromPoints", 0);
+  gmsh::option::setNumber("Mesh.MeshSizeExtendFromBoundary", 0);
+  gmsh::model::mesh::setSizeCallback([size](int, int, double x, double y, double) { return size(x, y); });
+}
+
 void GmshSession::generate(int dimension)
 {
   const auto generated = [&] {

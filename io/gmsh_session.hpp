@@ -1,5 +1,6 @@
 #pragma once
 // gmsh behind one door: silent, on one thread, its errors turned into SceneErrors.  One session at a time.
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,6 +43,8 @@ class GmshSession {
   /// geometry hold where they are smaller.
   template <int D>
   void set_sizes(const MeshSpec& spec, bool points_count);
+  /// Edge lengths by place in a plane, none above `largest`.
+  void set_sizes(const std::function<Real(Real x, Real y)>& size, Real largest);
   /// Meshes the current model: Frontal-Delaunay in 2-D, Delaunay in 3-D (HXT where Delaunay fails).
   void generate(int dimension);
   /// The cells and physical groups of the current model.

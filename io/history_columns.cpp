@@ -55,6 +55,16 @@ std::vector<CsvColumn> columns_of(const PointSpec& point, int dimension)
 
 std::vector<CsvColumn> columns_of(const FrontSpec& front) { return {{front.name, "m"}}; }
 
+std::vector<CsvColumn> columns_of(const WallSpec& wall, int dimension)
+{
+  std::vector<CsvColumn> all{{"push_" + wall.on, "N"},
+                             {"shear_" + wall.on, "N"},
+                             {"touched_" + wall.on, dimension == 2 ? "m" : "m^2"},
+                             {"pressure_" + wall.on, "Pa"}};
+  add_vector(all, fmt::format("attack_{}_", wall.on), dimension, "m");
+  return all;
+}
+
 std::vector<CsvColumn> columns_of(const MovedSpec& moved) { return {{moved.name, "m"}}; }
 
 std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries)

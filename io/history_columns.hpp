@@ -13,6 +13,8 @@ std::vector<CsvColumn> reaction_columns(const std::string& wall, int dimension);
 /// Of a point: position, displacement (u), velocity (v) and stress (s).
 std::vector<CsvColumn> columns_of(const PointSpec& point, int dimension);
 std::vector<CsvColumn> columns_of(const FrontSpec& front);
+/// Of what bodies do to a wall.
+std::vector<CsvColumn> columns_of(const WallSpec& wall, int dimension);
 std::vector<CsvColumn> columns_of(const MovedSpec& moved);
 
 /// Walls are called by the group that they are on; the second on a group is `<group>_2`, and so on.

@@ -47,6 +47,8 @@ void keep(ArrayWriter& file, const std::string& path, const T& value)
     for_each_field<T>([&](const auto& field) { keep(file, below(path, field.key), value.*field.member); });
   } else if constexpr (std::is_same_v<T, std::string>) {
     file.write(path, std::string_view(value));
+  } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
+    file.write(path, std::span<const Real>(value));
   } else if constexpr (is_vector<T>) {
     const auto count = static_cast<std::int64_t>(value.size());
     file.write(below(path, "count"), std::span(&count, 1));
@@ -67,6 +69,8 @@ void recall(const ArrayReader& file, const std::string& path, T& value)
     for_each_field<T>([&](const auto& field) { recall(file, below(path, field.key), value.*field.member); });
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = file.text(path);
+  } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
+    value = file.read<Real>(path);
   } else if constexpr (is_vector<T>) {
     std::int64_t count = 0;
     recall(file, below(path, "count"), count);

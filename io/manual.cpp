@@ -181,7 +181,7 @@ class Manual {
   }
 
   template <class T, class Value>
-  Row row(const Parameter<T, Value>& field, const T& defaults, const std::string& prefix)
+  Row row(const Parameter<T, Value>& field, const std::type_identity_t<T>& defaults, const std::string& prefix)
   {
     return {code(field.key),
             type(std::type_identity<Value>{}, prefix + std::string(field.key)),
@@ -191,31 +191,31 @@ class Manual {
             std::string(field.meaning)};
   }
   template <class T, class Value>
-  Row row(const Choice<T, Value>& field, const T& defaults, const std::string&)
+  Row row(const Choice<T, Value>& field, const std::type_identity_t<T>& defaults, const std::string&)
   {
     return {code(field.key),           "word", "-", in_words(words(Value{})), need(field.need, default_of(defaults.*field.member, any)),
             std::string(field.meaning)};
   }
   template <class T, class Value>
-  Row row(const Group<T, Value>& field, const T&, const std::string& prefix)
+  Row row(const Group<T, Value>& field, const std::type_identity_t<T>&, const std::string& prefix)
   {
     return {code(field.key),           type(std::type_identity<Value>{}, prefix + std::string(field.key)), "", "", "required",
             std::string(field.meaning)};
   }
   template <class T, class Value>
-  Row row(const Group<T, std::optional<Value>>& field, const T&, const std::string& prefix)
+  Row row(const Group<T, std::optional<Value>>& field, const std::type_identity_t<T>&, const std::string& prefix)
   {
     return {code(field.key),           type(std::type_identity<Value>{}, prefix + std::string(field.key)), "", "", "none",
             std::string(field.meaning)};
   }
   template <class T, class Item>
-  Row row(const List<T, Item>& field, const T&, const std::string& prefix)
+  Row row(const List<T, Item>& field, const std::type_identity_t<T>&, const std::string& prefix)
   {
     return {code(field.key),           "list of " + link<Item>(prefix + std::string(field.key)), "", "", need(field.need, "none"),
             std::string(field.meaning)};
   }
   template <class T, class... Law>
-  Row row(const Alternative<T, std::variant<Law...>>& field, const T&, const std::string&)
+  Row row(const Alternative<T, std::variant<Law...>>& field, const std::type_identity_t<T>&, const std::string&)
   {
     return {code(field.key),           "word", "-", in_words(std::array<std::string_view, sizeof...(Law)>{Law::name...}), "required",
             std::string(field.meaning)};

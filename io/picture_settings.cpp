@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/words.hpp"
 #include "io/option_words.hpp"
+#include "io/runout_maps.hpp"
 
 namespace talus::render {
 
@@ -21,6 +22,10 @@ constexpr std::array internal_options{
     Option{"--up", 3, 3, "X Y Z", "3-D: up in the picture"}, Option{"--title", 1, 1, "TEXT", "above the picture"},
     Option{"--radius", 1, 1, "R", "of a particle as drawn [m]"}};
 constexpr std::array internal_surface_options{Option{"--body", 2, 2, "NUMBER NAME", "one more body"}};
+
+constexpr std::array internal_map_options{Option{"--title", 1, 1, "TEXT", "above the picture"},
+                                          Option{"--axes", 2, 2, "RIGHT UP", "names of the axes of the plan"},
+                                          Option{"--frames", 1, 1, "EVERY", "the frames of the thickness, so far apart [s]"}};
 
 using Values = std::vector<std::string>;
 
@@ -189,6 +194,30 @@ void set(const std::string& option, const Values& values, Settings& s)
   s.given.push_back(option);
 }
 
+void set(const std::string& option, const Values& values, MapSettings& s)
+{
+  if (option == "--only")
+    s.only = values;
+  else if (option == "--range")
+    s.range = std::get<std::array<Real, 2>>(range_of(values));
+  else if (option == "--map")
+    s.map = choice<Map>(values[0], option);
+  else if (option == "--log")
+    s.log = true;
+  else if (option == "--contours")
+    s.contours = positive_number(values[0], option);
+  else if (option == "--size")
+    s.size = picture_size(values[0]);
+  else if (option == "--out")
+    s.out = values[0];
+  else if (option == "--title")
+    s.title = values[0];
+  else if (option == "--axes")
+    s.axes = {values[0], values[1]};
+  else if (option == "--frames")
+    s.frames_every = positive_number(values[0], option);
+}
+
 void set(const std::string& option, const Values& values, SurfaceSettings& s)
 {
   if (option == "--frame")
@@ -285,20 +314,45 @@ SurfaceSettings parse_surface(std::span<const std::string> words, std::vector<st
   return s;
 }
 
+MapSettings parse_maps(std::span<const std::string> words, std::vector<std::string>& problems)
+{
+  MapSettings s;
+  read_words(words, joined(map_options, internal_map_options), s, problems);
+  std::vector<std::string> known{"sections"};
+  for (const MapKind& kind : map_kinds)
+    known.emplace_back(kind.name);
+  for (const std::string& name : s.only)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      problems.push_back(fmt::format("--only: there is no map \"{}\"{}", name, suggestion(name, known)));
+  if (s.range && !s.frames_every && s.only.size() != 1)
+    problems.emplace_back("--range: it is that of one map: say which with --only");
+  if (s.range && s.log && !((*s.range)[0] > 0))
+    problems.push_back(fmt::format("--log: a range from {} has no logarithm", (*s.range)[0]));
+  return s;
+}
+
 std::string usage()
 {
   std::string text =
       "usage: talus-render DIR [options]\n"
       "       talus-render surface DIR [options] --out FILE.ply|FILE.stl|FILE.obj\n"
+      "       talus-render map DIR [options]
+"
       "       talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--upright NAME VALUE]... [--curve NAME] "
-      "[--marks] [--log] [--title TEXT] --out FILE.png\n"
-      "       talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png\n"
-      "Draws the particles of DIR/particles.pvd, writes the surface of bodies, or draws a curve of a table.  Pictures need a display; "
+      "[--marks] [--log] [--title TEXT] --out FILE.png
+"
+      "       talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png
+"
+      "Draws the particles of DIR/particles.pvd, writes the surface of bodies, draws DIR/maps and DIR/sections, or a curve of a table.  "
+      "Pictures need a display; "
       "`talus render` brings one.\nPictures:\n";
   for (const Option& option : joined(picture_options, internal_options))
     text += line_of(option);
   text += "Surfaces:\n";
   for (const Option& option : joined(surface_options, internal_surface_options))
+    text += line_of(option);
+  text += "Maps:\n";
+  for (const Option& option : joined(map_options, internal_map_options))
     text += line_of(option);
   return text;
 }

@@ -50,6 +50,15 @@ inline constexpr std::array surface_options{
     Option{"--field", 1, 1, "NAME[:component]", "colours the vertices of a .ply by a particle field"},
     Option{"--out", 1, 1, "FILE", ".ply, .stl or .obj; of a 2-D run .obj, whose lines are the contour"}};
 
+inline constexpr std::array map_options{
+    Option{"--only", 1, 12, "NAME...", "maps to draw, such as thickness_max arrival, or sections; default all but surfaces, and sections"},
+    Option{"--range", 2, 2, "LOW HIGH", "values at the ends of the colours, of a single map or a movie; default all there are"},
+    Option{"--map", 1, 1, "{viridis,cividis,coolwarm}", "colours; default viridis"},
+    Option{"--log", 0, 0, "", "colours by the logarithm of the values"},
+    Option{"--contours", 1, 1, "STEP", "between contours of the ground [m]; default a round number"},
+    Option{"--size", 1, 1, "WxH", "pixels, such as 1280x960; default 1280 wide, as high as the map needs"},
+    Option{"--out", 1, 1, "FOLDER", "default DIR/pictures"}};
+
 /// From one frame to another, counted from zero; nothing stands for the last.
 struct Frames {
   std::optional<std::size_t> first, last;
@@ -108,6 +117,20 @@ struct SurfaceSettings {
   std::filesystem::path out;
 };
 
+struct MapSettings {
+  std::filesystem::path folder;  ///< holds maps and sections
+  std::vector<std::string> only;
+  std::optional<std::array<Real, 2>> range;
+  Map map = Map::viridis;
+  bool log = false;
+  std::optional<Real> contours;  ///< m
+  std::optional<std::array<int, 2>> size;
+  std::optional<std::filesystem::path> out;
+  std::string title;
+  std::array<std::string, 2> axes{"x", "y"};  ///< of the plan, to the right and upwards
+  std::optional<Real> frames_every;           ///< s, draws the frames of the thickness instead
+};
+
 /// What a run has, so far as settings depend on it.
 struct RunFacts {
   int dimension;
@@ -122,6 +145,7 @@ struct RunFacts {
 /// Words of a command line to settings; what is wrong with them is added to `problems`.
 Settings parse_picture(std::span<const std::string> words, std::vector<std::string>& problems);
 SurfaceSettings parse_surface(std::span<const std::string> words, std::vector<std::string>& problems);
+MapSettings parse_maps(std::span<const std::string> words, std::vector<std::string>& problems);
 std::string usage();
 
 /// What the run does not have.

@@ -128,8 +128,10 @@ void make_pictures(const Settings& settings, const std::function<void(const fs::
       compose(settings, files, facts, read_cloud(files.front().path, settings.field), read_cloud(files.back().path, settings.field));
   for (const std::size_t frame : chosen(settings.frames, files.size())) {
     Cloud cloud = read_cloud(files[frame].path, settings.field);
-    if (settings.clip)
+    if (settings.clip) {
       cloud = clipped(std::move(cloud), *settings.clip);
+      picture.notes.back() = words_of(*settings.clip) + (cloud.x.empty() ? ": no particle is left" : "");
+    }
     picture.time = files[frame].time;
     const fs::path png = picture_path(settings, frame, cloud.label);
     draw(picture, cloud, png);

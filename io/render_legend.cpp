@@ -17,36 +17,11 @@ namespace {
 
 using Size = std::array<Real, 2>;  // pixels of the window
 
-void add_colour_bar(Sheet& sheet, const Picture& picture, const Cloud& cloud, const Size& size)
-{
-  const auto [low, high] = picture.scale.range;
-  const auto [factor, unit_name] = scaled_unit(cloud.unit, std::max(std::abs(low), std::abs(high)));
-  const Panel panel = panel_of(picture.size);
-  const Real left = panel.right * size[0] + 1.2 * sheet.letter(), right = left + sheet.letter();
-  const Real bottom = (panel.bottom + 0.06 * panel.height()) * size[1], top = (panel.top - 0.06 * panel.height()) * size[1];
-  constexpr int bands = 256;
-  for (int b = 0; b < bands; ++b) {
-    const Real y0 = bottom + (top - bottom) * b / bands, y1 = bottom + (top - bottom) * (b + 1) / bands;
-    sheet.area({{left, y0}, {right, y0}, {right, y1}, {left, y1}}, colour_of(picture.scale.map, (b + 0.5) / bands));
-  }
-  for (const auto& [value, text] : picture.scale.log ? decades(factor * low, factor * high) : ticks(factor * low, factor * high)) {
-    const Real y = std::lerp(bottom, top, picture.scale.share(value / factor));
-    sheet.line({{right, y}, {right + 0.3 * sheet.letter(), y}}, ink);
-    sheet.text(text, right + 0.5 * sheet.letter(), y);
-  }
-  const bool bare = unit_name.empty() || unit_name == "-";
-  sheet.text(bare ? cloud.label : fmt::format("{} [{}]", cloud.label, unit_name), size[0] - sheet.letter(), 0.5 * (bottom + top),
-             Side::centre, {.upright = true});
-}
-
-/// 2-D: a length to measure by.
+/// 2-D: a length to measure by, below the picture.
 void add_scale(Sheet& sheet, const Picture& picture, const Size& size)
 {
-  const Real pixels_per_metre = panel_of(picture.size).height() * size[1] / (2 * picture.camera.half_height);
-  const Real length = round_below(0.2 * size[0] / pixels_per_metre);
-  const Real left = 1.2 * sheet.letter(), right = left + length * pixels_per_metre, y = 1.2 * sheet.letter(), tip = 0.3 * sheet.letter();
-  sheet.line({{left, y + tip}, {left, y - tip}, {left, y}, {right, y}, {right, y + tip}, {right, y - tip}}, ink);
-  sheet.text(length < 0.1 ? fmt::format("{:g} mm", 1e3 * length) : fmt::format("{:g} m", length), right + 0.5 * sheet.letter(), y);
+  add_length(sheet, panel_of(picture.size).height() * size[1] / (2 * picture.camera.half_height), 0.2 * size[0],
+             {1.2 * sheet.letter(), 1.2 * sheet.letter()});
 }
 
 /// 3-D: which way the axes point.
@@ -81,13 +56,51 @@ void add_notes(Sheet& sheet, const Picture& picture, const Size& size)
 
 }  // namespace
 
+void add_colour_bar(Sheet& sheet, const Scale& scale, const std::string& label, const std::string& unit, const Panel& panel,
+                    const Size& size)
+{
+  const auto [low, high] = scale.range;
+  const auto [factor, unit_name] = scaled_unit(unit, std::max(std::abs(low), std::abs(high)));
+  const Real left = panel.right * size[0] + 1.2 * sheet.letter(), right = left + sheet.letter();
+  const Real bottom = (panel.bottom + 0.06 * panel.height()) * size[1], top = (panel.top - 0.06 * panel.height()) * size[1];
+  constexpr int bands = 256;
+  for (int b = 0; b < bands; ++b) {
+    const Real y0 = bottom + (top - bottom) * b / bands, y1 = bottom + (top - bottom) * (b + 1) / bands;
+    sheet.area({{left, y0}, {right, y0}, {right, y1}, {left, y1}}, colour_of(scale.map, (b + 0.5) / bands));
+  }
+  for (const auto& [value, text] : scale.log ? decades(factor * low, factor * high) : ticks(factor * low, factor * high)) {
+    const Real y = std::lerp(bottom, top, scale.share(value / factor));
+    sheet.line({{right, y}, {right + 0.3 * sheet.letter(), y}}, ink);
+    sheet.text(text, right + 0.5 * sheet.letter(), y);
+  }
+  const bool bare = unit_name.empty() || unit_name == "-";
+  sheet.text(bare ? label : fmt::format("{} [{}]", label, unit_name), size[0] - sheet.letter(), 0.5 * (bottom + top), Side::centre,
+             {.upright = true});
+}
+
+void add_length(Sheet& sheet, Real pixels_per_metre, Real longest, const std::array<Real, 2>& place)
+{
+  const Real length = round_below(longest / pixels_per_metre);
+  const Real left = place[0], right = left + length * pixels_per_metre, y = place[1], tip = 0.3 * sheet.letter();
+  sheet.line({{left, y + tip}, {left, y - tip}, {left, y}, {right, y}, {right, y + tip}, {right, y - tip}}, ink);
+  const bool small = length < 0.1, large = length >= 1000;
+  sheet.text(fmt::format("{:g} {}",
+                         small   ? 1e3 * length
+                         : large ? 1e-3 * length
+                                 : length,
+                         small   ? "mm"
+                         : large ? "km"
+                                 : "m"),
+             right + 0.5 * sheet.letter(), y);
+}
+
 void add_words(Sheet& sheet, const Picture& picture, const Cloud& cloud)
 {
   const Size size{static_cast<Real>(oversampling * picture.size[0]), static_cast<Real>(oversampling * picture.size[1])};
   const Real line = size[1] - 1.3 * sheet.letter();
   sheet.text(picture.title, 1.2 * sheet.letter(), line, Side::left, {.size = 1.15, .bold = true});
   sheet.text(fmt::format("t = {:.4g} s", picture.time), size[0] - 0.6 * sheet.letter(), line, Side::right);
-  add_colour_bar(sheet, picture, cloud, size);
+  add_colour_bar(sheet, picture.scale, cloud.label, cloud.unit, panel_of(picture.size), size);
   add_notes(sheet, picture, size);
   if (picture.dimension == 2)
     add_scale(sheet, picture, size);

@@ -30,9 +30,12 @@ Json to_object(const OriginSummary::Taken& taken) { return {{"body", taken.body}
 
 Json to_object(const StageSummary& stage)
 {
-  Json object = {{"kind", stage.kind}, {"result", stage.result}, {"steps", stage.steps}, {"duration [s]", stage.duration}};
+  Json object = {
+      {"kind", stage.kind}, {"name", stage.name}, {"result", stage.result}, {"steps", stage.steps}, {"duration [s]", stage.duration}};
   if (stage.residual)
     object["residual"] = *stage.residual;
+  if (stage.first_residual)
+    object["residual_at_begin"] = *stage.first_residual;
   return object;
 }
 
@@ -113,7 +116,11 @@ Json balances(const RunSummary& s)
     object["mass"] = closed({{"start [kg]", s.mass->start},
                              {"end [kg]", s.mass->end},
                              {"removed [kg]", s.mass->removed},
-                             {"particles_removed", s.mass->particles_removed}},
+                             {"particles_removed", s.mass->particles_removed},
+                             {"placed [kg]", s.mass->placed},
+                             {"particles_placed", s.mass->particles_placed},
+                             {"taken [kg]", s.mass->taken},
+                             {"particles_taken", s.mass->particles_taken}},
                             s.mass->closure);
   return object;
 }
@@ -148,11 +155,15 @@ std::string to_json(const RunSummary& s)
   if (s.origin)
     json["initial"] = to_object(*s.origin);
   json["stages"] = to_list(s.stages);
+  if (!s.changes.empty())
+    json["changes"] = s.changes;
   json["steps"] = s.steps;
   json["simulated_time [s]"] = s.simulated_time;
   json["cost"] = cost(s);
   json["balances"] = balances(s);
   json["watch"] = to_object(s.watch);
+  if (!s.runout.empty())
+    json["runout"] = to_object(s.runout);
   json["warnings"] = s.warnings;
   json["files"] = s.files;
   json["scene"] = {{"file", s.scene_file}, {"digest", s.scene_digest}, {"text", s.scene_text}, {"set", s.overrides}};

@@ -25,7 +25,7 @@ struct NamedValue {
 struct BodySummary {
   std::string name, material, law;
   std::int64_t particles{};
-  Real mass{};  ///< kg at the start
+  Real mass{};  ///< kg at the start, or when it appeared
   static constexpr auto fields()
   {
     return std::tuple{kept("name", &BodySummary::name), kept("material", &BodySummary::material), kept("law", &BodySummary::law),
@@ -36,9 +36,11 @@ struct BodySummary {
 struct StageSummary {
   std::string kind;  ///< "geostatic" or "run"
   std::int64_t steps{};
-  Real duration{};               ///< simulated [s]
-  std::optional<Real> residual;  ///< unbalanced nodal force over total load at the end, where the stage looks for it
-  std::string result;            ///< "reached", "not converged", ...
+  Real duration{};                          ///< simulated [s]
+  std::optional<Real> residual;             ///< unbalanced nodal force over total load at the end, where the stage looks for it
+  std::string result;                       ///< "reached", "not converged", ...
+  std::optional<Real> first_residual = {};  ///< the same in the first step: how far the stage began from balance
+  std::string name{};                       ///< that the scene gave to it, or the same as the kind
 };
 
 /// How well a balance closes: |sum that should vanish| over the named scale.
@@ -63,7 +65,9 @@ struct MomentumAudit {
 struct MassAudit {
   Real start{}, end{}, removed{};  ///< kg
   std::int64_t particles_removed{};
-  Closure closure;
+  Closure closure{};
+  Real placed{}, taken{};  ///< kg, by stages
+  std::int64_t particles_placed{}, particles_taken{};
 };
 
 /// What the guards saw.
@@ -122,6 +126,7 @@ struct RunSummary {
   std::vector<BodySummary> bodies;
   std::optional<OriginSummary> origin;
   std::vector<StageSummary> stages;
+  std::vector<std::string> changes;  ///< that stages made before their first steps, in words
 
   std::int64_t steps{};
   Real simulated_time{};                 ///< s
@@ -135,6 +140,7 @@ struct RunSummary {
   std::optional<MomentumAudit> momentum, angular_momentum;
   std::optional<MassAudit> mass;
   WatchSummary watch;
+  std::vector<NamedValue> runout;  ///< at the last look, where the scene asks for it
 
   std::vector<std::string> warnings;
   std::vector<std::string> files;  ///< written by the run, relative to its folder

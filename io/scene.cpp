@@ -26,12 +26,15 @@ void GridSpec::check(std::vector<std::string>& problems) const { check_corners(l
 
 void MeshSpec::check(std::vector<std::string>& problems) const
 {
-  exactly_one("file, geometry, regions or grid", !file.empty() + !geometry.empty() + !regions.empty() + grid.has_value(), problems);
+  exactly_one("file, geometry, regions, grid or terrain",
+              !file.empty() + !geometry.empty() + !regions.empty() + grid.has_value() + terrain.has_value(), problems);
   const bool meshed = !geometry.empty() || !regions.empty();
-  if (meshed && !size)
-    problems.push_back("missing key \"size\" [m]: geometry and regions are meshed");
-  if (!meshed && (size || !refine.empty()))
-    problems.push_back(fmt::format("{} is for geometry and regions only", size ? "size" : "refine"));
+  if ((meshed || terrain) && !size)
+    problems.push_back(fmt::format("missing key \"size\" [m]: {} meshed", terrain ? "terrain is" : "geometry and regions are"));
+  if (!meshed && !terrain && size)
+    problems.push_back("size is for geometry, regions and terrain only");
+  if (!meshed && !refine.empty())
+    problems.push_back(fmt::format("refine is for geometry and regions only{}", terrain ? "; terrain has a refine of its own" : ""));
   if (!file.empty() && std::filesystem::path(file).extension() != ".msh")
     problems.push_back(fmt::format("file \"{}\" does not end in .msh; a .geo or .step file is given as geometry", file));
   static constexpr std::array<std::string_view, 6> kinds{".geo", ".step", ".stp", ".brep", ".iges", ".igs"};
@@ -63,6 +66,50 @@ void GeostaticSpec::check(std::vector<std::string>& problems) const
 {
   if (ramp > duration)
     problems.push_back(fmt::format("ramp {} s is longer than the stage, {} s", ramp, duration));
+}
+
+void SectionSpec::check(std::vector<std::string>& problems) const
+{
+  if (name.find('/') != name.npos || name.starts_with('.'))
+    problems.push_back(fmt::format("name \"{}\" cannot be that of a file", name));
+  if (along.size() < 2)
+    problems.push_back("along needs two corners at least");
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    if (along[i].size() != 2)
+      problems.push_back(fmt::format("along[{}] needs two numbers, not {}", i, along[i].size()));
+    else if (i > 0 && along[i] == along[i - 1])
+      problems.push_back(fmt::format("along[{}] is the corner before it", i));
+  }
+}
+
+void K0Rule::check_rule(std::vector<std::string>& problems) const
+{
+  if (ocr != 1 && !from_friction)
+    problems.push_back("ocr is for from_friction: true only");
+  for (std::size_t i = 0; i < k0_table.size(); ++i)
+    if (k0_table[i].size() != 2)
+      problems.push_back(fmt::format("k0_table[{}] needs 2 values, depth and k0, not {}", i, k0_table[i].size()));
+    else if (i > 0 && k0_table[i - 1].size() == 2 && !(k0_table[i][0] > k0_table[i - 1][0]))
+      problems.push_back(fmt::format("k0_table[{}]: the depth {} m does not come below {} m", i, k0_table[i][0], k0_table[i - 1][0]));
+}
+
+void K0OfBody::check(std::vector<std::string>& problems) const
+{
+  exactly_one("k0, k0_table or from_friction", given(), problems);
+  check_rule(problems);
+}
+
+void K0Spec::check(std::vector<std::string>& problems) const
+{
+  if (given() > 1 || bodies.empty())
+    exactly_one("k0, k0_table or from_friction", given(), problems);
+  check_rule(problems);
+}
+
+const K0Rule& K0Spec::of(const std::string& body) const noexcept
+{
+  const auto own = std::find_if(bodies.begin(), bodies.end(), [&](const K0OfBody& b) { return b.body == body; });
+  return own == bodies.end() ? static_cast<const K0Rule&>(*this) : *own;
 }
 
 void PictureSpec::check(std::vector<std::string>& problems) const

@@ -19,6 +19,7 @@
 #include "io/scene_output.hpp"
 #include "io/scene_stages.hpp"
 #include "io/scene_watch.hpp"
+#include "io/scene_water.hpp"
 #include "kernels/projected_options.hpp"
 #include "kernels/umls_options.hpp"
 
@@ -89,6 +90,7 @@ struct Scene {
   std::vector<MaterialSpec> materials;
   std::vector<BodySpec> bodies;
   std::optional<InitialSpec> initial;
+  std::optional<WaterSpec> water;
   std::vector<LoadSpec> loads;
   std::vector<BoundarySpec> boundaries;
   std::vector<StageSpec> stages;
@@ -118,6 +120,7 @@ struct Scene {
         required_list("materials", &Scene::materials, "constitutive laws with their constants"),
         required_list("bodies", &Scene::bodies, "what is made of particles"),
         group("initial", &Scene::initial, "bodies that begin as another run left them"),
+        group("water", &Scene::water, "pore pressure below a water table; default none"),
         optional_list("loads", &Scene::loads, "forces"),
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
         optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),

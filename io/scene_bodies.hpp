@@ -38,6 +38,7 @@ struct BodySpec {
   std::optional<Index> particles_per_cell;  ///< has a value in every body of a scene that was read, if it fills anything
   std::optional<bool> f_bar;
   std::vector<std::string> velocity;
+  std::optional<Real> saturated_density;
   Where where;
   static constexpr auto fields()
   {
@@ -53,7 +54,10 @@ struct BodySpec {
                  "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
                  "johnson_cook, whose flow keeps the volume, false otherwise"),
         optional("velocity", &BodySpec::velocity, any, "m/s",
-                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\"")};
+                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\""),
+        optional("saturated_density", &BodySpec::saturated_density, positive, "kg/m^3",
+                 "mass density, pores full of water, of the particles that lie below the water table at the start; default that of the "
+                 "material")};
   }
   bool fills() const noexcept { return !region.empty() || shape.has_value(); }
 };

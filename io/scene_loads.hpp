@@ -1,5 +1,6 @@
 #pragma once
 // The blocks `loads` and `boundaries` of a scene.
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
@@ -71,20 +72,30 @@ struct TractionSpec {
 
 using LoadSpec = std::variant<GravitySpec, BodyForceSpec, TractionSpec>;
 
+/// What every boundary says of the stages in which it acts.
+inline constexpr std::string_view during_meaning = "names of the stages in which it acts; default all";
+
 struct FixedSpec {
   static constexpr std::string_view name = "fixed";
   std::string on;
+  std::vector<std::string> during;
   Where where;
-  static constexpr auto fields() { return std::tuple{required("on", &FixedSpec::on, any, "-", "node, facet or cell group held at rest")}; }
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &FixedSpec::on, any, "-", "node, facet or cell group held at rest"),
+                      optional("during", &FixedSpec::during, any, "-", during_meaning)};
+  }
 };
 
 struct RollerSpec {
   static constexpr std::string_view name = "roller";
   std::string on;
+  std::vector<std::string> during;
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free")};
+    return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free"),
+                      optional("during", &RollerSpec::during, any, "-", during_meaning)};
   }
 };
 
@@ -93,12 +104,14 @@ struct VelocitySpec {
   std::string on;
   std::vector<Real> velocity;
   Table table;
+  std::vector<std::string> during;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
                       required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension"),
-                      optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]")};
+                      optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
+                      optional("during", &VelocitySpec::during, any, "-", during_meaning)};
   }
 };
 
@@ -106,15 +119,29 @@ struct FrictionSpec {
   static constexpr std::string_view name = "friction";
   std::string on;
   Real coefficient{};
+  std::vector<std::string> during;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FrictionSpec::on, any, "-", "facet group that acts as a wall: no penetration, free separation"),
                       required("coefficient", &FrictionSpec::coefficient, non_negative, "-",
-                               "Coulomb friction coefficient, tangent of the wall friction angle")};
+                               "Coulomb friction coefficient, tangent of the wall friction angle"),
+                      optional("during", &FrictionSpec::during, any, "-", during_meaning)};
   }
 };
 
 using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec>;
+
+/// Names of the stages in which it acts; empty: all.
+inline const std::vector<std::string>& during_of(const BoundarySpec& boundary)
+{
+  return std::visit([](const auto& spec) -> const std::vector<std::string>& { return spec.during; }, boundary);
+}
+/// Whether it acts in a stage of that name.
+inline bool acts_in(const BoundarySpec& boundary, const std::string& stage)
+{
+  const auto& during = during_of(boundary);
+  return during.empty() || std::find(during.begin(), during.end(), stage) != during.end();
+}
 
 }  // namespace talus

@@ -6,6 +6,7 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
+#include "io/scene_terrain.hpp"
 #include "io/shape.hpp"
 
 namespace talus {
@@ -64,7 +65,7 @@ struct GridSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// Exactly one of file, geometry, regions, grid.
+/// Exactly one of file, geometry, regions, grid, terrain.
 struct MeshSpec {
   std::string file, geometry;
   std::optional<Real> size;
@@ -72,19 +73,21 @@ struct MeshSpec {
   std::vector<RefineSpec> refine;
   std::vector<GroupSpec> groups;
   std::optional<GridSpec> grid;
+  std::optional<TerrainSpec> terrain;
   Where where;
   static constexpr auto fields()
   {
     return std::tuple{optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
                       optional("geometry", &MeshSpec::geometry, any, "-",
                                "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
-                      optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry and regions"),
+                      optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry, regions and terrain"),
                       optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
                       optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
                       optional_list("groups", &MeshSpec::groups,
                                     "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... "
                                     "and boundary always exist"),
-                      group("grid", &MeshSpec::grid, "built-in box")};
+                      group("grid", &MeshSpec::grid, "built-in box"),
+                      group("terrain", &MeshSpec::terrain, "columns of cells between surfaces: ground, layers below it, air above it")};
   }
   void check(std::vector<std::string>& problems) const;
 };

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
+#include "io/scene_runout.hpp"
 
 namespace talus {
 
@@ -19,8 +20,8 @@ struct ParticleOutputSpec {
     return std::tuple{
         required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
         optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
-                 "velocity, displacement, stress, pressure, von_mises, volume, mass, cell, body, F, velocity_gradient, and any "
-                 "history variable of a law")};
+                 "velocity, displacement, stress, pressure, von_mises, pore_pressure, effective_stress, volume, mass, cell, body, F, "
+                 "velocity_gradient, and any history variable of a law")};
   }
 };
 
@@ -69,6 +70,16 @@ struct FrontSpec {
   }
 };
 
+/// What bodies do to a wall.
+struct WallSpec {
+  std::string on;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &WallSpec::on, any, "-", "the wall, by the group of its boundary; the second on a group is GROUP_2")};
+  }
+};
+
 /// How far the mass has come from where its displacement counts.
 struct MovedSpec {
   std::string name;
@@ -88,6 +99,7 @@ struct HistoryOutputSpec {
   Real every{};
   std::vector<PointSpec> points;
   std::vector<FrontSpec> fronts;
+  std::vector<WallSpec> walls;
   std::vector<MovedSpec> moved;
   Where where;
   static constexpr auto fields()
@@ -97,6 +109,8 @@ struct HistoryOutputSpec {
                       optional_list("points", &HistoryOutputSpec::points,
                                     "material points whose position, displacement, velocity and stress are written"),
                       optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass"),
+                      optional_list("walls", &HistoryOutputSpec::walls,
+                                    "walls whose push, shear, area in touch, pressure and point of attack are written"),
                       optional_list("moved", &HistoryOutputSpec::moved, "how far the mass has moved")};
   }
 };
@@ -140,13 +154,16 @@ struct OutputSpec {
   std::optional<ParticleOutputSpec> particles;
   std::optional<MeshOutputSpec> mesh;
   std::optional<HistoryOutputSpec> history;
+  std::optional<RunoutSpec> runout;
   CheckpointSpec checkpoint;
   PictureSpec picture;
   static constexpr auto fields()
   {
     return std::tuple{
         group("particles", &OutputSpec::particles, "particle files (.vtp) for ParaView, with a .pvd series"),
-        group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"), group("history", &OutputSpec::history, "history.csv"),
+        group("mesh", &OutputSpec::mesh, "mesh files (.vtu) with nodal fields"),
+        group("history", &OutputSpec::history, "history.csv"),
+        group("runout", &OutputSpec::runout, "runout.csv and maps: how far, how thick and how fast what has moved gets"),
         optional("checkpoint", &OutputSpec::checkpoint, any, "-",
                  "the state of the run, from which talus run --resume goes on; one more is written when the run is told to stop"),
         optional("picture", &OutputSpec::picture, any, "-", "how talus render draws the run")};

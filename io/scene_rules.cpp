@@ -25,6 +25,8 @@ class Rules {
     materials_and_bodies();
     loads_and_boundaries();
     outputs();
+    const auto of_stages = broken_stage_rules(scene_);
+    findings_.insert(findings_.end(), of_stages.begin(), of_stages.end());
     return std::move(findings_);
   }
 
@@ -130,8 +132,28 @@ class Rules {
     if (!scene_.stages.empty() && scene_.time.end != 0)
       add("time.end", "the stages say when the run ends: leave this out");
     for (std::size_t i = 1; i < scene_.stages.size(); ++i)
+      if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]);
+          stage != nullptr && stage->initial_stress && stage->appear.empty())
+        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress, or one in which bodies appear: theirs");
+    for (std::size_t i = 0; i < scene_.stages.size(); ++i)
       if (const auto* stage = std::get_if<GeostaticSpec>(&scene_.stages[i]); stage != nullptr && stage->initial_stress)
-        add(fmt::format("stages[{}].initial_stress", i), "only the first stage can set the stress");
+        initial_stress(fmt::format("stages[{}].initial_stress", i), static_cast<Index>(i), *stage->initial_stress);
+  }
+
+  void initial_stress(const std::string& path, Index number, const K0Spec& spec)
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < spec.bodies.size(); ++i) {
+      known_word(fmt::format("{}.bodies[{}].body", path, i), "body", spec.bodies[i].body, known);
+      for (std::size_t j = 0; j < i; ++j)
+        if (spec.bodies[j].body == spec.bodies[i].body)
+          add(fmt::format("{}.bodies[{}].body", path, i), fmt::format("bodies[{}] is about \"{}\" already", j, spec.bodies[i].body));
+    }
+    for (const std::string& body : known)
+      if (presence_of(body, scene_.stages).from == number && spec.of(body).given() == 0)
+        add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table or from_friction is needed for the bodies that the list does "
+                              "not name",
+                              body));
   }
 
   void materials_and_bodies()
@@ -149,9 +171,13 @@ class Rules {
       if (body.shape)
         fits(path + ".shape", *body.shape);
       source_of_particles(path, body);
+      if (body.saturated_density && !scene_.water)
+        add(path + ".saturated_density", "there is no water in this scene: say where its table is, or leave this out");
     }
     if (scene_.initial)
       initial(*scene_.initial);
+    if (scene_.water)
+      water(*scene_.water);
   }
 
   /// A body is filled or taken from another run, and what it says is used.  Without a list only that run can tell which are taken.
@@ -178,6 +204,20 @@ class Rules {
     unused(body.shape.has_value(), "shape");
     unused(body.particles_per_cell.has_value(), "particles_per_cell");
     unused(!body.velocity.empty(), "velocity");
+    unused(body.saturated_density.has_value(), "saturated_density");
+  }
+
+  void water(const WaterSpec& water)
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < water.bodies.size(); ++i) {
+      known_word(fmt::format("water.bodies[{}]", i), "body", water.bodies[i], known);
+      if (std::find(water.bodies.begin(), water.bodies.begin() + static_cast<std::ptrdiff_t>(i), water.bodies[i]) !=
+          water.bodies.begin() + static_cast<std::ptrdiff_t>(i))
+        add(fmt::format("water.bodies[{}]", i), fmt::format("\"{}\" is named twice", water.bodies[i]));
+    }
+    if (std::none_of(scene_.loads.begin(), scene_.loads.end(), [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
+      add("water", "water has no weight without a load of type gravity");
   }
 
   void initial(const InitialSpec& initial)
@@ -231,6 +271,23 @@ class Rules {
     known_word("outputs.picture.field", "field", outputs.picture.field, particle_field_names());
     if (outputs.history)
       history(*outputs.history);
+    if (outputs.runout)
+      runout(*outputs.runout);
+  }
+
+  void runout(const RunoutSpec& runout)
+  {
+    const auto bodies = names(scene_.bodies);
+    known_fields("outputs.runout.bodies", runout.bodies, bodies, "body");
+    known_fields("outputs.runout.eroded", runout.eroded, bodies, "body");
+    for (std::size_t i = 0; i < runout.eroded.size(); ++i)
+      if (!runout.bodies.empty() && std::find(runout.bodies.begin(), runout.bodies.end(), runout.eroded[i]) == runout.bodies.end())
+        add(fmt::format("outputs.runout.eroded[{}]", i), fmt::format("\"{}\" is not among outputs.runout.bodies", runout.eroded[i]));
+    different_names("outputs.runout.sections", runout.sections);
+    if (scene_.dimension == 2 && (runout.frames_every || runout.csv))
+      add(runout.csv ? "outputs.runout.csv" : "outputs.runout.frames_every", "there are maps in 3 dimensions only");
+    if (scene_.dimension == 2 && !runout.sections.empty())
+      add("outputs.runout.sections", "there is one section in 2 dimensions, the plane itself, and it is always written: leave this out");
   }
 
   void history(const HistoryOutputSpec& history)
@@ -250,6 +307,13 @@ class Rules {
       const Direction direction = history.fronts[i].direction;
       if (scene_.dimension == 2 && (direction == Direction::z_plus || direction == Direction::z_minus))
         add(path + ".direction", "there is no z in 2 dimensions");
+    }
+    for (std::size_t i = 0; i < history.walls.size(); ++i) {
+      const std::string path = fmt::format("outputs.history.walls[{}].on", i);
+      known_word(path, "wall", history.walls[i].on, wall_names(scene_.boundaries));
+      for (std::size_t j = 0; j < i; ++j)
+        if (!history.walls[i].on.empty() && history.walls[j].on == history.walls[i].on)
+          add(path, fmt::format("\"{}\" is asked for by outputs.history.walls[{}] already", history.walls[i].on, j));
     }
     for (std::size_t i = 0; i < history.moved.size(); ++i)
       known_word(fmt::format("outputs.history.moved[{}].body", i), "body", history.moved[i].body, bodies);
@@ -281,6 +345,11 @@ class Rules {
     for (std::size_t i = 0; i < history.fronts.size(); ++i)
       if (const FrontSpec& front = history.fronts[i]; is_first(history.fronts, i))
         note(fmt::format("outputs.history.fronts[{}]", i), "name", front.name, columns_of(front));
+    for (std::size_t i = 0; i < history.walls.size(); ++i)
+      if (const WallSpec& wall = history.walls[i];
+          std::none_of(history.walls.begin(), history.walls.begin() + static_cast<std::ptrdiff_t>(i),
+                       [&](const WallSpec& earlier) { return earlier.on == wall.on; }))
+        note(fmt::format("outputs.history.walls[{}]", i), "on", wall.on, columns_of(wall, scene_.dimension));
     for (std::size_t i = 0; i < history.moved.size(); ++i)
       if (const MovedSpec& moved = history.moved[i]; is_first(history.moved, i))
         note(fmt::format("outputs.history.moved[{}]", i), "name", moved.name, columns_of(moved));
@@ -294,10 +363,11 @@ class Rules {
                         [&](const Item& item) { return item.name == items[i].name; });
   }
 
-  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known)
+  void known_fields(const std::string& path, const std::vector<std::string>& wanted, const std::vector<std::string>& known,
+                    std::string_view what = "field")
   {
     for (std::size_t i = 0; i < wanted.size(); ++i) {
-      known_word(fmt::format("{}[{}]", path, i), "field", wanted[i], known);
+      known_word(fmt::format("{}[{}]", path, i), what, wanted[i], known);
       if (!wanted[i].empty() && std::find(wanted.begin(), wanted.begin() + static_cast<std::ptrdiff_t>(i), wanted[i]) !=
                                     wanted.begin() + static_cast<std::ptrdiff_t>(i))
         add(fmt::format("{}[{}]", path, i), fmt::format("\"{}\" is asked for twice", wanted[i]));

@@ -63,17 +63,24 @@ struct Batch {
   }
 };
 
-/// A body at rest: history as a particle starts with it.
+/// Makes it that of particles [begin, end) at rest: history as a particle starts with it.
+template <class L>
+void begin_anew(Index begin, Index end, Batch<L>& batch)
+{
+  batch.begin = begin, batch.end = end;
+  if constexpr (requires { batch.law.initial_state(); })
+    batch.history.assign(static_cast<std::size_t>(batch.size()), batch.law.initial_state());
+  else
+    batch.history.assign(static_cast<std::size_t>(batch.size()), {});
+}
+
+/// A body at rest.
 template <class L>
 Batch<L> make_batch(L law, Index begin, Index end, std::string name, Where where = {})
 {
   const auto constants = law.constants();
-  Batch<L> batch{
-      .law = std::move(law), .constants = constants, .begin = begin, .end = end, .where = std::move(where), .name = std::move(name)};
-  if constexpr (requires { batch.law.initial_state(); })
-    batch.history.assign(static_cast<std::size_t>(batch.size()), batch.law.initial_state());
-  else
-    batch.history.resize(static_cast<std::size_t>(batch.size()));
+  Batch<L> batch{.law = std::move(law), .constants = constants, .where = std::move(where), .name = std::move(name)};
+  begin_anew(begin, end, batch);
   return batch;
 }
 
@@ -104,6 +111,11 @@ AnyBatch make_any_batch(const L& law, Index begin, Index end, const std::string&
     return std::visit([&](const auto& kind) { return AnyBatch(make_batch(kind, begin, end, name, where)); }, law.kind());
   else
     return make_batch(law, begin, end, name, where);
+}
+
+inline void begin_anew(Index begin, Index end, AnyBatch& batch)
+{
+  std::visit([&](auto& typed) { begin_anew(begin, end, typed); }, batch);
 }
 
 /// One history variable of all particles of a body: column[i] is a Real or a Sym3.

@@ -114,6 +114,7 @@ Mesh<D>::Mesh(MeshData<D> data)
   measure();
   take_sets(data, inverse(old_cells, data.cells.size()), inverse(old_nodes, data.nodes.size()));
   map_ = std::move(data.map);
+  notes_ = std::move(data.notes);
 }
 
 template <int D>
@@ -143,6 +144,7 @@ Mesh<D>::Mesh(const Mesh& whole, std::span<const Index> cells)
   low_ = whole.low_;
   high_ = whole.high_;
   map_ = whole.map_;
+  notes_ = whole.notes_;
 
   cells_of_node_ = cells_at_nodes<D>(cells_, n_nodes());
   ring_of_node_ = nodes_around<D>(cells_, cells_of_node_);

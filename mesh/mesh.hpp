@@ -29,6 +29,7 @@ struct MeshData {
   std::map<std::string, std::vector<std::array<Index, D>>> facet_sets;  ///< boundary or interior facets by their nodes
   std::map<std::string, std::vector<Index>> cell_sets;                  ///< cell numbers
   std::optional<MapFrame> map = {};                                     ///< of a mesh that was made of terrain
+  std::vector<std::string> notes = {};                                  ///< what was mended while it was made: warnings of whoever uses it
 };
 
 /// Immutable simplex mesh.  Cells are renumbered along a space-filling curve and nodes by first use, so that neighbours in
@@ -64,6 +65,8 @@ class Mesh {
   const Vec<D>& high() const noexcept { return high_; }
   /// Where the mesh lies on a map, if it was made of terrain.
   const std::optional<MapFrame>& map() const noexcept { return map_; }
+  /// What was mended while it was made, in words.
+  const std::vector<std::string>& notes() const noexcept { return notes_; }
 
   /// Cell across the facet opposite each local node, or `none` on the boundary and where a larger mesh was cut.
   const std::array<Index, D + 1>& neighbours(Index c) const noexcept { return neighbours_[static_cast<std::size_t>(c)]; }
@@ -111,6 +114,7 @@ class Mesh {
   Real largest_edge_;
   Vec<D> low_, high_;
   std::optional<MapFrame> map_;
+  std::vector<std::string> notes_;
   std::map<std::string, std::vector<Index>, std::less<>> node_sets_, cell_sets_;
   std::map<std::string, std::vector<Facet>, std::less<>> facet_sets_;
 };

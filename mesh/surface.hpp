@@ -10,4 +10,9 @@ namespace talus {
 /// Elevation [m] at a place of the map [m]: (east, north), in 2-D without a section (x, 0).  NaN where it is not known.
 using Surface = std::function<Real(const std::array<Real, 2>& place)>;
 
+/// A rectangle of the map [m].
+struct MapBox {
+  Real west = 0, south = 0, east = 0, north = 0;
+};
+
 }  // namespace talus

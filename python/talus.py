@@ -506,6 +506,13 @@ def _fits_digest(name: str, array: Any, values: np.ndarray) -> bool:
 _BEFORE_THE_END = "the run did not end"  # app/summary.hpp
 
 
+def _written(path: Path, what: str) -> Path:
+    """The path of a file that not every folder has."""
+    if not path.exists():
+        raise FileNotFoundError(f"{path} is not there: nothing has written {what} to this folder")
+    return path
+
+
 class Run:
     """A folder of results.  Of a run that goes on, or was killed, it shows what is there so far."""
 
@@ -542,13 +549,22 @@ class Run:
     @property
     def history(self) -> Table:
         """history.csv: a row for each time."""
-        return Table(self.folder / "history.csv")
+        return Table(_written(self.folder / "history.csv", "a history (outputs.history)"))
+
+    @property
+    def runout(self) -> Table:
+        """runout.csv: a row for each look."""
+        return Table(self.folder / "runout.csv")
+
+    def section(self, name: str) -> Table:
+        """A section through the maps of the run-out; "plane" in 2-D."""
+        return Table(self.folder / "sections" / f"{name}.csv")
 
     @property
     def particles(self) -> Series:
         """Particle files: a series of `Particles`."""
         bodies = self.bodies
-        return Series(self.folder / "particles.pvd", lambda path: Particles(path, bodies))
+        return Series(_written(self.folder / "particles.pvd", "particle files (outputs.particles)"), lambda path: Particles(path, bodies))
 
     @property
     def mesh(self) -> Mesh:
@@ -558,7 +574,7 @@ class Run:
     @property
     def mesh_fields(self) -> Series:
         """Files of fields on the mesh, where the scene asks for them (`outputs.mesh`): a series of `Mesh`."""
-        return Series(self.folder / "mesh.pvd", Mesh)
+        return Series(_written(self.folder / "mesh.pvd", "files of fields on the mesh (outputs.mesh)"), Mesh)
 
     @property
     def checkpoints(self) -> list[Checkpoint]:
@@ -571,7 +587,7 @@ class Sweep:
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
-        self.table = Table(self.folder / "sweep.csv")
+        self.table = Table(_written(self.folder / "sweep.csv", "a table of a study (talus sweep)"))
 
     @property
     def keys(self) -> list[str]:

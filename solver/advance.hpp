@@ -177,7 +177,8 @@ void respond(Model<D, K>& m, Index body, Index block, Real dt)
 {
   AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
   if (const auto rows = m.order.rows(body, block); !rows.empty() && !averages_volume(material))
-    m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, rows, dt, m.stage.elastic, m.averaged, m.particles, m.health);
+    m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, rows, dt, m.stage.elastic, m.averaged,
+                                                            pore_water(m, body, m.clock.time + dt), m.particles, m.health);
 }
 
 /// What is of a body as a whole: volumes averaged before the stress, heat after it; and what the particles report.
@@ -189,8 +190,8 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
     if (averages_volume(material)) {
       average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
       parallel_for_uneven(m.order.blocks, [&](Index block) {
-        m.stress_sums[m.order.key(body, block)] =
-            update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic, m.averaged, m.particles, m.health);
+        m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic,
+                                                                m.averaged, pore_water(m, body, m.clock.time + dt), m.particles, m.health);
       });
     }
     if (m.heat)

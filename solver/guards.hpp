@@ -67,8 +67,8 @@ std::optional<std::string> fault(Model<D, K>& m, Look look)
     return std::nullopt;
 
   const Totals<D> now = totals(m);
-  const Real there = m.mass.start - m.mass.deleted;
-  const Real lost = std::max(std::abs(now.mass - there), std::abs(m.mass.on_nodes - there)) / m.mass.start;
+  const Real there = m.mass.due();
+  const Real lost = std::max(std::abs(now.mass - there), std::abs(m.mass.on_nodes - there)) / (m.mass.start + m.mass.placed);
   seen.mass = std::max(seen.mass, lost);
   if (lost > limit.mass)
     return fmt::format("the mass does not add up: {:.10g} kg should be there, particles have {:.10g} kg, nodes carried {:.10g} kg", there,

@@ -14,13 +14,20 @@ constexpr bool starts_from_stress = requires(const L& law, typename L::State& st
   law.prestress(Mat3(), state);
 };
 
-/// A straight way up from a particle, and the mass per area met on it.
+/// What lies above a particle.
+struct Above {
+  Real mass = 0;   ///< per area [kg/m^(D-1)]
+  Real depth = 0;  ///< way up to where the last cell with mass ends [m]
+};
+
+/// A straight way up from a particle, and what is met on it.
 template <int D>
 struct Ray {
   Vec<D> x;
   Index cell;  ///< or none beyond the boundary
-  Real mass = 0;
-  Index row;  ///< of the particle, on its rank
+  Above above;
+  Real length;  ///< [m]
+  Index row;    ///< of the particle, on its rank
   int rank;
 };
 
@@ -40,23 +47,27 @@ void follow(const Mesh<D>& mesh, std::span<const Real> density, const Vec<D>& up
         exit = k;
       }
     }
-    ray.mass += density[static_cast<std::size_t>(ray.cell)] * way;
+    ray.length += way;
+    if (const Real here = density[static_cast<std::size_t>(ray.cell)]; here > 0) {
+      ray.above.mass += here * way;
+      ray.above.depth = ray.length;
+    }
     ray.x += way * up;
     ray.cell = crossed < mesh.n_cells() ? mesh.neighbours(ray.cell)[exit] : none;  // a straight line meets each cell once
   }
 }
 
-/// Mass per area [kg/m^(D-1)] above each particle.  Rays that leave the blocks of a rank go on at the next one's.
+/// What is above each particle.  Rays that leave the blocks of a rank go on at the next one's.
 template <int D>
-std::vector<Real> masses_above(const Mesh<D>& mesh, const Share& share, Exchange& ranks, std::span<const Real> density, const Vec<D>& up,
-                               const Particles<D>& particles)
+std::vector<Above> look_up(const Mesh<D>& mesh, const Share& share, Exchange& ranks, std::span<const Real> density, const Vec<D>& up,
+                           const Particles<D>& particles)
 {
   const auto owns = [&](Index cell) { return share.alone() || share.owns_cell(cell); };
   const auto n_ranks = static_cast<std::size_t>(ranks.size());
-  std::vector<Real> mass(particles.id.size());
+  std::vector<Above> above(particles.id.size());
   std::vector<Ray<D>> here;
-  for (std::size_t p = 0; p < mass.size(); ++p)
-    here.push_back({particles.x[p], particles.cell[p], 0, static_cast<Index>(p), ranks.rank()});
+  for (std::size_t p = 0; p < above.size(); ++p)
+    here.push_back({particles.x[p], particles.cell[p], {}, 0, static_cast<Index>(p), ranks.rank()});
   std::vector<std::vector<Ray<D>>> home(n_ranks);
   for (std::int64_t travelling = 1; travelling > 0;) {
     std::vector<std::vector<Ray<D>>> out(n_ranks);
@@ -79,15 +90,22 @@ std::vector<Real> masses_above(const Mesh<D>& mesh, const Share& share, Exchange
   }
   for (const std::vector<Ray<D>>& back : exchange_rows(ranks, home))
     for (const Ray<D>& ray : back)
-      mass[static_cast<std::size_t>(ray.row)] = ray.mass;
-  return mass;
+      above[static_cast<std::size_t>(ray.row)] = ray.above;
+  return above;
+}
+
+/// Pressures that are part of the stress and not of what the law made of it [Pa].
+template <int D>
+Real beside_law(const Particles<D>& particles, std::size_t p) noexcept
+{
+  return (particles.viscous.empty() ? 0 : particles.viscous[p]) + (particles.pore.empty() ? 0 : particles.pore[p]);
 }
 
 }  // namespace
 
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, Real k0, const CellOrder& order,
-                   const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const Table> k0,
+                   const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
 {
   const Real g = gravity.norm();
   if (!(g > 0))
@@ -98,20 +116,22 @@ void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, con
     const auto p = static_cast<std::size_t>(row);
     density[static_cast<std::size_t>(particles.cell[p])] += particles.mass[p] / mesh.volume(particles.cell[p]);
   }
-  const std::vector<Real> above = masses_above(mesh, share, ranks, density, up, particles);
+  const std::vector<Above> above = look_up(mesh, share, ranks, density, up, particles);
 
   Vec3 up3 = Vec3::Zero();
   up3.head<D>() = up;
-  const Mat3 shape = k0 * Mat3::Identity() + (1 - k0) * up3 * up3.transpose();
+  const Mat3 along = up3 * up3.transpose();
   for (std::size_t b = 0; b < bodies.size(); ++b)
     for (Index row = bodies[b].begin; row < bodies[b].end; ++row) {
       const auto p = static_cast<std::size_t>(row);
-      const Mat3 stress = -g * above[p] * shape;
+      const Real u = particles.pore.empty() ? 0 : particles.pore[p], ratio = k0[b](above[p].depth);
+      Mat3 stress = (u - g * above[p].mass) * (ratio * Mat3::Identity() + (1 - ratio) * along);
       if (!prestress(materials[b], row - bodies[b].begin, stress))
         throw SceneErrors(
             bodies[b].where,
             fmt::format("law \"{}\" of body \"{}\" cannot start from a K0 stress; leave initial_stress out and let gravity grow (ramp)",
                         law_name(materials[b]), bodies[b].name));
+      stress.diagonal().array() -= u;
       particles.stress.set(p, pack(stress));
     }
 }
@@ -137,8 +157,7 @@ void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& parti
   parallel_for(body.size(), [&](Index i) {
     const auto p = static_cast<std::size_t>(body.begin + i);
     Mat3 stress = unpack(Sym3(particles.stress[p]));
-    if (!particles.viscous.empty())
-      stress.diagonal().array() += particles.viscous[p];
+    stress.diagonal().array() += beside_law(particles, p);
     prestress(material, i, stress);
     particles.F.set(p, Mat3::Identity());
     particles.volume0[p] = particles.volume[p];
@@ -157,13 +176,13 @@ StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool t
     if (batch.averages_volume && !particles.volume_ratio.empty())
       F.topLeftCorner<D, D>() *= particles.volume_ratio[p];
     L_there.topLeftCorner<D, D>() = particles.L[p];
-    const Real q = particles.viscous.empty() ? 0 : particles.viscous[p];
-    stress.diagonal().array() += q;
+    const Real q = particles.viscous.empty() ? 0 : particles.viscous[p], others = beside_law(particles, p);
+    stress.diagonal().array() += others;
     auto history = batch.history[static_cast<std::size_t>(i)];
     // The one kind moves on by dt L, the other finds its stress from F and the rate of that step.
     constexpr bool moves_on = starts_from_stress<L>;
     Mat3 answer = batch.law.update(Increment{F, L_there, stress, moves_on ? 0 : dt, q, moves_on}, history, batch.constants);
-    answer.diagonal().array() -= q;
+    answer.diagonal().array() -= others;
     if (const Sym3 after = pack(answer); take_over && after.allFinite())
       particles.stress.set(p, after);
     return StressFit{unpack(before).norm(), (answer - unpack(before)).norm()};
@@ -176,9 +195,9 @@ template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
 template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
 template StressFit fit_stress<2>(const Body&, const AnyBatch&, Real, bool, Particles<2>&);
 template StressFit fit_stress<3>(const Body&, const AnyBatch&, Real, bool, Particles<3>&);
-template void set_k0_stress<2>(const Mesh<2>&, const Share&, Exchange&, const Vec<2>&, Real, const CellOrder&, const std::vector<Body>&,
-                               std::vector<AnyBatch>&, Particles<2>&);
-template void set_k0_stress<3>(const Mesh<3>&, const Share&, Exchange&, const Vec<3>&, Real, const CellOrder&, const std::vector<Body>&,
-                               std::vector<AnyBatch>&, Particles<3>&);
+template void set_k0_stress<2>(const Mesh<2>&, const Share&, Exchange&, const Vec<2>&, std::span<const Table>, const CellOrder&,
+                               const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void set_k0_stress<3>(const Mesh<3>&, const Share&, Exchange&, const Vec<3>&, std::span<const Table>, const CellOrder&,
+                               const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

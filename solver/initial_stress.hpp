@@ -6,18 +6,20 @@
 
 #include "core/exchange.hpp"
 #include "core/particles.hpp"
+#include "core/table.hpp"
 #include "materials/batch.hpp"
 #include "mesh/part.hpp"
 #include "solver/cell_order.hpp"
 
 namespace talus {
 
-/// K0 state: the stress along gravity carries the weight of all mass above the particle, the stress across it is k0 times as
-/// large.  "Above" is followed cell by cell against gravity, so any surface and any layering is right.  Throws SceneErrors, with
-/// the place of the body, if its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
+/// K0 state: the stress along gravity carries the weight of all mass above the particle; less the pore pressure, of bodies that have one,
+/// it is the effective stress that the law sees, and the one across gravity is k0 times as large: `k0` has a table for each body, by
+/// the depth [m] below the ground.  "Above" is followed cell by cell against gravity, so any surface and any layering is right.  Throws
+/// SceneErrors, with the place of the body, if its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, Real k0, const CellOrder& order,
-                   const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
+void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const Table> k0,
+                   const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
 
 bool can_start_from_stress(const AnyBatch& material);
 /// Names of the laws that can.
@@ -39,7 +41,7 @@ struct StressFit {
   }
 };
 /// `dt`: of the step that led to the state [s].  Laws that can start from a stress are asked without yielding, which is for the next step to do.
-/// `take_over`: the stress becomes that of the law, less the viscous pressure; otherwise nothing changes.
+/// `take_over`: the stress becomes that of the law, less the viscous and the pore pressure; otherwise nothing changes.
 template <int D>
 StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool take_over, Particles<D>& particles);
 

@@ -86,11 +86,12 @@ template <int D>
 struct MomentumLedger {
   Push<D> loads;  ///< gravity, tractions, forces of place
   Push<D> damping;
-  Push<D> rest;  ///< of the motion that is taken out at the end of stages that seek rest
+  Push<D> rest;     ///< of the motion that is taken out at the end of stages that seek rest
+  Push<D> changes;  ///< of what stages place and take away: bodies, and mass where a density changes
   static constexpr auto fields()
   {
-    return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping),
-                      kept("rest", &MomentumLedger::rest)};
+    return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping), kept("rest", &MomentumLedger::rest),
+                      kept("changes", &MomentumLedger::changes)};
   }
 };
 
@@ -101,6 +102,8 @@ struct MassLedger {
   Real deleted{};   ///< left the mesh, or failed [kg]
   Real failed{};    ///< of it what failed [kg]
   Index deleted_count{}, failed_count{};
+  Real placed{}, taken{};  ///< by stages: bodies that appeared and vanished, and what a new density made heavier and lighter [kg]
+  Index placed_count{}, taken_count{};
   Push<D> carried_away;       ///< momentum of what was deleted
   std::int64_t held_count{};  ///< times a particle was set back onto a closed wall
   Real held_most{};           ///< farthest such set-back [m]
@@ -112,10 +115,16 @@ struct MassLedger {
                       kept("failed", &MassLedger::failed),
                       kept("deleted_count", &MassLedger::deleted_count),
                       kept("failed_count", &MassLedger::failed_count),
+                      kept("placed", &MassLedger::placed),
+                      kept("taken", &MassLedger::taken),
+                      kept("placed_count", &MassLedger::placed_count),
+                      kept("taken_count", &MassLedger::taken_count),
                       kept("carried_away", &MassLedger::carried_away),
                       kept("held_count", &MassLedger::held_count),
                       kept("held_most", &MassLedger::held_most)};
   }
+  /// That should be there [kg].
+  Real due() const noexcept { return start + placed - deleted - taken; }
 };
 
 /// What particles take along that are deleted, and what was done to those that stay; numbers of particles are whole.

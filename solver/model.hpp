@@ -32,6 +32,7 @@ struct StageState {
   std::int64_t first_step = 0;    ///< steps done when it began
   int balanced = 0;               ///< steps in balance, one after the other, up to now
   Real damping = 0;               ///< local, share of the unbalanced force
+  Real first_residual = 0;        ///< unbalanced force over the loads in its first step
   Real begin = 0, ramp_time = 0;  ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
   bool elastic = false;           ///< yielding suspended
   bool seeks_rest = false;        ///< ends at rest, or is damped
@@ -39,10 +40,11 @@ struct StageState {
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{
-        kept("number", &StageState::number),   kept("first_step", &StageState::first_step), kept("balanced", &StageState::balanced),
-        kept("damping", &StageState::damping), kept("begin", &StageState::begin),           kept("ramp_time", &StageState::ramp_time),
-        kept("elastic", &StageState::elastic), kept("seeks_rest", &StageState::seeks_rest), kept("done", &StageState::done)};
+    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
+                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
+                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
+                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest),
+                      kept("done", &StageState::done),         kept("first_residual", &StageState::first_residual)};
   }
 };
 
@@ -76,6 +78,31 @@ struct Guards {
   Real failed = 0;                                     ///< mass of particles that may fail and be deleted, over all of it
   bool speed_stops = true, gain_stops = true;          ///< otherwise it is only counted
 };
+
+/// Columns of particles that not every run has.
+struct WantedColumns {
+  bool affine = false;        ///< an affine field of its own
+  bool applied = false;       ///< forces on particles
+  bool volume_ratio = false;  ///< a law averages its volume
+  bool viscous = false;       ///< a law has bulk viscosity
+  bool pore = false;          ///< there is water
+};
+/// Makes those that are not there as they are of particles at rest; what comes from another run is kept.
+template <int D>
+void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
+{
+  const auto n = particles.id.size();
+  if (wanted.affine && particles.C.empty())
+    particles.C = particles.L;
+  if (wanted.applied)
+    particles.applied.assign(n, Vec<D>::Zero()), particles.applied_at.assign(n, 0);
+  if (wanted.volume_ratio)
+    particles.volume_ratio.resize(n, 1);
+  if (wanted.viscous && particles.viscous.empty())
+    particles.viscous.assign(n, 0);
+  if (wanted.pore && particles.pore.empty())
+    particles.pore.assign(n, 0);
+}
 
 /// What the guards have seen since the start of the run.
 struct Watched {
@@ -118,6 +145,7 @@ struct Model {
   OwnNodes own;
 
   Particles<D> particles;
+  WantedColumns columns;
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;  ///< one per body, same ranges
   CellOrder order;
@@ -135,6 +163,7 @@ struct Model {
   Tally<D> tally;  ///< of the step at hand
   Transfer transfer;
   Loads<D> loads;
+  Water water;
   Walls<D> walls;
   Exits exits;
   Clock clock;
@@ -223,6 +252,25 @@ void follow_rows(Model<D, K>& m)
   m.followed.find(m.particles.id);
 }
 
+/// What the law of a body sees of the water at a time; nothing where it sees total stress.
+template <int D, Kernel<D> K>
+std::optional<PoreWater> pore_water(const Model<D, K>& m, Index body, Real time)
+{
+  if (!m.water.drains(body))
+    return std::nullopt;
+  return PoreWater{m.water, m.stage.ramp(time) * m.loads.gravity.table(time)};
+}
+
+/// The particles are others now, in cells that are known: what goes by rows and cells follows.  Every rank has to.
+template <int D, Kernel<D> K>
+void take_rows(Model<D, K>& m)
+{
+  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
+  follow_rows(m);
+  if (!m.share.alone())
+    m.migration.agree_on_columns(m.particles);
+}
+
 /// M is a Model, or what an observer sees of it.  Every rank has to ask.
 template <class M>
 auto totals(const M& m)
@@ -240,30 +288,10 @@ Real plastic_work(const M& m)
   return sum.value();
 }
 
-/// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  Columns that follow from
-/// others at rest are kept where they are there: of particles that come from another run.
+/// What goes by the walls that act, whose last one has been added.
 template <int D, Kernel<D> K>
-void make_ready(Model<D, K>& m)
+void bind_walls(Model<D, K>& m)
 {
-  const auto n = m.particles.id.size();
-  if (m.particles.volume.empty())
-    m.particles.volume = m.particles.volume0;
-  if (m.transfer.own_affine_field() && m.particles.C.empty())
-    m.particles.C = m.particles.L;
-  if (m.loads.any_on_particles())
-    m.particles.applied.assign(n, Vec<D>::Zero()), m.particles.applied_at.assign(n, 0);
-  const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) { return std::any_of(m.materials.begin(), m.materials.end(), has); };
-  if (any_material(conducts_heat))
-    m.share.alone() ? m.heat.emplace(m.mesh) : m.heat.emplace(*m.ranks, m.mesh, m.share);
-  if (any_material(averages_volume)) {
-    m.particles.volume_ratio.resize(n, 1);
-    m.share.alone() ? m.stars.emplace(m.mesh) : m.stars.emplace(*m.ranks, m.mesh, m.share);
-  }
-  if (any_material(has_bulk_viscosity) && m.particles.viscous.empty())
-    m.particles.viscous.assign(n, 0);
-  if (m.transfer.musl)
-    m.remapped.resize(m.nodes.sum.size());
-  m.followed = FollowedRows(ids_of(m.loads.on_particles));
   m.walls.settle();
   m.nodes.bound.resize(m.nodes.sum.size());
   for (Index node = 0; node < m.mesh.n_nodes(); ++node)
@@ -271,12 +299,36 @@ void make_ready(Model<D, K>& m)
   m.exits.closed.assign(static_cast<std::size_t>(m.mesh.n_cells()), 0);
   for (const Facet facet : m.walls.closed_facets(m.mesh))
     m.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
+}
+
+/// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  `to_come` are laws that bodies
+/// take on later: what they need is there from the beginning.
+template <int D, Kernel<D> K>
+void make_ready(Model<D, K>& m, std::span<const std::vector<AnyBatch>> to_come = {})
+{
+  if (m.particles.volume.empty())
+    m.particles.volume = m.particles.volume0;
+  const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) {
+    const auto any_of = [&](const std::vector<AnyBatch>& laws) { return std::any_of(laws.begin(), laws.end(), has); };
+    return any_of(m.materials) || std::any_of(to_come.begin(), to_come.end(), any_of);
+  };
+  m.columns = {.affine = m.transfer.own_affine_field(),
+               .applied = m.loads.any_on_particles(),
+               .volume_ratio = any_material(averages_volume),
+               .viscous = any_material(has_bulk_viscosity),
+               .pore = m.water.any()};
+  fill_columns(m.columns, m.particles);
+  if (any_material(conducts_heat))
+    m.share.alone() ? m.heat.emplace(m.mesh) : m.heat.emplace(*m.ranks, m.mesh, m.share);
+  if (m.columns.volume_ratio)
+    m.share.alone() ? m.stars.emplace(m.mesh) : m.stars.emplace(*m.ranks, m.mesh, m.share);
+  if (m.transfer.musl)
+    m.remapped.resize(m.nodes.sum.size());
+  m.followed = FollowedRows(ids_of(m.loads.on_particles));
+  bind_walls(m);
   m.nodes.least_share_of_gross = HasNodePart<K, D> && !HasOwnValues<K, D> ? least_share_of_hats : least_share_of_cells;
   m.nodes.least_share = m.kernel.claims().non_negative ? least_share : least_share_of_signed_weights;
-  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
-  follow_rows(m);
-  if (!m.share.alone())
-    m.migration.agree_on_columns(m.particles);
+  take_rows(m);
   m.mass.start = totals(m).mass;
 }
 

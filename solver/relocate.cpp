@@ -72,11 +72,8 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
   }
 }
 
-namespace {
-
-/// What the particle takes along, as far as it is a number.
 template <int D>
-Departed<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles, Index row)
+Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Index row)
 {
   const std::size_t p = z(row);
   Departed<D> gone{.mass = particles.mass[p], .count = 1};
@@ -90,8 +87,16 @@ Departed<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyB
   const Real work = plastic_work(materials[body], row - bodies[body].begin, particles.volume0[p]);
   if (std::isfinite(work))
     gone.plastic = work;
-  particles.cell[p] = none;
   return gone;
+}
+
+namespace {
+
+template <int D>
+Departed<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles, Index row)
+{
+  particles.cell[z(row)] = none;
+  return content_of(bodies, materials, particles, row);
 }
 
 }  // namespace
@@ -204,6 +209,8 @@ bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materi
   return true;
 }
 
+template Departed<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
+template Departed<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
 template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
                           CellOrder&, Tally<2>&, Health&);
 template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,

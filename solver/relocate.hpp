@@ -32,11 +32,17 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
 template <int D>
 bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order);
 
+/// What a particle takes along that goes, or brings that comes, as far as it is a number.
+template <int D>
+Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Index row);
+
 /// Deletes the particles that no step can go on from: position, velocity, deformation or stress not finite, or turned inside out.
 template <int D>
 void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
                    CellOrder& order, ExactSums<Departed<D>>& departed);
 
+extern template Departed<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
+extern template Departed<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
 extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
                                  CellOrder&, Tally<2>&, Health&);
 extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,

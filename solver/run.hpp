@@ -10,13 +10,15 @@ namespace talus {
 
 /// A phase of the analysis.
 struct Stage {
-  std::string name;
-  Real duration{};  ///< [s]
+  std::string name{};
+  std::string kind = "run";  ///< or "geostatic"
+  Real duration{};           ///< [s]
   Real damping{};
   Real ramp{};  ///< [s]
   bool elastic = false;
-  std::optional<Real> residual;  ///< geostatic: ends when the unbalanced force is below this share of the loads
-  std::optional<Real> k0;        ///< start from a K0 stress
+  std::optional<Real> residual{};  ///< geostatic: ends when the unbalanced force is below this share of the loads
+  std::vector<Table> k0{};         ///< start from a K0 stress: ratio by depth [m], of each body; empty: do not
+  std::vector<Index> k0_bodies{};  ///< that do, by their numbers; none: all
   bool reset_displacement = false;
   Where where;
 };
@@ -29,22 +31,25 @@ struct StepLimits {
 
 /// How a stage went.
 struct StageResult {
-  std::string name;
+  std::string name, kind;
   Real start{}, end{};  ///< [s]
   std::int64_t steps{};
   Real residual{};  ///< at its end
   EnergyLedger energy;
   Real kinetic_end{}, plastic_end{};  ///< [J]
+  Real first_residual{};              ///< of its first step: how far the state that it began with was from balance
   static constexpr auto fields()
   {
     return std::tuple{kept("name", &StageResult::name),
+                      kept("kind", &StageResult::kind),
                       kept("start", &StageResult::start),
                       kept("end", &StageResult::end),
                       kept("steps", &StageResult::steps),
                       kept("residual", &StageResult::residual),
                       kept("energy", &StageResult::energy),
                       kept("kinetic_end", &StageResult::kinetic_end),
-                      kept("plastic_end", &StageResult::plastic_end)};
+                      kept("plastic_end", &StageResult::plastic_end),
+                      kept("first_residual", &StageResult::first_residual)};
   }
 };
 
@@ -100,6 +105,15 @@ void stop_if_unwell(Model<D, K>& m, bool step_is_done)
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, what));
 }
 
+/// The bodies, those without particles whose numbers are not among `chosen`, unless that is empty.
+inline std::vector<Body> only_bodies(std::span<const Index> chosen, std::vector<Body> bodies)
+{
+  for (std::size_t b = 0; b < bodies.size() && !chosen.empty(); ++b)
+    if (std::find(chosen.begin(), chosen.end(), static_cast<Index>(b)) == chosen.end())
+      bodies[b].end = bodies[b].begin;
+  return bodies;
+}
+
 /// Sets the model up for the stage of that number.
 template <int D, Kernel<D> K>
 void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
@@ -111,8 +125,12 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
              .ramp_time = stage.ramp,
              .elastic = stage.elastic,
              .seeks_rest = stage.residual || stage.damping > 0};
-  if (stage.k0)
-    set_k0_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(m.clock.time, 1), *stage.k0, m.order, m.bodies, m.materials, m.particles);
+  // Under a K0 stress all of gravity acts, however it grows afterwards.
+  const Real time = m.clock.time, ramp = stage.k0.empty() ? m.stage.ramp(time) : 1;
+  soak(m.mesh, {m.water, ramp * m.loads.gravity.table(time)}, m.bodies, m.particles);
+  if (!stage.k0.empty())
+    set_k0_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(time, ramp), stage.k0, m.order, only_bodies(stage.k0_bodies, m.bodies),
+                  m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m), .remapped = m.transfer.musl};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
 }
@@ -162,6 +180,8 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
     const std::int64_t step = m.clock.step;
     advance(m, dt);
     stop_if_unwell(m, m.clock.step > step);
+    if (step == m.stage.first_step)
+      m.stage.first_residual = m.residual;
     const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
                       totals(m).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
     m.stage.balanced = calm ? m.stage.balanced + 1 : 0;
@@ -171,8 +191,8 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   if (const auto why = fault(m, Look::at_end_of_stage))
     give_up(m, before, watch, *why);
   const Totals<D> now = totals(m);
-  const StageResult result{stage.name, begin,    m.clock.time, m.clock.step - m.stage.first_step,
-                           m.residual, m.energy, now.kinetic,  plastic_work(m)};
+  const StageResult result{stage.name,  stage.kind,      begin,   m.clock.time, m.clock.step - m.stage.first_step, m.residual, m.energy,
+                           now.kinetic, plastic_work(m), m.stage.first_residual};
   if (stage.residual && m.stage.balanced < steps_in_balance)
     give_up(m, before, watch,
             fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it "

@@ -38,7 +38,8 @@ Lanes stress_power(const Sym3Of<Lanes>& a, const Eigen::Matrix<Lanes, D, D, Eige
 
 template <int D, class L, class S>
 [[gnu::flatten]] void update_bunch(const Mesh<D>& mesh, Batch<L>& batch, const BunchOf<S>& bunch, Real dt, bool elastic,
-                                   const std::vector<Real>& averaged, Particles<D>& particles, Health& health, StressLanes& sums) noexcept
+                                   const std::vector<Real>& averaged, const std::optional<PoreWater>& pore, Particles<D>& particles,
+                                   Health& health, StressLanes& sums) noexcept
 {
   const auto rate = bunch.load(particles.L);
   const Mat3Of<Lanes> velocity_gradient = embed(rate);
@@ -78,8 +79,14 @@ template <int D, class L, class S>
         (batch.viscosity->quadratic * h * shrinking + batch.viscosity->linear * wave_speed);
     bunch.store(q, particles.viscous);
   }
+  Lanes u = 0;
+  if (pore) {
+    told_stress.diagonal().array() += bunch.load(particles.pore);
+    u = bunch.lanes([&](std::size_t p) { return pore->pressure(mesh, particles.cell[p], particles.x[p]); });
+    bunch.store(u, particles.pore);
+  }
   Mat3Of<Lanes> after = batch.update(i, bunch.count, {told_F, told_L, told_stress, dt, q, elastic});
-  after.diagonal().array() -= q;
+  after.diagonal().array() -= q + u;
   const Sym3Of<Lanes> stress = pack(after);
   const auto answered = isfinite(Lanes(stress.sum()));
   if (!everywhere(answered))
@@ -101,7 +108,7 @@ template <int D, class L, class S>
 
 template <int D>
 StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<const Index> rows, Real dt, bool elastic,
-                         const std::vector<Real>& averaged, Particles<D>& particles, Health& health)
+                         const std::vector<Real>& averaged, const std::optional<PoreWater>& pore, Particles<D>& particles, Health& health)
 {
   const auto begin = std::chrono::steady_clock::now();
   StressLanes lanes;
@@ -109,7 +116,8 @@ StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<cons
       [&](auto& batch) {
         in_numbers_of(particles, [&]<class S>(S) {
           for_each_bunch<S>(
-              rows, [&](const BunchOf<S>& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, particles, health, lanes); },
+              rows,
+              [&](const BunchOf<S>& bunch) { update_bunch(mesh, batch, bunch, dt, elastic, averaged, pore, particles, health, lanes); },
               [&](std::size_t p) {
                 AskFor<S>::row(p, particles.F, particles.stress, particles.volume, particles.volume0, particles.mass);
               });
@@ -121,9 +129,9 @@ StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<cons
   return sums;
 }
 
-template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&, Particles<2>&,
-                                     Health&);
-template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&, Particles<3>&,
-                                     Health&);
+template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&,
+                                     const std::optional<PoreWater>&, Particles<2>&, Health&);
+template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&,
+                                     const std::optional<PoreWater>&, Particles<3>&, Health&);
 
 }  // namespace talus

@@ -5,6 +5,7 @@
 #include "materials/batch.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/bunch.hpp"
+#include "solver/water.hpp"
 
 namespace talus {
 
@@ -23,23 +24,24 @@ struct StressSums {
   }
 };
 
-/// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history) - q_p I for the particles of a body in `rows`, four at a time.
+/// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history) - (q_p + u_p) I for the particles of a body in `rows`, four at a time.
 ///
 /// A body that averages its volume (`averaged` holds the new ratios, see average_volume) tells its law F and I + dt L with their
 /// in-plane volume ratio replaced; F_p itself stays what the motion made it.  q_p is the artificial viscous pressure of a body that
 /// has one:  q = rho h |d| (quadratic h |d| + linear c) where the volume shrinks at the rate d = tr L, h the altitude of the cell
-/// (von Neumann & Richtmyer 1950; linear term of Landshoff 1955).
+/// (von Neumann & Richtmyer 1950; linear term of Landshoff 1955).  u_p is the pressure of `pore` water where the particle is now, so
+/// that the law sees effective stress; without pore water the law sees all there is.
 ///
 /// The crossing counts viscosity nu and q by the damping of the wave of one cell: speed = Q + sqrt(Q^2 + c^2) with
 /// Q = D nu / h + quadratic h |d| + linear c, exact for a chain of equal cells.
 template <int D>
 StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<const Index> rows, Real dt, bool elastic,
-                         const std::vector<Real>& averaged, Particles<D>& particles, Health& health);
+                         const std::vector<Real>& averaged, const std::optional<PoreWater>& pore, Particles<D>& particles, Health& health);
 
 extern template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&,
-                                            Particles<2>&, Health&);
+                                            const std::optional<PoreWater>&, Particles<2>&, Health&);
 extern template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&,
-                                            Particles<3>&, Health&);
+                                            const std::optional<PoreWater>&, Particles<3>&, Health&);
 
 /// Altitude h [m] / (effective wave speed + |v|) of a particle [s].  `shrinking` is max(-tr L, 0) [1/s].  T is Real or Lanes.
 template <int D, class L, class T>

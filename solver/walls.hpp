@@ -52,6 +52,8 @@ class Walls {
     Vec<D> linear = Vec<D>::Zero();  ///< [N s]
     Vec3 angular = Vec3::Zero();     ///< about the origin [N m s]
   };
+  /// A condition that does not act, and keeps its place among the others.
+  void add(Wall<D> wall) { walls_.push_back(std::move(wall)); }
   /// Conditions on all components of the nodes given.
   void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nodes);
   /// Conditions with a normal: facets of one group.  Facets that meet in a node under less than 30 degrees share their mean

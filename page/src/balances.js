@@ -41,8 +41,12 @@ function closing_words(name, {closure, relative_to: scale, closes}) {
 
 function mass_words(mass) {
   const removed = mass['removed [kg]'];
+  const by_stages = (count, kilograms, words) =>
+    count || kilograms ? `stages ${words} ${count ?? 0} particles with ${with_unit(kilograms, 'kg')}; ` : '';
   return (
     `${with_unit(mass['start [kg]'], 'kg')} at the start, ${with_unit(mass['end [kg]'], 'kg')} at the end; ` +
+    by_stages(mass.particles_placed, mass['placed [kg]'], 'placed') +
+    by_stages(mass.particles_taken, mass['taken [kg]'], 'took') +
     (mass.particles_removed
       ? `${mass.particles_removed} particles with ${with_unit(removed, 'kg')} were removed.`
       : 'no particle was removed.')

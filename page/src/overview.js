@@ -53,13 +53,14 @@ function remark_list(remarks) {
 const stage_table = (stages) =>
   table(
     'Stages',
-    ['stage', 'result', 'steps', 'simulated', 'residual'],
+    ['stage', 'result', 'steps', 'simulated', 'unbalanced / loads', 'when it began'],
     stages.map((stage, k) => [
-      `${k} ${stage.kind}`,
+      `${k} ${stage.name ?? stage.kind}`,
       stage.result || '–',
       whole(stage.steps),
       with_unit(stage['duration [s]'], 's'),
       stage.residual === undefined ? '–' : number(stage.residual, 3),
+      stage.residual_at_begin === undefined ? '–' : number(stage.residual_at_begin, 3),
     ]),
   );
 
@@ -107,6 +108,7 @@ export function show_overview(element, run, remarks) {
           )
         : null,
       summary?.stages?.length ? stage_table(summary.stages) : null,
+      summary?.changes?.length ? el('ul', {class: 'changes'}, summary.changes.map((change) => el('li', {}, change))) : null,
       body_table(summary?.bodies?.length ? summary.bodies : (run.particles?.bodies ?? [])),
     ].filter(Boolean),
   );

@@ -33,6 +33,9 @@ class OnRanks : public Program {
   /// All files but checkpoints, whose rows stand in another order, and the summary, which has times.
   void expect_same_files(const std::string& a, const std::string& b) const
   {
+    for (const std::string folder : {"maps", "sections"})
+      if (exists(a + "/" + folder))
+        expect_same_files_in(folder_ / a / folder, folder_ / b / folder);
     std::set<std::string> names[2];
     for (const auto& [folder, seen] : {std::pair(a, &names[0]), std::pair(b, &names[1])})
       for (const auto& entry : fs::directory_iterator(folder_ / folder))

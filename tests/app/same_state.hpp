@@ -79,9 +79,24 @@ inline void expect_same_state(const std::filesystem::path& one, const std::files
   EXPECT_GT(compared, 60);
 }
 
+/// The same files with the same bytes.
+inline void expect_same_files_in(const std::filesystem::path& one, const std::filesystem::path& other)
+{
+  std::set<std::string> names[2];
+  for (const auto& [folder, seen] : {std::pair(one, &names[0]), std::pair(other, &names[1])})
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      seen->insert(entry.path().filename().string());
+  ASSERT_EQ(names[0], names[1]) << one << " and " << other;
+  for (const std::string& name : names[0])
+    EXPECT_TRUE(read_whole(one / name) == read_whole(other / name)) << name << " of " << one << " and " << other;
+}
+
 /// Folders of results: the same files with the same bytes, but for the summary, which tells the time of day.
 inline void expect_same_results(const std::filesystem::path& one, const std::filesystem::path& other)
 {
+  for (const std::string folder : {"maps", "sections"})
+    if (std::filesystem::exists(one / folder))
+      expect_same_files_in(one / folder, other / folder);
   for (const auto& entry : std::filesystem::directory_iterator(one))
     if (const auto name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
       EXPECT_TRUE(read_whole(entry.path()) == read_whole(other / name)) << name << " of " << one << " and " << other;

@@ -124,6 +124,33 @@ inline std::vector<SceneCase> scenes_of_all()
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
         .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
                 "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
+  all.push_back(
+      {"water",
+       {.more = "water: {table: {points: [[0, 0.9], [2, 0.4]]}, suction: 1.0e3, bodies: [low]}\n",
+        .law = all[5].parts.law,
+        .bodies = "bodies:\n"
+                  "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, "
+                  "saturated_density: 2100}\n"
+                  "  - {name: high, material: stuff, shape: {type: box, low: [1, 0], high: [2, 1]}, particles_per_cell: 3}\n",
+        .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
+        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, residual: 5.0e-2, initial_stress: {from_friction: true}}\n"
+                "  - {type: run, duration: 0.03}\n"}});
+  all.push_back(
+      {"stages_that_change",
+       {.law = all[5].parts.law + "}, {name: other, density: 2500, law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, "
+                                  "friction_angle: 30, cohesion: 4.0e3, bulk_viscosity: {}",
+        .bodies =
+            "bodies:\n"
+            "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
+            "  - {name: stone, material: stuff, shape: {type: box, low: [1.3, 0], high: [2, 0.5]}, particles_per_cell: 3}\n"
+            "  - {name: fill, material: other, shape: {type: box, low: [0, 1.3], high: [1, 1.9]}, particles_per_cell: 4, velocity: [1, "
+            "-4], f_bar: true}\n",
+        .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3, during: [one, three]}, {type: roller, on: x_min, during: "
+                      "[two]}, {type: fixed, on: x_max}, {type: fixed, on: y_max}]\n",
+        .time = "time: {max_step: 1.4e-3}\nstages:\n  - {type: run, name: one, duration: 0.014}\n"
+                "  - {type: run, name: two, duration: 0.0098, appear: [fill], change: [{body: low, material: other}]}\n"
+                "  - {type: run, name: three, duration: 0.014, damping: 0.2, vanish: [stone], weaken: [{factor: 1.5}]}\n",
+        .outputs = ", points: [{name: top, at: [0.5, 1.6], body: fill}], fronts: [{name: toe, direction: +x}]"}});
   SceneParts in_3d{.dimension = solid,
                    .law = all[5].parts.law,
                    .bodies =
@@ -134,6 +161,12 @@ inline std::vector<SceneCase> scenes_of_all()
                    .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
                    .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"};
   all.push_back({"solid", in_3d});
+  SceneParts runs_out = in_3d;
+  runs_out.outputs +=
+      ", walls: [{on: y_min}]}\n  runout: {every: 0.004, frames_every: 0.02, cell: 0.3, moved: 0.01, threshold: 0.05, eroded: [low], csv: true, sections: "
+      "[{name: axis, "
+      "along: [[0, 0], [1, 2]]}]";
+  all.push_back({"run_out", runs_out});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
   in_3d.law = SceneParts{}.law;
   all.push_back({"solid_umls", in_3d});

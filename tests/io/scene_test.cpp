@@ -192,6 +192,27 @@ TEST(Scene, ReadsStages)
   EXPECT_EQ(std::get<RunSpec>(s.stages.at(1)).damping, 0.05);
 }
 
+TEST(Scene, ReadsWhatStagesChange)
+{
+  const Scene s = scene("plane.yaml");
+  EXPECT_EQ(name_of(s.stages.at(0)), "geostatic");
+  EXPECT_EQ(name_of(s.stages.at(2)), "built");
+  const StageChanges &built = changes_of(s.stages.at(2)), &shaken = changes_of(s.stages.at(3));
+  EXPECT_THAT(built.appear, ElementsAre("stone"));
+  EXPECT_EQ(built.change.at(0).body, "slope");
+  EXPECT_EQ(built.change.at(0).material, "rock");
+  EXPECT_THAT(shaken.vanish, ElementsAre("stone"));
+  EXPECT_EQ(shaken.weaken.at(0).body, "slope");
+  EXPECT_EQ(shaken.weaken.at(0).factor, 1.3);
+  EXPECT_THAT(during_of(s.boundaries.at(3)), ElementsAre("built", "shaken"));
+  EXPECT_TRUE(acts_in(s.boundaries.at(3), "shaken"));
+  EXPECT_FALSE(acts_in(s.boundaries.at(3), "geostatic"));
+  const Presence stone = presence_of("stone", s.stages), slope = presence_of("slope", s.stages);
+  EXPECT_EQ(stone.from, 2);
+  EXPECT_EQ(stone.until, 3);
+  EXPECT_TRUE(slope.in(0) && slope.in(3));
+}
+
 TEST(Scene, ReadsOutputs)
 {
   const OutputSpec out = scene("plane.yaml").outputs;

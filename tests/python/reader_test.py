@@ -39,6 +39,7 @@ outputs:
   particles: {every: 0.025, fields: [velocity, displacement, stress, plastic_strain]}
   mesh: {every: 0.05, fields: [mass, velocity]}
   history: {every: 0.01, fronts: [{name: toe, direction: +x, body: heap}]}
+  runout: {every: 0.05, moved: 0, sections: [{name: axis, along: [[1, 0], [1, 4]]}]}
 """
 STUDY = "scene: scene.yaml\nvary:\n  materials[0].friction_angle: [10, 20, 40]\n  time.cfl: [0.4, 0.8]\ncollect: [toe, plastic]\n"
 MANY = """title: More rows than one piece has
@@ -90,6 +91,11 @@ class OfARun(unittest.TestCase):
         process.wait()
         self.assertEqual(talus.Run(self.folder / "killed").status, "not ended")
         self.assertEqual(talus.Run(self.folder / "many").status, "stopped")
+
+    def test_a_run_out_has_a_table_and_sections(self):
+        self.assertEqual(self.run_.runout.units["volume"], "m^3")
+        self.assertEqual(self.run_.runout["time"][0], 0)
+        self.assertEqual(self.run_.section("axis")["distance"][[0, -1]].tolist(), [0, 4])
 
     def test_a_history_has_columns_with_units_and_is_a_structured_array(self):
         history = self.run_.history
@@ -180,6 +186,8 @@ class OfARun(unittest.TestCase):
             talus.Particles(self.folder / "out" / "mesh.vtu")
         with self.assertRaises(FileNotFoundError):
             talus.Run(self.folder / "nowhere")
+        with self.assertRaisesRegex(FileNotFoundError, "sweep.csv is not there: nothing has written a table"):
+            talus.Sweep(self.folder)
 
     def test_what_is_not_there_is_named_with_what_is(self):
         last = self.run_.particles[-1]

@@ -37,7 +37,7 @@ void update_all(Model<D, K>& m, Real dt)
 {
   std::vector<Index> rows(m.particles.id.size());
   std::iota(rows.begin(), rows.end(), 0);
-  update_stress(m.mesh, m.materials[0], rows, dt, false, m.averaged, m.particles, m.health);
+  update_stress(m.mesh, m.materials[0], rows, dt, false, m.averaged, {}, m.particles, m.health);
 }
 
 JohnsonCook metal(std::optional<Real> conductivity)
@@ -128,7 +128,7 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
     return m;
   };
   const auto update = [](auto& m, std::span<const Index> rows) {
-    return update_stress(m.mesh, m.materials[0], rows, 1e-3, false, m.averaged, m.particles, m.health);
+    return update_stress(m.mesh, m.materials[0], rows, 1e-3, false, m.averaged, {}, m.particles, m.health);
   };
   const std::vector<Index> rows{7, 2, 3, 11, 5, 0};
   for (std::size_t n = 1; n <= rows.size(); ++n) {

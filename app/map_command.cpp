@@ -1,0 +1,69 @@
+// talus map
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/film.hpp"
+#include "app/rendered_run.hpp"
+#include "app/results.hpp"
+#include "app/runout.hpp"
+#include "core/error.hpp"
+#include "io/launch_render.hpp"
+#include "io/picture_settings.hpp"
+#include "io/reader.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names of the axes of the plan, to the right and upwards.
+std::array<std::string, 2> names_of_axes(const Scene& scene)
+{
+  Vec3 gravity = Vec3::Zero();
+  for (const LoadSpec& load : scene.loads)
+    if (const auto* given = std::get_if<GravitySpec>(&load))
+      for (std::size_t d = 0; d < std::min<std::size_t>(3, given->acceleration.size()); ++d)
+        gravity[static_cast<Index>(d)] = given->acceleration[d];
+  const PlanAxes axes = plan_axes<3>(gravity);
+  return {std::string(1, "xyz"[axes.plan[0]]), std::string(1, "xyz"[axes.plan[1]])};
+}
+
+/// Error: there is nothing to draw.
+void require_maps(const fs::path& folder, const Scene& scene, bool movie)
+{
+  std::error_code not_there;
+  if (!scene.outputs.runout)
+    throw Error(fmt::format("{} has no maps: the scene does not ask for outputs.runout", folder.string()));
+  if (!fs::exists(folder / section_folder, not_there) && !fs::exists(folder / map_folder / "ground.tif", not_there))
+    throw Error(fmt::format("{} has no maps yet: they are written when a stage of the run is over", folder.string()));
+  if (movie && (!scene.outputs.runout->frames_every || !fs::exists(folder / map_folder / "thickness_0000.tif", not_there)))
+    throw Error(fmt::format("--movie: {} has no maps of the thickness in time: the scene asks for them by outputs.runout.frames_every",
+                            folder.string()));
+}
+
+}  // namespace
+
+void draw_maps(const MapOptions& options)
+{
+  require_run(options.folder);
+  const Scene scene = read_scene(options.folder / "scene.yaml");
+  const auto axes = names_of_axes(scene);
+  std::vector<std::string> words{options.folder.string(), "--title", scene.title, "--axes", axes[0], axes[1]}, problems;
+  words.insert(words.end(), options.words.begin(), options.words.end());
+  if (options.movie && scene.outputs.runout && scene.outputs.runout->frames_every)
+    words.insert(words.end(), {"--frames", fmt::format("{}", *scene.outputs.runout->frames_every)});
+  render::parse_maps(words, problems);
+  check_movie(options, options.words, problems);
+  render::require_none(problems);
+  require_maps(options.folder, scene, options.movie.has_value());
+  words.insert(words.begin(), "map");
+  if (options.movie)
+    film(options, std::move(words));
+  else
+    for (const RenderedFile& file : launch_render(words))
+      fmt::print("{}\n", file.path.string());
+}
+
+}  // namespace talus

@@ -1,0 +1,23 @@
+#pragma once
+// The block `water` of a scene -> the table at the nodes, and particles whose pores are full.
+#include "app/complaints.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/water.hpp"
+
+namespace talus {
+
+/// Where the table is, cut at the ground, which is the upper side of the cells that are `filled` on any rank.  Complains of a table that is not
+/// known where there is material or lies above most of the ground, and of gravity that does not point down; warns of what is cut.
+template <int D>
+Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>& bodies, const std::function<bool(Index)>& filled,
+               Complaints& complaints, std::vector<std::string>& warnings);
+
+/// The mass of particles below the table becomes that of their body's saturated density, where it has one.
+template <int D>
+void saturate(const Scene& scene, const Mesh<D>& mesh, const Water& water, const std::vector<Body>& bodies, Particles<D>& particles);
+
+/// Particles of a body, of this rank, that lie below the table.
+template <int D>
+Index count_wet(const Mesh<D>& mesh, const Water& water, const Body& body, const Particles<D>& particles);
+
+}  // namespace talus

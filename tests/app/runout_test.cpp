@@ -1,0 +1,187 @@
+// Run-out of bodies that move as they began to: every number and every map has a closed form.
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "app/reach.hpp"
+#include "io/raster_file.hpp"
+#include "io/summary_json.hpp"
+#include "tests/app/program.hpp"
+
+namespace talus::runout_test {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Reach, GoesFromTheHighestPlaceToTheFurthest)
+{
+  const std::vector<Vec3> then{{0, 0, 10}, {1, 0, 12}, {2, 0, 9}}, now{{3, 0, 8}, {9, 0, 5}, {21, 0, 2}};
+  const std::vector<Real> mass{98.5, 1, 0.5};
+  const auto all = reach_of(then, now, mass, Vec3::UnitZ(), 1);
+  ASSERT_TRUE(all);
+  EXPECT_EQ(all->crown, Vec3(1, 0, 12));
+  EXPECT_EQ(all->front, Vec3(21, 0, 2));
+  EXPECT_DOUBLE_EQ(all->height, 10);
+  EXPECT_DOUBLE_EQ(all->length, 20);
+  const auto most = reach_of(then, now, mass, Vec3::UnitZ(), 0.99);  // half a percent lies beyond
+  EXPECT_EQ(most->front, Vec3(9, 0, 5));
+  EXPECT_EQ(reach_of(then, now, mass, Vec3::UnitZ(), 0.98)->front, Vec3(3, 0, 8));
+  EXPECT_FALSE(reach_of({}, {}, {}, Vec3::UnitZ(), 1));
+}
+
+class RunOut : public Program {
+ protected:
+  HistoryTable table(const std::string& file) const { return read_history(folder_ / file); }
+  Raster map(const std::string& name) const { return read_raster(folder_ / ("out/maps/" + name)); }
+};
+
+/// Half a cubic metre of 2000 kg/m^3 flies 2 m along x in 1 s.
+std::string flying_block(const std::string& runout)
+{
+  return "title: Flying block\ndimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [4, 1, 1], cells: [8, 2, 2]}}\n"
+         "materials: [{name: stuff, law: neo_hookean, density: 2000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\n"
+         "bodies: [{name: block, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 0.5]}, particles_per_cell: 4, velocity: "
+         "[2, 0, 0]}]\ntime: {end: 1}\noutputs:\n  runout: {every: 0.02, cell: 0.25" +
+         runout + "}\n";
+}
+
+TEST_F(RunOut, OfAFlyingBlockIsThatOfItsMotion)
+{
+  write("scene.yaml",
+        flying_block(", moved: 0, csv: true, mass_share: 1, frames_every: 0.5, sections: [{name: axis, along: [[0, 0.5], [4, 0.5]]}]"));
+  const Outcome outcome = talus("run scene.yaml --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("run-out: H "));
+  EXPECT_THAT(outcome.out, HasSubstr("still moving"));
+
+  const HistoryTable rows = table("out/runout.csv");
+  EXPECT_NEAR(last(rows, "volume"), 0.5, 1e-12);
+  EXPECT_NEAR(last(rows, "centre_L"), 2, 1e-9);
+  EXPECT_NEAR(last(rows, "centre_H"), 0, 1e-9);
+  EXPECT_NEAR(last(rows, "centre_x"), 2.5, 1e-9);
+  EXPECT_NEAR(last(rows, "largest_speed"), 2, 1e-9);
+  EXPECT_NEAR(last(rows, "kinetic"), 2000, 1e-6);
+  EXPECT_NEAR(last(rows, "front_x") - first(rows, "front_x"), 2, 0.5) << "another particle may be the furthest";
+  EXPECT_GE(rows.rows(), 50U);
+
+  const auto numbers = read_summary(folder_ / "out/summary.json").numbers;
+  ASSERT_NE(find_number(numbers, "runout.volume"), nullptr);
+  EXPECT_NEAR(find_number(numbers, "runout.volume")->value, 0.5, 1e-12);
+  EXPECT_TRUE(std::isnan(find_number(numbers, "runout.stopped")->value));
+
+  const Raster thickness = map("thickness.tif");
+  ASSERT_EQ(thickness.columns, 16);
+  ASSERT_EQ(thickness.rows, 4);
+  EXPECT_NEAR(thickness.dx, 0.25, 1e-12);
+  Real volume = 0;
+  for (Index row = 0; row < 4; ++row)
+    for (Index column = 0; column < 16; ++column) {
+      const Real h = thickness.at(column, row);
+      volume += std::isnan(h) ? 0 : h * thickness.dx * thickness.dy;
+      if (column < 7 || column > 12) {
+        EXPECT_TRUE(std::isnan(h)) << column << " " << row;
+      } else if (column > 8 && column < 11) {
+        EXPECT_NEAR(h, 0.5, 0.25) << column << " " << row;
+      }
+    }
+  EXPECT_NEAR(volume, 0.5, 1e-7) << "single precision in the file";
+  const Raster source = map("source.tif"), speed = map("speed_max.tif"), ground = map("ground.tif");
+  EXPECT_FALSE(std::isnan(source.at(1, 1)));
+  EXPECT_TRUE(std::isnan(source.at(8, 1)));
+  EXPECT_NEAR(speed.at(6, 2), 2, 1e-6);
+  EXPECT_NEAR(ground.at(1, 1), 0.5, 0.12) << "the block itself, at the start";
+  EXPECT_EQ(ground.at(8, 1), 0) << "the floor of the mesh";
+  EXPECT_TRUE(exists("out/maps/thickness.csv") && exists("out/maps/thickness_0000.tif") && exists("out/maps/thickness_0002.tif"));
+  EXPECT_FALSE(exists("out/maps/thickness_0003.tif") || exists("out/maps/erosion.tif"));
+
+  const HistoryTable section = table("out/sections/axis.csv");
+  const auto distance = section["distance"], arrival = section["arrival"];
+  ASSERT_TRUE(distance && arrival);
+  int seen = 0;
+  for (std::size_t i = 0; i < distance->size(); ++i)
+    if (const Real x = (*distance)[i]; x > 1.5 && x < 2.6) {
+      EXPECT_NEAR((*arrival)[i], (x - 1) / 2, 0.15) << x;
+      ++seen;
+    }
+  EXPECT_GE(seen, 3);
+
+  const Outcome drawn = talus("map out --only thickness_max sections --size 400x300");
+  EXPECT_EQ(drawn.code, 0) << drawn.err;
+  EXPECT_TRUE(exists("out/pictures/map_thickness_max.png") && exists("out/pictures/section_axis.png")) << drawn.out;
+  const Outcome misspelt = talus("map out --only thickness_mx");
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_THAT(misspelt.err, HasSubstr("thickness_max"));
+  ASSERT_EQ(talus("run scene.yaml --out out --quiet --set time.end=0.01").code, 0);
+  EXPECT_FALSE(exists("out/maps/thickness_0002.tif")) << "of the run before";
+}
+
+/// Two blocks in a plane: one of 1 m/s, the other of half that, which counts as ground.
+TEST_F(RunOut, CountsWhatHasMovedAndWhatItTookAlong)
+{
+  write("scene.yaml",
+        "title: Two blocks\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [6, 1], cells: [12, 2]}}\n"
+        "materials: [{name: stuff, law: neo_hookean, density: 2000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\nbodies:\n"
+        "  - {name: slide, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.5]}, velocity: [1, 0]}\n"
+        "  - {name: bed, material: stuff, shape: {type: box, low: [3, 0], high: [4, 0.5]}, velocity: [0.5, 0]}\n"
+        "time: {end: 1}\noutputs: {runout: {every: 0.1, cell: 0.25, moved: 0.2, eroded: [bed]}}\n");
+  const Outcome outcome = talus("run scene.yaml --quiet --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable rows = table("out/runout.csv");
+  const auto time = rows["time"], volume = rows["volume"], entrained = rows["entrained"];
+  ASSERT_TRUE(time && volume && entrained);
+  for (std::size_t i = 0; i < time->size(); ++i) {
+    const Real t = (*time)[i];
+    if (std::abs(t - 0.2) < 0.05 || std::abs(t - 0.4) < 0.05)
+      continue;  // when they pass 0.2 m
+    EXPECT_NEAR((*volume)[i], t < 0.2 ? 0 : t < 0.4 ? 0.5 : 1, 1e-9) << t;
+    EXPECT_NEAR((*entrained)[i], t < 0.4 ? 0 : 0.5, 1e-9) << t;
+  }
+  const HistoryTable plane = table("out/sections/plane.csv");
+  const auto x = plane["x"], erosion = plane["erosion"];
+  ASSERT_TRUE(x && erosion);
+  Real eroded = 0;
+  for (std::size_t i = 0; i < x->size(); ++i) {
+    const Real depth = (*erosion)[i];
+    eroded += std::isnan(depth) ? 0 : depth * 0.25;
+    if ((*x)[i] < 2.7 || (*x)[i] > 4.3) {
+      EXPECT_TRUE(std::isnan(depth)) << (*x)[i];
+    }
+  }
+  EXPECT_NEAR(eroded, 0.5, 1e-9);
+}
+
+/// An elastic layer 1 m high between smooth walls, nu / (1 - nu) = 1/2: it pushes with rho g h^2 / 4, a third of the height above the floor.
+TEST_F(RunOut, PushOfALayerOnAWallIsThatOfEarthPressureAtRest)
+{
+  write("scene.yaml",
+        "title: Layer\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 1.25], cells: [16, 10]}}\n"
+        "materials: [{name: soil, law: linear_elastic, density: 2000, youngs_modulus: 1.0e7, poisson_ratio: 0.3333333333}]\n"
+        "bodies: [{name: layer, material: soil, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 6}]\n"
+        "loads: [{type: gravity, acceleration: [0, -9.81]}]\n"
+        "boundaries: [{type: roller, on: x_min}, {type: roller, on: x_max}, {type: roller, on: y_min}]\n"
+        "stages: [{type: geostatic, duration: 2, residual: 1.0e-2, damping: 0.7, initial_stress: {k0: 0.5}}, {type: run, duration: 0.05}]\n"
+        "outputs: {history: {every: 0.05, walls: [{on: x_min}, {on: y_min}]}}\n");
+  const Outcome outcome = talus("run scene.yaml --quiet --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable rows = history("out");
+  const Real weight = 2000 * 9.81;  // of a cubic metre
+  EXPECT_NEAR(last(rows, "push_x_min"), weight / 4, 0.02 * weight / 4);
+  EXPECT_NEAR(last(rows, "attack_x_min_y"), 1. / 3, 0.03);
+  EXPECT_NEAR(last(rows, "attack_x_min_x"), 0, 1e-12);
+  EXPECT_NEAR(last(rows, "touched_x_min"), 1, 0.125) << "half a cell more: nodes with mass";
+  EXPECT_NEAR(last(rows, "pressure_x_min"), last(rows, "push_x_min") / last(rows, "touched_x_min"), 1e-9);
+  EXPECT_NEAR(last(rows, "push_y_min"), 2 * weight, 0.02 * 2 * weight);
+  EXPECT_NEAR(last(rows, "attack_y_min_x"), 1, 0.02);
+}
+
+TEST_F(RunOut, IsNotDrawnOfARunWithoutIt)
+{
+  write("scene.yaml", block_scene("time: {end: 0.01}\n"));
+  ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
+  const Outcome outcome = talus("map out");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("outputs.runout"));
+}
+
+}  // namespace
+}  // namespace talus::runout_test
