@@ -7,7 +7,7 @@ namespace talus {
 Real EnergyNow::largest_term() const noexcept
 {
   Real largest = 0;
-  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls})
+  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls, waves})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -49,6 +49,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
       start_ = momentum_of(frame);
     } else {
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
+      before_.waves += stage_.waves;
       before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
       before_.carried_away += stage_.carried_away, before_.plastic_deleted += stage_.plastic_deleted;
       transfer_before_ += stage_.transfer(kinetic_end_);
@@ -85,6 +86,7 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
   now.gravity = before_.gravity + e.gravity;
   now.loads = before_.loads + e.loads;
   now.walls = before_.walls + e.walls;
+  now.waves = before_.waves + e.waves;
   now.transfer = transfer_before_ + e.transfer(now.kinetic + taken_out_);
   now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction -
                now.damping - now.carried_away - now.transfer;

@@ -12,6 +12,7 @@ struct EnergyNow {
   Real friction{}, damping{};       ///< damping: with the motion that is taken out at the end of a geostatic stage
   Real carried_away{};              ///< kinetic energy of what left the mesh, failed, or was taken away by a stage
   Real gravity{}, loads{}, walls{};
+  Real waves{};     ///< that waves brought to the walls: no term of the balance, but what is small beside it is small
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
   bool remapped{};  ///< MUSL: transfer and defect may be large together and nearly cancel
@@ -28,6 +29,7 @@ struct EnergyNow {
                       kept("gravity", &EnergyNow::gravity),
                       kept("loads", &EnergyNow::loads),
                       kept("walls", &EnergyNow::walls),
+                      kept("waves", &EnergyNow::waves),
                       kept("transfer", &EnergyNow::transfer),
                       kept("defect", &EnergyNow::defect),
                       kept("remapped", &EnergyNow::remapped)};

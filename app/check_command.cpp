@@ -118,6 +118,8 @@ void tell_cost(Scene scene, bool quick, Times times)
   bodies += describe_changes(setup);
   if (setup.origin)
     bodies += describe(*setup.origin);
+  for (const std::string& note : setup.notes)
+    bodies += fmt::format("  {}\n", note);
   const bool measured = times == Times::measured;
   const auto trials = measured ? try_stages(scene, mesh, setup) : std::vector<StageTrial>{};
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));

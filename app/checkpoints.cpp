@@ -362,7 +362,7 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
     find_faults(state.particles, state.bodies, state.materials, faults);
     refuse_if_any(faults);
     recall(arrays, "recorder", recorder);
-    if (!recorder.fits(state.walls.walls().size(), limits.particles))
+    if (!state.walls.fits() || !recorder.fits(state.walls.walls().size(), limits.particles))
       throw EnvironmentError("the walls or points of the checkpoint do not fit the scene");
   };
   const auto [from, reasons] = newest([&](const fs::path& file) {

@@ -28,6 +28,16 @@ void Complaints::add(Where where, std::string_view key, std::string message)
   problems_.push_back({std::move(where), std::move(message), std::move(line)});
 }
 
+void Complaints::add(const Where& where, std::string_view key, const SceneErrors& in_file)
+{
+  for (const Problem& problem : in_file.problems()) {
+    if (problem.where.line == 0)
+      add(where, key, fmt::format("{}: {}", problem.where.file, problem.message));
+    else
+      problems_.push_back(problem);
+  }
+}
+
 void Complaints::unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
                                std::vector<std::string> known)
 {

@@ -13,6 +13,8 @@ class Complaints {
 
   /// About the value of `key` in the mapping at `where`; an empty key means the mapping itself.
   void add(Where where, std::string_view key, std::string message);
+  /// What is wrong in a file that the value of `key` there names.
+  void add(const Where& where, std::string_view key, const SceneErrors& in_file);
   /// There is no such group: names the nearest one, or all.
   void unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
                      std::vector<std::string> known);

@@ -50,8 +50,10 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
     return std::numeric_limits<Real>::infinity();
   const Real size = (mesh.high() - mesh.low()).norm();
   Real speed = 0;
-  for (const Wall<D>& wall : setup.walls.walls())
-    speed = std::max(speed, wall.velocity.norm() * largest_factor(wall.table));
+  for (const Wall<D>& wall : setup.walls.walls()) {
+    const Real of_wave = wall.kind == WallKind::compliant_base ? 2 : 1;  // it meets the one that is thrown back
+    speed = std::max(speed, of_wave * wall.velocity.norm() * (wall.record ? wall.record->peak_velocity() : largest_factor(wall.table)));
+  }
   speed += std::sqrt(2 * setup.loads.gravity.acceleration.norm() * largest_factor(setup.loads.gravity.table) * size);
   Real pressure = 0;  // on the thinnest layer that carries it, over the size of the mesh
   const auto press = [&](const auto& load) {

@@ -86,6 +86,13 @@ std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bo
 }
 
 template <int D>
+std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std::string& wall)
+{
+  auto facets = mesh.facet_set(wall);
+  return facets ? facets : mesh.facet_set(wall.substr(0, wall.rfind('_')));
+}
+
+template <int D>
 Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
 {
   const auto axis = static_cast<Index>(spec.direction) / 2;
@@ -181,9 +188,7 @@ void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Rea
   const auto walls = frame.walls.walls();
   const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall<D>& one) { return one.name == spec.on; });
   const auto w = static_cast<std::size_t>(wall - walls.begin());
-  // A second wall on a group is called GROUP_2.
-  const std::string group = frame.mesh.facet_set(spec.on) ? spec.on : spec.on.substr(0, spec.on.rfind('_'));
-  const MeshTraction<D> on_nodes = carried_by_mesh(frame.mesh, frame.mesh.facet_set(group).value_or(std::vector<Facet>()));
+  const MeshTraction<D> on_nodes = carried_by_mesh<D>(frame.mesh, facets_of_wall(frame.mesh, spec.on).value_or(std::vector<Facet>()));
   ExactSums<Touched<D>> sum;
   for (std::size_t i = 0; i < on_nodes.node.size(); ++i) {
     const Index n = on_nodes.node[i];
@@ -235,6 +240,8 @@ void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_s
   row.insert(row.end(), point.begin(), point.end());
 }
 
+template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
+template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
 template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
 template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
 template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);

@@ -20,6 +20,10 @@ Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particl
 template <int D>
 Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
 
+/// The facets that a wall of the history stands on: the second wall on a group is called GROUP_2.
+template <int D>
+std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std::string& wall);
+
 /// What a row owes to the rows before.
 template <int D>
 struct HistoryState {
@@ -59,6 +63,8 @@ class HistoryWriter {
   std::optional<HistoryFile> file_;
 };
 
+extern template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
+extern template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
 extern template class HistoryWriter<2>;
 extern template class HistoryWriter<3>;
 

@@ -33,12 +33,12 @@ std::array<std::string, 2> names_of_axes(const Scene& scene)
 /// Error: there is nothing to draw.
 void require_maps(const fs::path& folder, const Scene& scene, bool movie)
 {
-  std::error_code not_there;
+  std::error_code unreadable;
   if (!scene.outputs.runout)
     throw Error(fmt::format("{} has no maps: the scene does not ask for outputs.runout", folder.string()));
-  if (!fs::exists(folder / section_folder, not_there) && !fs::exists(folder / map_folder / "ground.tif", not_there))
+  if (!fs::exists(folder / section_folder, unreadable) && !fs::exists(folder / map_folder / "ground.tif", unreadable))
     throw Error(fmt::format("{} has no maps yet: they are written when a stage of the run is over", folder.string()));
-  if (movie && (!scene.outputs.runout->frames_every || !fs::exists(folder / map_folder / "thickness_0000.tif", not_there)))
+  if (movie && (!scene.outputs.runout->frames_every || !fs::exists(folder / map_folder / "thickness_0000.tif", unreadable)))
     throw Error(fmt::format("--movie: {} has no maps of the thickness in time: the scene asks for them by outputs.runout.frames_every",
                             folder.string()));
 }

@@ -106,6 +106,7 @@ class Run {
     if (quick_)
       shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
     stages_ = setup.stages;
+    notes_ = setup.notes;
     if (from_)
       check_durations(*from_, stages_, options_.set);
     check_sources(setup);
@@ -294,6 +295,8 @@ class Run {
                  threads(), threads() == 1 ? "" : "s");
     if (!options_.quiet && summary_.origin)
       fmt::print("{}", describe(*summary_.origin));
+    for (std::size_t n = 0; n < notes_.size() && !options_.quiet; ++n)
+      fmt::print("  {}\n", notes_[n]);
     std::fflush(stdout);
   }
 
@@ -403,6 +406,7 @@ class Run {
   Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
   std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
   std::vector<Stage> stages_;
+  std::vector<std::string> notes_;   // of the set-up
   RunSummary summary_;               // as it begins
   std::optional<fs::path> initial_;  // what bodies begin with
   bool began_ = false;               // the folder is this run's

@@ -9,8 +9,8 @@
 
 #include "app/reach.hpp"
 #include "app/results.hpp"
+#include "app/traps.hpp"
 #include "io/raster_file.hpp"
-#include "io/runout_maps.hpp"
 #include "io/whole_file.hpp"
 
 namespace talus {
@@ -91,7 +91,13 @@ void raise(std::vector<Real>& to, const std::vector<Real>& values)
 }
 
 /// Over a sum that may be nothing.
-Real over(Real sum, Real whole) { return whole > 0 ? sum / whole : no_value; }
+Real over(Real sum, Real whole) { return std::isgreater(whole, 0) ? sum / whole : no_value; }  // NaN is nothing, too
+
+void write_map(const fs::path& file, const Raster& raster)
+{
+  const TrapsPaused paused;
+  write_raster(file, raster);
+}
 
 std::vector<Real> without_zeros(std::vector<Real> values)
 {
@@ -238,17 +244,19 @@ void Runout<D>::go_on(const Frame<D>& frame)
   if (!begun_)
     return;
   lay_out(frame);
+  for (const auto* map : {&ground_, &base_, &surface_, &surface_max_, &thickness_, &thickness_max_, &speed_max_, &intensity_max_, &arrival_,
+                          &source_, &erosion_})
+    if (map->size() != grid_.size())
+      throw EnvironmentError(fmt::format("the maps of the checkpoint have {} cells, those of the scene {}", map->size(), grid_.size()));
   frame.ranks->together([&] { file_.emplace(HistoryFile::resume(folder_ / "runout.csv", columns(), frame.clock.time)); });
 }
 
 template <int D>
 bool Runout<D>::drop_later() const
 {
-  if (!begun_)
-    return true;
   for (int n = frames_; fs::remove(frame_file(n)); ++n) {
   }
-  return file_->last_time() == time_ || time_ < 0;
+  return !begun_ || file_->last_time() == time_ || time_ < 0;
 }
 
 template <int D>
@@ -388,7 +396,7 @@ std::vector<std::string> Runout<D>::see(const Frame<D>& frame, bool last)
   if (!frame_due)
     return {};
   const fs::path file = frame_file(frames_++);
-  frame.ranks->together([&] { write_raster(file, raster(without_zeros(thickness_), "m")); });
+  frame.ranks->together([&] { write_map(file, raster(without_zeros(thickness_), "m")); });
   return {fs::path(map_folder) / file.filename()};
 }
 
@@ -398,16 +406,19 @@ fs::path Runout<D>::frame_file(int n) const
   return folder_ / map_folder / fmt::format("thickness_{:04}.tif", n);
 }
 
-/// As the files have them.
+/// As the files have them: without a value where nothing has moved.
 template <int D>
-std::vector<std::pair<std::string_view, const std::vector<Real>*>> Runout<D>::maps() const
+std::vector<typename Runout<D>::NamedMap> Runout<D>::maps() const
 {
   const std::vector<const std::vector<Real>*> all{&ground_,    &base_,          &surface_, &surface_max_, &thickness_, &thickness_max_,
                                                   &speed_max_, &intensity_max_, &arrival_, &source_,      &erosion_};
-  std::vector<std::pair<std::string_view, const std::vector<Real>*>> named;
-  for (std::size_t m = 0; m < map_kinds.size(); ++m)
-    if (map_kinds[m].name != "erosion" || !spec_->eroded.empty())
-      named.emplace_back(map_kinds[m].name, all[m]);
+  std::vector<NamedMap> named;
+  for (std::size_t m = 0; m < map_kinds.size(); ++m) {
+    const std::string_view name = map_kinds[m].name;
+    const bool zero_is_a_value = is_surface(name) || name == "arrival";
+    if (name != "erosion" || !spec_->eroded.empty())
+      named.push_back({map_kinds[m], zero_is_a_value ? *all[m] : without_zeros(*all[m])});
+  }
   return named;
 }
 
@@ -442,10 +453,9 @@ std::string Runout<D>::section_text(const std::vector<std::array<Real, 2>>& plac
   else
     for (std::size_t d = 0; d < D - 1; ++d)
       heads.push_back({std::string(1, letters[static_cast<std::size_t>(axes_.plan[d])]), "m"});
-  for (const auto& [name, values] : maps())
-    for (const MapKind& kind : map_kinds)
-      if (kind.name == name)
-        heads.push_back({std::string(name), std::string(kind.unit)});
+  const std::vector<NamedMap> all = maps();
+  for (const NamedMap& map : all)
+    heads.push_back({std::string(map.kind.name), std::string(map.kind.unit)});
   std::string text;
   for (std::size_t i = 0; i < heads.size(); ++i)
     text += (i > 0 ? "," : "") + csv_cell(csv_heading(heads[i]));
@@ -456,8 +466,8 @@ std::string Runout<D>::section_text(const std::vector<std::array<Real, 2>>& plac
     const auto shown = on_map(places[i]);
     for (std::size_t d = 0; d < (map_ ? 2 : D - 1); ++d)
       put(shown[d]);
-    for (const auto& [name, values] : maps())
-      put(sampled(grid_, is_surface(name) || name == "arrival" ? *values : without_zeros(*values), places[i]));
+    for (const NamedMap& map : all)
+      put(sampled(grid_, map.values, places[i]));
     text += '\n';
   }
   return text;
@@ -506,19 +516,14 @@ std::vector<std::string> Runout<D>::write_maps(const Frame<D>& frame)
     write_section("plane", places, distances);
     return files;
   }
-  for (const auto& [name, values] : maps()) {
-    const auto kind = std::find_if(map_kinds.begin(), map_kinds.end(), [&, n = name](const MapKind& k) { return k.name == n; });
-    for (const std::string_view ending : {".tif", ".csv"}) {
-      if (ending == ".csv" && !spec_->csv)
+  for (const NamedMap& map : maps())
+    for (const char* ending : {".tif", ".csv"}) {
+      if (ending == std::string_view(".csv") && !spec_->csv)
         continue;
-      const fs::path file = fs::path(map_folder) / (std::string(name) + std::string(ending));
-      const std::vector<Real>& all = *values;
-      const std::string_view unit = kind->unit;
-      const bool full = is_surface(kind->name) || kind->name == "arrival";
-      frame.ranks->together([&] { write_raster(folder_ / file, raster(full ? all : without_zeros(all), unit)); });
+      const fs::path file = fs::path(map_folder) / (std::string(map.kind.name) + ending);
+      frame.ranks->together([&] { write_map(folder_ / file, raster(map.values, map.kind.unit)); });
       files.push_back(file);
     }
-  }
   const std::array<Real, 2> origin = map_ ? map_->origin : std::array<Real, 2>{0, 0};
   for (const SectionSpec& section : spec_->sections) {
     std::vector<std::array<Real, 2>> corners;

@@ -7,6 +7,7 @@
 #include "core/map_frame.hpp"
 #include "io/csv.hpp"
 #include "io/report.hpp"
+#include "io/runout_maps.hpp"
 #include "io/scene_runout.hpp"
 #include "mesh/plan_grid.hpp"
 #include "mesh/raster.hpp"
@@ -108,6 +109,10 @@ class Runout {
  private:
   struct Moved;
   struct CellValue;
+  struct NamedMap {
+    MapKind kind;
+    std::vector<Real> values;
+  };
   void lay_out(const Frame<D>& frame);
   void look(const Frame<D>& frame);
   std::vector<Moved> gather_moved(const Frame<D>& frame) const;
@@ -122,7 +127,7 @@ class Runout {
   std::vector<Real> row(Real time) const;
   std::array<Real, 2> on_map(const std::array<Real, 2>& place) const;
   Raster raster(const std::vector<Real>& values, std::string_view unit) const;
-  std::vector<std::pair<std::string_view, const std::vector<Real>*>> maps() const;
+  std::vector<NamedMap> maps() const;
   std::filesystem::path frame_file(int n) const;
   std::string section_text(const std::vector<std::array<Real, 2>>& places, const std::vector<Real>& distances) const;
 

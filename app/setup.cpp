@@ -6,9 +6,12 @@
 #include "app/expression.hpp"
 #include "app/fields.hpp"
 #include "app/guards.hpp"
+#include "app/history.hpp"
 #include "app/k0.hpp"
 #include "app/laws_in_force.hpp"
+#include "app/runout.hpp"
 #include "app/seed.hpp"
+#include "app/upright.hpp"
 #include "app/water.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
@@ -145,24 +148,80 @@ void join(Exchange& ranks, ParticleTraction<D>& load)
 template <int D>
 class WallBuilder {
  public:
-  WallBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, std::vector<std::string> names, const std::string& stage,
-              Complaints& complaints, std::vector<std::string>& warnings, Walls<D>& walls)
-      : mesh_(mesh),
+  /// `first`: of the first stage, in which what is worth a word is told.
+  WallBuilder(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, const std::string& stage,
+              bool first, Complaints& complaints, Setup<D>& setup, Walls<D>& walls)
+      : folder_(folder_of(scene)),
+        mesh_(mesh),
         has_particles_(has_particles),
-        names_(std::move(names)),
         stage_(stage),
+        first_(first),
+        up_(upright_of(scene).head<D>()),
+        ranks_(ranks),
         complaints_(complaints),
-        warnings_(warnings),
+        setup_(setup),
         walls_(walls)
   {}
+  /// Free fields come last: they stand on others.
+  void add(const std::vector<BoundarySpec>& boundaries)
+  {
+    const auto names = wall_names(boundaries);
+    for (const bool free_fields : {false, true})
+      for (std::size_t i = 0; i < names.size(); ++i)
+        if (std::holds_alternative<FreeFieldSpec>(boundaries[i]) == free_fields) {
+          name_ = names[i];
+          std::visit(*this, boundaries[i]);
+        }
+  }
 
   void operator()(const FixedSpec& spec) { on_nodes(spec, wall_of(spec, WallKind::fixed)); }
   void operator()(const VelocitySpec& spec)
   {
     Wall<D> wall = wall_of(spec, WallKind::velocity);
-    wall.velocity = vector_of<D>(spec.velocity);
-    wall.table = spec.table;
+    set_motion(spec, wall);
     on_nodes(spec, std::move(wall));
+  }
+  void operator()(const CompliantBaseSpec& spec)
+  {
+    Wall<D> wall = wall_of(spec, WallKind::compliant_base);
+    wall.halfspace = {spec.density, spec.s_wave, spec.p_wave};
+    set_motion(spec, wall);
+    on_facets(spec, std::move(wall));
+  }
+  void operator()(const FreeFieldSpec& spec)
+  {
+    Wall<D> wall = wall_of(spec, WallKind::free_field);
+    const auto found = mesh_.facet_set(spec.on);
+    if (!found)
+      return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+    const std::vector<Facet> facets = has_particles_.seen_from_material(*found);
+    constexpr Real upright = 0.01;  // cosine between a facet's normal and the upright
+    Index lowest = none;
+    for (const Facet facet : facets) {
+      const Vec<D> area = mesh_.area_vector(facet);
+      if (std::abs(area.dot(up_)) > upright * area.norm())
+        return complaints_.add(spec.where, "on", fmt::format("the facets of \"{}\" are not all upright", spec.on));
+      for (const Index n : mesh_.nodes_of(facet))
+        if (lowest == none || mesh_.node(n).dot(up_) < mesh_.node(lowest).dot(up_))
+          lowest = n;
+    }
+    const auto column = column_beside<D>(mesh_, facets, up_, setup_.particles, setup_.materials, ranks_);
+    wall.foot = lowest == none ? none : walls_.holder_of(lowest);
+    if (!column)
+      return complaints_.add(
+          spec.where, "on",
+          fmt::format("behind the facets of \"{}\", from their foot up, there must be particles of laws that have an elastic shear modulus",
+                      spec.on));
+    if (wall.foot == none)
+      return complaints_.add(spec.where, "on",
+                             fmt::format("no boundary of type fixed, velocity or compliant_base holds the foot of \"{}\"", spec.on));
+    wall.column = *column;
+    const Halfspace &lowest_layer = wall.column.layer.front().ground, &highest_layer = wall.column.layer.back().ground;
+    if (first_)
+      setup_.notes.push_back(fmt::format(
+          "free field \"{}\": {} layers over {:.4g} m, shear waves {:.4g} m/s at the foot and {:.4g} m/s at the ground", spec.on,
+          wall.column.layer.size(), wall.column.level.back() - wall.column.level.front(), lowest_layer.s_wave, highest_layer.s_wave));
+    walls_.add(std::move(wall), mesh_, facets);
   }
   void operator()(const RollerSpec& spec) { on_facets(spec, wall_of(spec, WallKind::roller)); }
   void operator()(const FrictionSpec& spec)
@@ -177,10 +236,32 @@ class WallBuilder {
   Wall<D> wall_of(const Spec& spec, WallKind kind)
   {
     Wall<D> wall;
-    wall.name = names_[next_++];
+    wall.name = name_;
     wall.kind = kind;
     wall.where = spec.where;
     return wall;
+  }
+  template <class Spec>
+  void set_motion(const Spec& spec, Wall<D>& wall)
+  {
+    wall.velocity = vector_of<D>(spec.velocity);
+    wall.table = spec.table;
+    if (!spec.record)
+      return;
+    try {
+      wall.record = read_record((folder_ / spec.record->file).lexically_normal(), *spec.record);
+    } catch (const SceneErrors& e) {
+      return complaints_.add(spec.where, "record.file", e);
+    }
+    if (!first_)
+      return;
+    setup_.notes.push_back(describe(*spec.record, *wall.record));
+    constexpr Real noticed = 0.01;  // share of the peak
+    const Real left = std::abs(wall.record->velocity.back());
+    if (left > noticed * wall.record->peak_velocity())
+      setup_.warnings.push_back(
+          fmt::format("{}: \"{}\" ends with {:.3g} m/s, and its velocity stays so after its end; record.baseline takes such a drift off",
+                      to_string(spec.where), spec.record->file, left));
   }
   template <class Spec>
   void on_nodes(const Spec& spec, Wall<D> wall)
@@ -199,7 +280,7 @@ class WallBuilder {
     const auto facets = mesh_.facet_set(spec.on);
     if (facets && acts_in(spec, stage_)) {
       if (const Index inside = has_particles_.inside_material(*facets); inside > 0 && wall.kind == WallKind::friction)
-        warnings_.push_back(fmt::format(
+        setup_.warnings.push_back(fmt::format(
             "{}: {} of the {} facets of \"{}\" have material on both sides{}: a friction wall holds that on one of them, and "
             "which is not said",
             to_string(spec.where), inside, facets->size(), spec.on, stage_.empty() ? "" : fmt::format(" in stage \"{}\"", stage_)));
@@ -210,13 +291,16 @@ class WallBuilder {
       complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
   }
 
+  std::filesystem::path folder_;
   const Mesh<D>& mesh_;
   const Filled<D>& has_particles_;
-  std::vector<std::string> names_;  // of the walls, in the order of the boundaries
   const std::string& stage_;
-  std::size_t next_ = 0;
+  bool first_;
+  std::string name_;  // of the wall at hand
+  Vec<D> up_;
+  Exchange& ranks_;
   Complaints& complaints_;
-  std::vector<std::string>& warnings_;
+  Setup<D>& setup_;
   Walls<D>& walls_;
 };
 
@@ -450,9 +534,8 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
     const auto there = [&](const std::string& body) { return presence_of(body, scene.stages).in(static_cast<Index>(s)); };
     const Filled<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
     change.walls.emplace();
-    WallBuilder<D> walls(mesh, filled, names, said(s).label, none_left, setup.warnings, *change.walls);
+    WallBuilder<D>(scene, mesh, filled, ranks, said(s).label, false, none_left, setup, *change.walls).add(scene.boundaries);
     for (std::size_t w = 0; w < names.size(); ++w) {
-      std::visit(walls, scene.boundaries[w]);
       const bool acted = acts_in(scene.boundaries[w], said(s - 1).label), acts = acts_in(scene.boundaries[w], said(s).label);
       if (acted != acts)
         change.told.push_back(fmt::format("wall \"{}\" {}", names[w], acts ? "acts from here on" : "is gone"));
@@ -537,6 +620,29 @@ void check_picture(const Scene& scene, Complaints& complaints)
       complaints.add(scene.where, "outputs.picture.field", fmt::format("there is no field \"{}\"{}", name, suggestion(name, known)));
 }
 
+/// Sections that leave the mesh, walls of the history that have no area.
+template <int D>
+void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, Complaints& complaints)
+{
+  if (const auto& history = scene.outputs.history)
+    for (const WallSpec& wall : history->walls)
+      if (!facets_of_wall(mesh, wall.on))
+        complaints.add(wall.where, "on", fmt::format("wall \"{}\" is on nodes, not on facets: it has no area", wall.on));
+  if (D == 2 || !scene.outputs.runout)
+    return;
+  const PlanAxes axes = plan_axes<D>(gravity);
+  for (const SectionSpec& section : scene.outputs.runout->sections)
+    for (std::size_t i = 0; i < section.along.size(); ++i)
+      for (std::size_t d = 0; d < 2; ++d) {
+        const Real shift = mesh.map() ? mesh.map()->origin[d] : 0;
+        const Real low = mesh.low()[axes.plan[d]] + shift, high = mesh.high()[axes.plan[d]] + shift;
+        if (const Real x = section.along[i][d]; !(low <= x && x <= high))
+          complaints.add(
+              section.where, "along",
+              fmt::format("corner {} is outside of the mesh: {:.10g} m does not lie between {:.10g} and {:.10g} m", i + 1, x, low, high));
+      }
+}
+
 }  // namespace
 
 template <int D>
@@ -555,9 +661,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   const Filled<D> at_start(mesh, setup.particles, setup.bodies, ranks,
                            [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
-  WallBuilder<D> walls(mesh, at_start, wall_names(scene.boundaries), first_stage, complaints, setup.warnings, setup.walls);
-  for (const BoundarySpec& boundary : scene.boundaries)
-    std::visit(walls, boundary);
+  WallBuilder<D>(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.walls).add(scene.boundaries);
   LoadBuilder<D> loads(mesh, has_particles, at_start, ranks, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(loads, load);
@@ -570,6 +674,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   check_laws(scene, complaints);
   check_room(scene, mesh, setup, ranks, complaints);
   check_picture(scene, complaints);
+  check_outputs<D>(scene, mesh, setup.loads.gravity.acceleration, complaints);
   ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
 
   setup.transfer = transfer_of(scene.transfer);

@@ -26,6 +26,7 @@ struct Setup {
   StepLimits limits;
   Guards guards;
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;       ///< worth knowing before a run, such as how strong a record is
   std::optional<OriginSummary> origin;  ///< of bodies that come from another run
 };
 

@@ -71,4 +71,18 @@ FloatingPointTraps::~FloatingPointTraps()
     on_every_thread([] { ::fedisableexcept(trapped); });
 }
 
+TrapsPaused::TrapsPaused()
+{
+  if constexpr (wanted)
+    were_ = ::fedisableexcept(trapped);
+}
+
+TrapsPaused::~TrapsPaused()
+{
+  if constexpr (wanted) {
+    std::feclearexcept(FE_ALL_EXCEPT);
+    ::feenableexcept(were_);
+  }
+}
+
 }  // namespace talus

@@ -13,4 +13,16 @@ class FloatingPointTraps {
   FloatingPointTraps& operator=(const FloatingPointTraps&) = delete;
 };
 
+/// While this lives, nothing ends the process on this thread: for libraries that compare with NaN and mean it.
+class TrapsPaused {
+ public:
+  TrapsPaused();
+  ~TrapsPaused();
+  TrapsPaused(const TrapsPaused&) = delete;
+  TrapsPaused& operator=(const TrapsPaused&) = delete;
+
+ private:
+  int were_ = 0;  // exceptions that are signals otherwise
+};
+
 }  // namespace talus

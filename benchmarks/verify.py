@@ -46,6 +46,7 @@ CASES = [
     "hertz_contact",
     "sphere_container",
     "infinite_slope",
+    "granular_chute",
     "strip_footing",
     "factor_of_safety",
     "column_collapse",

@@ -336,13 +336,10 @@ std::string usage()
   std::string text =
       "usage: talus-render DIR [options]\n"
       "       talus-render surface DIR [options] --out FILE.ply|FILE.stl|FILE.obj\n"
-      "       talus-render map DIR [options]
-"
+      "       talus-render map DIR [options]\n"
       "       talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--upright NAME VALUE]... [--curve NAME] "
-      "[--marks] [--log] [--title TEXT] --out FILE.png
-"
-      "       talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png
-"
+      "[--marks] [--log] [--title TEXT] --out FILE.png\n"
+      "       talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png\n"
       "Draws the particles of DIR/particles.pvd, writes the surface of bodies, draws DIR/maps and DIR/sections, or a curve of a table.  "
       "Pictures need a display; "
       "`talus render` brings one.\nPictures:\n";

@@ -27,20 +27,20 @@ std::string_view take_entry(std::string_view& line)
   return entry;
 }
 
-struct Row {
+struct SurveyRow {
   std::array<Real, 3> point{};
   int numbers = 0;         ///< so many of the three could be read
   std::string_view wrong;  ///< what is no number
   int column = 0;          ///< where it begins
 };
 
-std::optional<Row> row_of(std::string_view line)
+std::optional<SurveyRow> row_of(std::string_view line)
 {
   const std::string_view whole = line;
   line = line.substr(0, line.find('#'));
   if (line.find_first_not_of(" \t\r") == line.npos)
     return std::nullopt;
-  Row row;
+  SurveyRow row;
   for (Real& x : row.point) {
     const std::string_view entry = take_entry(line);
     const auto [end, code] = std::from_chars(entry.data(), entry.data() + entry.size(), x);

@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int map_width = 1280, lowest_map = 420, highest_map = 1100;                            // pixels
-constexpr Real left_letters = 6.5, below_letters = 3.6, above_letters = 2.6, right_letters = 8;  // around the panel
+constexpr Real left_letters = 6.5, below_letters = 3.6, above_letters = 2.6, right_letters = 9;  // around the panel
 constexpr int wanted_contours = 20;
 
 /// A colour in doubles while it is mixed.
@@ -239,8 +239,8 @@ class MapPainter {
       const Panel panel{place.left / size[0], place.bottom / size[1], place.right / size[0], place.top / size[1]};
       add_colour_bar(sheet, scale, std::string(kind.title), std::string(kind.unit), panel, size);
       const Real y = 0.9 * sheet.letter();
-      add_length(sheet, place.width() / (shown_.high[0] - shown_.low[0]), 0.2 * place.width(), {place.left, y});
-      sheet.text(fmt::format("contours of the ground every {:g} m", step_), place.right, y, Side::right);
+      add_length(sheet, place.width() / (shown_.high[0] - shown_.low[0]), 0.2 * place.width(), {1.2 * sheet.letter(), y});
+      sheet.text(fmt::format("contours of the ground every {:g} m", step_), size[0] - 0.6 * sheet.letter(), y, Side::right);
     });
   }
 
@@ -384,6 +384,9 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
     return settings.only.empty() ? by_default : std::find(settings.only.begin(), settings.only.end(), name) != settings.only.end();
   };
   std::optional<MapPainter> painter;
+  const std::vector<fs::path> sections = wanted("sections", true) ? sections_in(settings.folder) : std::vector<fs::path>();
+  if (sections.empty() && !settings.only.empty() && wanted("sections", false))
+    throw Error(fmt::format("--only sections: there are none in {}", (settings.folder / "sections").string()));
   for (const MapKind& kind : map_kinds) {
     if (!wanted(kind.name, !is_surface(kind.name)))
       continue;
@@ -401,12 +404,11 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
     painter->draw(raster, kind, settings.range.value_or(extent.range(false)), "", png);
     written(png);
   }
-  if (wanted("sections", true))
-    for (const fs::path& file : sections_in(settings.folder)) {
-      const fs::path png = folder_for(settings) / fmt::format("section_{}.png", file.stem().string());
-      draw_section(settings, file, png);
-      written(png);
-    }
+  for (const fs::path& file : sections) {
+    const fs::path png = folder_for(settings) / fmt::format("section_{}.png", file.stem().string());
+    draw_section(settings, file, png);
+    written(png);
+  }
 }
 
 }  // namespace talus::render

@@ -10,6 +10,7 @@
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "core/table.hpp"
+#include "io/record_file.hpp"
 
 namespace talus {
 
@@ -105,14 +106,47 @@ struct VelocitySpec {
   std::vector<Real> velocity;
   Table table;
   std::vector<std::string> during;
+  std::optional<RecordSpec> record;
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
-                      required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension"),
-                      optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
-                      optional("during", &VelocitySpec::during, any, "-", during_meaning)};
+    return std::tuple{
+        required("on", &VelocitySpec::on, any, "-", "node, facet or cell group moved"),
+        required("velocity", &VelocitySpec::velocity, any, "m/s", "one number per dimension; with a record its direction"),
+        optional("table", &VelocitySpec::table, any, "-", "factor in time: list of [time, factor]"),
+        group("record", &VelocitySpec::record,
+              "motion from a file in the place of a table; it begins with the first stage that is not geostatic, and before there is none"),
+        optional("during", &VelocitySpec::during, any, "-", during_meaning)};
   }
+  void check(std::vector<std::string>& problems) const;
+};
+
+/// Dashpots to a halfspace, and the wave that comes up from it.
+struct CompliantBaseSpec {
+  static constexpr std::string_view name = "compliant_base";
+  std::string on;
+  Real density{}, s_wave{}, p_wave{};
+  std::vector<Real> velocity;
+  Table table;
+  std::optional<RecordSpec> record;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("on", &CompliantBaseSpec::on, any, "-",
+                 "facet group above a halfspace: held in geostatic stages, then it carries what it carried, waves leave through it and one "
+                 "comes up"),
+        required("density", &CompliantBaseSpec::density, positive, "kg/m^3", "of the halfspace"),
+        required("s_wave", &CompliantBaseSpec::s_wave, positive, "m/s", "speed of shear waves in the halfspace"),
+        required("p_wave", &CompliantBaseSpec::p_wave, positive, "m/s", "speed of pressure waves in the halfspace"),
+        optional("velocity", &CompliantBaseSpec::velocity, any, "m/s",
+                 "of the particles in the wave that comes up, half of what an outcrop of the halfspace would show: one number per "
+                 "dimension; with a record its direction; default none"),
+        optional("table", &CompliantBaseSpec::table, any, "-",
+                 "factor of velocity in time: list of [time, factor], from the beginning of the first stage that is not geostatic"),
+        group("record", &CompliantBaseSpec::record, "motion from a file in the place of a table, from the same time on")};
+  }
+  void check(std::vector<std::string>& problems) const;
 };
 
 struct FrictionSpec {
@@ -130,12 +164,33 @@ struct FrictionSpec {
   }
 };
 
-using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec>;
+/// An upright side beside which the ground goes on level.
+struct FreeFieldSpec {
+  static constexpr std::string_view name = "free_field";
+  std::string on;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("on", &FreeFieldSpec::on, any, "-",
+                               "facet group of an upright side: a roller in geostatic stages, then level ground like that beside the side "
+                               "goes on behind it, moved by the base of the model, and waves leave through it")};
+  }
+};
 
-/// Names of the stages in which it acts; empty: all.
+using BoundarySpec = std::variant<FixedSpec, RollerSpec, VelocitySpec, FrictionSpec, CompliantBaseSpec, FreeFieldSpec>;
+
+/// Names of the stages in which it acts; empty: all, as always of those that give way to waves.
 inline const std::vector<std::string>& during_of(const BoundarySpec& boundary)
 {
-  return std::visit([](const auto& spec) -> const std::vector<std::string>& { return spec.during; }, boundary);
+  static const std::vector<std::string> all;
+  return std::visit(
+      [](const auto& spec) -> const std::vector<std::string>& {
+        if constexpr (requires { spec.during; })
+          return spec.during;
+        else
+          return all;
+      },
+      boundary);
 }
 /// Whether it acts in a stage of that name.
 inline bool acts_in(const BoundarySpec& boundary, const std::string& stage)

@@ -256,9 +256,25 @@ class Rules {
       if (const auto* load = std::get_if<TractionSpec>(&scene_.loads[i]))
         fits(path + ".traction", load->traction);
     }
-    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i) {
+      const std::string path = fmt::format("boundaries[{}]", i);
       if (const auto* boundary = std::get_if<VelocitySpec>(&scene_.boundaries[i]))
-        fits(fmt::format("boundaries[{}].velocity", i), boundary->velocity);
+        fits(path + ".velocity", boundary->velocity);
+      if (const auto* boundary = std::get_if<CompliantBaseSpec>(&scene_.boundaries[i]))
+        fits(path + ".velocity", boundary->velocity);
+      const bool gives_way =
+          std::holds_alternative<CompliantBaseSpec>(scene_.boundaries[i]) || std::holds_alternative<FreeFieldSpec>(scene_.boundaries[i]);
+      if (gives_way && gravity && !begins_at_rest())
+        add(path, fmt::format("it carries on what it carried at rest, and nothing says what that is: let the stages begin with a geostatic "
+                              "one, take the state from another run (initial), or leave loads[{}] out",
+                              *gravity));
+    }
+  }
+
+  /// In balance with its loads, as far as the scene tells.
+  bool begins_at_rest() const
+  {
+    return scene_.initial || (!scene_.stages.empty() && std::holds_alternative<GeostaticSpec>(scene_.stages.front()));
   }
 
   void outputs()

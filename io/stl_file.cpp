@@ -56,9 +56,9 @@ TriangleSheet read_binary(std::string_view bytes, const std::filesystem::path& f
 /// Blanks before it go too.
 std::string_view take_word(std::string_view& line)
 {
-  constexpr auto blanks = " \t\r";
-  line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
-  const std::string_view word = line.substr(0, line.find_first_of(blanks));
+  constexpr auto between = " \t\r";
+  line.remove_prefix(std::min(line.find_first_not_of(between), line.size()));
+  const std::string_view word = line.substr(0, line.find_first_of(between));
   line.remove_prefix(word.size());
   return word;
 }

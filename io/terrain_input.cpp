@@ -24,6 +24,7 @@ class TerrainReader {
   {
     if (D == 3 && spec_.section)
       complain(spec_.section->where, "a section is for scenes of dimension 2");
+    input_.is_line = D == 2;
     input_.on_map = D == 3 || spec_.section;
     map_ = {directory_, spec_.crs, !input_.on_map, {}};
     input_.ground = surface(spec_.ground);
@@ -58,7 +59,7 @@ class TerrainReader {
         ground_ = *read;
       return read->at;
     }
-    return [](const Place&) { return std::numeric_limits<Real>::quiet_NaN(); };
+    return [](const MapPlace&) { return std::numeric_limits<Real>::quiet_NaN(); };
   }
 
   /// A polygon of the scene or of a file, checked.
@@ -80,7 +81,7 @@ class TerrainReader {
         complain(where, fmt::format("the two corners of {} span no rectangle", key));
       return rectangle({corners[0][0], corners[0][1]}, {corners[1][0], corners[1][1]});
     }
-    Line ring;
+    MapLine ring;
     for (const auto& corner : corners)
       ring.push_back({corner[0], corner[1]});
     if (ring.front() == ring.back())
@@ -115,7 +116,7 @@ class TerrainReader {
     if (spec_.section) {
       if (spec_.section->from.size() != 2 || spec_.section->to.size() != 2)
         return;
-      const Place from{spec_.section->from[0], spec_.section->from[1]}, to{spec_.section->to[0], spec_.section->to[1]};
+      const MapPlace from{spec_.section->from[0], spec_.section->from[1]}, to{spec_.section->to[0], spec_.section->to[1]};
       input_.to = std::hypot(to[0] - from[0], to[1] - from[1]);
       input_.frame.origin = from;
       input_.frame.along = {(to[0] - from[0]) / input_.to, (to[1] - from[1]) / input_.to};
@@ -154,7 +155,7 @@ class TerrainReader {
     if (ground_ && !input_.domain.rings.empty())
       check_cover(*ground_, spec_.ground.where, input_.domain.rings.front(), "domain", problems_);
     constexpr Real whole = 100;  // m: an origin that people can remember
-    const Place low = bounds_of(input_.domain).first;
+    const MapPlace low = bounds_of(input_.domain).first;
     if (spec_.origin.size() == 2)
       input_.frame.origin = {spec_.origin[0], spec_.origin[1]};
     else if (problems_.empty())

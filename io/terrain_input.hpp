@@ -14,6 +14,7 @@ namespace talus {
 
 struct TerrainInput {
   MapFrame frame;
+  bool is_line = false;                     ///< 2-D: the plan is a line
   bool on_map = true;                       ///< false in 2-D without a section: x is x
   Surface ground;                           ///< all surfaces: elevation [m] at a place of the map
   std::vector<Surface> bottoms;             ///< of the layers

@@ -23,7 +23,7 @@ std::vector<Area> areas_of(const TerrainInput& input)
 /// Ends of the line, outlines on it, and corners of lines where there is room for a node.
 std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
 {
-  const Place from = input.frame.to_map(input.from), to = input.frame.to_map(input.to);
+  const MapPlace from = input.frame.to_map(input.from), to = input.frame.to_map(input.to);
   std::vector<Real> x{input.from, input.to};
   for (const Area& area : areas_of(input))
     for (const Real share : crossings(area, from, to))
@@ -89,10 +89,10 @@ Plan<3> grid_of(const TerrainInput& input, Real size)
   return {std::move(data.nodes), std::move(data.cells)};
 }
 
-Polygon local(const Line& ring, const MapFrame& frame)
+Polygon local(const MapLine& ring, const MapFrame& frame)
 {
   Polygon polygon;
-  for (const Place& place : ring)
+  for (const MapPlace& place : ring)
     polygon.points.push_back({place[0] - frame.origin[0], place[1] - frame.origin[1]});
   return polygon;
 }
@@ -124,18 +124,25 @@ Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const W
   if (input.is_rectangle && areas.empty() && sizes.strips.empty())
     return grid_of(input, sizes.size);
   std::vector<Polygon> polygons;
-  for (const Line& ring : input.domain.rings)
+  for (const MapLine& ring : input.domain.rings)
     polygons.push_back(local(ring, input.frame));
   for (const Area& area : areas)
-    for (const Line& ring : area.rings)
+    for (const MapLine& ring : area.rings)
       polygons.push_back(local(ring, input.frame));
   const auto size = [&](const Vec<2>& x) { return sizes(on_map<3>(input.frame, x)); };
   return inside(gmsh().mesh_plan(polygons, size, sizes.size, where), input);
 }
 
+Real extent_of(const Plan<2>& plan, const std::array<Index, 2>& cell) { return std::abs(plan.nodes[cell[1]][0] - plan.nodes[cell[0]][0]); }
+Real extent_of(const Plan<3>& plan, const std::array<Index, 3>& cell)
+{
+  const Vec<2> a = plan.nodes[cell[1]] - plan.nodes[cell[0]], b = plan.nodes[cell[2]] - plan.nodes[cell[0]];
+  return std::abs(a[0] * b[1] - a[1] * b[0]) / 2;
+}
+
 }  // namespace
 
-Real PlanSizes::operator()(const Place& place) const noexcept
+Real PlanSizes::operator()(const MapPlace& place) const noexcept
 {
   constexpr Real growth = 1.0 / 3;  // of an edge over its length
   Real least = size;
@@ -153,6 +160,54 @@ Plan<D> make_plan(const TerrainInput& input, const PlanSizes& sizes, const Where
     return plan_of_plane(input, sizes, where);
 }
 
+template <int D>
+SurveyedPlan<D> survey(Plan<D> plan, const TerrainInput& input, const PlanSizes& sizes)
+{
+  SurveyedPlan<D> surveyed;
+  surveyed.usual_size = sizes.size;
+  surveyed.extent.assign(plan.nodes.size(), 0);
+  for (const auto& cell : plan.cells)
+    for (const Index n : cell)
+      surveyed.extent[n] += extent_of(plan, cell) / D;
+  for (const auto& x : plan.nodes) {
+    surveyed.place.push_back(on_map<D>(input.frame, x));
+    surveyed.size.push_back(sizes(surveyed.place.back()));
+    surveyed.ground.push_back(input.ground(surveyed.place.back()));
+  }
+  surveyed.plan = std::move(plan);
+  return surveyed;
+}
+
+template <int D>
+Marks SurveyedPlan<D>::nodes_of(const Marks& cells) const
+{
+  Marks nodes(plan.nodes.size(), 0);
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    for (const Index n : plan.cells[c])
+      nodes[n] |= cells[c];
+  return nodes;
+}
+
+template <int D>
+Marks cells_in(const Area& area, const SurveyedPlan<D>& plan)
+{
+  Marks inside;
+  for (const auto& cell : plan.plan.cells) {
+    MapPlace centre{};
+    for (const Index n : cell)
+      for (std::size_t d = 0; d < 2; ++d)
+        centre[d] += plan.place[n][d] / D;
+    inside.push_back(area.contains(centre) ? 1 : 0);
+  }
+  return inside;
+}
+
+template struct SurveyedPlan<2>;
+template struct SurveyedPlan<3>;
+template SurveyedPlan<2> survey<2>(Plan<2>, const TerrainInput&, const PlanSizes&);
+template SurveyedPlan<3> survey<3>(Plan<3>, const TerrainInput&, const PlanSizes&);
+template Marks cells_in<2>(const Area&, const SurveyedPlan<2>&);
+template Marks cells_in<3>(const Area&, const SurveyedPlan<3>&);
 template Plan<2> make_plan<2>(const TerrainInput&, const PlanSizes&, const Where&);
 template Plan<3> make_plan<3>(const TerrainInput&, const PlanSizes&, const Where&);
 

@@ -8,14 +8,14 @@ namespace talus {
 
 namespace {
 
-Place minus(const Place& a, const Place& b) noexcept { return {a[0] - b[0], a[1] - b[1]}; }
-Real cross(const Place& a, const Place& b) noexcept { return a[0] * b[1] - a[1] * b[0]; }
-Real dot(const Place& a, const Place& b) noexcept { return a[0] * b[0] + a[1] * b[1]; }
+MapPlace minus(const MapPlace& a, const MapPlace& b) noexcept { return {a[0] - b[0], a[1] - b[1]}; }
+Real cross(const MapPlace& a, const MapPlace& b) noexcept { return a[0] * b[1] - a[1] * b[0]; }
+Real dot(const MapPlace& a, const MapPlace& b) noexcept { return a[0] * b[0] + a[1] * b[1]; }
 
 /// Share of the way from a to b at which it meets the side from p to q.  Sides in one line meet nowhere.
-std::optional<Real> meeting(const Place& a, const Place& b, const Place& p, const Place& q) noexcept
+std::optional<Real> meeting(const MapPlace& a, const MapPlace& b, const MapPlace& p, const MapPlace& q) noexcept
 {
-  const Place way = minus(b, a), side = minus(q, p), between = minus(p, a);
+  const MapPlace way = minus(b, a), side = minus(q, p), between = minus(p, a);
   const Real turned = cross(way, side);
   if (turned == 0)
     return std::nullopt;
@@ -24,12 +24,15 @@ std::optional<Real> meeting(const Place& a, const Place& b, const Place& p, cons
   return meet ? std::optional(along_way) : std::nullopt;
 }
 
-Place at(const Place& a, const Place& b, Real share) noexcept { return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])}; }
+MapPlace at(const MapPlace& a, const MapPlace& b, Real share) noexcept
+{
+  return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
+}
 
 /// True if two sides in one line have more than an end in common.
-bool overlap(const Place& a, const Place& b, const Place& p, const Place& q) noexcept
+bool overlap(const MapPlace& a, const MapPlace& b, const MapPlace& p, const MapPlace& q) noexcept
 {
-  const Place way = minus(b, a);
+  const MapPlace way = minus(b, a);
   if (cross(way, minus(p, a)) != 0 || cross(way, minus(q, a)) != 0)
     return false;
   const Real from = dot(minus(p, a), way), to = dot(minus(q, a), way);
@@ -38,31 +41,31 @@ bool overlap(const Place& a, const Place& b, const Place& p, const Place& q) noe
 
 }  // namespace
 
-bool Area::contains(const Place& place) const noexcept
+bool Area::contains(const MapPlace& place) const noexcept
 {
   bool inside = false;
-  for (const Line& ring : rings)
+  for (const MapLine& ring : rings)
     for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-      const Place &a = ring[i], &b = ring[j];
+      const MapPlace &a = ring[i], &b = ring[j];
       if ((a[1] > place[1]) != (b[1] > place[1]) && place[0] < a[0] + (b[0] - a[0]) * (place[1] - a[1]) / (b[1] - a[1]))
         inside = !inside;
     }
   return inside;
 }
 
-Area rectangle(const Place& corner, const Place& opposite)
+Area rectangle(const MapPlace& corner, const MapPlace& opposite)
 {
   const Real west = std::min(corner[0], opposite[0]), east = std::max(corner[0], opposite[0]);
   const Real south = std::min(corner[1], opposite[1]), north = std::max(corner[1], opposite[1]);
   return {{{{west, south}, {east, south}, {east, north}, {west, north}}}};
 }
 
-std::pair<Place, Place> bounds_of(const Area& area) noexcept
+std::pair<MapPlace, MapPlace> bounds_of(const Area& area) noexcept
 {
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
-  Place low{infinity, infinity}, high{-infinity, -infinity};
-  for (const Line& ring : area.rings)
-    for (const Place& place : ring)
+  MapPlace low{infinity, infinity}, high{-infinity, -infinity};
+  for (const MapLine& ring : area.rings)
+    for (const MapPlace& place : ring)
       for (std::size_t d = 0; d < 2; ++d) {
         low[d] = std::min(low[d], place[d]);
         high[d] = std::max(high[d], place[d]);
@@ -70,12 +73,12 @@ std::pair<Place, Place> bounds_of(const Area& area) noexcept
   return {low, high};
 }
 
-std::optional<Place> crossing_of(const Line& ring) noexcept
+std::optional<MapPlace> crossing_of(const MapLine& ring) noexcept
 {
   const std::size_t n = ring.size();
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = i + 1; j < n; ++j) {
-      const Place &a = ring[i], &b = ring[(i + 1) % n], &p = ring[j], &q = ring[(j + 1) % n];
+      const MapPlace &a = ring[i], &b = ring[(i + 1) % n], &p = ring[j], &q = ring[(j + 1) % n];
       if (overlap(a, b, p, q))
         return p;
       const bool neighbours = j == i + 1 || (j + 1) % n == i;
@@ -85,24 +88,24 @@ std::optional<Place> crossing_of(const Line& ring) noexcept
   return std::nullopt;
 }
 
-std::vector<Real> crossings(const Area& area, const Place& from, const Place& to)
+std::vector<Real> crossings(const Area& area, const MapPlace& from, const MapPlace& to)
 {
   std::vector<Real> shares;
-  for (const Line& ring : area.rings)
+  for (const MapLine& ring : area.rings)
     for (std::size_t i = 0; i < ring.size(); ++i)
       if (const auto share = meeting(from, to, ring[i], ring[(i + 1) % ring.size()]); share && *share > 0 && *share < 1)
         shares.push_back(*share);
   return shares;
 }
 
-Real distance(const Line& line, const Place& place) noexcept
+Real distance(const MapLine& line, const MapPlace& place) noexcept
 {
   Real least = std::hypot(place[0] - line[0][0], place[1] - line[0][1]);
   for (std::size_t i = 1; i < line.size(); ++i) {
-    const Place way = minus(line[i], line[i - 1]);
+    const MapPlace way = minus(line[i], line[i - 1]);
     const Real length2 = dot(way, way);
     const Real share = length2 > 0 ? std::clamp(dot(minus(place, line[i - 1]), way) / length2, Real{0}, Real{1}) : 0;
-    const Place nearest = at(line[i - 1], line[i], share);
+    const MapPlace nearest = at(line[i - 1], line[i], share);
     least = std::min(least, std::hypot(place[0] - nearest[0], place[1] - nearest[1]));
   }
   return least;

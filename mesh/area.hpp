@@ -10,25 +10,25 @@
 namespace talus {
 
 /// (east, north) [m]
-using Place = std::array<Real, 2>;
+using MapPlace = std::array<Real, 2>;
 /// Through these places; closed where it bounds an area, without repeating the first.
-using Line = std::vector<Place>;
+using MapLine = std::vector<MapPlace>;
 
 /// What lies inside an odd number of rings.
 struct Area {
-  std::vector<Line> rings;
-  bool contains(const Place& place) const noexcept;
+  std::vector<MapLine> rings;
+  bool contains(const MapPlace& place) const noexcept;
 };
 
 /// The rectangle between two corners.
-Area rectangle(const Place& corner, const Place& opposite);
+Area rectangle(const MapPlace& corner, const MapPlace& opposite);
 /// Lower and upper corner of what holds all rings.
-std::pair<Place, Place> bounds_of(const Area& area) noexcept;
+std::pair<MapPlace, MapPlace> bounds_of(const Area& area) noexcept;
 /// A place where two sides of a ring meet that are no neighbours, or where two neighbours lie upon each other.
-std::optional<Place> crossing_of(const Line& ring) noexcept;
+std::optional<MapPlace> crossing_of(const MapLine& ring) noexcept;
 /// Shares, in (0, 1), of the way from one place to the other at which it crosses the outline; in any order.
-std::vector<Real> crossings(const Area& area, const Place& from, const Place& to);
+std::vector<Real> crossings(const Area& area, const MapPlace& from, const MapPlace& to);
 /// Distance [m] to an open line; of one place, to that.
-Real distance(const Line& line, const Place& place) noexcept;
+Real distance(const MapLine& line, const MapPlace& place) noexcept;
 
 }  // namespace talus

@@ -28,7 +28,7 @@ struct Stand {
   Index slab;  ///< the interval below it belongs to; `none` at the bottom
   Real share;  ///< of the slab's thickness, (0, 1]; quotients of whole numbers, so that the same share is the same bits
 };
-bool is_before(const Stand& a, const Stand& b) noexcept
+bool comes_first(const Stand& a, const Stand& b) noexcept
 {
   return std::tie(a.slab, a.share, a.column) < std::tie(b.slab, b.share, b.column);
 }
@@ -113,7 +113,7 @@ class Zipper {
   {
     int first = D;
     for (int i = 0; i < D; ++i)
-      if (now_[i] + 1 < nodes_.begin[columns[i] + 1] && (first == D || is_before(nodes_.stand[now_[i] + 1], nodes_.stand[now_[first] + 1])))
+      if (now_[i] + 1 < nodes_.begin[columns[i] + 1] && (first == D || comes_first(nodes_.stand[now_[i] + 1], nodes_.stand[now_[first] + 1])))
         first = i;
     return first;
   }

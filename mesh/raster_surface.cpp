@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
 
 /// The first of two neighbouring centres, and how far behind it on the way to the second a place is, in spacings.
 struct Between {
@@ -104,7 +104,7 @@ Surface surface_of(Raster raster)
     // What is outside by rounding alone is inside.
     constexpr Real slack = 1e-6;
     if (!(x >= -slack && x <= static_cast<Real>(r.columns) + slack && y >= -slack && y <= static_cast<Real>(r.rows) + slack))
-      return nan;
+      return no_value;
     const Between u = between(x - 0.5, r.columns), v = between(y - 0.5, r.rows);
     // A neighbour without weight may be without a value.
     const auto mixed = [](Real a, Real b, Real share) { return share == 0 ? a : share == 1 ? b : a + share * (b - a); };

@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real nowhere = std::numeric_limits<Real>::quiet_NaN();
 
 /// Triangles by the squares of a grid over the plan that their extents touch, about as many squares as triangles.
 class TriangleGrid {
@@ -88,11 +88,11 @@ Real TriangleGrid::height(const std::array<Real, 2>& place, const std::array<Ind
   const Real size = std::max({std::abs(b[0] - a[0]), std::abs(b[1] - a[1]), std::abs(c[0] - a[0]), std::abs(c[1] - a[1])});
   constexpr Real flat = 1e-12, slack = 1e-9;  // slack: a place on a common edge is in one of both, whatever the rounding
   if (std::abs(twice_area) <= flat * size * size)
-    return nan;
+    return nowhere;
   const Real of_b = ((place[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (place[1] - a[1])) / twice_area;
   const Real of_c = ((b[0] - a[0]) * (place[1] - a[1]) - (place[0] - a[0]) * (b[1] - a[1])) / twice_area;
   if (of_b < -slack || of_c < -slack || of_b + of_c > 1 + slack)
-    return nan;
+    return nowhere;
   return a[2] + of_b * (b[2] - a[2]) + of_c * (c[2] - a[2]);
 }
 
@@ -101,8 +101,8 @@ Real TriangleGrid::height(const std::array<Real, 2>& place) const
   const Real slack = 1e-9 * spacing_;
   for (std::size_t d = 0; d < 2; ++d)
     if (!(place[d] >= low_[d] - slack && place[d] <= high_[d] + slack))
-      return nan;
-  Real highest = nan;
+      return nowhere;
+  Real highest = nowhere;
   const std::size_t s =
       static_cast<std::size_t>(square(place[1], 1)) * static_cast<std::size_t>(count_[0]) + static_cast<std::size_t>(square(place[0], 0));
   for (std::size_t m = first_[s]; m < first_[s + 1]; ++m)

@@ -64,8 +64,9 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   apply(m.loads, time + dt, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.own, m.nodes);                //  5
-  integrate(gravity, dt, m.nodes);                      //  6
+  m.slaves.lump(m.mesh, m.own, m.nodes);  //  5
+  integrate(gravity, dt, m.nodes);        //  6
+  m.walls.give_way(time + dt, dt, *m.ranks, m.nodes);
   m.walls.apply(time + dt, m.nodes, m.tally.at_nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);
@@ -256,6 +257,7 @@ void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
   m.energy.damping += work.damping;
   m.energy.walls += walls.other + beyond.other;
   m.energy.friction += walls.friction + beyond.friction;
+  m.energy.waves += walls.waves;
   m.energy.nodes += work.kinetic_after - work.kinetic_before + beyond.friction + beyond.other;
   m.energy.loads += t.work_on_mesh.value() + t.work_on_particles.value();
   m.energy.internal += t.internal.value();

@@ -8,13 +8,14 @@ namespace talus {
 
 /// Sums over a stage since it began [J], except where noted.
 struct EnergyLedger {
-  Real gravity{};                         ///< work of gravity
-  Real loads{};                           ///< work of tractions and pressures
-  Real walls{};                           ///< work of walls other than friction: prescribed motion, inelastic arrival
-  Real friction{};                        ///< work of friction, <= 0
-  Real damping{};                         ///< work of local damping, <= 0
-  Real nodes{};                           ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
-  Real internal{};                        ///< stress power of the particles: strain energy plus what the laws dissipate
+  Real gravity{};   ///< work of gravity
+  Real loads{};     ///< work of tractions and pressures
+  Real walls{};     ///< work of walls other than friction: prescribed motion, inelastic arrival
+  Real friction{};  ///< work of friction, <= 0
+  Real waves{};     ///< energy that waves brought to walls that give way: part of the work of walls, and a measure of it
+  Real damping{};   ///< work of local damping, <= 0
+  Real nodes{};     ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
+  Real internal{};  ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
   Real carried_away{};                    ///< kinetic energy of the particles that were deleted
@@ -26,6 +27,7 @@ struct EnergyLedger {
                       kept("loads", &EnergyLedger::loads),
                       kept("walls", &EnergyLedger::walls),
                       kept("friction", &EnergyLedger::friction),
+                      kept("waves", &EnergyLedger::waves),
                       kept("damping", &EnergyLedger::damping),
                       kept("nodes", &EnergyLedger::nodes),
                       kept("internal", &EnergyLedger::internal),

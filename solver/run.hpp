@@ -125,6 +125,7 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
              .ramp_time = stage.ramp,
              .elastic = stage.elastic,
              .seeks_rest = stage.residual || stage.damping > 0};
+  m.walls.begin_stage(stage.residual.has_value(), m.clock.time);
   // Under a K0 stress all of gravity acts, however it grows afterwards.
   const Real time = m.clock.time, ramp = stage.k0.empty() ? m.stage.ramp(time) : 1;
   soak(m.mesh, {m.water, ramp * m.loads.gravity.table(time)}, m.bodies, m.particles);

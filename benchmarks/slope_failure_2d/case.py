@@ -6,14 +6,13 @@ import lab as tools
 CASE = "slope_failure_2d"
 SIZE = {"quick": 1.5, "full": 1.0}  # m, cells
 SOFTENING = {"materials[0].residual_friction_angle": 7.5, "materials[0].residual_cohesion": 4.0e3, "materials[0].softening_strain": 0.1}
-STRENGTHS = {"peak": {}, "softening": SOFTENING}
+DEFAULT = tools.METHODS["projected, aflip"]
+VARIANTS = {  # name: changes to the scene, whether place and surface are judged, level
+    "peak": ({}, True, "quick"), "peak, projected, aflip": (DEFAULT, True, "quick"),
+    "softening": (SOFTENING, False, "full"), "softening, projected, aflip": ({**SOFTENING, **DEFAULT}, False, "quick"),
+    "peak, projected, aflip, cells of 1.5 m": ({**DEFAULT, "mesh.size": SIZE["quick"]}, True, "full")}
 SCORED = (15.0, 60.0)  # m, where the surface is compared
 LEVEL_GROUND = 15.0  # m, in front of the slope
-
-
-def settings(lab, strength):
-    """Changes to the scene for a strength of STRENGTHS at the size of cells of the level."""
-    return {**STRENGTHS[strength], "mesh.size": SIZE[lab.level]}
 
 
 def surface(frame, spacing, width=2.0):
@@ -84,11 +83,13 @@ def draw(figure, runs, data):
 
 
 def evaluate(lab):
-    """Results with the peak strength alone and with softening; at the full level also for a slice of tetrahedra with peak strength."""
+    """Results with the peak strength alone and with softening, with two kernels; at the full level also for a slice of tetrahedra with peak strength."""
     info, data = tools.reference(CASE), tools.reference(CASE, "surface.csv")
-    runs = {name: lab.run(f"{CASE}/scene.yaml", f"{name}_{lab.level}", settings(lab, name)) for name in STRENGTHS}
+    sizes = {name: changes.get("mesh.size", SIZE[lab.level]) for name, (changes, _, level) in VARIANTS.items() if level in ("quick", lab.level)}
+    runs = {name: lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{lab.level}"), {"mesh.size": sizes[name], **VARIANTS[name][0]}) for name in sizes}
     if lab.level == "full":
         runs["peak, slice in 3-D"] = lab.run(f"{CASE}/scene_slice.yaml", "slice", {})
+    runs = tools.ends(runs)
     lab.figure(CASE, "verification_slope", lambda figure: draw(figure, runs, data), size=(7.2, 2.6),
                caption="Free surface 7.2 s after the start of the failure.")
-    return [result for name, run in runs.items() for result in judge(name, run, data, info, SIZE[lab.level] if name == "peak" else None)]
+    return [result for name, run in runs.items() for result in judge(name, run, data, info, sizes[name] if name in sizes and VARIANTS[name][1] else None)]

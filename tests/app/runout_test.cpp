@@ -174,6 +174,15 @@ TEST_F(RunOut, PushOfALayerOnAWallIsThatOfEarthPressureAtRest)
   EXPECT_NEAR(last(rows, "attack_y_min_x"), 1, 0.02);
 }
 
+TEST_F(RunOut, SectionsThatLeaveTheMeshAreToldBefore)
+{
+  write("scene.yaml", flying_block(", sections: [{name: axis, along: [[0, 0.5], [9, 0.5]]}]"));
+  const Outcome outcome = talus("check scene.yaml");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:7:"));
+  EXPECT_THAT(outcome.err, HasSubstr("corner 2 is outside of the mesh: 9 m does not lie between 0 and 4 m"));
+}
+
 TEST_F(RunOut, IsNotDrawnOfARunWithoutIt)
 {
   write("scene.yaml", block_scene("time: {end: 0.01}\n"));

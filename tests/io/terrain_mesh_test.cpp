@@ -241,7 +241,7 @@ TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
   EXPECT_THAT(all, HasSubstr("scene.yaml:11:"));
   EXPECT_THAT(all, HasSubstr("layer \"slide\" has no thickness anywhere"));
   EXPECT_THAT(all, HasSubstr("above the ground over 1800 m2 (by 31 m at most)"));
-  EXPECT_THAT(all, HasSubstr("within: no part of it lies in what is meshed, 512000 to 512060 east, 5180000 to 5180030 north"));
+  EXPECT_THAT(all, HasSubstr("layer \"fill\" has no part within what is meshed, 512000 to 512060 east, 5180000 to 5180030 north"));
   const std::string bad_outlines = complaint<3>(hill + R"(
     air: {height: 5}
     obstacles:
