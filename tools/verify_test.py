@@ -272,6 +272,31 @@ class Measures(unittest.TestCase):
             self.assertIs(bool(finite(history)), expected, (mass, centre, kinetic))
 
 
+class ClosedForms(unittest.TestCase):
+    """Of the dam break on a plane, which judge the chute: wrong ones would judge wrongly without a word."""
+
+    chute = lab.module("granular_chute")
+    data = lab.reference("granular_chute")
+
+    def test_what_leaves_the_slab_is_in_the_fan(self):
+        flow, time = self.chute.DamBreak(self.data, 0.4), 1.3
+        back, front = flow.ends(time)
+        x = np.linspace(back, front, 20001)
+        self.assertAlmostEqual(np.trapz(flow.at(x, time), x), flow.depth * (flow.slide * time**2 / 2 - back), places=6)
+        self.assertAlmostEqual(float(flow.at(flow.place(0.1, time), time)), 0.1)
+        self.assertEqual(list(flow.at(np.array([back - 1, front + 1]), time)), [flow.depth, 0])
+
+    def test_on_a_level_base_without_friction_it_is_that_of_ritter(self):
+        data = {**self.data, "dam": {**self.data["dam"], "angle [deg]": 0, "base friction angle [deg]": 0}}
+        self.assertAlmostEqual(float(self.chute.DamBreak(data, 1.0).at(0.0, 0.7)), 4 / 9)
+
+    def test_earth_pressure_is_that_of_rankine_on_a_smooth_base_and_one_value_where_base_and_grains_are_alike(self):
+        active, passive = self.chute.earth_pressure(np.radians(30), 0)
+        self.assertAlmostEqual(active, 1 / 3)
+        self.assertAlmostEqual(passive, 3)
+        self.assertAlmostEqual(*self.chute.earth_pressure(np.radians(25), np.radians(25)), places=6)
+
+
 class Readme(unittest.TestCase):
     def test_only_what_is_between_the_markers_is_replaced(self):
         text = f"before\n{report.BEGIN}\nold\n{report.END}\nafter\n"

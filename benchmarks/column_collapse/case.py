@@ -28,7 +28,7 @@ WIDTH = 0.1  # m, of the columns in the channel before they are released
 COLUMNS = {  # height over width: cells over the width, room over the width, level
     0.5: (12, 3, "quick"), 1: (12, 5, "quick"), 4: (8, 13, "full"), 6: (8, 18, "full")}
 FALLS = 10  # times of free fall over the height, after which everything is at rest
-ROUND = [0.5, 1]  # height over radius of the round columns, full level alone
+ROUND = {0.5: 12, 1: 8}  # height over radius of the round columns: cells over the radius; full level alone
 RINGS = 20  # annuli over the radius before, of which the deposit is averaged
 
 
@@ -161,6 +161,7 @@ def quarter(lab, ratio):
     height, end = round(ratio * WIDTH, 3), round(6 * (ratio * WIDTH / 9.81)**0.5, 3)
     reach = round(WIDTH * (1.6 + 1.4 * ratio), 3)
     return lab.run(f"{CASE}/quarter.yaml", f"round_{ratio}", {
+        "mesh.size": round(WIDTH / ROUND[ratio], 5),
         "bodies[0].shape.to": [0, height, 0], "mesh.regions[0].shape.high": [reach, round(height + 0.015, 3), reach],
         "stages[1].duration": end, "outputs.particles.every": end})
 
