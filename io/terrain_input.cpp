@@ -120,6 +120,8 @@ class TerrainReader {
       input_.frame.along = {(to[0] - from[0]) / input_.to, (to[1] - from[1]) / input_.to};
       return;
     }
+    if (!spec_.domain_file.empty())
+      complain(spec_.where, "domain_file is for the map: in 2-D without a section domain has two numbers, [[x from], [x to]]");
     const Real shift = spec_.origin.empty() ? 0 : spec_.origin[0];
     input_.frame.origin = {shift, 0};
     if (!spec_.domain.empty()) {

@@ -256,6 +256,7 @@ TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
   EXPECT_THAT(far, HasSubstr("obstacle \"dam\" lies outside what is meshed"));
   EXPECT_THAT(complaint<2>(slope + "    domain: [[-5], [20]]\n    air: {height: 1}\n"),
               HasSubstr("the ground is not known at 10 of 51 places"));
+  EXPECT_THAT(complaint<2>(slope + "    domain_file: area.geojson\n    air: {height: 1}\n"), HasSubstr("domain_file is for the map"));
 }
 
 TEST(TerrainMesh, ObstaclesBeyondTheLineOfReachAreRefused)
