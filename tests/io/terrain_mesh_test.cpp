@@ -189,6 +189,21 @@ TEST(TerrainMesh, OutsideOfItsAreaALayerIsTheNextOne)
   EXPECT_NEAR(area(mesh, "layer:fill:bottom"), 100 * std::hypot(1, 0.5), 1e-6);
 }
 
+TEST(TerrainMesh, OutlinesOfManyCornersDoNotMakeSmallCells)
+{
+  std::string corners;
+  constexpr int n = 300;
+  for (int i = 0; i < n; ++i) {
+    const Real angle = 2 * std::numbers::pi * i / n;
+    corners += (i > 0 ? ", " : "") + std::string("[") + std::to_string(512030 + 8 * std::cos(angle)) + ", " +
+               std::to_string(5180015 + 8 * std::sin(angle)) + "]";
+  }
+  const Mesh<3> mesh =
+      mesh_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: [" + corners + "]}]\n    air: {height: 4}\n");
+  EXPECT_LT(mesh.n_cells(), 1.5 * 7 * (60 * 30 * 4) / (2 * 2 * 2));
+  EXPECT_NEAR(volume(mesh, "layer:fill"), 3 * std::numbers::pi * 64, 0.03 * 3 * std::numbers::pi * 64);
+}
+
 TEST(TerrainMesh, CellsAreFinerAlongALine)
 {
   const Mesh<3> mesh = mesh_of<3>(hill + R"(
