@@ -178,7 +178,7 @@ stages:
   - {type: run, name: trigger, duration: 0.8, weaken: [{factor: 4}]}
 outputs: {history: {every: 0.02, fronts: [{name: toe, direction: +x}]}, particles: {every: 1, fields: [plastic_strain]}}
 )yaml");
-  const auto toe = at_ends_of_stages("toe_x");
+  const auto toe = at_ends_of_stages("toe");
   ASSERT_EQ(toe.size(), 3U);
   EXPECT_NEAR(toe[1], toe[0], 0.02);
   EXPECT_GT(toe[2], toe[1] + 0.3);
@@ -215,7 +215,7 @@ outputs: {history: {every: 0.02, fronts: [{name: toe, direction: +x, mass_share:
 TEST_F(Stages, AGateOpensAndAnEmptyRegionStandsInTheWay)
 {
   run(gate_scene);
-  const auto toe = at_ends_of_stages("toe_x"), push = at_ends_of_stages("reaction_gate_x");
+  const auto toe = at_ends_of_stages("toe"), push = at_ends_of_stages("reaction_gate_x");
   ASSERT_EQ(toe.size(), 2U);
   EXPECT_LT(toe[0], 1.01);
   EXPECT_GT(toe[1], 1.35) << "it comes to the block";
