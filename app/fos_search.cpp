@@ -57,7 +57,7 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
   Motion motion;
   motion.duration = time->back() - time->front();
   motion.moved = largest.back();
-  const Real noticed = 0.1 * bodies.settlement(), half = value_at(time->front() + motion.duration / 2, *time, largest);
+  const Real noticed = 0.5 * bodies.settlement(), half = value_at(time->front() + motion.duration / 2, *time, largest);
   if (const Real first = std::max(half, noticed); first > 0)
     motion.growth = (motion.moved - half) / first;
   Real late = 0, peak = 0;
@@ -67,8 +67,8 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
     if ((*time)[row] >= time->back() - 0.1 * motion.duration)
       late += (*kinetic)[row], ++rows;
   }
-  const Real noticed_speed = 2 * noticed / motion.duration;
-  if (const Real whole = std::max(peak, 0.5 * mass->front() * noticed_speed * noticed_speed); whole > 0)
+  const Real noticed_energy = 0.5 * mass->front() * 1e-4 * bodies.gravity * bodies.height;  // of a hundredth of sqrt(g h)
+  if (const Real whole = std::max(peak, noticed_energy); whole > 0)
     motion.liveliness = late / rows / whole;
   return motion;
 }

@@ -24,8 +24,8 @@ Real usual_duration(const AtRest& bodies) noexcept;
 /// Two measures of whether a slope goes on, of a history from the moment its strength was divided.
 struct Motion {
   Real moved = 0;       ///< at the end [m]: the largest of the columns looked at
-  Real growth = 0;      ///< moved in the second half of the time over that in the first, or over a tenth of the settlement if that is more
-  Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak
+  Real growth = 0;      ///< moved in the second half of the time over that in the first, or over half of the settlement if that is more
+  Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak, or over that of a hundredth of sqrt(g h)
   Real duration = 0;    ///< s
 };
 /// Nothing if the history does not have the columns, or no two rows.

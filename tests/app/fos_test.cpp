@@ -51,7 +51,7 @@ TEST(FosSearch, MotionIsWhatIsAddedInTheSecondHalfAndWhatIsStillAlive)
 TEST(FosSearch, WhatIsSmallBesideTheSettlementIsNoGrowth)
 {
   const auto trembles = motion_of(history_of([](Real t) { return 1e-5 * t; }, [](Real) { return 1e-6; }), columns, bank);
-  EXPECT_NEAR(trembles->growth, 2e-5 / 0.01, 1e-12);
+  EXPECT_NEAR(trembles->growth, 2e-5 / 0.05, 1e-12);
   EXPECT_LT(trembles->liveliness, 1e-4);
   EXPECT_EQ(judge(*trembles, {}), Verdict::holds);
 }
