@@ -36,7 +36,7 @@ constexpr std::array<std::string_view, 3> words(Verdict) { return {"holds", "fai
 
 /// Above these a measure says that the slope goes on.
 struct FosCriterion {
-  Real growth = 0.1, liveliness = 5e-4;
+  Real growth = 0.1, liveliness = 2e-3;
 };
 /// Unclear where the measures contradict each other.
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept;
