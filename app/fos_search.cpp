@@ -67,14 +67,17 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
     if ((*time)[row] >= time->back() - 0.1 * motion.duration)
       late += (*kinetic)[row], ++rows;
   }
-  const Real noticed_energy = 0.5 * mass->front() * 1e-4 * bodies.gravity * bodies.height;  // of a hundredth of sqrt(g h)
-  if (const Real whole = std::max(peak, noticed_energy); whole > 0)
-    motion.liveliness = late / rows / whole;
+  if (peak > 0)
+    motion.liveliness = late / rows / peak;
   return motion;
 }
 
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept
 {
+  if (motion.growth <= criterion.growth / clear)
+    return Verdict::holds;
+  if (motion.growth > criterion.growth * clear)
+    return Verdict::fails;
   const bool grows = !(motion.growth <= criterion.growth), moves = !(motion.liveliness <= criterion.liveliness);
   return grows == moves ? (grows ? Verdict::fails : Verdict::holds) : Verdict::unclear;
 }
