@@ -74,9 +74,9 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
 
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept
 {
-  if (motion.growth <= criterion.growth / clear)
+  if (motion.growth <= criterion.growth / clear_margin)
     return Verdict::holds;
-  if (motion.growth > criterion.growth * clear)
+  if (motion.growth > criterion.growth * clear_margin)
     return Verdict::fails;
   const bool grows = !(motion.growth <= criterion.growth), moves = !(motion.liveliness <= criterion.liveliness);
   return grows == moves ? (grows ? Verdict::fails : Verdict::holds) : Verdict::unclear;

@@ -40,7 +40,7 @@ struct FosCriterion {
 };
 /// Growth that is so many times below or above its limit decides alone: particles may tremble, and where hardly anything moves the peak is as small.
 /// In between both measures have to agree; where they contradict each other the verdict is unclear.
-inline constexpr Real clear = 5;
+inline constexpr Real clear_margin = 5;
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept;
 
 /// A factor, and what is known of it.
