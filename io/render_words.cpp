@@ -29,11 +29,12 @@ std::vector<Tick> ticks(Real low, Real high)
   const Real step = round_below(1.5 * (high - low) / wanted_intervals);  // three to eight intervals
   const Real largest = std::max(std::abs(low), std::abs(high));
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + slack)));
+  const bool all_digits = largest < 1e5 || (largest < 1e9 && step < largest / 100);  // on a map three of them tell nothing
   std::vector<Tick> list;
   for (Real i = std::ceil(low / step - slack); i * step <= high + slack * step; ++i) {
     const Real value = i * step;
     list.push_back(
-        {value, largest < 1e5 && decimals < 5 ? fmt::format("{:.{}f}", value + 0.0, decimals) : fmt::format("{:.3g}", value + 0.0)});
+        {value, all_digits && decimals < 5 ? fmt::format("{:.{}f}", value + 0.0, decimals) : fmt::format("{:.3g}", value + 0.0)});
   }
   return list;
 }
