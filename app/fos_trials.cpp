@@ -48,18 +48,22 @@ bool has_strength(const MaterialSpec& material)
   return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
 }
 
-/// Bodies whose strength is divided, with their materials.
-void choose_bodies(const FosOptions& options, FosPlan& plan)
+/// Bodies whose strength is divided, with their materials: of those that are there in the stage `last`.
+void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
 {
   const Scene& scene = plan.spec;
+  std::vector<BodySpec> there;
   std::vector<std::string> known;
   for (const BodySpec& body : scene.bodies)
-    known.push_back(body.name);
+    if (presence_of(body.name, scene.stages).in(last)) {
+      there.push_back(body);
+      known.push_back(body.name);
+    }
   for (const std::string& name : options.bodies)
     if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error(fmt::format("--bodies: there is no body \"{}\"{}", name, suggestion(name, known)));
+      throw Error(fmt::format("--bodies: in the state at rest there is no body \"{}\"{}", name, suggestion(name, known)));
   std::vector<Problem> problems;
-  for (const BodySpec& body : scene.bodies) {
+  for (const BodySpec& body : there) {
     const Index number = material_number(scene, body.material);
     const MaterialSpec& material = scene.materials[static_cast<std::size_t>(number)];
     const bool asked = std::find(options.bodies.begin(), options.bodies.end(), body.name) != options.bodies.end();
@@ -71,7 +75,7 @@ void choose_bodies(const FosOptions& options, FosPlan& plan)
         plan.materials.push_back(number);
     }
   }
-  for (const BodySpec& body : scene.bodies) {
+  for (const BodySpec& body : there) {
     const bool chosen = std::find(plan.bodies.begin(), plan.bodies.end(), body.name) != plan.bodies.end();
     const Index number = material_number(scene, body.material);
     if (!chosen && std::find(plan.materials.begin(), plan.materials.end(), number) != plan.materials.end())
@@ -129,6 +133,25 @@ void tell_difference(const T& before, const T& after, const std::string& path, s
   }
 }
 
+/// Entries of a list of the scene as they are written, joined to a list again: those that are kept, each without some keys and with more.
+class Rewritten {
+ public:
+  Rewritten(const FosOptions& options, std::string list) : options_(options), list_(std::move(list)) {}
+  void keep(std::size_t i, std::span<const std::string_view> without = {}, const std::string& more = "")
+  {
+    std::string entry = written_in_scene(options_.scene, options_.set, fmt::format("{}[{}]", list_, i), without);
+    if (!more.empty())
+      entry.insert(entry.size() - 1, ", " + more);
+    entries_.push_back(std::move(entry));
+  }
+  std::string change() const { return fmt::format("{}=[{}]", list_, fmt::join(entries_, ", ")); }
+
+ private:
+  const FosOptions& options_;
+  std::string list_;
+  std::vector<std::string> entries_;
+};
+
 /// A text in quotes that YAML reads back.
 std::string in_quotes(const fs::path& path)
 {
@@ -137,6 +160,65 @@ std::string in_quotes(const fs::path& path)
   text.quoted = true;
   text.text = path.string();
   return in_one_line(text);
+}
+
+/// The stages up to the state at rest.  SceneErrors: a law that changes on the way is not that of the scene's bodies any more.
+void keep_stages(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
+{
+  Rewritten stages(options, "stages");
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < n_stages; ++i) {
+    const StageSpec& stage = plan.spec.stages[i];
+    if (const StageChanges& changes = changes_of(stage); !changes.change.empty() || !changes.weaken.empty())
+      problems.push_back(
+          {where_of(stage), "change and weaken before the state at rest: give the bodies the material that they have there instead", ""});
+    stages.keep(i);
+  }
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+  plan.at_rest.changes.push_back(stages.change());
+}
+
+/// Bodies that come later are left out; a trial has those that are there when all is at rest.
+void keep_bodies(const FosOptions& options, Index last, FosPlan& plan)
+{
+  Rewritten before(options, "bodies"), then(options, "bodies");
+  bool all = true;
+  for (std::size_t b = 0; b < plan.spec.bodies.size(); ++b) {
+    const Presence presence = presence_of(plan.spec.bodies[b].name, plan.spec.stages);
+    all = all && presence.from <= last;
+    if (presence.from <= last)
+      before.keep(b);
+    if (presence.in(last))
+      then.keep(b, keys_of_filling);
+  }
+  if (!all)
+    plan.at_rest.changes.push_back(before.change());
+  plan.of_state.push_back(then.change());
+}
+
+/// Walls act in the trials as they do in the stage that finds rest.
+void keep_walls(const FosOptions& options, Index last, FosPlan& plan)
+{
+  const auto& walls = plan.spec.boundaries;
+  if (std::all_of(walls.begin(), walls.end(), [](const BoundarySpec& wall) { return during_of(wall).empty(); }))
+    return;
+  constexpr std::array<std::string_view, 1> key{"during"};
+  Rewritten before(options, "boundaries"), then(options, "boundaries");
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    std::vector<std::string> names;
+    for (Index s = 0; s <= last; ++s)
+      if (const std::string name = name_of(plan.spec.stages[static_cast<std::size_t>(s)]); acts_in(walls[w], name))
+        names.push_back(in_quotes(name));
+    if (during_of(walls[w]).empty())
+      before.keep(w);
+    else if (!names.empty())
+      before.keep(w, key, fmt::format("during: [{}]", fmt::join(names, ", ")));
+    if (acts_in(walls[w], name_of(plan.spec.stages[static_cast<std::size_t>(last)])))
+      then.keep(w, key);
+  }
+  plan.at_rest.changes.push_back(before.change());
+  plan.of_state.push_back(then.change());
 }
 
 std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
@@ -168,8 +250,8 @@ PlannedRun trial_of(const FosPlan& plan, Real factor, int times_as_long)
   const auto add = [&](const std::vector<std::string>& more) { run.changes.insert(run.changes.end(), more.begin(), more.end()); };
   add(divided(plan, factor));
   add({fmt::format("stages=[{{type: run, duration: {}, damping: {}}}]", duration, plan.damping),
-       fmt::format("outputs.history.every={}", duration / rows_of_trial),
-       fmt::format("outputs.particles.every={}", duration / files_of_trial)});
+       fmt::format("outputs={{particles: {{every: {}, fields: {}}}, history: {{every: {}, moved: {}}}{}}}", duration / files_of_trial,
+                   plan.fields, duration / rows_of_trial, plan.moved, plan.picture)});
   run.folder = plan.folder / fmt::format("trial_{}", factor);
   run.scene_digest = digest_of_changed(plan, run.changes);
   return run;
@@ -190,26 +272,23 @@ FosPlan plan_fos(const FosOptions& options)
     where.path = "stages";
     throw SceneErrors(where, "there is no stage of type geostatic: strength is divided in the state at rest that such a stage finds");
   }
-  choose_bodies(options, plan);
+  const auto last = static_cast<Index>(n_stages) - 1;
+  choose_bodies(options, last, plan);
   plan.before = scene.dimension == 2 ? measured<2>(plan) : measured<3>(plan);
   if (!(plan.before.gravity > 0) && !options.duration)
     throw Error("--duration is needed where there is no gravity: how long a trial lasts follows from it");
   plan.duration = options.duration.value_or(usual_duration(plan.before));
   plan.damping = options.damping;
 
-  std::vector<std::string> stages;
-  for (std::size_t i = 0; i < n_stages; ++i)
-    stages.push_back(written_in_scene(options.scene, options.set, fmt::format("stages[{}]", i)));
   plan.at_rest.changes = options.set;
-  plan.at_rest.changes.push_back(fmt::format("stages=[{}]", fmt::join(stages, ", ")));
+  plan.of_state = options.set;
+  keep_stages(options, n_stages, plan);
+  keep_bodies(options, last, plan);
+  keep_walls(options, last, plan);
   plan.at_rest.changes.emplace_back("outputs.checkpoint.at_end=true");
   plan.at_rest.folder = plan.folder / "at_rest";
   plan.at_rest.scene_digest = digest_of_changed(plan, plan.at_rest.changes);
 
-  plan.of_state = options.set;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
-    plan.of_state.push_back(
-        fmt::format("bodies[{}]={}", b, written_in_scene(options.scene, options.set, fmt::format("bodies[{}]", b), keys_of_filling)));
   const fs::path state =
       fs::absolute(plan.at_rest.folder)
           .lexically_normal()
@@ -225,7 +304,6 @@ FosPlan plan_fos(const FosOptions& options)
     plan.columns.emplace_back("moved");
     moved.push_back(fmt::format("{{name: moved, mass_share: {}}}", options.mass_share));
   }
-  plan.of_state.push_back(fmt::format("outputs.history.moved=[{}]", fmt::join(moved, ", ")));
   plan.keeps_strain = std::any_of(plan.materials.begin(), plan.materials.end(), [&](Index number) {
     return std::visit(
         []<class L>(const L&) {
@@ -233,7 +311,10 @@ FosPlan plan_fos(const FosOptions& options)
         },
         scene.materials[static_cast<std::size_t>(number)].law);
   });
-  plan.of_state.push_back(fmt::format("outputs.particles.fields=[velocity, displacement{}]", plan.keeps_strain ? ", plastic_strain" : ""));
+  plan.fields = plan.keeps_strain ? "[velocity, displacement, plastic_strain]" : "[velocity, displacement]";
+  plan.moved = fmt::format("[{}]", fmt::join(moved, ", "));
+  if (const std::string picture = written_in_scene(options.scene, options.set, "outputs.picture"); picture.starts_with('{'))
+    plan.picture = ", picture: " + picture;
   return plan;
 }
 

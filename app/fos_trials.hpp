@@ -11,13 +11,14 @@ struct FosPlan {
   std::filesystem::path scene, folder;
   std::vector<std::string> set;  ///< the user's changes
   bool quick = false;
-  PlannedRun at_rest;                 ///< all stages up to the last that seeks rest
-  std::vector<std::string> bodies;    ///< whose strength is divided
-  std::vector<Index> materials;       ///< their numbers in the scene
-  Scene spec;                         ///< with the user's changes
-  std::vector<std::string> of_state;  ///< changes of every trial: bodies, initial, outputs
-  std::vector<std::string> columns;   ///< of the history: how far the bodies have moved
-  bool keeps_strain = false;          ///< laws of these bodies remember plastic strain
+  PlannedRun at_rest;                  ///< all stages up to the last that seeks rest
+  std::vector<std::string> bodies;     ///< whose strength is divided
+  std::vector<Index> materials;        ///< their numbers in the scene
+  Scene spec;                          ///< with the user's changes
+  std::vector<std::string> of_state;   ///< changes of every trial: bodies, walls, initial
+  std::string fields, moved, picture;  ///< of the outputs of every trial
+  std::vector<std::string> columns;    ///< of the history: how far the bodies have moved
+  bool keeps_strain = false;           ///< laws of these bodies remember plastic strain
   AtRest before;
   Real duration = 0, damping = 0;  ///< of a trial
 };

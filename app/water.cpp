@@ -3,8 +3,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "app/setup.hpp"
+#include "io/surface_file.hpp"
 #include "mesh/ground.hpp"
-#include "mesh/surface.hpp"
 
 namespace talus {
 
@@ -17,17 +18,26 @@ constexpr Real at_the_ground = 0.01;
 /// Gravity may lean so far from the vertical (sine), as where the axes of a scene follow a slope.
 constexpr Real steepest_axes = 0.87;
 
-/// Of a table that is not given by its depth.
-Surface surface_of(const SurfaceSpec& spec)
+/// A table that is not given by its depth, over places on the map where there is one; none if something is wrong with it.
+template <int D>
+Surface surface_of(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, std::vector<std::string>& warnings)
 {
-  if (spec.elevation)
-    return [z = *spec.elevation](const std::array<Real, 2>&) { return z; };
-  return [points = spec.points](const std::array<Real, 2>& place) {
-    for (std::size_t i = 1; i < points.size(); ++i)
-      if (const Real x0 = points[i - 1][0], x1 = points[i][0]; x0 <= place[0] && place[0] <= x1)
-        return points[i - 1][1] + (points[i][1] - points[i - 1][1]) * (place[0] - x0) / (x1 - x0);
-    return std::numeric_limits<Real>::quiet_NaN();
-  };
+  const SurfaceSpec& spec = scene.water->table;
+  const bool on_map = D == 3 || (scene.mesh.terrain && scene.mesh.terrain->section);
+  MapPlan plan{.directory = folder_of(scene), .crs = mesh.map() ? mesh.map()->crs : "", .is_line = !on_map, .ground = {}};
+  std::vector<Problem> problems;
+  std::vector<std::string> repairs;
+  std::optional<SurfaceRead> read;
+  try {
+    read = read_surface(spec, plan, problems, repairs);
+  } catch (const EnvironmentError& e) {
+    complaints.add(spec.where, "file", e.what());
+  }
+  for (const Problem& problem : problems)
+    complaints.add(problem.where, "", problem.message);
+  for (const std::string& repair : repairs)
+    warnings.push_back(fmt::format("{}: {}", to_string(spec.where), repair));
+  return read ? read->at : Surface();
 }
 
 template <int D>
@@ -115,10 +125,12 @@ Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>&
     water.drained.push_back(is_drained(spec, body.name) ? 1 : 0);
 
   const Ground<D> ground(mesh, filled);
-  const Surface given = spec.table.depth ? Surface() : surface_of(spec.table);
+  const Surface given = spec.table.depth ? Surface() : surface_of(scene, mesh, complaints, warnings);
+  if (!given && !spec.table.depth)
+    return water;
   const auto table = [&](const Vec<D>& x) {
     const auto place = Ground<D>::plan(x);
-    if (!given)
+    if (spec.table.depth)
       return ground(place) - *spec.table.depth;
     return given(mesh.map() ? mesh.map()->to_map(place[0], place[1]) : place);
   };

@@ -106,6 +106,36 @@ class Run:
         return None
 
 
+class Search(Run):
+    """A search of `talus fos`, with all its runs; as a run it is its trial with the highest factor that holds."""
+
+    @functools.cached_property
+    def found(self):
+        """fos.json."""
+        return json.loads((self.folder / "fos.json").read_text(encoding="utf-8"))
+
+    def trial(self, factor):
+        """The run with the strength divided by `factor`, one of those of `found`."""
+        name = next(trial["folder"] for trial in self.found["trials"] if trial["factor"] == factor)
+        return Run(self.case, f"{self.label}/{name}", self._folder / name, self._future)
+
+    @functools.cached_property
+    def _holds(self):
+        return self.trial(self.found["highest_that_holds"])
+
+    @property
+    def history(self):
+        return self._holds.history
+
+    @property
+    def summary(self):
+        return self._holds.summary
+
+    @property
+    def frames(self):
+        return self._holds.frames
+
+
 @dataclasses.dataclass
 class Result:
     """One measured number. `criterion`: 'at most' or 'at least' the tolerance; 'within' it of the reference, relative; 'near' it, in the
@@ -167,7 +197,12 @@ class Lab:
         self._handles = {}  # (case, label) -> inputs, run
         self.figures, self.orders = [], []
 
-    def run(self, scene, label, settings, may_fail=False):
+    def fos(self, scene, label, settings, **options):
+        """As run(), of `talus fos` with options such as width=0.05; returns a Search."""
+        words = [word for key, value in options.items() for word in (f"--{key}", str(value))]
+        return self.run(scene, label, settings, command=("fos", "--jobs", "1", "--no-pictures", *words))
+
+    def run(self, scene, label, settings, may_fail=False, command=("run",)):
         """Starts `scene` (path below benchmarks/) into <runs>/<case>/<label> with settings {key: number, list or text}, as --set takes them.
 
         Returns at once; the run waits its turn and whoever asks it for something waits for it. So ask for all runs first, then measure.
@@ -177,13 +212,13 @@ class Lab:
         case, out = path.parent.name, self.runs / path.parent.name / label
         words = [f"{key}={value if isinstance(value, str) else json.dumps(value)}" for key, value in overridden(settings, self.overrides).items()]
         texts = [file.read_text(encoding="utf-8") for file in [path, *sorted(path.parent.glob("*.geo"))]]
-        inputs = json.dumps([self._program_key, texts, words, self.threads])
+        inputs = json.dumps([self._program_key, texts, words, self.threads, *command[1:]])
         with self._lock:
             known, handle = self._handles.get((case, label), (None, None))
             if handle and known != inputs:
                 raise ValueError(f"two different runs are called {case}/{label}")
             if not handle:
-                handle = Run(case, label, out, self._pool.submit(self._work, path, out, words, inputs, may_fail))
+                handle = (Search if command[0] == "fos" else Run)(case, label, out, self._pool.submit(self._work, path, out, words, inputs, may_fail, command))
                 self._handles[case, label] = inputs, handle
         return handle
 
@@ -196,12 +231,12 @@ class Lab:
         """No more runs: those that have not begun never will."""
         self._pool.shutdown(cancel_futures=True)
 
-    def _work(self, path, out, words, inputs, may_fail):
+    def _work(self, path, out, words, inputs, may_fail, command):
         """Runs, or finds the results of an earlier run of the same inputs; returns the processor time [s]."""
         stamp = out / "inputs.json"
         seconds = self._seconds_of(stamp, inputs)
         if seconds is None:
-            seconds = self._start(path, out, words, may_fail)
+            seconds = self._start(path, out, words, may_fail, command)
             stamp.write_text(json.dumps({"inputs": inputs, "seconds": seconds}), encoding="utf-8")
         print(f"  {path.parent.name}/{out.name}: {seconds:.1f} s", flush=True)
         return seconds
@@ -213,15 +248,15 @@ class Lab:
         known = json.loads(stamp.read_text(encoding="utf-8"))
         return known["seconds"] if known["inputs"] == inputs else None
 
-    def _start(self, scene, out, words, may_fail):
+    def _start(self, scene, out, words, may_fail, command):
         """Runs the program; returns the processor time it took [s], which a busy machine changes less than that of the clock."""
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
-        command = [self.program, "run", scene, "--out", out, "--threads", str(self.threads), "--quiet"]
+        line = [self.program, command[0], scene, "--out", out, "--threads", str(self.threads), "--quiet", *command[1:]]
         for word in words:
-            command += ["--set", word]
+            line += ["--set", word]
         with tempfile.TemporaryFile("w+", encoding="utf-8") as output:
-            child = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
+            child = subprocess.Popen(line, stdin=subprocess.DEVNULL, stdout=output, stderr=subprocess.STDOUT)
             _, status, usage = os.wait4(child.pid, 0)
             child.returncode = os.waitstatus_to_exitcode(status)
             output.seek(0)
@@ -233,8 +268,9 @@ class Lab:
             return usage.ru_utime + usage.ru_stime
         if child.returncode != 0:
             raise RunFailed(f"{scene.parent.name}/{out.name} ended with {child.returncode}: {said}")
-        if not (out / "summary.json").exists():
-            raise RunFailed(f"{scene.parent.name}/{out.name} ended with 0 and left no summary.json in {out}: {said}")
+        left = "fos.json" if command[0] == "fos" else "summary.json"
+        if not (out / left).exists():
+            raise RunFailed(f"{scene.parent.name}/{out.name} ended with 0 and left no {left} in {out}: {said}")
         return usage.ru_utime + usage.ru_stime
 
     def figure(self, case, name, draw, size=(6.4, 3.6), caption="", shown="everywhere"):

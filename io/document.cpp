@@ -208,8 +208,10 @@ Found find_nearest(const Node& root, std::string_view path)
   for (const Step& step : steps ? *steps : std::vector<Step>{}) {
     const bool has_entry = step.number && found.node->kind == Node::Kind::list && *step.number < found.node->items.size();
     const Node* next = has_entry ? &found.node->items[*step.number] : step.number ? nullptr : found.node->find(step.key);
-    if (next == nullptr)
+    if (next == nullptr) {
+      found.whole = false;
       break;
+    }
     found = {next, extended(found.path, step, *next)};
   }
   return found;

@@ -106,6 +106,7 @@ bool is_within(std::string_view path, std::string_view outer);
 struct Found {
   const Node* node;
   std::string path;
+  bool whole = true;  ///< otherwise something of the path is not there
 };
 /// The value at a path of keys, or the last one on the way to it that exists.
 Found find_nearest(const Node& root, std::string_view path);

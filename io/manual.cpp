@@ -108,7 +108,10 @@ class Manual {
   template <class T>
   std::string link(const std::string& path)
   {
-    const std::string own = std::same_as<T, Shape> ? "shape" : std::same_as<T, Box> ? "box" : path;
+    const std::string own = std::same_as<T, Shape>         ? "shape"
+                            : std::same_as<T, Box>         ? "box"
+                            : std::same_as<T, SurfaceSpec> ? "surface"
+                                                           : path;
     const auto [title, is_new] = titles_.emplace(std::type_index(typeid(T)), own);
     if (is_new)
       waiting_.push_back([this, own] { section<T>(own); });

@@ -290,6 +290,8 @@ std::string written_in_scene(const std::filesystem::path& file, std::span<const 
 {
   const Document document = read_document(file, read_text(file), overrides);
   const Found found = find_nearest(document.root, path);
+  if (!found.whole)
+    return {};
   Node there = *found.node;
   for (const std::string_view key : without)
     if (const Node* const item = there.find(key)) {

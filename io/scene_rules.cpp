@@ -123,6 +123,26 @@ class Rules {
       fits("mesh.grid.high", mesh.grid->high);
       fits("mesh.grid.cells", mesh.grid->cells);
     }
+    if (mesh.terrain)
+      terrain(*mesh.terrain);
+  }
+
+  void terrain(const TerrainSpec& terrain)
+  {
+    if (terrain.section && scene_.dimension == 3)
+      add("mesh.terrain.section", "a section is the plan of a scene of dimension 2");
+    different_names("mesh.terrain.layers", terrain.layers);
+    different_names("mesh.terrain.obstacles", terrain.obstacles);
+    const auto layers = names(terrain.layers);
+    for (std::size_t i = 0; i < terrain.refine.size(); ++i)
+      known_word(fmt::format("mesh.terrain.refine[{}].down_from", i), "layer", terrain.refine[i].down_from, layers);
+    if (!terrain.air)
+      return;
+    known_word("mesh.terrain.air.of", "layer", terrain.air->of, layers);
+    for (std::size_t i = 0; i < terrain.obstacles.size(); ++i)
+      if (const Real height = terrain.obstacles[i].height; height > terrain.air->height)
+        add(fmt::format("mesh.terrain.obstacles[{}].height", i),
+            fmt::format("{:.6g} m is more than the height of the air, {:.6g} m", height, terrain.air->height));
   }
 
   void time()

@@ -3,10 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "core/words.hpp"
-
 namespace talus {
 
 namespace {
@@ -30,14 +26,6 @@ void check_area(std::string_view key, const Points& corners, const std::string& 
   for (const auto& corner : corners)
     if (corner.size() != 2 && (corner.size() != 1 || corners.size() != 2))
       return problems.push_back(fmt::format("every corner of {} has two numbers, [east, north]", key));
-}
-
-template <class Spec>
-void check_names(std::string_view what, const std::vector<Spec>& list, Messages& problems)
-{
-  for (auto one = list.begin(); one != list.end(); ++one)
-    if (std::any_of(list.begin(), one, [&](const Spec& other) { return other.name == one->name; }))
-      problems.push_back(fmt::format("two {} have the name \"{}\"", what, one->name));
 }
 
 }  // namespace
@@ -89,26 +77,8 @@ void TerrainSpec::check(Messages& problems) const
     problems.emplace_back("layers or air are needed: without them there is nothing to mesh");
   if (!obstacles.empty() && !air)
     problems.emplace_back("obstacles stand in the air: give air, with a height above them");
-  check_names("layers", layers, problems);
-  check_names("obstacles", obstacles, problems);
-  std::vector<std::string> known;
-  for (const LayerSpec& layer : layers)
-    known.push_back(layer.name);
-  const auto check_layer = [&](std::string_view key, const std::string& name) {
-    if (!name.empty() && std::find(known.begin(), known.end(), name) == known.end())
-      problems.push_back(fmt::format("{}: there is no layer \"{}\"{}", key, name, suggestion(name, known)));
-  };
   if (air && air->reach && layers.empty())
     problems.emplace_back("air.reach is counted from a layer, and there are none");
-  if (air)
-    check_layer("air.of", air->of);
-  for (std::size_t i = 0; i < refine.size(); ++i)
-    check_layer(fmt::format("refine[{}].down_from", i), refine[i].down_from);
-  if (air)
-    for (std::size_t i = 0; i < obstacles.size(); ++i)
-      if (obstacles[i].height > air->height)
-        problems.push_back(fmt::format("obstacles[{}] \"{}\" is {:.6g} m high, more than the air, {:.6g} m", i, obstacles[i].name,
-                                       obstacles[i].height, air->height));
 }
 
 }  // namespace talus

@@ -22,8 +22,6 @@ class TerrainReader {
 
   TerrainInput operator()()
   {
-    if (D == 3 && spec_.section)
-      complain(spec_.section->where, "a section is for scenes of dimension 2");
     input_.is_line = D == 2;
     input_.on_map = D == 3 || spec_.section;
     map_ = {directory_, spec_.crs, !input_.on_map, {}};

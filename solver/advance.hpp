@@ -64,9 +64,9 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   apply(m.loads, time + dt, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.own, m.nodes);  //  5
-  integrate(gravity, dt, m.nodes);        //  6
-  m.walls.give_way(time + dt, dt, *m.ranks, m.nodes);
+  m.slaves.lump(m.mesh, m.own, m.nodes);                //  5
+  integrate(gravity, dt, m.nodes);                      //  6
+  m.walls.give_way(time + dt, dt, *m.ranks, m.nodes);   //  7
   m.walls.apply(time + dt, m.nodes, m.tally.at_nodes);  //  7
   if (m.stage.seeks_rest)
     settle(m, dt);

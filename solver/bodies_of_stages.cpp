@@ -79,8 +79,10 @@ void put_in(Crowd<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& ma
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     std::visit(
         [&]<class L>(Batch<L>& batch) {
-          const auto& more = std::get<Batch<L>>(crowd.materials[b]).history;
-          batch.history.insert(batch.history.end(), more.begin(), more.end());
+          if (crowd.bodies[b].size() > 0) {  // of others the law may have changed since
+            const auto& more = std::get<Batch<L>>(crowd.materials[b]).history;
+            batch.history.insert(batch.history.end(), more.begin(), more.end());
+          }
           batch.begin = begin, batch.end = begin + static_cast<Index>(batch.history.size());
         },
         materials[b]);

@@ -196,7 +196,7 @@ TEST_F(FosProgram, SaysWhatKeepsStrengthFromBeingDivided)
   EXPECT_EQ(rubber.code, 2);
   EXPECT_THAT(rubber.err, HasSubstr("no body has a material with strength"));
   write("bank.yaml", bank_scene(at_rest));
-  EXPECT_THAT(fos("--bodies bnk").err, HasSubstr("there is no body \"bnk\" — did you mean \"bank\"?"));
+  EXPECT_THAT(fos("--bodies bnk").err, HasSubstr("in the state at rest there is no body \"bnk\" — did you mean \"bank\"?"));
   EXPECT_EQ(fos("--from 2 --to 1").code, 2);
   EXPECT_EQ(fos("--width 0").code, 2);
   EXPECT_EQ(talus("fos").code, 2);

@@ -125,6 +125,15 @@ inline std::vector<SceneCase> scenes_of_all()
         .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
                 "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
   all.push_back(
+      {"shaking",
+       {.law = all[5].parts.law,
+        .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1.1]}, particles_per_cell: 3}\n",
+        .boundaries = "boundaries:\n  - {type: free_field, on: x_min}\n  - {type: free_field, on: x_max}\n"
+                      "  - {type: compliant_base, on: y_min, density: 2500, s_wave: 40, p_wave: 80, velocity: [0.2, 0.1], table: [[0, 0], "
+                      "[0.02, 1], [0.04, 0]]}\n",
+        .time = "stages:\n  - {type: geostatic, duration: 5, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
+                "  - {type: run, duration: 0.05}\n"}});
+  all.push_back(
       {"water",
        {.more = "water: {table: {points: [[0, 0.9], [2, 0.4]]}, suction: 1.0e3, bodies: [low]}\n",
         .law = all[5].parts.law,
@@ -163,7 +172,8 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"solid", in_3d});
   SceneParts runs_out = in_3d;
   runs_out.outputs +=
-      ", walls: [{on: y_min}]}\n  runout: {every: 0.004, frames_every: 0.02, cell: 0.3, moved: 0.01, threshold: 0.05, eroded: [low], csv: true, sections: "
+      ", walls: [{on: y_min}]}\n  runout: {every: 0.004, frames_every: 0.02, cell: 0.3, moved: 0.01, threshold: 0.05, eroded: [low], csv: "
+      "true, sections: "
       "[{name: axis, "
       "along: [[0, 0], [1, 2]]}]";
   all.push_back({"run_out", runs_out});

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "io/vtk.hpp"
 #include "tests/app/program.hpp"
@@ -43,12 +44,19 @@ class Stages : public Program {
     std::sort(files.begin(), files.end());
     return files;
   }
-  /// All balances close, as the summary says.
+  /// Mass and momentum close, and what the energy leaves open over the run is what its stages leave open: nothing is lost between them.
   void expect_closed_books() const
   {
-    const std::string summary = read("out/summary.json");
-    EXPECT_THAT(summary, HasSubstr("\"closes\": true"));
-    EXPECT_EQ(summary.find("\"closes\": false"), summary.npos) << summary;
+    const auto balances = nlohmann::json::parse(read("out/summary.json"))["balances"];
+    for (const char* kept : {"mass", "momentum", "angular_momentum"})
+      EXPECT_TRUE(balances[kept]["closes"].get<bool>()) << kept << balances[kept];
+    const auto& terms = balances["energy"]["terms"];
+    for (const char* term : {"gravity_work [J]", "energy_defect [J]", "transfer_loss [J]", "plastic [J]"}) {
+      Real of_stages = 0;
+      for (const auto& [name, value] : terms.items())
+        of_stages += name.starts_with("stage ") && name.ends_with(std::string(": ") + term) ? value.get<Real>() : 0;
+      EXPECT_NEAR(terms[term].get<Real>(), of_stages, 1e-6 * std::abs(terms["gravity_work [J]"].get<Real>())) << term;
+    }
   }
 };
 
@@ -62,7 +70,7 @@ mesh: {grid: {low: [0, 0], high: [1, 4], cells: [2, 8]}}
 materials:
   - {name: soil, law: linear_elastic, density: 2000, youngs_modulus: 1.0e7, poisson_ratio: 0}
   - {name: heavy, law: linear_elastic, density: 3000, youngs_modulus: 1.0e7, poisson_ratio: 0}
-  - {name: grit, law: drucker_prager, density: 2000, youngs_modulus: 1.0e7, poisson_ratio: 0, friction_angle: 60, cohesion: 1.0e4,
+  - {name: rock, law: drucker_prager, density: 2000, youngs_modulus: 1.0e7, poisson_ratio: 0, friction_angle: 30, cohesion: 1.0e6,
      match: plane_strain}
   - {name: rubber, law: neo_hookean, density: 2000, youngs_modulus: 1.0e7, poisson_ratio: 0}
 bodies:
@@ -78,8 +86,9 @@ stages:
          "ground}]}\n";
 }
 
-/// Of the surface of the ground under so much more weight on it [m].
-Real settlement(Real thickness) { return density * gravity * thickness * 2 / modulus; }
+/// Of so much soil on the ground [Pa], and how far the surface of the ground goes down under it [m].
+Real weight(Real thickness) { return density * gravity * thickness; }
+Real settlement(Real thickness) { return weight(thickness) * 2 / modulus; }
 
 TEST_F(Stages, LiftsSettleTheGroundByTheirWeight)
 {
@@ -93,9 +102,10 @@ TEST_F(Stages, LiftsSettleTheGroundByTheirWeight)
   EXPECT_NEAR(mass[0], 2 * density, 1e-6);
   EXPECT_NEAR(mass[1], 3 * density, 1e-6);
   EXPECT_NEAR(mass[2], 4 * density, 1e-6);
-  EXPECT_NEAR(down[1] - down[0], -settlement(1), 0.06 * settlement(1));
-  EXPECT_NEAR(down[2] - down[0], -settlement(2), 0.06 * settlement(2));
-  EXPECT_NEAR(stress[2] / stress[0], 2, 0.06);
+  EXPECT_NEAR(down[1], -settlement(1), 0.04 * settlement(1)) << "since the ground is at rest";
+  EXPECT_NEAR(down[2], -settlement(2), 0.04 * settlement(2));
+  EXPECT_NEAR(stress[1] - stress[0], -weight(1), 0.02 * weight(1));
+  EXPECT_NEAR(stress[2] - stress[0], -weight(2), 0.02 * weight(2));
   expect_closed_books();
   const std::string summary = read("out/summary.json");
   for (const char* what : {"stage \\\"first\\\": body \\\"lift_1\\\" appears: ", "\"placed [kg]\": 4000.0", "\"name\": \"second\""})
@@ -109,8 +119,8 @@ TEST_F(Stages, AnExcavationRelievesTheGroundBelow)
   const auto mass = at_ends_of_stages("mass"), up = at_ends_of_stages("top_uy"), stress = at_ends_of_stages("floor_syy");
   ASSERT_EQ(mass.size(), 2U);
   EXPECT_NEAR(mass[1], 2 * density, 1e-6);
-  EXPECT_NEAR(up[1] - up[0], settlement(2), 0.06 * settlement(2));
-  EXPECT_NEAR(stress[1] / stress[0], 0.5, 0.03);
+  EXPECT_NEAR(up[1], settlement(2), 0.07 * settlement(2));
+  EXPECT_NEAR(stress[1] - stress[0], weight(2), 0.02 * weight(2));
   expect_closed_books();
   EXPECT_THAT(read("out/summary.json"), HasSubstr("\"taken [kg]\": 4000.0"));
 }
@@ -119,13 +129,13 @@ TEST_F(Stages, AnExcavationRelievesTheGroundBelow)
 TEST_F(Stages, ABodyGoesOnAsAnotherMaterial)
 {
   run(column("",
-             "  - {type: run, name: grit, duration: 0.2, change: [{body: ground, material: grit}]}\n"
+             "  - {type: run, name: rock, duration: 0.2, change: [{body: ground, material: rock}]}\n"
              "  - {type: geostatic, name: heavy, duration: 9, change: [{body: ground, material: heavy}], elastic: false, "
              "reset_displacement: false}\n"));
   const auto mass = at_ends_of_stages("mass"), down = at_ends_of_stages("top_uy"), stress = at_ends_of_stages("floor_syy");
   ASSERT_EQ(mass.size(), 3U);
   EXPECT_EQ(mass[1], mass[0]);
-  EXPECT_NEAR(down[1], down[0], 0.02 * settlement(1));
+  EXPECT_NEAR(down[1], 0, 0.02 * settlement(1));
   EXPECT_NEAR(stress[1] / stress[0], 1, 0.02);
   EXPECT_NEAR(mass[2], 1.5 * mass[0], 1e-6);
   EXPECT_NEAR(stress[2] / stress[0], 1.5, 0.05);
@@ -144,7 +154,8 @@ TEST_F(Stages, ABodyAppearsWithTheStressOfItsWeight)
     run(scene);
     const HistoryTable table = history("out");
     Real largest = 0;
-    for (const Real speed : table["top_vy"].value())
+    const std::span<const Real> speeds = *table["top_vy"];
+    for (const Real speed : speeds)
       largest = std::isfinite(speed) ? std::max(largest, std::abs(speed)) : largest;
     EXPECT_TRUE(std::isnan(table["top_y"].value().front())) << "it is not there yet";
     EXPECT_NEAR(table["top_y"].value().back(), 4, 0.2);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "io/summary_json.hpp"
 #include "io/vtk.hpp"
@@ -36,12 +37,14 @@ struct Column {
     const bool solid = dimension == 3;
     std::string all = bodies;
     for (auto at = all.find("region: all"); at != all.npos; at = all.find("region: all"))
-      all.replace(at, 11, solid ? "shape: {type: box, low: [0, 0, 0], high: [1, 1, 10]}" : "shape: {type: box, low: [0, 0], high: [1, 10]}");
-    const std::string mesh = solid ? "{low: [0, 0, 0], high: [1, 1, 10], cells: [1, 1, 10]}" : "{low: [0, 0], high: [1, 10], cells: [2, 20]}";
+      all.replace(at, 11,
+                  solid ? "shape: {type: box, low: [0, 0, 0], high: [1, 1, 10]}" : "shape: {type: box, low: [0, 0], high: [1, 10]}");
+    const std::string mesh =
+        solid ? "{low: [0, 0, 0], high: [1, 1, 10], cells: [1, 1, 10]}" : "{low: [0, 0], high: [1, 10], cells: [2, 20]}";
     const std::string walls = "{type: roller, on: x_min}, {type: roller, on: x_max}, {type: roller, on: y_min}";
     return "title: Column\ndimension: " + std::to_string(dimension) + "\nmesh: {grid: " + mesh + "}\nmaterials: [" + material +
-           "]\nbodies: [" + all + "]\n" + initial + water + "loads: [{type: gravity, acceleration: " +
-           (solid ? "[0, 0, -9.81]" : "[0, -9.81]") + "}]\nboundaries: [" + walls +
+           "]\nbodies: [" + all + "]\n" + initial + water +
+           "loads: [{type: gravity, acceleration: " + (solid ? "[0, 0, -9.81]" : "[0, -9.81]") + "}]\nboundaries: [" + walls +
            (solid ? ", {type: roller, on: y_max}, {type: roller, on: z_min}" : "") + "]\nstages: [" + stages +
            "]\noutputs:\n  checkpoint: {at_end: true}\n  particles: {every: 100, fields: [" + fields + "]}\n  history: {every: 100}\n";
   }
@@ -210,13 +213,16 @@ TEST_F(WaterRun, ATableAboveTheGroundIsCutThereOrRefused)
     return "title: Slope\ndimension: 2\nmesh: {size: 1, regions: [{name: soil, shape: {type: polygon, points: [[0, 0], [20, 0], [20, 2], "
            "[12, 2], [6, 8], [0, 8]]}}, {name: air, shape: {type: polygon, points: [[20, 2], [20, 8], [6, 8], [12, 2]]}}]}\nmaterials: [" +
            soil + "]\nbodies: [{name: slope, material: soil, region: soil, particles_per_cell: 4}]\nwater: {table: " + table +
-           "}\nloads: [{type: gravity, acceleration: [0, -9.81]}]\nboundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: "
+           "}\nloads: [{type: gravity, acceleration: [0, -9.81]}]\nboundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, "
+           "{type: "
            "roller, on: x_max}]\ntime: {end: 0.01}\noutputs: {particles: {every: 1, fields: [pore_pressure]}}\n";
   };
   write("slope.yaml", slope("{points: [[0, 6], [12, 3], [20, 3]]}"));
   const Outcome cut = talus("run slope.yaml --out slope");
   ASSERT_EQ(cut.code, 0) << cut.err;
-  EXPECT_THAT(cut.err, HasSubstr("warning: slope.yaml:6:16: the water table lies above the ground over 9 m of 20 m of its plan, by up to 1 m"));
+  EXPECT_THAT(cut.err,
+              testing::ContainsRegex("warning: slope.yaml:6:16: the water table lies above the ground over 9(\\.[0-9]*)? m of 20 m of "
+                                     "its plan, by up to 1 m at \\("));
   const Seen seen = at_begin("slope");
   Real most = 0;
   for (std::size_t p = 0; p < seen.size(); ++p) {
