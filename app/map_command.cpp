@@ -4,13 +4,12 @@
 #include <algorithm>
 
 #include "app/film.hpp"
-#include "app/rendered_run.hpp"
+#include "app/report.hpp"
 #include "app/results.hpp"
 #include "app/runout.hpp"
 #include "core/error.hpp"
 #include "io/launch_render.hpp"
 #include "io/picture_settings.hpp"
-#include "io/reader.hpp"
 
 namespace talus {
 
@@ -47,13 +46,12 @@ void require_maps(const fs::path& folder, const Scene& scene, bool movie)
 
 void draw_maps(const MapOptions& options)
 {
-  require_run(options.folder);
-  const Scene scene = read_scene(options.folder / "scene.yaml");
+  const Scene scene = read_run_folder(options.folder).scene;
   const auto axes = names_of_axes(scene);
   std::vector<std::string> words{options.folder.string(), "--title", scene.title, "--axes", axes[0], axes[1]}, problems;
   words.insert(words.end(), options.words.begin(), options.words.end());
-  if (options.movie && scene.outputs.runout && scene.outputs.runout->frames_every)
-    words.insert(words.end(), {"--frames", fmt::format("{}", *scene.outputs.runout->frames_every)});
+  if (options.movie)
+    words.emplace_back("--frames");
   render::parse_maps(words, problems);
   check_movie(options, options.words, problems);
   render::require_none(problems);

@@ -235,7 +235,7 @@ void Runout<D>::begin(const Frame<D>& frame)
     map->assign(n, 0);
   arrival_.assign(n, no_value);
   still_since_ = start_;
-  frame.ranks->together([&] { file_.emplace(folder_ / "runout.csv", columns()); });
+  frame.ranks->together([&] { file_.emplace(folder_ / "runout.csv", columns_of_file()); });
 }
 
 template <int D>
@@ -248,7 +248,7 @@ void Runout<D>::go_on(const Frame<D>& frame)
                           &source_, &erosion_})
     if (map->size() != grid_.size())
       throw EnvironmentError(fmt::format("the maps of the checkpoint have {} cells, those of the scene {}", map->size(), grid_.size()));
-  frame.ranks->together([&] { file_.emplace(HistoryFile::resume(folder_ / "runout.csv", columns(), frame.clock.time)); });
+  frame.ranks->together([&] { file_.emplace(HistoryFile::resume(folder_ / "runout.csv", columns_of_file(), frame.clock.time)); });
 }
 
 template <int D>
@@ -359,11 +359,11 @@ void Runout<D>::count_altogether(const std::vector<Moved>& moved)
   now_.height = reach ? reach->height : no_value, now_.length = reach ? reach->length : no_value;
   now_.centre = reach ? Vec3(moment / mass) : nowhere;
   const Vec3 way = reach ? Vec3((moment - moment_then) / mass) : nowhere;
-  now_.centre_height = -way.dot(axes_.up), now_.centre_length = on_the_level(way, axes_.up).norm();
+  now_.centre_height = 0 - way.dot(axes_.up), now_.centre_length = on_the_level(way, axes_.up).norm();
 }
 
 template <int D>
-void Runout<D>::look(const Frame<D>& frame)
+void Runout<D>::look(const Frame<D>& frame, bool with_frame)
 {
   const std::vector<Moved> moved = gather_moved(frame);
   std::vector<Real> top = tops(frame);
@@ -380,7 +380,10 @@ void Runout<D>::look(const Frame<D>& frame)
       still_since_ = never;
     else if (!std::isfinite(still_since_))
       still_since_ = time_;
-    file_->append(row(time_));
+    std::vector<Real> values = row(time_);
+    if (spec_->frames_every)
+      values.push_back(with_frame ? frames_ : no_value);
+    file_->append(values);
   });
 }
 
@@ -391,7 +394,7 @@ std::vector<std::string> Runout<D>::see(const Frame<D>& frame, bool last)
   const bool due = times_.due(since_start), frame_due = frame_times_.due(since_start);
   if ((due || frame_due || last) && time_ != frame.clock.time) {
     frame.ranks->together([&] { require_results(folder_); });
-    look(frame);
+    look(frame, frame_due);
   }
   if (!frame_due)
     return {};
@@ -566,6 +569,16 @@ std::vector<CsvColumn> Runout<D>::columns() const
                          {"kinetic", "J"}});
   if (!spec_->eroded.empty())
     all.push_back({"entrained", volume});
+  return all;
+}
+
+/// With the number of the frame that was written at a look.
+template <int D>
+std::vector<CsvColumn> Runout<D>::columns_of_file() const
+{
+  std::vector<CsvColumn> all = columns();
+  if (spec_->frames_every)
+    all.push_back({"frame"});
   return all;
 }
 

@@ -114,7 +114,7 @@ class Runout {
     std::vector<Real> values;
   };
   void lay_out(const Frame<D>& frame);
-  void look(const Frame<D>& frame);
+  void look(const Frame<D>& frame, bool with_frame);
   std::vector<Moved> gather_moved(const Frame<D>& frame) const;
   template <class Pick>
   std::vector<Real> joined(Exchange& ranks, const std::vector<Real>& here, Pick&& pick) const;
@@ -123,7 +123,7 @@ class Runout {
   void count_altogether(const std::vector<Moved>& moved);
   std::array<Real, 2> on_plan(const Vec3& x) const;
   Real elevation(const Vec3& x) const { return axes_.sign * x[axes_.upright]; }
-  std::vector<CsvColumn> columns() const;
+  std::vector<CsvColumn> columns() const, columns_of_file() const;
   std::vector<Real> row(Real time) const;
   std::array<Real, 2> on_map(const std::array<Real, 2>& place) const;
   Raster raster(const std::vector<Real>& values, std::string_view unit) const;

@@ -25,7 +25,7 @@ constexpr std::array internal_surface_options{Option{"--body", 2, 2, "NUMBER NAM
 
 constexpr std::array internal_map_options{Option{"--title", 1, 1, "TEXT", "above the picture"},
                                           Option{"--axes", 2, 2, "RIGHT UP", "names of the axes of the plan"},
-                                          Option{"--frames", 1, 1, "EVERY", "the frames of the thickness, so far apart [s]"}};
+                                          Option{"--frames", 0, 0, "", "the frames of the thickness instead"}};
 
 using Values = std::vector<std::string>;
 
@@ -215,7 +215,7 @@ void set(const std::string& option, const Values& values, MapSettings& s)
   else if (option == "--axes")
     s.axes = {values[0], values[1]};
   else if (option == "--frames")
-    s.frames_every = positive_number(values[0], option);
+    s.frames = true;
 }
 
 void set(const std::string& option, const Values& values, SurfaceSettings& s)
@@ -324,7 +324,7 @@ MapSettings parse_maps(std::span<const std::string> words, std::vector<std::stri
   for (const std::string& name : s.only)
     if (std::find(known.begin(), known.end(), name) == known.end())
       problems.push_back(fmt::format("--only: there is no map \"{}\"{}", name, suggestion(name, known)));
-  if (s.range && !s.frames_every && s.only.size() != 1)
+  if (s.range && !s.frames && s.only.size() != 1)
     problems.emplace_back("--range: it is that of one map: say which with --only");
   if (s.range && s.log && !((*s.range)[0] > 0))
     problems.push_back(fmt::format("--log: a range from {} has no logarithm", (*s.range)[0]));

@@ -128,7 +128,7 @@ struct MapSettings {
   std::optional<std::filesystem::path> out;
   std::string title;
   std::array<std::string, 2> axes{"x", "y"};  ///< of the plan, to the right and upwards
-  std::optional<Real> frames_every;           ///< s, draws the frames of the thickness instead
+  bool frames = false;                        ///< draws the frames of the thickness instead
 };
 
 /// What a run has, so far as settings depend on it.

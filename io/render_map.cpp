@@ -89,7 +89,7 @@ Paper paint_ground(const PixelField& elevation, const PixelField& light, Real st
       if (std::isnan(z))
         continue;
       Vec3& colour = paper.at(i, j);
-      colour = Vec3::Constant(105 + 145 * light.at(i, j));
+      colour = Vec3::Constant(50 + 200 * light.at(i, j));
       const auto band = [](Real width) { return [width](Real value) { return std::isnan(value) ? -1e300 : std::floor(value / width); }; };
       if (elevation.changes(i, j, band(5 * step)))
         colour = mixed(colour, {90, 70, 50}, 0.85);
@@ -231,7 +231,7 @@ class MapPainter {
       add_frame(sheet, layout_.place, shown_,
                 on_map ? std::array<std::string, 2>{"east [m]", "north [m]"}
                        : std::array<std::string, 2>{settings_.axes[0] + " [m]", settings_.axes[1] + " [m]"});
-      if (settings_.axes[0] == "x" || on_map)
+      if (on_map)
         add_north(sheet, layout_.place);
       add_title(sheet, layout_, settings_.title, note);
       const std::array<Real, 2> size{oversampling * Real(layout_.size[0]), oversampling * Real(layout_.size[1])};
@@ -352,6 +352,27 @@ std::vector<fs::path> frames_in(const fs::path& folder)
   }
 }
 
+/// As the table of the run tells.
+std::vector<Real> times_of_frames(const fs::path& folder, std::size_t n)
+{
+  const HistoryTable table = read_history(folder / "runout.csv");
+  const auto frame = table["frame"], time = table["time"];
+  std::vector<Real> times(n, std::numeric_limits<Real>::quiet_NaN());
+  for (std::size_t row = 0; frame && time && row < table.rows(); ++row)
+    for (std::size_t i = 0; i < n; ++i)
+      if ((*frame)[row] == static_cast<Real>(i))
+        times[i] = (*time)[row];
+  return times;
+}
+
+/// What never was as thick as the threshold is left out: single particles far out would make it seem more than it is.
+void leave_out_unreached(const std::vector<Real>& arrival, Raster& raster)
+{
+  for (std::size_t c = 0; c < std::min(arrival.size(), raster.values.size()); ++c)
+    if (std::isnan(arrival[c]))
+      raster.values[c] = arrival[c];
+}
+
 const MapKind& kind_of(std::string_view name)
 {
   return *std::find_if(map_kinds.begin(), map_kinds.end(), [&](const MapKind& kind) { return kind.name == name; });
@@ -361,15 +382,22 @@ void draw_frames(const MapSettings& settings, const std::function<void(const fs:
 {
   const MapPainter painter(settings);
   const auto files = frames_in(settings.folder);
+  const std::vector<Real> times = times_of_frames(settings.folder, files.size());
+  const std::vector<Real> arrival = has_map(settings.folder, "arrival") ? read_map(settings.folder, "arrival").values : std::vector<Real>();
+  const auto frame_of = [&](const fs::path& file) {
+    Raster raster = read_raster(file);
+    leave_out_unreached(arrival, raster);
+    return raster;
+  };
   Extent extent(settings.log);
   for (const fs::path& file : files)
-    extent.add(read_raster(file).values);
+    extent.add(frame_of(file).values);
   const auto range = settings.range.value_or(extent.range(false));
   MapKind kind = kind_of("thickness");
   kind.title = "thickness";
   for (std::size_t n = 0; n < files.size(); ++n) {
     const fs::path png = folder_for(settings) / files[n].filename().replace_extension(".png");
-    painter.draw(read_raster(files[n]), kind, range, fmt::format("t = {:.4g} s", static_cast<Real>(n) * *settings.frames_every), png);
+    painter.draw(frame_of(files[n]), kind, range, fmt::format("t = {:.4g} s", times[n]), png);
     written(png);
   }
 }
@@ -378,7 +406,7 @@ void draw_frames(const MapSettings& settings, const std::function<void(const fs:
 
 void draw_maps(const MapSettings& settings, const std::function<void(const fs::path&)>& written)
 {
-  if (settings.frames_every)
+  if (settings.frames)
     return draw_frames(settings, written);
   const auto wanted = [&](std::string_view name, bool by_default) {
     return settings.only.empty() ? by_default : std::find(settings.only.begin(), settings.only.end(), name) != settings.only.end();
@@ -397,7 +425,9 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
     }
     if (!painter)
       painter.emplace(settings);
-    const Raster raster = read_map(settings.folder, kind.name);
+    Raster raster = read_map(settings.folder, kind.name);
+    if (!is_surface(kind.name) && kind.name != "source" && kind.name != "erosion" && has_map(settings.folder, "arrival"))
+      leave_out_unreached(read_map(settings.folder, "arrival").values, raster);
     Extent extent(settings.log);
     extent.add(raster.values);
     const fs::path png = folder_for(settings) / fmt::format("map_{}.png", kind.name);

@@ -317,7 +317,8 @@ class Rules {
     known_fields("outputs.runout.bodies", runout.bodies, bodies, "body");
     known_fields("outputs.runout.eroded", runout.eroded, bodies, "body");
     for (std::size_t i = 0; i < runout.eroded.size(); ++i)
-      if (!runout.bodies.empty() && std::find(runout.bodies.begin(), runout.bodies.end(), runout.eroded[i]) == runout.bodies.end())
+      if (!runout.bodies.empty() && std::find(bodies.begin(), bodies.end(), runout.eroded[i]) != bodies.end() &&
+          std::find(runout.bodies.begin(), runout.bodies.end(), runout.eroded[i]) == runout.bodies.end())
         add(fmt::format("outputs.runout.eroded[{}]", i), fmt::format("\"{}\" is not among outputs.runout.bodies", runout.eroded[i]));
     different_names("outputs.runout.sections", runout.sections);
     if (scene_.dimension == 2 && (runout.frames_every || runout.csv))

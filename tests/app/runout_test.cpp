@@ -41,7 +41,7 @@ std::string flying_block(const std::string& runout)
   return "title: Flying block\ndimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [4, 1, 1], cells: [8, 2, 2]}}\n"
          "materials: [{name: stuff, law: neo_hookean, density: 2000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\n"
          "bodies: [{name: block, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 0.5]}, particles_per_cell: 4, velocity: "
-         "[2, 0, 0]}]\ntime: {end: 1}\noutputs:\n  runout: {every: 0.02, cell: 0.25" +
+         "[2, 0, 0]}]\ntime: {end: 1}\noutputs:\n  runout: {every: 0.05, cell: 0.25" +
          runout + "}\n";
 }
 
@@ -62,7 +62,7 @@ TEST_F(RunOut, OfAFlyingBlockIsThatOfItsMotion)
   EXPECT_NEAR(last(rows, "largest_speed"), 2, 1e-9);
   EXPECT_NEAR(last(rows, "kinetic"), 2000, 1e-6);
   EXPECT_NEAR(last(rows, "front_x") - first(rows, "front_x"), 2, 0.5) << "another particle may be the furthest";
-  EXPECT_GE(rows.rows(), 50U);
+  EXPECT_GE(rows.rows(), 15U);
 
   const auto numbers = read_summary(folder_ / "out/summary.json").numbers;
   ASSERT_NE(find_number(numbers, "runout.volume"), nullptr);
@@ -119,10 +119,10 @@ TEST_F(RunOut, OfAFlyingBlockIsThatOfItsMotion)
 TEST_F(RunOut, CountsWhatHasMovedAndWhatItTookAlong)
 {
   write("scene.yaml",
-        "title: Two blocks\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [6, 1], cells: [12, 2]}}\n"
+        "title: Two blocks\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [8, 1], cells: [16, 2]}}\n"
         "materials: [{name: stuff, law: neo_hookean, density: 2000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\nbodies:\n"
         "  - {name: slide, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.5]}, velocity: [1, 0]}\n"
-        "  - {name: bed, material: stuff, shape: {type: box, low: [3, 0], high: [4, 0.5]}, velocity: [0.5, 0]}\n"
+        "  - {name: bed, material: stuff, shape: {type: box, low: [5, 0], high: [6, 0.5]}, velocity: [0.5, 0]}\n"
         "time: {end: 1}\noutputs: {runout: {every: 0.1, cell: 0.25, moved: 0.2, eroded: [bed]}}\n");
   const Outcome outcome = talus("run scene.yaml --quiet --out out");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
@@ -143,7 +143,7 @@ TEST_F(RunOut, CountsWhatHasMovedAndWhatItTookAlong)
   for (std::size_t i = 0; i < x->size(); ++i) {
     const Real depth = (*erosion)[i];
     eroded += std::isnan(depth) ? 0 : depth * 0.25;
-    if ((*x)[i] < 2.7 || (*x)[i] > 4.3) {
+    if ((*x)[i] < 4.7 || (*x)[i] > 6.3) {
       EXPECT_TRUE(std::isnan(depth)) << (*x)[i];
     }
   }
@@ -168,7 +168,7 @@ TEST_F(RunOut, PushOfALayerOnAWallIsThatOfEarthPressureAtRest)
   EXPECT_NEAR(last(rows, "push_x_min"), weight / 4, 0.02 * weight / 4);
   EXPECT_NEAR(last(rows, "attack_x_min_y"), 1. / 3, 0.03);
   EXPECT_NEAR(last(rows, "attack_x_min_x"), 0, 1e-12);
-  EXPECT_NEAR(last(rows, "touched_x_min"), 1, 0.125) << "half a cell more: nodes with mass";
+  EXPECT_NEAR(last(rows, "touched_x_min"), 1, 0.2) << "up to a cell and a half more: nodes with mass";
   EXPECT_NEAR(last(rows, "pressure_x_min"), last(rows, "push_x_min") / last(rows, "touched_x_min"), 1e-9);
   EXPECT_NEAR(last(rows, "push_y_min"), 2 * weight, 0.02 * 2 * weight);
   EXPECT_NEAR(last(rows, "attack_y_min_x"), 1, 0.02);
@@ -179,7 +179,7 @@ TEST_F(RunOut, SectionsThatLeaveTheMeshAreToldBefore)
   write("scene.yaml", flying_block(", sections: [{name: axis, along: [[0, 0.5], [9, 0.5]]}]"));
   const Outcome outcome = talus("check scene.yaml");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:7:"));
+  EXPECT_THAT(outcome.err, HasSubstr("scene.yaml:8:"));
   EXPECT_THAT(outcome.err, HasSubstr("corner 2 is outside of the mesh: 9 m does not lie between 0 and 4 m"));
 }
 
