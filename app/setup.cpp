@@ -596,6 +596,9 @@ bool wants_displacement(const OutputSpec& outputs)
 template <int D>
 void warn_if_dry(const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
 {
+  const std::vector<std::uint8_t>& drained = setup.water.drained;
+  if (std::none_of(drained.begin(), drained.end(), [](std::uint8_t is) { return is != 0; }))
+    return;
   std::int64_t wet = 0;
   for (std::size_t b = 0; b < setup.bodies.size(); ++b)
     if (setup.water.drains(static_cast<Index>(b)))

@@ -230,12 +230,16 @@ class Rules {
   void water(const WaterSpec& water)
   {
     const auto known = names(scene_.bodies);
-    for (std::size_t i = 0; i < water.bodies.size(); ++i) {
-      known_word(fmt::format("water.bodies[{}]", i), "body", water.bodies[i], known);
-      if (std::find(water.bodies.begin(), water.bodies.begin() + static_cast<std::ptrdiff_t>(i), water.bodies[i]) !=
-          water.bodies.begin() + static_cast<std::ptrdiff_t>(i))
-        add(fmt::format("water.bodies[{}]", i), fmt::format("\"{}\" is named twice", water.bodies[i]));
-    }
+    const auto different_bodies = [&](std::string_view key, const std::vector<std::string>& list) {
+      for (auto name = list.begin(); name != list.end(); ++name) {
+        const std::string path = fmt::format("water.{}[{}]", key, name - list.begin());
+        known_word(path, "body", *name, known);
+        if (std::find(list.begin(), name, *name) != name)
+          add(path, fmt::format("\"{}\" is named twice", *name));
+      }
+    };
+    different_bodies("bodies", water.bodies);
+    different_bodies("undrained", water.undrained);
     if (std::none_of(scene_.loads.begin(), scene_.loads.end(), [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
       add("water", "water has no weight without a load of type gravity");
   }

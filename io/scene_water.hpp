@@ -14,7 +14,7 @@ namespace talus {
 struct WaterSpec {
   SurfaceSpec table;
   Real unit_weight = 9810, suction = 0;
-  std::vector<std::string> bodies;
+  std::vector<std::string> bodies, undrained;
   Where where;
   static constexpr auto fields()
   {
@@ -25,14 +25,21 @@ struct WaterSpec {
                  "largest suction above the table, up to which it grows as the pressure does below; 0 for none"),
         optional("bodies", &WaterSpec::bodies, any, "-",
                  "drained bodies: their laws see effective stress; those of the others see total stress, with undrained strengths. "
-                 "Default all are drained")};
+                 "Default all are drained"),
+        optional("undrained", &WaterSpec::undrained, any, "-", "instead of bodies: those that are not drained")};
+  }
+  void check(std::vector<std::string>& problems) const
+  {
+    if (!bodies.empty() && !undrained.empty())
+      problems.emplace_back("give bodies, which are drained, or undrained, not both");
   }
 };
 
 /// Whether the law of a body of that name sees effective stress.
 inline bool is_drained(const WaterSpec& water, const std::string& body)
 {
-  return water.bodies.empty() || std::find(water.bodies.begin(), water.bodies.end(), body) != water.bodies.end();
+  const auto names = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), body) != list.end(); };
+  return (water.bodies.empty() || names(water.bodies)) && !names(water.undrained);
 }
 
 }  // namespace talus
