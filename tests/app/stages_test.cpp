@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <cstdlib>
 
 #include "io/vtk.hpp"
 #include "tests/app/program.hpp"
@@ -44,19 +44,26 @@ class Stages : public Program {
     std::sort(files.begin(), files.end());
     return files;
   }
+  /// The sum of the numbers behind each place where the text has these words.
+  static Real sum_behind(const std::string& words, const std::string& text)
+  {
+    Real sum = 0;
+    for (auto at = text.find(words); at != text.npos; at = text.find(words, at + 1))
+      sum += std::strtod(text.c_str() + at + words.size(), nullptr);
+    return sum;
+  }
   /// Mass and momentum close, and what the energy leaves open over the run is what its stages leave open: nothing is lost between them.
   void expect_closed_books() const
   {
-    const auto balances = nlohmann::json::parse(read("out/summary.json"))["balances"];
-    for (const char* kept : {"mass", "momentum", "angular_momentum"})
-      EXPECT_TRUE(balances[kept]["closes"].get<bool>()) << kept << balances[kept];
-    const auto& terms = balances["energy"]["terms"];
-    for (const char* term : {"gravity_work [J]", "energy_defect [J]", "transfer_loss [J]", "plastic [J]"}) {
-      Real of_stages = 0;
-      for (const auto& [name, value] : terms.items())
-        of_stages += name.starts_with("stage ") && name.ends_with(std::string(": ") + term) ? value.get<Real>() : 0;
-      EXPECT_NEAR(terms[term].get<Real>(), of_stages, 1e-6 * std::abs(terms["gravity_work [J]"].get<Real>())) << term;
+    const std::string summary = read("out/summary.json");
+    for (const std::string kept : {"mass", "momentum", "angular_momentum"}) {
+      const auto begin = summary.find('"' + kept + "\": {");
+      ASSERT_NE(begin, summary.npos) << kept;
+      EXPECT_THAT(summary.substr(begin, summary.find('}', begin) - begin), HasSubstr("\"closes\": true")) << kept;
     }
+    const Real scale = std::abs(sum_behind("\"gravity_work [J]\": ", summary));
+    for (const std::string term : {"gravity_work", "energy_defect", "transfer_loss", "plastic"})
+      EXPECT_NEAR(sum_behind("\"" + term + " [J]\": ", summary), sum_behind(": " + term + " [J]\": ", summary), 1e-6 * scale) << term;
   }
 };
 
