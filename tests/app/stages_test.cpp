@@ -20,7 +20,7 @@ class Stages : public Program {
   void run(const std::string& scene) const
   {
     write("scene.yaml", scene);
-    const Outcome outcome = talus("run scene.yaml --out out --threads 2");
+    const Outcome outcome = talus("run scene.yaml --out out --threads 1");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err.find("warning"), outcome.err.npos) << outcome.err;
   }
@@ -249,7 +249,7 @@ TEST_F(Stages, WhatCannotBeIsSaidWithItsPlace)
   const std::string lift = "  - {name: lift, material: soil, shape: {type: box, low: [0, 1.5], high: [1, 3]}}\n";
   EXPECT_THAT(
       said(lift, "  - {type: run, name: built, duration: 1, appear: [lift]}\n"),
-      testing::AllOf(HasSubstr("scene.yaml:17:5: error: stages[1] \"built\".appear: body \"lift\" cannot appear: other material is in its "
+      testing::AllOf(HasSubstr("scene.yaml:18:5: error: stages[1] \"built\".appear: body \"lift\" cannot appear: other material is in its "
                                "place: 33.3 % of its volume in 4 cells"),
                      HasSubstr("the fullest at (")));
   EXPECT_THAT(said("", "  - {type: run, duration: 1, change: [{body: ground, material: rubber}]}\n"),
