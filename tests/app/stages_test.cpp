@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <cstdlib>
 
 #include "io/vtk.hpp"
 #include "tests/app/program.hpp"
@@ -20,7 +20,7 @@ class Stages : public Program {
   void run(const std::string& scene) const
   {
     write("scene.yaml", scene);
-    const Outcome outcome = talus("run scene.yaml --out out --threads 2");
+    const Outcome outcome = talus("run scene.yaml --out out --threads 1");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     EXPECT_EQ(outcome.err.find("warning"), outcome.err.npos) << outcome.err;
   }
@@ -44,20 +44,26 @@ class Stages : public Program {
     std::sort(files.begin(), files.end());
     return files;
   }
+  /// The sum of the numbers behind each place where the text has these words.
+  static Real sum_behind(const std::string& words, const std::string& text)
+  {
+    Real sum = 0;
+    for (auto at = text.find(words); at != text.npos; at = text.find(words, at + 1))
+      sum += std::strtod(text.c_str() + at + words.size(), nullptr);
+    return sum;
+  }
   /// Mass and momentum close, and what the energy leaves open over the run is what its stages leave open: nothing is lost between them.
   void expect_closed_books() const
   {
-    const auto balances = nlohmann::json::parse(read("out/summary.json"))["balances"];
-    for (const char* kept : {"mass", "momentum", "angular_momentum"})
-      EXPECT_TRUE(balances[kept]["closes"].get<bool>()) << kept << balances[kept];
-    const auto& terms = balances["energy"]["terms"];
-    for (const char* term : {"gravity_work [J]", "energy_defect [J]", "transfer_loss [J]", "plastic [J]"}) {
-      const std::string ending = std::string(": ") + term;
-      Real of_stages = 0;
-      for (const auto& [name, value] : terms.items())
-        of_stages += name.starts_with("stage ") && name.find(ending) != std::string::npos ? value.get<Real>() : 0;
-      EXPECT_NEAR(terms[term].get<Real>(), of_stages, 1e-6 * std::abs(terms["gravity_work [J]"].get<Real>())) << term;
+    const std::string summary = read("out/summary.json");
+    for (const std::string kept : {"mass", "momentum", "angular_momentum"}) {
+      const auto begin = summary.find('"' + kept + "\": {");
+      ASSERT_NE(begin, summary.npos) << kept;
+      EXPECT_THAT(summary.substr(begin, summary.find('}', begin) - begin), HasSubstr("\"closes\": true")) << kept;
     }
+    const Real scale = std::abs(sum_behind("\"gravity_work [J]\": ", summary));
+    for (const std::string term : {"gravity_work", "energy_defect", "transfer_loss", "plastic"})
+      EXPECT_NEAR(sum_behind("\"" + term + " [J]\": ", summary), sum_behind(": " + term + " [J]\": ", summary), 1e-6 * scale) << term;
   }
 };
 
@@ -243,7 +249,7 @@ TEST_F(Stages, WhatCannotBeIsSaidWithItsPlace)
   const std::string lift = "  - {name: lift, material: soil, shape: {type: box, low: [0, 1.5], high: [1, 3]}}\n";
   EXPECT_THAT(
       said(lift, "  - {type: run, name: built, duration: 1, appear: [lift]}\n"),
-      testing::AllOf(HasSubstr("scene.yaml:17:5: error: stages[1] \"built\".appear: body \"lift\" cannot appear: other material is in its "
+      testing::AllOf(HasSubstr("scene.yaml:18:5: error: stages[1] \"built\".appear: body \"lift\" cannot appear: other material is in its "
                                "place: 33.3 % of its volume in 4 cells"),
                      HasSubstr("the fullest at (")));
   EXPECT_THAT(said("", "  - {type: run, duration: 1, change: [{body: ground, material: rubber}]}\n"),
