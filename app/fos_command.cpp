@@ -268,7 +268,7 @@ class FosSearch {
         const CaseStatus status = status_of(one.run, plan_.quick);
         runs_.start(started.size(), plan_.scene, one.run, status);
         say(fmt::format("{:.6g}: {} ({})", one.factor, status.goes_on_from ? "goes on" : "begins",
-                        fmt::join(divided(plan_, one.factor), ", ")));
+                        one.factor == 1 ? "as it is" : fmt::format("{}", fmt::join(divided(plan_, one.factor), ", "))));
         started.push_back(std::move(one));
       }
     };

@@ -48,8 +48,9 @@ void write_fos(const std::filesystem::path& file, const FosRecord& record)
 
 std::vector<std::string> broken_off(const std::filesystem::path& file)
 try {
+  const FosJson json = FosJson::parse(read_whole(file));
   std::vector<std::string> digests;
-  for (const FosJson& trial : FosJson::parse(read_whole(file)).at("trials"))
+  for (const FosJson& trial : json.at("trials"))
     if (!trial.at("message").get<std::string>().empty())
       digests.push_back(trial.at("scene_digest").get<std::string>());
   return digests;
