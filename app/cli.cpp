@@ -345,7 +345,7 @@ class CommandLine {
     number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
     number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
     fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
-    fos->add_option("--share", fos_.mass_share, "share of the mass that may move more than what is looked at; default 0.99")
+    fos->add_option("--share", fos_.mass_share, "displacement that this share of the mass does not exceed is looked at; default 0.99")
         ->check(CLI::Range(0.0, 1.0));
     fos->add_option("--set", fos_.set, set_help);
     fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(CLI::Range(1, 1024));

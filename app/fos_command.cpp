@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Trials that say nothing clear begin anew twice as long, up to so many times as long.
-constexpr int longest_trial = 4;
+/// A trial that says nothing clear begins anew, so many times as long.
+constexpr int longest_trial = 2;
 
 /// Trials side by side unless asked for otherwise: of n the bracket becomes an (n + 1)th, which more than some do not make faster.
 constexpr std::size_t most_at_a_time = 4;
@@ -327,9 +327,26 @@ void draw_fos(const FosPlan& plan, const FosSearch& search)
   }
   const fs::path curve = plan.folder / "fos_curve.csv", chart = plan.folder / "fos.png", picture = plan.folder / "mechanism.png";
   write_whole(curve, table);
-  launch_render({"chart", curve.string(), "--title", plan.spec.title, "--x", "factor", "--y", "displacement [m]", "--marks", "--log",
-                 "--upright", fmt::format("holds at {:.6g}", *low), fmt::format("{}", *low), "--upright",
-                 fmt::format("fails at {:.6g}", *high), fmt::format("{}", *high), "--out", chart.string()});
+  launch_render({"chart",
+                 curve.string(),
+                 "--title",
+                 plan.spec.title,
+                 "--x",
+                 "factor",
+                 "--y",
+                 "displacement [m]",
+                 "--curve",
+                 "trials",
+                 "--marks",
+                 "--log",
+                 "--upright",
+                 fmt::format("holds at {:.6g}", *low),
+                 fmt::format("{}", *low),
+                 "--upright",
+                 fmt::format("fails at {:.6g}", *high),
+                 fmt::format("{}", *high),
+                 "--out",
+                 chart.string()});
   fmt::print("{}\n", chart.string());
   if (failing == nullptr)
     return;

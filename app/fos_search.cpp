@@ -57,7 +57,7 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
   Motion motion;
   motion.duration = time->back() - time->front();
   motion.moved = largest.back();
-  const Real noticed = 0.1 * bodies.settlement(), half = value_at(time->front() + motion.duration / 2, *time, largest);
+  const Real noticed = 0.5 * bodies.settlement(), half = value_at(time->front() + motion.duration / 2, *time, largest);
   if (const Real first = std::max(half, noticed); first > 0)
     motion.growth = (motion.moved - half) / first;
   Real late = 0, peak = 0;
@@ -67,14 +67,17 @@ std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std
     if ((*time)[row] >= time->back() - 0.1 * motion.duration)
       late += (*kinetic)[row], ++rows;
   }
-  const Real noticed_speed = 2 * noticed / motion.duration;
-  if (const Real whole = std::max(peak, 0.5 * mass->front() * noticed_speed * noticed_speed); whole > 0)
-    motion.liveliness = late / rows / whole;
+  if (peak > 0)
+    motion.liveliness = late / rows / peak;
   return motion;
 }
 
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept
 {
+  if (motion.growth <= criterion.growth / clear_margin)
+    return Verdict::holds;
+  if (motion.growth > criterion.growth * clear_margin)
+    return Verdict::fails;
   const bool grows = !(motion.growth <= criterion.growth), moves = !(motion.liveliness <= criterion.liveliness);
   return grows == moves ? (grows ? Verdict::fails : Verdict::holds) : Verdict::unclear;
 }

@@ -24,7 +24,7 @@ Real usual_duration(const AtRest& bodies) noexcept;
 /// Two measures of whether a slope goes on, of a history from the moment its strength was divided.
 struct Motion {
   Real moved = 0;       ///< at the end [m]: the largest of the columns looked at
-  Real growth = 0;      ///< moved in the second half of the time over that in the first, or over a tenth of the settlement if that is more
+  Real growth = 0;      ///< moved in the second half of the time over that in the first, or over half of the settlement if that is more
   Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak
   Real duration = 0;    ///< s
 };
@@ -38,7 +38,9 @@ constexpr std::array<std::string_view, 3> words(Verdict) { return {"holds", "fai
 struct FosCriterion {
   Real growth = 0.1, liveliness = 5e-4;
 };
-/// Unclear where the measures contradict each other.
+/// Growth that is so many times below or above its limit decides alone: particles may tremble, and where hardly anything moves the peak is as small.
+/// In between both measures have to agree; where they contradict each other the verdict is unclear.
+inline constexpr Real clear_margin = 5;
 Verdict judge(const Motion& motion, const FosCriterion& criterion) noexcept;
 
 /// A factor, and what is known of it.

@@ -289,10 +289,9 @@ FosPlan plan_fos(const FosOptions& options)
   plan.at_rest.folder = plan.folder / "at_rest";
   plan.at_rest.scene_digest = digest_of_changed(plan, plan.at_rest.changes);
 
-  const fs::path state =
-      fs::absolute(plan.at_rest.folder)
-          .lexically_normal()
-          .lexically_relative(fs::absolute(folder_of(scene)).lexically_normal());  // so that scene and results can be moved together
+  // Relative to the scene, so that both can be moved together.
+  const fs::path here = fs::absolute(options.scene).lexically_normal().parent_path();
+  const fs::path state = fs::absolute(plan.at_rest.folder).lexically_normal().lexically_relative(here);
   plan.of_state.push_back(fmt::format("initial={{from: {}}}", in_quotes(state)));
   std::vector<std::string> moved;
   for (const std::string& body : options.bodies) {

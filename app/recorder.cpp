@@ -203,8 +203,8 @@ bool Recorder<D>::fits(std::size_t walls, Index particles) const
   if (!outputs_.history)
     return true;
   const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may not be there any more
-  return history_state_.impulse.size() == walls && history_state_.angular.size() == walls && history_state_.followed.size() == outputs_.history->points.size() &&
-         std::ranges::all_of(history_state_.followed, known);
+  return history_state_.impulse.size() == walls && history_state_.angular.size() == walls &&
+         history_state_.followed.size() == outputs_.history->points.size() && std::ranges::all_of(history_state_.followed, known);
 }
 
 template <int D>

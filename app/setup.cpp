@@ -667,7 +667,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
     std::visit(loads, load);
   set_stages(scene, complaints, setup);
   setup.water = water_of(
-      scene, mesh, setup.bodies, [&](Index cell) { return has_particles(cell); }, complaints, setup.warnings);
+      scene, mesh, setup.bodies, [&](Index cell) { return at_start(cell); }, complaints, setup.warnings);
   saturate(scene, mesh, setup.water, setup.bodies, setup.particles);
   if (setup.water.any())
     warn_if_dry(mesh, ranks, setup);

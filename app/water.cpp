@@ -139,7 +139,7 @@ Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>&
   water.table.resize(static_cast<std::size_t>(mesh.n_nodes()));
   parallel_for(mesh.n_nodes(), [&](Index n) {
     const Vec<D>& x = mesh.node(n);
-    water.table[static_cast<std::size_t>(n)] = std::min(ground(Ground<D>::plan(x)), table(x));  // NaN if the table is
+    water.table[static_cast<std::size_t>(n)] = std::min(table(x), ground(Ground<D>::plan(x)));  // NaN if the table is, in this order
   });
   std::vector<std::uint8_t> needed(water.table.size(), 0);
   for (Index c = 0; c < mesh.n_cells(); ++c)

@@ -2,6 +2,7 @@
 #include <gdal_alg.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "io/gdal_part.hpp"
@@ -14,6 +15,21 @@ namespace {
 struct FreeTriangulation {
   void operator()(GDALTriangulation* triangulation) const noexcept { GDALTriangulationFree(triangulation); }
 };
+
+/// Points in the unit square.
+bool lie_on_a_line(const std::vector<double>& x, const std::vector<double>& y)
+{
+  std::size_t farthest = 0;
+  const auto from_first = [&](std::size_t i) { return std::hypot(x[i] - x[0], y[i] - y[0]); };
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (from_first(i) > from_first(farthest))
+      farthest = i;
+  constexpr Real thin = 1e-9;  // of the extent
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (std::abs((x[farthest] - x[0]) * (y[i] - y[0]) - (x[i] - x[0]) * (y[farthest] - y[0])) > thin * from_first(farthest))
+      return false;
+  return true;
+}
 
 }  // namespace
 
@@ -37,6 +53,8 @@ std::vector<std::array<Index, 3>> triangulate(const std::vector<std::array<Real,
     x[i] = (points[i][0] - low[0]) / size;
     y[i] = (points[i][1] - low[1]) / size;
   }
+  if (lie_on_a_line(x, y))  // qhull would say so at length on the console
+    return {};
   const std::unique_ptr<GDALTriangulation, FreeTriangulation> made(
       GDALTriangulationCreateDelaunay(static_cast<int>(points.size()), x.data(), y.data()));
   std::vector<std::array<Index, 3>> triangles;

@@ -278,8 +278,16 @@ void draw(const Tornado& tornado)
       const Colour& colour = palette[end];
       drawn->SetColor(colour[0], colour[1], colour[2], 255);
       drawn->SetWidth(thick);
-      drawn->SetLegendVisibility(i == 0);
+      drawn->SetLegendVisibility(false);
     }
+  }
+  for (const std::size_t end : {0U, 1U}) {  // for the legend, whose samples are as thick as the lines
+    const Tornado::Bar& first = tornado.bars.front();
+    vtkPlot* const sample = add(plot,
+                                curve(end == 0 ? "at the low value" : "at the high value",
+                                      {unit.factor * tornado.base, unit.factor * (end == 0 ? first.low : first.high)}, {count, count}),
+                                0);
+    sample->SetColor(palette[end][0], palette[end][1], palette[end][2], 255);
   }
   keys->SetCustomTickPositions(places, words);
   vtkPlot* const line = add(plot, curve("all in the middle", std::vector<Real>(2, unit.factor * tornado.base), {0, count + 1}), 0);

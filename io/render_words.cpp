@@ -29,12 +29,12 @@ std::vector<Tick> ticks(Real low, Real high)
   const Real step = round_below(1.5 * (high - low) / wanted_intervals);  // three to eight intervals
   const Real largest = std::max(std::abs(low), std::abs(high));
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + slack)));
-  const bool all_digits = largest < 1e5 || (largest < 1e9 && step < largest / 100);  // on a map three of them tell nothing
+  constexpr Real long_number = 1e5, fine = 1e-3;  // places on a map are long numbers that differ in their last digits
+  const bool in_full = decimals < 5 && (largest < long_number || step < fine * largest);
   std::vector<Tick> list;
   for (Real i = std::ceil(low / step - slack); i * step <= high + slack * step; ++i) {
     const Real value = i * step;
-    list.push_back(
-        {value, all_digits && decimals < 5 ? fmt::format("{:.{}f}", value + 0.0, decimals) : fmt::format("{:.3g}", value + 0.0)});
+    list.push_back({value, in_full ? fmt::format("{:.{}f}", value + 0.0, decimals) : fmt::format("{:.3g}", value + 0.0)});
   }
   return list;
 }

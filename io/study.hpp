@@ -35,7 +35,7 @@ struct ExceedSpec {
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("map", &ExceedSpec::map, any, "-", "name of a map of outputs.runout, such as max_thickness"),
+    return std::tuple{required("map", &ExceedSpec::map, any, "-", "name of a map of outputs.runout, such as thickness_max"),
                       required("above", &ExceedSpec::above, any, "-", "in the unit of the map")};
   }
 };

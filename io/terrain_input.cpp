@@ -64,7 +64,7 @@ class TerrainReader {
   Area area(const Where& where, std::string_view key, const Points& corners, const std::string& file)
   {
     if (!file.empty())
-      return area_of(read_outlines(file, where, map_, problems_, input_.notes));
+      return checked(where, fmt::format("{}_file", key), area_of(read_outlines(file, where, map_, problems_, input_.notes)));
     const bool plain = std::any_of(corners.begin(), corners.end(), [](const auto& corner) { return corner.size() < 2; });
     if (!input_.on_map && corners.size() == 2) {  // of a line only x counts
       const Real side = 1;
@@ -82,13 +82,20 @@ class TerrainReader {
     MapLine ring;
     for (const auto& corner : corners)
       ring.push_back({corner[0], corner[1]});
-    if (ring.front() == ring.back())
-      ring.pop_back();
-    if (ring.size() < 3)
-      complain(where, fmt::format("{} has no area", key));
-    else if (const auto place = crossing_of(ring))
-      complain(where, fmt::format("{} crosses itself at ({:.10g}, {:.10g})", key, (*place)[0], (*place)[1]));
-    return {{ring}};
+    return checked(where, key, {{ring}});
+  }
+
+  Area checked(const Where& where, std::string_view key, Area area)
+  {
+    for (MapLine& ring : area.rings) {
+      if (!ring.empty() && ring.front() == ring.back())
+        ring.pop_back();
+      if (ring.size() < 3)
+        complain(where, fmt::format("{} has no area", key));
+      else if (const auto place = crossing_of(ring))
+        complain(where, fmt::format("{} crosses itself at ({:.10g}, {:.10g})", key, (*place)[0], (*place)[1]));
+    }
+    return area;
   }
 
   static Area area_of(const std::vector<MapPolygon>& polygons)
@@ -120,6 +127,8 @@ class TerrainReader {
       input_.frame.along = {(to[0] - from[0]) / input_.to, (to[1] - from[1]) / input_.to};
       return;
     }
+    if (!spec_.domain_file.empty())
+      complain(spec_.where, "domain_file is for the map: in 2-D without a section domain has two numbers, [[x from], [x to]]");
     const Real shift = spec_.origin.empty() ? 0 : spec_.origin[0];
     input_.frame.origin = {shift, 0};
     if (!spec_.domain.empty()) {

@@ -89,6 +89,20 @@ Plan<3> grid_of(const TerrainInput& input, Real size)
   return {std::move(data.nodes), std::move(data.cells)};
 }
 
+/// Without corners that are close to the one before and add little: outlines drawn in a GIS have many to a cell.
+MapLine thinned(const MapLine& ring, const PlanSizes& sizes)
+{
+  constexpr Real close = 0.5, little = 0.05;  // of a cell
+  MapLine kept;
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    const MapPlace &corner = ring[i], &next = ring[(i + 1) % ring.size()];
+    const Real cell = sizes(corner);
+    if (kept.empty() || distance({kept.back()}, corner) > close * cell || distance({kept.back(), next}, corner) > little * cell)
+      kept.push_back(corner);
+  }
+  return kept.size() < 3 ? ring : kept;
+}
+
 Polygon local(const MapLine& ring, const MapFrame& frame)
 {
   Polygon polygon;
@@ -125,10 +139,10 @@ Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const W
     return grid_of(input, sizes.size);
   std::vector<Polygon> polygons;
   for (const MapLine& ring : input.domain.rings)
-    polygons.push_back(local(ring, input.frame));
+    polygons.push_back(local(thinned(ring, sizes), input.frame));
   for (const Area& area : areas)
     for (const MapLine& ring : area.rings)
-      polygons.push_back(local(ring, input.frame));
+      polygons.push_back(local(thinned(ring, sizes), input.frame));
   const auto size = [&](const Vec<2>& x) { return sizes(on_map<3>(input.frame, x)); };
   return inside(gmsh().mesh_plan(polygons, size, sizes.size, where), input);
 }

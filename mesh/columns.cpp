@@ -113,7 +113,8 @@ class Zipper {
   {
     int first = D;
     for (int i = 0; i < D; ++i)
-      if (now_[i] + 1 < nodes_.begin[columns[i] + 1] && (first == D || comes_first(nodes_.stand[now_[i] + 1], nodes_.stand[now_[first] + 1])))
+      if (now_[i] + 1 < nodes_.begin[columns[i] + 1] &&
+          (first == D || comes_first(nodes_.stand[now_[i] + 1], nodes_.stand[now_[first] + 1])))
         first = i;
     return first;
   }

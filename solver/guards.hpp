@@ -39,7 +39,8 @@ Real energy_gain(const Model<D, K>& m, Real kinetic)
   const EnergyLedger& e = m.energy;
   const Real put_in = e.gravity + e.loads + e.walls + e.friction + e.damping;
   Real largest = m.guards.least_energy;
-  for (const Real term : {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.waves, e.damping, e.carried_away})
+  for (const Real term :
+       {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.waves, e.damping, e.carried_away})
     largest = std::max(largest, std::abs(term));
   return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - put_in) / largest : 0;
 }

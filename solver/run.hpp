@@ -192,8 +192,8 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   if (const auto why = fault(m, Look::at_end_of_stage))
     give_up(m, before, watch, *why);
   const Totals<D> now = totals(m);
-  const StageResult result{stage.name,  stage.kind,      begin,   m.clock.time, m.clock.step - m.stage.first_step, m.residual, m.energy,
-                           now.kinetic, plastic_work(m), m.stage.first_residual};
+  const StageResult result{stage.name, stage.kind, begin,       m.clock.time,    m.clock.step - m.stage.first_step,
+                           m.residual, m.energy,   now.kinetic, plastic_work(m), m.stage.first_residual};
   if (stage.residual && m.stage.balanced < steps_in_balance)
     give_up(m, before, watch,
             fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it "

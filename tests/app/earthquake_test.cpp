@@ -137,7 +137,7 @@ TEST_F(Earthquake, RigidBaseSendsTheWaveBackForEver)
 TEST_F(Earthquake, LayerOnStifferGroundAnswersAsItsTransferFunctionSays)
 {
   constexpr Real stiffer = 4;
-  for (const Real frequency : {p_wave / 160, p_wave / 80}) {  // of the first resonance, and of the first trough behind it
+  for (const Real frequency : {p_wave / 160, p_wave / 80}) {  // of the first resonance, and of the first minimum behind it
     write("wave.csv",
           samples(3, 0.002, [&](Real t) { return std::min(t * frequency / 2, 1.0) * std::sin(2 * std::numbers::pi * frequency * t); }));
     run(column(stiffer, ", velocity: [0, 0.01], record: {file: wave.csv, unit: m/s}", 2.8));

@@ -29,7 +29,10 @@ struct SceneParts {
     return "title: Restart\n" + dimension + more + "materials: [{name: stuff, density: 2000, " + law + "}]\n" +
            (bodies.empty() ? usual : bodies) + loads + boundaries + time +
            "outputs:\n  checkpoint: {steps: 4, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
-           (outputs.empty() ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}]" : outputs) + "}\n";
+           (outputs.empty()
+                ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}], moved: [{name: slid, mass_share: 0.9}]"
+                : outputs) +
+           "}\n";
   }
 };
 

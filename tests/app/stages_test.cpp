@@ -52,9 +52,10 @@ class Stages : public Program {
       EXPECT_TRUE(balances[kept]["closes"].get<bool>()) << kept << balances[kept];
     const auto& terms = balances["energy"]["terms"];
     for (const char* term : {"gravity_work [J]", "energy_defect [J]", "transfer_loss [J]", "plastic [J]"}) {
+      const std::string ending = std::string(": ") + term;
       Real of_stages = 0;
       for (const auto& [name, value] : terms.items())
-        of_stages += name.starts_with("stage ") && name.ends_with(std::string(": ") + term) ? value.get<Real>() : 0;
+        of_stages += name.starts_with("stage ") && name.find(ending) != std::string::npos ? value.get<Real>() : 0;
       EXPECT_NEAR(terms[term].get<Real>(), of_stages, 1e-6 * std::abs(terms["gravity_work [J]"].get<Real>())) << term;
     }
   }
@@ -143,27 +144,22 @@ TEST_F(Stages, ABodyGoesOnAsAnotherMaterial)
   expect_closed_books();
 }
 
-/// What is placed late begins with the stress of its own weight if the stage asks for it, and then hardly moves.
+/// What is placed late has no stress, or that of its own weight if the stage asks for it.
 TEST_F(Stages, ABodyAppearsWithTheStressOfItsWeight)
 {
-  const std::string lift = "  - {name: lift, material: soil, shape: {type: box, low: [0, 2], high: [1, 4]}, particles_per_cell: 6}\n";
-  const auto largest_speed_after = [&](const std::string& k0) {
-    std::string scene = column(lift, "  - {type: geostatic, name: built, duration: 9, appear: [lift], residual: 1.0e-3" + k0 + "}\n");
-    scene.replace(scene.find("name: top, at: [0.5, 2], body: ground"), std::string("name: top, at: [0.5, 2], body: ground").size(),
-                  "name: top, at: [0.5, 4], body: lift");
+  const auto first_stress = [&](const std::string& k0) {  // in the middle of the lift, before a wave comes there from its ends
+    std::string scene = column("  - {name: lift, material: soil, shape: {type: box, low: [0, 2], high: [1, 4]}, particles_per_cell: 6}\n",
+                               "  - {type: geostatic, name: built, duration: 9, appear: [lift]" + k0 + "}\n");
+    const std::string point = "name: top, at: [0.5, 2], body: ground";
+    scene.replace(scene.find(point), point.size(), "name: top, at: [0.5, 3], body: lift");
     run(scene);
     const HistoryTable table = history("out");
-    Real largest = 0;
-    const std::span<const Real> speeds = *table["top_vy"];
-    for (const Real speed : speeds)
-      largest = std::isfinite(speed) ? std::max(largest, std::abs(speed)) : largest;
-    EXPECT_TRUE(std::isnan(table["top_y"].value().front())) << "it is not there yet";
-    EXPECT_NEAR(table["top_y"].value().back(), 4, 0.2);
-    return largest;
+    const std::span<const Real> stress = *table["top_syy"];
+    EXPECT_TRUE(std::isnan(stress.front())) << "it is not there yet";
+    return *std::find_if(stress.begin(), stress.end(), [](Real value) { return std::isfinite(value); });
   };
-  const Real stress_free = largest_speed_after(""), at_rest = largest_speed_after(", initial_stress: {k0: 0}");
-  EXPECT_GT(stress_free, 0.01);
-  EXPECT_LT(at_rest, 0.75 * stress_free) << "the ground alone settles";
+  EXPECT_GT(first_stress(""), -0.1 * weight(1));
+  EXPECT_LT(first_stress(", initial_stress: {k0: 0}"), -0.5 * weight(1));
 }
 
 /// A block of clay that stands, until it does not.
@@ -183,7 +179,7 @@ stages:
   - {type: run, name: trigger, duration: 0.8, weaken: [{factor: 4}]}
 outputs: {history: {every: 0.02, fronts: [{name: toe, direction: +x}]}, particles: {every: 1, fields: [plastic_strain]}}
 )yaml");
-  const auto toe = at_ends_of_stages("toe_x");
+  const auto toe = at_ends_of_stages("toe");
   ASSERT_EQ(toe.size(), 3U);
   EXPECT_NEAR(toe[1], toe[0], 0.02);
   EXPECT_GT(toe[2], toe[1] + 0.3);
@@ -198,8 +194,8 @@ mesh:
   size: 0.2
   regions:
     - {name: full, shape: {type: box, low: [0, 0], high: [1, 1]}}
-    - {name: block, shape: {type: box, low: [1.6, 0], high: [2, 0.4]}}
-    - {name: air, shape: {type: polygon, points: [[1, 0], [1.6, 0], [1.6, 0.4], [2, 0.4], [2, 0], [3, 0], [3, 1.2], [0, 1.2], [0, 1], [1, 1]]}}
+    - {name: block, shape: {type: box, low: [1.4, 0], high: [1.8, 0.4]}}
+    - {name: air, shape: {type: polygon, points: [[1, 0], [1.4, 0], [1.4, 0.4], [1.8, 0.4], [1.8, 0], [3, 0], [3, 1.2], [0, 1.2], [0, 1], [1, 1]]}}
   groups: [{name: gate, of: "full:boundary", within: {low: [0.99, -0.1], high: [1.01, 1.1]}}]
 materials: [{name: sand, law: drucker_prager, density: 1600, youngs_modulus: 4.0e5, poisson_ratio: 0.3, friction_angle: 25, cohesion: 0,
   match: plane_strain}]
@@ -220,10 +216,10 @@ outputs: {history: {every: 0.02, fronts: [{name: toe, direction: +x, mass_share:
 TEST_F(Stages, AGateOpensAndAnEmptyRegionStandsInTheWay)
 {
   run(gate_scene);
-  const auto toe = at_ends_of_stages("toe_x"), push = at_ends_of_stages("reaction_gate_x");
+  const auto toe = at_ends_of_stages("toe"), push = at_ends_of_stages("reaction_gate_x");
   ASSERT_EQ(toe.size(), 2U);
   EXPECT_LT(toe[0], 1.01);
-  EXPECT_GT(toe[1], 1.5);
+  EXPECT_GT(toe[1], 1.35) << "it comes to the block";
   EXPECT_LT(push[0], -1000) << "the gate holds the sand";
   EXPECT_EQ(push[1], 0);
   expect_closed_books();
@@ -231,7 +227,7 @@ TEST_F(Stages, AGateOpensAndAnEmptyRegionStandsInTheWay)
   const StoredParticles end = read_particles(files_of_particles().back());
   const std::vector<Real>& x = end.fields.at(0).values;
   for (std::size_t p = 0; p < end.ids.size(); ++p)
-    inside += x[3 * p] > 1.62 && x[3 * p] < 1.98 && x[3 * p + 1] < 0.38 ? 1 : 0;
+    inside += x[3 * p] > 1.42 && x[3 * p] < 1.78 && x[3 * p + 1] < 0.38 ? 1 : 0;
   EXPECT_EQ(inside, 0) << "in the block";
   EXPECT_THAT(read("out/summary.json"), HasSubstr("wall \\\"gate\\\" is gone"));
 }
@@ -263,11 +259,11 @@ TEST_F(Stages, WhatCannotBeIsSaidWithItsPlace)
 TEST_F(Stages, ABodyThatFindsItsPlaceTakenStopsTheRun)
 {
   write("scene.yaml", column("  - {name: stone, material: soil, shape: {type: box, low: [0, 3], high: [1, 3.5]}, velocity: [0, -5]}\n"
-                             "  - {name: late, material: soil, shape: {type: box, low: [0, 2], high: [1, 2.5]}}\n",
+                             "  - {name: late, material: soil, shape: {type: box, low: [0, 2.5], high: [1, 3]}}\n",
                              "  - {type: run, name: late, duration: 0.05, appear: [late]}\n"));
   std::string scene = read("scene.yaml");
   const std::string first = "{type: geostatic, duration: 9, initial_stress: {k0: 0}, elastic: false}";
-  scene.replace(scene.find(first), first.size(), "{type: run, duration: 0.15}");
+  scene.replace(scene.find(first), first.size(), "{type: run, duration: 0.05}");
   write("scene.yaml", scene);
   const Outcome outcome = talus("run scene.yaml --out out --quiet");
   EXPECT_EQ(outcome.code, 1);

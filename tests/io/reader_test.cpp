@@ -241,7 +241,7 @@ TEST(Reader, AnswersEveryDamagedSceneWithASceneOrWithErrors)
                                          "%",  "#"};
   std::mt19937 random(20240611);
   int read = 0, refused = 0;
-  for (const std::string name : {"plane.yaml", "solid.yaml"}) {
+  for (const std::string name : {"plane.yaml", "solid.yaml", "terrain.yaml"}) {
     const auto good = tokens_of(text_of(folder / "scenes" / name));
     for (int mutant = 0; mutant < 1500; ++mutant) {
       auto tokens = good;

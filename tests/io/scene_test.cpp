@@ -102,6 +102,22 @@ TEST(Scene, ReadsAGrid)
   EXPECT_EQ(grid.jitter, 0.2);
 }
 
+TEST(Scene, ReadsAMeshOfTerrain)
+{
+  const MeshSpec mesh = scene("terrain.yaml").mesh;
+  const TerrainSpec terrain = mesh.terrain.value();
+  EXPECT_EQ(terrain.ground.file, "ground.tif");
+  EXPECT_EQ(terrain.crs, "EPSG:32633");
+  EXPECT_EQ(terrain.domain.size(), 4U);
+  ASSERT_EQ(terrain.layers.size(), 3U);
+  EXPECT_EQ(terrain.layers[0].within_file, "slide.geojson");
+  EXPECT_EQ(terrain.layers[1].bottom.depth, 3);
+  EXPECT_EQ(terrain.layers[2].size, 10);
+  EXPECT_EQ(terrain.air.value().of, "slide");
+  EXPECT_EQ(terrain.refine.at(1).along.size(), 2U);
+  EXPECT_EQ(terrain.obstacles.at(1).outline_file, "house.geojson");
+}
+
 TEST(Scene, ReadsMaterialsWithTheKeysOfTheirLaws)
 {
   const Scene s = scene("plane.yaml");

@@ -130,7 +130,7 @@ TEST_F(SurfaceFile, FeetOfElevationBecomeMetresAndThatIsTold)
   const auto ground = read("ground.tif");
   ASSERT_TRUE(ground);
   expect_plane(*ground, 1e-3);  // float32
-  EXPECT_THAT(only_repair(), AllOf(HasSubstr("mesh.terrain.ground"), HasSubstr("elevations were in ft and are multiplied by 0.3048")));
+  EXPECT_THAT(only_repair(), AllOf(HasSubstr("slope.yaml:7:3"), HasSubstr("elevations were in ft and are multiplied by 0.3048")));
 }
 
 TEST_F(SurfaceFile, UnknownUnitIsRefused)
@@ -305,7 +305,9 @@ TEST_F(SurfaceFile, WrongRowsOfPointsAreNamedByTheirLines)
 TEST_F(SurfaceFile, PointsOnALineSpanNothing)
 {
   write_whole(folder / "line.csv", "0,0,1\n1,1,2\n2,2,3\n5,5,1\n");
+  testing::internal::CaptureStderr();
   EXPECT_FALSE(read("line.csv"));
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // nor does qhull speak
   EXPECT_THAT(only_problem(), HasSubstr("lie on one line"));
 }
 

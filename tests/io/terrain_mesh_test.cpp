@@ -159,7 +159,6 @@ TEST(TerrainMesh, AirReachesAsFarAsTheLineFalls)
     for (const Index n : mesh.cell(c))
       farthest = std::max(farthest, mesh.node(n)[0]);
   EXPECT_NEAR(farthest, 8.5 + (10 - 1.0 / 3 - 6) / std::tan(std::numbers::pi / 6), 0.7);
-  EXPECT_THAT(mesh.notes(), IsEmpty());
 }
 
 TEST(TerrainMesh, ObstaclesAreLeftOut)
@@ -188,6 +187,21 @@ TEST(TerrainMesh, OutsideOfItsAreaALayerIsTheNextOne)
   EXPECT_NEAR(volume(mesh, "layer:fill"), 100 * 3, 1e-6);
   EXPECT_NEAR(volume(mesh, "layer:rock"), 60 * 30 * 25 - 300, 1e-6);
   EXPECT_NEAR(area(mesh, "layer:fill:bottom"), 100 * std::hypot(1, 0.5), 1e-6);
+}
+
+TEST(TerrainMesh, OutlinesOfManyCornersDoNotMakeSmallCells)
+{
+  std::string corners;
+  constexpr int n = 300;
+  for (int i = 0; i < n; ++i) {
+    const Real angle = 2 * std::numbers::pi * i / n;
+    corners += (i > 0 ? ", " : "") + std::string("[") + std::to_string(512030 + 8 * std::cos(angle)) + ", " +
+               std::to_string(5180015 + 8 * std::sin(angle)) + "]";
+  }
+  const Mesh<3> mesh =
+      mesh_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: [" + corners + "]}]\n    air: {height: 4}\n");
+  EXPECT_LT(mesh.n_cells(), 1.5 * 7 * (60 * 30 * 4) / (2 * 2 * 2));
+  EXPECT_NEAR(volume(mesh, "layer:fill"), 3 * std::numbers::pi * 64, 0.03 * 3 * std::numbers::pi * 64);
 }
 
 TEST(TerrainMesh, CellsAreFinerAlongALine)
@@ -238,9 +252,9 @@ TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
       - {name: slide, bottom: {elevation: 41}}
       - {name: fill, bottom: {elevation: 0}, within: [[512100, 5180010], [512130, 5180010], [512120, 5180020]]}
 )");
-  EXPECT_THAT(all, HasSubstr("scene.yaml:11:"));
+  EXPECT_THAT(all, HasSubstr("scene.yaml:13:31: error: mesh.terrain.layers[0] \"slide\".bottom: "));
   EXPECT_THAT(all, HasSubstr("layer \"slide\" has no thickness anywhere"));
-  EXPECT_THAT(all, HasSubstr("above the ground over 1800 m2 (by 31 m at most)"));
+  EXPECT_THAT(all, HasSubstr("its bottom is above the ground (by 31 m at most) over 1800 m2"));
   EXPECT_THAT(all, HasSubstr("layer \"fill\" has no part within what is meshed, 512000 to 512060 east, 5180000 to 5180030 north"));
   const std::string bad_outlines = complaint<3>(hill + R"(
     air: {height: 5}
@@ -257,6 +271,7 @@ TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
   EXPECT_THAT(far, HasSubstr("obstacle \"dam\" lies outside what is meshed"));
   EXPECT_THAT(complaint<2>(slope + "    domain: [[-5], [20]]\n    air: {height: 1}\n"),
               HasSubstr("the ground is not known at 10 of 51 places"));
+  EXPECT_THAT(complaint<2>(slope + "    domain_file: area.geojson\n    air: {height: 1}\n"), HasSubstr("domain_file is for the map"));
 }
 
 TEST(TerrainMesh, ObstaclesBeyondTheLineOfReachAreRefused)

@@ -176,7 +176,7 @@ class OfARun(unittest.TestCase):
         for path, kind, words in ((short, talus.Damaged, "short.h5"), (text, talus.UnknownFormat, "text.h5"), (foreign, talus.UnknownFormat, "no checkpoint")):
             with self.assertRaisesRegex(kind, words):
                 talus.Checkpoint(path)
-        with self.assertRaisesRegex(talus.UnknownFormat, "format 99; this module knows 4"):
+        with self.assertRaisesRegex(talus.UnknownFormat, "format 99; this module knows 4, 5"):
             talus.Checkpoint(later, check=False)
         cut = self.folder / "cut.vtp"
         cut.write_bytes(self.run_.particles.paths[-1].read_bytes()[:-20000])
