@@ -584,7 +584,7 @@ namespace {
 
 bool wants_displacement(const OutputSpec& outputs)
 {
-  if (outputs.runout || (outputs.history && !outputs.history->points.empty()))
+  if (outputs.runout || (outputs.history && (!outputs.history->points.empty() || !outputs.history->moved.empty())))
     return true;
   if (!outputs.particles)
     return false;
