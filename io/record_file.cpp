@@ -97,8 +97,8 @@ Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
                         ""});
   if (!problems.empty())
     throw SceneErrors(problems);
-  Record record = is_velocity(spec.unit) ? record_of_velocity(std::move(time), std::move(value))
-                                         : record_of_acceleration(std::move(time), std::move(value));
+  const auto integrated = is_velocity(spec.unit) ? record_of_velocity : record_of_acceleration;
+  Record record = integrated(std::move(time), std::move(value));
   switch (spec.baseline) {
     case Baseline::velocity: return ends_without_velocity(std::move(record));
     case Baseline::displacement: return ends_where_it_began(std::move(record));
