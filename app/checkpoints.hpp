@@ -15,15 +15,22 @@ struct RunIdentity {
   std::string scene_text;                        ///< as it was read
   std::vector<std::string> set;                  ///< what --set changed
   bool quick = false;
-  std::int64_t mesh = 0;  ///< its digest
-  std::string initial;    ///< checkpoint of another run that it began with, if it did
+  std::int64_t mesh = 0;        ///< its digest
+  std::int64_t from_files = 0;  ///< digest of records and of the water table
+  std::string initial;          ///< checkpoint of another run that it began with, if it did
   static constexpr auto fields()
   {
-    return std::tuple{
-        kept("version", &RunIdentity::version), kept("commit", &RunIdentity::commit),         kept("compiler", &RunIdentity::compiler),
-        kept("build", &RunIdentity::build),     kept("scene_file", &RunIdentity::scene_file), kept("scene", &RunIdentity::scene_text),
-        kept("set", &RunIdentity::set),         kept("quick", &RunIdentity::quick),           kept("mesh", &RunIdentity::mesh),
-        kept("initial", &RunIdentity::initial)};
+    return std::tuple{kept("version", &RunIdentity::version),
+                      kept("commit", &RunIdentity::commit),
+                      kept("compiler", &RunIdentity::compiler),
+                      kept("build", &RunIdentity::build),
+                      kept("scene_file", &RunIdentity::scene_file),
+                      kept("scene", &RunIdentity::scene_text),
+                      kept("set", &RunIdentity::set),
+                      kept("quick", &RunIdentity::quick),
+                      kept("mesh", &RunIdentity::mesh),
+                      kept("from_files", &RunIdentity::from_files),
+                      kept("initial", &RunIdentity::initial)};
   }
 };
 

@@ -201,6 +201,7 @@ class Run {
             scene_.overrides,
             quick_,
             static_cast<std::int64_t>(mesh_digest),
+            static_cast<std::int64_t>(setup.from_files),
             setup.origin ? setup.origin->file : ""};
   }
 
@@ -219,12 +220,16 @@ class Run {
     return fmt::format("; the state before it: {} --until {}", command, sound);
   }
 
-  /// EnvironmentError: the mesh is not that of the checkpoint.
+  /// EnvironmentError: the mesh, or what other files say, is not that of the checkpoint.
   static void compare(const RunIdentity& then, const RunIdentity& now)
   {
     if (then.mesh != now.mesh)
       throw EnvironmentError(
           fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
+    if (then.from_files != now.from_files)
+      throw EnvironmentError(
+          fmt::format("a record or the water table of {} is not the one that the checkpoint was made with: its file has changed since",
+                      now.scene_file));
     std::vector<std::string> maker, here;  // what they differ in
     for (const auto& [what, part] : {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler),
                                      std::pair("build", &RunIdentity::build)})

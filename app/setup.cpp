@@ -18,6 +18,7 @@
 #include "io/history_columns.hpp"
 #include "io/scene_rules.hpp"
 #include "materials/strength.hpp"
+#include "mesh/digest.hpp"
 
 namespace talus {
 
@@ -582,6 +583,17 @@ std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::pa
 
 namespace {
 
+template <int D>
+std::uint64_t digest_of_files(const Setup<D>& setup)
+{
+  std::vector<Real> numbers = setup.water.table;
+  for (const Wall<D>& wall : setup.walls.walls())
+    if (wall.record)
+      for (const std::vector<Real>* part : {&wall.record->time, &wall.record->velocity, &wall.record->acceleration})
+        numbers.insert(numbers.end(), part->begin(), part->end());
+  return digest(std::span<const Real>(numbers));
+}
+
 bool wants_displacement(const OutputSpec& outputs)
 {
   if (outputs.runout || (outputs.history && (!outputs.history->points.empty() || !outputs.history->moved.empty())))
@@ -690,6 +702,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
       (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
     setup.particles.x0 = setup.particles.x;
   setup.guards = guards_of(scene, mesh, setup, ranks);
+  setup.from_files = digest_of_files(setup);
   set_changes(scene, mesh, ranks, setup);
   return setup;
 }

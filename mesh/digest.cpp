@@ -65,6 +65,13 @@ std::uint64_t digest(std::string_view text)
   return sum;
 }
 
+std::uint64_t digest(std::span<const Real> numbers)
+{
+  std::uint64_t sum = start;
+  digest_bytes(std::as_bytes(numbers), sum);
+  return sum;
+}
+
 template std::uint64_t digest<2>(const Mesh<2>&);
 template std::uint64_t digest<3>(const Mesh<3>&);
 

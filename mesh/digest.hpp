@@ -1,6 +1,7 @@
 #pragma once
 // Whether two meshes are the same.
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 #include "mesh/mesh.hpp"
@@ -13,6 +14,8 @@ std::uint64_t digest(const Mesh<D>& mesh);
 
 /// Of a text.
 std::uint64_t digest(std::string_view text);
+/// Of numbers, to the last bit.
+std::uint64_t digest(std::span<const Real> numbers);
 
 extern template std::uint64_t digest<2>(const Mesh<2>&);
 extern template std::uint64_t digest<3>(const Mesh<3>&);

@@ -125,6 +125,20 @@ TEST_F(Earthquake, SurfaceMovesTwiceAsFastAsTheWaveThatComesUpAndNothingComesBac
   EXPECT_LT(largest(curve("top_uy"), 1.5), 1e-6);
 }
 
+TEST_F(Earthquake, ARunDoesNotGoOnWithAnotherRecord)
+{
+  const auto wave = [](Real height) { return samples(0.4, 0.01, [height](Real t) { return height * ricker(t, 5); }); };
+  write("wave.csv", wave(1));
+  write("scene.yaml", column(1, ", velocity: [0, 0.01], record: {file: wave.csv, unit: m/s}", 0.4).scene());
+  ASSERT_EQ(talus("run scene.yaml --quiet --out out --until 5").code, 4);
+  write("wave.csv", wave(1.01));
+  const Outcome refused = talus("run --resume out --quiet");
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_THAT(refused.err, HasSubstr("a record or the water table of"));
+  write("wave.csv", wave(1));
+  EXPECT_EQ(talus("run --resume out --quiet").code, 0);
+}
+
 TEST_F(Earthquake, RigidBaseSendsTheWaveBackForEver)
 {
   write("wave.csv", samples(0.8, 0.002, [](Real t) { return ricker(t, 4); }));
