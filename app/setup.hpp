@@ -43,6 +43,13 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks = one_r
 template <int D>
 void restrict_to(const Share& share, Setup<D>& setup);
 
+/// Numbers of a scene as a vector; zero where there are none.
+template <int D>
+Vec<D> vector_of(const std::vector<Real>& numbers)
+{
+  return numbers.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(Eigen::Map<const Vec<D>>(numbers.data()));
+}
+
 /// The scheme of a scene, with the defaults that go with it.
 Transfer transfer_of(const TransferSpec& spec);
 
