@@ -10,7 +10,7 @@ talus_library(fuzz_io FOLDER io
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::IOXML VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5)
-talus_library(fuzz_solver FOLDER solver ONLY cell_order deal loads walls LINKS talus_mesh talus_fuzz_materials)
+talus_library(fuzz_solver FOLDER solver ONLY cell_order deal loads soil_column walls LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
               ONLY accounts checkpoints disk_space duration expression fields history progress reach recorder results runout signals slices sound_state traps
               LINKS talus_fuzz_io talus_fuzz_solver
