@@ -182,7 +182,7 @@ std::string good_checkpoint()
   CheckpointSpec every_step;
   every_step.steps = 1;
   Checkpoints<2> checkpoints(run_folder(), every_step,
-                             {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, ""});
+                             {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, 2, ""});
   run.recorder.watch(run.frame(), Moment::stage_begins);
   checkpoints.see(run.frame(), run.recorder);
   ++run.clock.step;

@@ -411,7 +411,7 @@ TEST_F(Files, ACheckpointIsTakenOverInSlicesAndRefusedByAllWhereOneOfThemIsDamag
   Recorder<2> recorder(folder, outputs, stages, true, "");
   if (ranks.is_root())
     write_whole(folder / "summary.json", "{}\n");
-  Checkpoints<2> checkpoints(folder, CheckpointSpec{}, {"0.1", "commit", "compiler", "build", "scene.yaml", "", {}, false, 1, ""});
+  Checkpoints<2> checkpoints(folder, CheckpointSpec{}, {"0.1", "commit", "compiler", "build", "scene.yaml", "", {}, false, 1, 2, ""});
   checkpoints.write(run.frame(), recorder);
   run.clock.step = 1;
   checkpoints.write(run.frame(), recorder);
