@@ -75,7 +75,7 @@ stage_site() { "$python" -m mkdocs build --quiet --config-file tools/site/mkdocs
 # Every command of docs/tutorials, with the program of stage dev: what they write is there, what they print is what the page shows.
 stage_tutorials() { "$python" tools/run_tutorials.py build/dev/talus; }
 
-# Two minutes of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
+# A minute of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
 stage_fuzz() { tools/fuzz.sh quick; }
 
 stage_test() { make test JOBS="$jobs"; }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Feeds damaged scenes, meshes and checkpoints to what reads them (tests/fuzz): tools/fuzz.sh quick (two minutes, as in CI), or
+# Feeds damaged scenes, meshes and checkpoints to what reads them (tests/fuzz): tools/fuzz.sh quick (a minute, as in CI), or
 # tools/fuzz.sh long [minutes for each] [entry ...]. Inputs that break something are left in build/fuzz/findings; what has been tried and was
 # worth keeping, in build/fuzz/corpus, from where the next call goes on.
 set -euo pipefail
@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
 build=build/fuzz
 findings=$build/findings
-quick_seconds=60 # of the three at once: two minutes of two cores
+quick_seconds=30 # of the three at once: a minute of two cores
 
 leg=${1-}
 shift || true
