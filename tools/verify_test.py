@@ -251,10 +251,14 @@ class Documents(unittest.TestCase):
         with self.assertRaises(ValueError):
             report.write(document, pathlib.Path("images"))
 
-    def test_a_case_without_judged_numbers_still_has_a_row(self):
-        document = self.document(["a"], 1)
-        document["results"][0]["pass"] = None
-        self.assertIn("0 of 0", report.block(document))
+    def test_the_readme_has_at_most_twelve_rows_and_all_of_them_are_measured(self):
+        self.assertLessEqual(len(report.README_ROWS), 12)
+        table = report.block(json.loads(report.RESULTS.read_text(encoding="utf-8")))
+        self.assertEqual(table.count("\n| ["), len(report.README_ROWS))
+
+    def test_a_row_of_the_readme_that_is_not_measured_is_an_error(self):
+        with self.assertRaisesRegex(ValueError, "README_ROWS"):
+            report.row(self.document(["a"], 1), "a", "another metric", "analytic")
 
 
 class Measures(unittest.TestCase):
