@@ -25,10 +25,24 @@ if(TALUS_SHARED)
   list(APPEND TALUS_COMPILE_OPTIONS -fno-semantic-interposition)   # inside a library calls are calls of itself
 endif()
 set(TALUS_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion)
+# Packs of numbers are handed over by value, always inside Talus: where the processor has no vectors of their size, gcc would tell at each that
+# other programs may do so in another way.
+if((TALUS_LEVEL OR NOT TALUS_NATIVE) AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  list(APPEND TALUS_WARNINGS -Wno-psabi)
+endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES Clang)   # gcc's -Wconversion does not mean it in C++
+  list(APPEND TALUS_WARNINGS -Wno-sign-conversion)
+endif()
 if(TALUS_WERROR)
   list(APPEND TALUS_WARNINGS -Werror)
 endif()
 add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:${TALUS_COMPILE_OPTIONS};${TALUS_WARNINGS}>")
+# As Debian builds programs (dpkg-buildflags with hardening=+all): packages that are handed to others.
+if(TALUS_HARDENED)
+  set(CMAKE_POSITION_INDEPENDENT_CODE ON)
+  add_compile_options(-fstack-protector-strong -Wformat -Werror=format-security -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2)
+  add_link_options($<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie> -Wl,-z,relro -Wl,-z,now)
+endif()
 # Packs of four numbers are entries of tensors; where the processor has no vectors of their size Eigen would align such tensors for less.
 add_compile_definitions($<$<CONFIG:Release>:EIGEN_NO_DEBUG> EIGEN_MAX_STATIC_ALIGN_BYTES=32)
 include_directories(${PROJECT_SOURCE_DIR})
