@@ -157,7 +157,16 @@ Page begin_page(const RunFolder& run, const PageWishes& wishes)
 
 }  // namespace
 
-fs::path default_template() { return fs::read_symlink("/proc/self/exe").parent_path() / report_file; }
+fs::path page_template(const std::optional<fs::path>& given)
+{
+  const fs::path page = given ? *given : fs::read_symlink("/proc/self/exe").parent_path() / report_file;
+  if (!given && !fs::exists(page))
+    throw EnvironmentError(
+        fmt::format("the page was left out when this program was built, since npm could not fetch its libraries: {} is not there; "
+                    "build again with the network within reach, copy it there from another build of the same commit, or name it by --page",
+                    page.string()));
+  return page;
+}
 
 RunState state_of_run(const fs::path& folder, const SummaryBack& summary)
 {

@@ -40,8 +40,9 @@ RunState state_of_run(const std::filesystem::path& folder, const SummaryBack& su
 std::string page_of(const RunFolder& run, const PageWishes& wishes, const std::filesystem::path& template_file, RunSurvey& survey,
                     std::vector<std::string>& notes);
 
-/// report.html beside this program, which the build has made there.
-std::filesystem::path default_template();
+/// The template of pages: `given`, else report.html beside this program, which the build makes there where it can fetch the libraries of the page.
+/// EnvironmentError, with what to do, where it could not.
+std::filesystem::path page_template(const std::optional<std::filesystem::path>& given);
 
 /// The line of a scene that a warning speaks of: the one it names ("slope.yaml:12:5: ..."), or that of the key it names ("watch.speed").
 std::optional<int> line_of_warning(const std::string& warning, const std::string& scene_file, const std::string& scene_text);

@@ -20,7 +20,7 @@ void write_report(const ReportOptions& options)
     throw Error(fmt::format("--out {}: the name of a page ends in .html", file.string()));
   RunSurvey survey;
   std::vector<std::string> notes;
-  const std::string page = page_of(run, wishes, options.page.value_or(default_template()), survey, notes);
+  const std::string page = page_of(run, wishes, page_template(options.page), survey, notes);
   write_whole(file, page);
   fmt::print("{}  {:.1f} MB\n", file.string(), static_cast<Real>(page.size()) / 1e6);
   for (const std::string& note : notes)

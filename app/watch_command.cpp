@@ -62,7 +62,13 @@ class Follower {
   {
     look();
     if (look_.state == RunState::at_work && !options_.once) {
-      serve();
+      try {
+        serve();
+      } catch (const EnvironmentError& error) {
+        if (options_.page || pages_)  // asked for by name; the port
+          throw;
+        fmt::print(stderr, "note: no page for the browser: {}\n", error.what());
+      }
       follow();
       give_last_page();
     }
@@ -82,9 +88,9 @@ class Follower {
   {
     if (!options_.serve)
       return;
-    const fs::path page = options_.page.value_or(default_template());
+    const fs::path page = page_template(options_.page);
     if (!fs::exists(page))
-      throw EnvironmentError(fmt::format("{} is not there: the page that the build makes; --no-serve does without", page.string()));
+      throw EnvironmentError(fmt::format("--page {} is not there", page.string()));
     pages_ = std::make_unique<WatchPages>(options_.folder, page, options_.interval, readers_);
     server_ = std::make_unique<HttpServer>(options_.port, [this](const std::string& path) { return pages_->answer(path); });
     fmt::print("page: http://127.0.0.1:{}/\n", server_->port());

@@ -1,16 +1,25 @@
 // A browser without a window, and what its pages look like.
+import {existsSync} from 'node:fs';
 import {createRequire} from 'node:module';
 import {dirname, join, resolve} from 'node:path';
 import {fileURLToPath, pathToFileURL} from 'node:url';
 
 const here = dirname(fileURLToPath(import.meta.url));
 const modules = resolve(process.env.TALUS_PAGE_MODULES ?? join(here, '../node_modules'));
-const {chromium} = createRequire(join(modules, 'here.js'))('playwright-core');
+const path_of_browser = process.env.CHROMIUM ?? '/usr/bin/chromium';
+
+/** What is needed to look at pages and is not there; null if nothing. */
+export function missing() {
+  if (!existsSync(join(modules, 'playwright-core')))
+    return `playwright-core is not in ${modules}: npm could not fetch the libraries of the page`;
+  if (!existsSync(path_of_browser)) return `there is no ${path_of_browser}, and CHROMIUM names no other`;
+  return null;
+}
 
 /** Debian's Chromium, drawing by software. */
 export const launch = () =>
-  chromium.launch({
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  createRequire(join(modules, 'here.js'))('playwright-core').chromium.launch({
+    executablePath: path_of_browser,
     args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
   });
 

@@ -2,13 +2,13 @@
 // Usage: node report_test.mjs --template FILE     made-up runs in this template, everything that can be checked against them
 //        node report_test.mjs REPORT              a report of talus: that it opens, draws, moves and asks nothing of the network
 import assert from 'node:assert/strict';
-import {mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
+import {existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {createServer} from 'node:http';
 import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {MAPS} from '../src/colours.js';
 import {decode, value_of} from '../src/decode.js';
-import {launch, open, pixels} from './browser.mjs';
+import {launch, missing, open, pixels} from './browser.mjs';
 import {SAMPLES, fill} from './sample.mjs';
 
 const VIEW = '#canvas';
@@ -508,6 +508,11 @@ const [flag, name] = process.argv.slice(2);
 if (!flag || (flag === '--template' && !name)) {
   console.error('usage: node report_test.mjs --template FILE | REPORT');
   process.exit(2);
+}
+const lacking = missing() ?? (existsSync(name ?? flag) ? null : `${name ?? flag} was left out of the build`);
+if (lacking) {
+  console.error(`the page is not looked at: ${lacking}`);
+  process.exit(process.env.CI ? 1 : 77); // 77: skipped, as ctest is told; never in CI
 }
 const folder = mkdtempSync(join(tmpdir(), 'talus_page_'));
 const browser = await launch();

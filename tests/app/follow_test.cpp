@@ -92,6 +92,24 @@ TEST_F(Follow, EndsWhenTheRunDoes)
       << "one line as long as nothing changes, then all of it";
 }
 
+TEST_F(Follow, ARunIsFollowedInTheTerminalWhereThePageWasNotBuilt)
+{
+  const std::string end = read("out/summary.json");
+  open_again();
+  std::filesystem::copy_file(TALUS_BINARY, folder_ / "bare");  // no report.html beside it
+  std::optional<FolderLock> lock(folder_ / "out");
+  std::thread run([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(600));
+    write("out/summary.json", end);
+    lock.reset();
+  });
+  const Outcome outcome = talus("", "sh -c './bare watch out --interval 0.1'");
+  run.join();
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("note: no page for the browser: the page was left out when this program was built"));
+  EXPECT_THAT(outcome.out, HasSubstr("\ndone "));
+}
+
 TEST_F(Follow, ThePageAnswersForTheRunAndNothingElseOfTheDisk)
 {
   open_again();

@@ -235,6 +235,21 @@ TEST_F(Report, WhatIsNotThereEndsWithTwo)
   EXPECT_FALSE(exists("out/report.html"));
 }
 
+TEST_F(Report, AProgramThatWasBuiltWithoutThePageSaysSo)
+{
+  write("block.yaml", block_scene("time: {end: 0.01}\n"));
+  ASSERT_EQ(talus("run block.yaml --quiet --out out").code, 0);
+  std::filesystem::copy_file(TALUS_BINARY, folder_ / "bare");  // no report.html beside it
+  const Outcome outcome = talus("", "sh -c './bare report out'");
+  EXPECT_EQ(outcome.code, 3);
+  EXPECT_THAT(outcome.err,
+              HasSubstr("error: the page was left out when this program was built, since npm could not fetch its libraries: "));
+  EXPECT_THAT(outcome.err, HasSubstr("/report.html is not there; build again with the network within reach"));
+  EXPECT_FALSE(exists("out/report.html"));
+  const Outcome named = talus("", "sh -c './bare report out --page page.html'");
+  EXPECT_EQ(named.code, 0) << named.err;
+}
+
 TEST(Drawing, ASquareFillsItsLettersAndColoursAreForTerminals)
 {
   Cloud cloud{2, {}, {}, "speed", "m/s"};
