@@ -3,7 +3,7 @@
 #   libexec/talus          the program and its companions, which it finds beside itself, and in lib/ there the libraries of TALUS_SHARED
 #   share/talus            the pages, scenes, benchmarks and the Python module, arranged as in the sources, so that links between pages hold
 #   share/doc/talus        what Debian wants there, and the site if it was built
-# What is written at the time of installing (completions, the manual page, the change log): cmake/WritePackageFiles.cmake.
+# What is written at the time of installing (completions, the manual page, the change log, the bill of materials): cmake/WritePackageFiles.cmake.
 set(TALUS_MAINTAINER "The Talus authors <talus@talus.invalid>" CACHE STRING "Who answers for the package: name <mail address>")
 set(TALUS_HOME libexec/talus)
 
@@ -28,10 +28,12 @@ endfunction()
 
 function(talus_install)
   install(TARGETS talus talus-render RUNTIME DESTINATION ${TALUS_HOME})
+  set(parts $<TARGET_FILE:talus> $<TARGET_FILE:talus-render>)
   get_property(targets DIRECTORY PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target ${targets})
     get_target_property(type ${target} TYPE)
     if(type MATCHES "^(SHARED|MODULE)_LIBRARY$")
+      list(APPEND parts $<TARGET_FILE:${target}>)
       install(TARGETS ${target} LIBRARY DESTINATION ${TALUS_HOME}$<$<BOOL:${TALUS_SHARED}>:/lib>)
     endif()
   endforeach()
@@ -47,6 +49,7 @@ function(talus_install)
   install(DIRECTORY build/site/ DESTINATION share/doc/talus/html OPTIONAL)
   install(CODE "
     set(program [[$<TARGET_FILE:talus>]])
+    set(parts [[${parts}]])
     set(source_dir [[${PROJECT_SOURCE_DIR}]])
     set(version [[${PROJECT_VERSION}]])
     set(maintainer [[${TALUS_MAINTAINER}]])

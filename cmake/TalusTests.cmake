@@ -61,7 +61,7 @@ endfunction()
 # tests/speed/*.cpp -> talus_speed (Google Benchmark). Not a ctest: a number is no verdict.
 function(talus_speed library)
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/speed/*.cpp)
-  if(sources)
+  if(sources AND TARGET benchmark::benchmark)
     add_executable(talus_speed EXCLUDE_FROM_ALL ${sources})
     target_link_libraries(talus_speed PRIVATE ${library} benchmark::benchmark benchmark::benchmark_main)
     talus_use_pch(talus_speed talus_pch)

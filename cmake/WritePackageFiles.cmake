@@ -1,4 +1,5 @@
-# Run when Talus is installed: writes below `to` (share/) what the built `program` says of itself, and Debian's change log of `version`.
+# Run when Talus is installed: writes below `to` (share/) what the built `program` says of itself, Debian's change log of `version`, and what the `parts`
+# of the build are made of.
 find_program(gzip gzip REQUIRED)
 
 function(talus_write_packed file text)
@@ -47,3 +48,11 @@ talus_write_packed(${to}/doc/talus/changelog "talus (${version}) unstable; urgen
 
  -- ${maintainer}  ${date}
 ")
+
+# Which libraries, of which versions: known where Debian's packages are.
+find_program(dpkg_query dpkg-query)
+find_program(python3 python3 HINTS /usr/bin)
+if(dpkg_query AND python3)
+  file(MAKE_DIRECTORY ${to}/doc/talus)
+  execute_process(COMMAND ${python3} -B ${source_dir}/tools/write_sbom.py ${version} ${to}/doc/talus/sbom.cdx.json ${parts} COMMAND_ERROR_IS_FATAL ANY)
+endif()

@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 
 jobs=${JOBS:-$(nproc)}
 build() {  # preset -> build/<preset>
-  cmake --preset "$1" -Wno-dev >/dev/null
+  cmake --preset "$1" -D TALUS_WERROR="${TALUS_WERROR-OFF}" -Wno-dev >/dev/null
   cmake --build "build/$1" --target programs -j "$jobs"
 }
 
@@ -14,6 +14,8 @@ build portable
 build portable-v3
 mkdir -p build/portable/lib/glibc-hwcaps/x86-64-v3
 install --mode=644 --strip build/portable-v3/lib/*.so build/portable/lib/glibc-hwcaps/x86-64-v3/
+
+python3 -B tools/check_hardening.py build/portable/talus build/portable/talus-render build/portable/lib/*.so build/portable/lib/glibc-hwcaps/x86-64-v3/*.so
 
 # Which libraries are taken here, and that the plainest run as well.
 loader=/lib64/ld-linux-x86-64.so.2

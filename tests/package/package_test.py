@@ -3,6 +3,7 @@
 
 Usage: package_test.py CPACK BUILD, the folder of a build.
 """
+import json
 import os
 import re
 import stat
@@ -15,7 +16,7 @@ from pathlib import Path
 SOURCE = Path(__file__).resolve().parents[2]
 FILES = """usr/bin/talus usr/libexec/talus/talus usr/libexec/talus/talus-render usr/lib/python3/dist-packages/talus.py usr/share/talus/python/talus.py
 usr/share/talus/scenes/column_collapse/scene.yaml usr/share/talus/benchmarks/verify.py usr/share/talus/docs/index.md usr/share/talus/THIRD_PARTY.md
-usr/share/doc/talus/copyright usr/share/doc/talus/changelog.gz usr/share/man/man1/talus.1.gz""".split()
+usr/share/doc/talus/copyright usr/share/doc/talus/changelog.gz usr/share/doc/talus/sbom.cdx.json usr/share/man/man1/talus.1.gz""".split()
 ELF = b"\x7fELF"
 
 
@@ -82,6 +83,12 @@ class Package(unittest.TestCase):
                 named = {text for text in re.findall(re.escape(place) + rb"[\w./-]*", content) if not text.endswith((b".hpp", b".cpp"))}
                 self.assertEqual(named, set(), path)
 
+    def test_what_is_handed_to_others_is_built_as_debian_builds(self):
+        if "TALUS_HARDENED:BOOL=ON" not in (Path(self.build) / "CMakeCache.txt").read_text(encoding="utf-8"):
+            self.skipTest("a build of a developer (tools/build_portable.sh looks at those for others)")
+        checked = run(sys.executable, "-B", SOURCE / "tools/check_hardening.py", *self.programs())
+        self.assertEqual(checked.returncode, 0, checked.stdout + checked.stderr)
+
     def test_the_package_names_what_it_needs(self):
         told = run("dpkg-deb", "-f", self.package).stdout
         for package in ("libgmsh4.8", "libgdal32", "libvtk9.1", "libhdf5-openmpi-103-1", "libopenmpi3", "libgomp1", "libmetis5"):
@@ -89,6 +96,31 @@ class Package(unittest.TestCase):
         for package in ("xvfb", "xauth", "libgl1-mesa-dri", "python3-h5py"):
             self.assertRegex(told, rf"Recommends:.*\b{package}\b")
         self.assertRegex(told, r"Suggests:.*\bffmpeg\b")
+
+    def test_the_bill_of_materials_names_all_that_is_in_the_programs_and_the_page(self):
+        document = json.loads((self.root / "usr/share/doc/talus/sbom.cdx.json").read_text(encoding="utf-8"))
+        self.assertEqual((document["bomFormat"], document["specVersion"]), ("CycloneDX", "1.5"))
+        self.assertRegex(document["serialNumber"], r"^urn:uuid:[0-9a-f]{8}-[0-9a-f]{4}-4[0-9a-f]{3}-[89ab][0-9a-f]{3}-[0-9a-f]{12}$")
+        told = run("dpkg-deb", "-f", self.package, "Version", "Depends").stdout
+        self.assertIn(f"Version: {document['metadata']['component']['version']}\n", told)
+        components = document["components"]
+        references = [component["bom-ref"] for component in components]
+        self.assertEqual(len(references), len(set(references)))
+        for component in components:
+            self.assertEqual(component["type"], "library")
+            self.assertRegex(component["purl"], r"^pkg:(deb/\w+|npm)/[\w.%+~-]+(/[\w.-]+)?@[\w.%+~-]+(\?arch=\w+&distro=[\w.-]+)?$")
+        (root,) = document["dependencies"]
+        self.assertEqual(root["ref"], document["metadata"]["component"]["bom-ref"])
+        self.assertLessEqual(set(root["dependsOn"]), set(references))
+        # What dpkg-shlibdeps found by itself, and what a compiler leaves no trace of.
+        linked = set(re.findall(r"[\w.+-]+", re.sub(r"\([^)]*\)", "", told.split("Depends:")[1]))) - {"python3"}
+        self.assertGreater(len(linked), 10)
+        self.assertLessEqual(linked | {"libeigen3-dev", "libcli11-dev", "nlohmann-json3-dev"}, {component["name"] for component in components})
+        page = json.loads((SOURCE / "page/package.json").read_text(encoding="utf-8"))
+        for name, version in page["dependencies"].items():
+            self.assertIn(f"pkg:npm/{name}@{version}", root["dependsOn"])
+        for name, version in page["devDependencies"].items():
+            self.assertIn((name, version, "excluded"), {(c["name"], c["version"], c.get("scope")) for c in components})
 
     def test_the_program_runs_from_where_it_is_unpacked(self):
         told = run(self.program, "--version", **self.clean)
