@@ -68,7 +68,9 @@ endfunction()
 # For whoever links a library that opens modules.
 function(talus_use_modules target)
   get_property(modules GLOBAL PROPERTY TALUS_MODULES)
-  add_dependencies(${target} ${modules})
+  if(modules)
+    add_dependencies(${target} ${modules})
+  endif()
   set_target_properties(${target} PROPERTIES ENABLE_EXPORTS ON BUILD_RPATH "$ORIGIN")
 endfunction()
 
