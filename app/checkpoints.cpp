@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 5;
+constexpr std::int64_t format = 6;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }

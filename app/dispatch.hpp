@@ -68,6 +68,7 @@ Model<D, K> build(const Scene& scene, Part<D> part, Setup<D> setup)
   m.transfer = setup.transfer;
   m.exits = std::move(setup.exits);
   m.guards = setup.guards;
+  m.clock.lag = setup.lag;
   make_ready(m, setup.laws);
   return std::move(m);
 }

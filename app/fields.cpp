@@ -136,12 +136,11 @@ Column node_column(const Frame<D>& frame, std::string_view name)
   if (name == "force")
     return vectors<D>(name, "N", rows, [&](std::size_t n) { return nodes.sum[n].force; });
   // What changed the node's momentum besides forces and gravity; nodes under a wall are not damped.
-  const Vec<D> gravity = frame.loads.gravity(frame.clock.time, frame.stage.ramp(frame.clock.time));
   return vectors<D>(name, "N", rows, [&](std::size_t n) {
     const NodeSum<D>& sum = nodes.sum[n];
-    if (nodes.active[n] == 0 || nodes.bound[n] == 0 || frame.clock.dt == 0)
+    if (nodes.active[n] == 0 || nodes.bound[n] == 0 || nodes.kick == 0)
       return Vec<D>(Vec<D>::Zero());
-    return Vec<D>(sum.mass * (nodes.motion[n].change / frame.clock.dt - gravity) - sum.force);
+    return Vec<D>(sum.mass * (nodes.motion[n].change / nodes.kick - nodes.gravity) - sum.force);
   });
 }
 

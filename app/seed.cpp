@@ -126,6 +126,7 @@ class Seeder {
             to_string(here.where), here.name, 100 * change, law_name(material)));
     }
     seeds_.origin = initial.origin;
+    seeds_.lag = initial.there.clock.lag;
     if (ranks_.alone())
       return;
     for (Index& cell : seeds_.particles.cell)

@@ -14,6 +14,7 @@ struct Seeds {
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
   std::optional<OriginSummary> origin;
+  Real lag = 0;  ///< by how much the velocities of another run are behind its time, Clock::lag [s]
 };
 
 /// Cells [begin, end) that this rank fills: an even share of the blocks along the curve.

@@ -91,6 +91,7 @@ void find_faults(const Clock& clock, std::vector<std::string>& faults)
     faults.push_back(fmt::format("clock/step is {}, not a number from 0 on", clock.step));
   must_not_be_negative("clock/time", clock.time, faults);
   must_not_be_negative("clock/dt", clock.dt, faults);
+  must_not_be_negative("clock/lag", clock.lag, faults);
 }
 
 void find_faults(const StageState& stage, const Clock& now, std::vector<std::string>& faults)

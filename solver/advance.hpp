@@ -28,11 +28,11 @@ void find_places(Model<D, K>& m);
 template <int D, Kernel<D> K>
 void sum_on_nodes(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void settle(Model<D, K>& m, Real dt);
+void settle(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void show_to_particles(Model<D, K>& m, Real dt);
+void show_to_particles(Model<D, K>& m, Real mid);
 template <int D, Kernel<D> K, class Then>
-void remap(Model<D, K>& m, Real dt, Then&& then);
+void remap(Model<D, K>& m, Real mid, Real dt, Then&& then);
 template <int D, Kernel<D> K>
 void respond(Model<D, K>& m, Index body, Index block, Real dt);
 template <int D, Kernel<D> K>
@@ -40,57 +40,59 @@ void respond_as_bodies(Model<D, K>& m, Real dt);
 template <int D, Kernel<D> K>
 bool all_well(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void count(Model<D, K>& m, const Vec<D>& gravity, Real dt);
+void count(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt);
+void close_books(Model<D, K>& m);
 
-/// One step of length dt [s].  Afterwards `m.health` tells whether the state is sound.
+/// One step of length dt [s] from t = m.clock.time on: a leap-frog.  Places, stress and all loads are those of t; forces act from the time
+/// of the old velocities, t - m.clock.lag, to that of the new ones, t + dt/2, for which walls and waves prescribe theirs; with these
+/// velocities everything moves and strains from t to t + dt.  Afterwards `m.health` tells whether the state is sound.
 template <int D, Kernel<D> K>
 void advance(Model<D, K>& m, Real dt)
 {
   StopWatch watch;
-  const Real time = m.clock.time, ramp = m.stage.ramp(time + dt);
-  const Vec<D> gravity = m.loads.gravity(time + dt, ramp);
+  const Real time = m.clock.time, mid = time + dt / 2, kick = m.clock.lag + dt / 2, ramp = m.stage.ramp(time);
+  const Vec<D> gravity = m.loads.gravity(time, ramp);
 
   m.tally.clear();
   find_places(m);  //  1
   if (!all_well(m))
     return;
-  apply(m.loads, time + dt, ramp, m.followed, m.order, m.particles, m.tally.on_particles);  //  2
+  apply(m.loads, time, ramp, m.followed, m.order, m.particles, m.tally.on_particles);  //  2
   watch.lap(m.timings.locate);
 
   scatter(m);  //  3
   watch.lap(m.timings.scatter);
 
   sum_on_nodes(m);  //  4
-  apply(m.loads, time + dt, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.own, m.nodes);                //  5
-  integrate(gravity, dt, m.nodes);                      //  6
-  m.walls.give_way(time + dt, dt, *m.ranks, m.nodes);   //  7
-  m.walls.apply(time + dt, m.nodes, m.tally.at_nodes);  //  7
+  apply(m.loads, time, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
+  m.slaves.lump(m.mesh, m.own, m.nodes);          //  5
+  integrate(gravity, kick, m.nodes);              //  6
+  m.walls.give_way(mid, dt, *m.ranks, m.nodes);   //  7
+  m.walls.apply(mid, m.nodes, m.tally.at_nodes);  //  7
   if (m.stage.seeks_rest)
-    settle(m, dt);
-  m.slaves.follow(m.mesh, m.own, time + dt, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
+    settle(m);
+  m.slaves.follow(m.mesh, m.own, mid, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
   m.copies.motion.send(m.nodes.motion, Whole{});
-  count(m, gravity, dt);
-  add_work(m.loads, time + dt, ramp, dt, m.own, m.nodes, m.tally.work_on_mesh);
+  count(m);
+  add_work(m.loads, time, ramp, m.own, m.nodes, m.tally.work_on_mesh);
   watch.lap(m.timings.nodes);
 
-  show_to_particles(m, dt);  //  9
+  show_to_particles(m, mid);  //  9
   const auto stress = [&](Index body, Index block) { respond(m, body, block, dt); };
   m.stress_sums.assign(m.order.first.size(), {});
   if (m.transfer.musl) {
     gather_and_return_momentum(m, dt);  // 10
-    remap(m, dt, stress);               // 11, 12
+    remap(m, mid, dt, stress);          // 11, 12
   } else {
     gather(m, dt, stress);  // 10, 12
   }
   add_work(m.order, m.particles, m.tally.work_on_particles);
   respond_as_bodies(m, dt);
-  close_books(m, gravity, dt);
+  close_books(m);
   watch.lap(m.timings.gather);  // its share of stresses is told apart by respond_as_bodies()
 
-  m.clock = {m.clock.step + 1, time + dt, dt};
+  m.clock = {.step = m.clock.step + 1, .time = time + dt, .dt = dt, .lag = dt / 2};
 }
 
 /// Cells, ranks and rows of the particles.
@@ -118,34 +120,34 @@ void sum_on_nodes(Model<D, K>& m)
 
 /// Local damping, by what particles feel of the net acceleration: all of it but where operators stand between nodes and values.
 template <int D, Kernel<D> K>
-void settle(Model<D, K>& m, Real dt)
+void settle(Model<D, K>& m)
 {
-  find_net_acceleration(dt, m.nodes);
+  find_net_acceleration(m.nodes);
   if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>) {
     m.copies.felt.send(m.nodes.felt, Numbers{});
     feel(
         m.kernel.node_part(), m.own, [&] { m.copies.felt.take(m.nodes.felt, Numbers{}); }, m.hats, m.nodes.felt);
   }
   if (m.stage.damping > 0)
-    damp(m.stage.damping, dt, m.nodes);
+    damp(m.stage.damping, m.nodes);
 }
 
 /// Motion of the nodes -> what particles read: the same, or hats, on which walls act once more where their values mix those of nodes.
 template <int D, Kernel<D> K>
-void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real dt)
+void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real mid)
 {
   if constexpr (HasNodePart<K, D>) {
     spread(
         m.kernel.node_part(), m.nodes.motion, [&] { m.copies.motion.take(m.nodes.motion, Whole{}); }, m.hats);
     if constexpr (!HasOwnValues<K, D>)
-      m.walls.apply(m.clock.time + dt, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
+      m.walls.apply(mid, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
   }
 }
 
 /// MUSL: momentum of the new particle velocities on the nodes, held by the walls; then L_p from these velocities, while the
 /// particles move with those of the step itself.
 template <int D, Kernel<D> K, class Then>
-void remap(Model<D, K>& m, Real dt, Then&& then)
+void remap(Model<D, K>& m, Real mid, Real dt, Then&& then)
 {
   if constexpr (HasNodePart<K, D>) {
     assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.copies.sums, m.hats.sum);
@@ -159,8 +161,8 @@ void remap(Model<D, K>& m, Real dt, Then&& then)
     const Vec<D> v = m.nodes.active[i] ? Vec<D>(m.nodes.sum[i].momentum / m.nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
     m.remapped[i] = {v, m.nodes.motion[i].v};
   });
-  m.walls.hold(m.clock.time + dt, m.remapped);
-  m.slaves.follow_velocity(m.mesh, m.own, m.walls, m.clock.time + dt, m.remapped);
+  m.walls.hold(mid, m.remapped);
+  m.slaves.follow_velocity(m.mesh, m.own, m.walls, mid, m.remapped);
   m.copies.motion.send(m.remapped, Whole{});
   const auto arrive = [&] { m.copies.motion.take(m.remapped, Whole{}); };
   if constexpr (HasNodePart<K, D>) {
@@ -223,18 +225,20 @@ bool all_well(Model<D, K>& m)
 
 /// Work and balance of the own nodes, once all that moves them has spoken.
 template <int D, Kernel<D> K>
-void count(Model<D, K>& m, const Vec<D>& gravity, Real dt)
+void count(Model<D, K>& m)
 {
   add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.nodes,
-             [&](Index n) { return node_work(gravity, m.stage.damping, dt, m.mesh, m.nodes, n); });
+             [&](Index n) { return node_work(m.stage.damping, m.mesh, m.nodes, n); });
   add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.balance,
-             [&](Index n) { return balance_at(gravity, m.stage.seeks_rest, dt, m.nodes, n); });
+             [&](Index n) { return balance_at(m.stage.seeks_rest, m.nodes, n); });
 }
 
 /// The sums of the step, of all ranks, into the ledgers; the length of the next one and the state of health.
 template <int D, Kernel<D> K>
-void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
+void close_books(Model<D, K>& m)
 {
+  const Vec<D>& gravity = m.nodes.gravity;
+  const Real kick = m.nodes.kick;
   Tally<D>& t = m.tally;
   t.particles.add(static_cast<Real>(m.particles.size()));
   m.ranks->sum(t.digits, t.departed, t.on_particles, t.on_mesh, t.at_nodes, t.beyond_nodes, t.nodes, t.balance, t.work_on_mesh,
@@ -251,7 +255,7 @@ void close_books(Model<D, K>& m, const Vec<D>& gravity, Real dt)
   const Push<D> tractions = t.on_particles.value() + t.on_mesh.value();
   m.mass.on_nodes = work.mass;
   m.mass.held_most = std::max(m.mass.held_most, -extremes[2]);
-  m.momentum.loads += Push<D>::of(dt * work.mass * gravity, dt * moment<D>(work.first_moment, gravity)) + dt * tractions;
+  m.momentum.loads += Push<D>::of(kick * work.mass * gravity, kick * moment<D>(work.first_moment, gravity)) + kick * tractions;
   m.momentum.damping += work.damped;
   m.energy.gravity += work.gravity;
   m.energy.damping += work.damping;

@@ -29,10 +29,11 @@ Vec<D> damping_of(const Vec<D>& net, const Vec<D>& v_old, Real damping) noexcept
   return -damping * net.cwiseAbs().cwiseProduct(v_old.cwiseSign());
 }
 
-/// v <- v + dt (f/m + g)
+/// v <- v + kick (f/m + g): forces act from the time of the old velocities to that of the new ones, over a `kick` [s].
 template <int D>
-void integrate(const Vec<D>& gravity, Real dt, Nodes<D>& nodes)
+void integrate(const Vec<D>& gravity, Real kick, Nodes<D>& nodes)
 {
+  nodes.gravity = gravity, nodes.kick = kick;
   parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     NodeMotion<D>& motion = nodes.motion[i];
@@ -42,29 +43,29 @@ void integrate(const Vec<D>& gravity, Real dt, Nodes<D>& nodes)
     }
     const NodeSum<D>& sum = nodes.sum[i];
     const Vec<D> v_old = sum.momentum / sum.mass;
-    motion.change = dt * (sum.force / sum.mass + gravity);
+    motion.change = kick * (sum.force / sum.mass + gravity);
     motion.v = v_old + motion.change;
   });
 }
 
 /// Net accelerations of the nodes, walls included: those of slaves count as none.
 template <int D>
-void find_net_acceleration(Real dt, Nodes<D>& nodes)
+void find_net_acceleration(Nodes<D>& nodes)
 {
   nodes.felt.resize(nodes.sum.size());
   for (std::size_t i = 0; i < nodes.felt.size(); ++i)
-    nodes.felt[i] = nodes.motion[i].change / dt;
+    nodes.felt[i] = nodes.motion[i].change / nodes.kick;
 }
 
 /// Damps nodes that no wall holds by what is felt of their net acceleration.
 template <int D>
-void damp(Real damping, Real dt, Nodes<D>& nodes)
+void damp(Real damping, Nodes<D>& nodes)
 {
   parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     if (!nodes.active[i] || nodes.bound[i])
       return;
-    const Vec<D> change = dt * damping_of<D>(nodes.felt[i], nodes.sum[i].momentum / nodes.sum[i].mass, damping);
+    const Vec<D> change = nodes.kick * damping_of<D>(nodes.felt[i], nodes.sum[i].momentum / nodes.sum[i].mass, damping);
     nodes.motion[i].change += change;
     nodes.motion[i].v += change;
   });
@@ -72,7 +73,7 @@ void damp(Real damping, Real dt, Nodes<D>& nodes)
 
 /// What gravity and damping did and the kinetic energies, once the walls have spoken: of one node.
 template <int D>
-NodeWork<D> node_work(const Vec<D>& gravity, Real damping, Real dt, const Mesh<D>& mesh, const Nodes<D>& nodes, Index n)
+NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, Index n)
 {
   const auto i = static_cast<std::size_t>(n);
   NodeWork<D> work;
@@ -84,9 +85,9 @@ NodeWork<D> node_work(const Vec<D>& gravity, Real damping, Real dt, const Mesh<D
   work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
   work.mass = sum.mass;
   work.first_moment = sum.mass * mesh.node(n);
-  work.gravity = dt * sum.mass * gravity.dot(v_mid);
+  work.gravity = nodes.kick * sum.mass * nodes.gravity.dot(v_mid);
   if (damping > 0 && !nodes.bound[i]) {
-    const Vec<D> brake = dt * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
+    const Vec<D> brake = nodes.kick * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
     work.damping = brake.dot(v_mid);
     work.damped = Push<D>::at(mesh.node(n), brake);
   }
@@ -107,15 +108,15 @@ struct Balance {
 
 /// Those at one node.  The net force is the one that is `felt` in stages that seek rest.
 template <int D>
-Balance balance_at(const Vec<D>& gravity, bool felt, Real dt, const Nodes<D>& nodes, Index n)
+Balance balance_at(bool felt, const Nodes<D>& nodes, Index n)
 {
   const auto i = static_cast<std::size_t>(n);
   if (!nodes.active[i])
     return {};
   const NodeSum<D>& sum = nodes.sum[i];
-  const Vec<D> change = nodes.motion[i].change / dt;
-  const Real reaction = nodes.bound[i] ? (sum.mass * (change - gravity) - sum.force).norm() : 0;
-  return {sum.mass * (felt ? nodes.felt[i] : change).norm(), sum.mass * gravity.norm(), reaction};
+  const Vec<D> change = nodes.motion[i].change / nodes.kick;
+  const Real reaction = nodes.bound[i] ? (sum.mass * (change - nodes.gravity) - sum.force).norm() : 0;
+  return {sum.mass * (felt ? nodes.felt[i] : change).norm(), sum.mass * nodes.gravity.norm(), reaction};
 }
 
 /// Net force over gravity and `other_loads` [N], or over reactions where walls alone load the bodies: zero at rest in equilibrium.

@@ -127,11 +127,11 @@ void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, con
 }
 
 template <int D>
-void add_work(const Loads<D>& loads, Real time, Real ramp, Real dt, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total)
+void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total)
 {
   for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
     if (nodes.sum[node].mass > 0 && own.has(static_cast<Index>(node)))
-      total.add(dt * force.dot(nodes.motion[node].v - 0.5 * nodes.motion[node].change));
+      total.add(nodes.kick * force.dot(nodes.motion[node].v - 0.5 * nodes.motion[node].change));
   });
 }
 
@@ -141,11 +141,11 @@ template void restrict_to<2>(const Share&, MeshTraction<2>&);
 template void restrict_to<3>(const Share&, MeshTraction<3>&);
 template void apply<2>(const Loads<2>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<2>&, ExactSums<Push<2>>&);
 template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<Push<2>>&);
-template void add_work<2>(const Loads<2>&, Real, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
+template void add_work<2>(const Loads<2>&, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
 template void apply<3>(const Loads<3>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<3>&, ExactSums<Push<3>>&);
 template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<Push<3>>&);
-template void add_work<3>(const Loads<3>&, Real, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
+template void add_work<3>(const Loads<3>&, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
 
 }  // namespace talus

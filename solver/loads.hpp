@@ -91,9 +91,9 @@ template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
            ExactSums<Push<D>>& total);
 
-/// Adds the work [J] of mesh tractions over a step, from the mean velocity of the nodes that are `own`.
+/// Adds the work [J] of mesh tractions over a step: impulse times the mean of old and new velocity of the nodes that are `own`.
 template <int D>
-void add_work(const Loads<D>& loads, Real time, Real ramp, Real dt, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total);
+void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total);
 
 /// Adds mesh tractions to the force of nodes that have mass, and those of `own` nodes to `total`.
 template <int D>

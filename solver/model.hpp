@@ -21,9 +21,13 @@ namespace talus {
 
 struct Clock {
   std::int64_t step = 0;  ///< steps done
-  Real time = 0;          ///< [s]
+  Real time = 0;          ///< of places, deformation and stress [s]
   Real dt = 0;            ///< of the last step [s]
-  static constexpr auto fields() { return std::tuple{kept("step", &Clock::step), kept("time", &Clock::time), kept("dt", &Clock::dt)}; }
+  Real lag = 0;           ///< by how much velocities are behind `time` [s]: half a step, or nothing where they have just been given
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("step", &Clock::step), kept("time", &Clock::time), kept("dt", &Clock::dt), kept("lag", &Clock::lag)};
+  }
 };
 
 /// What a stage sets for every step it makes, and how far it is.

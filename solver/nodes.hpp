@@ -87,8 +87,8 @@ struct HatSum : NodeSum<D> {
 /// How a node moves.  One cache line in 3-D.
 template <int D>
 struct alignas(64) NodeMotion {
-  Vec<D> v = Vec<D>::Zero();       ///< velocity at the end of the step [m/s]
-  Vec<D> change = Vec<D>::Zero();  ///< v minus the velocity at its beginning [m/s]
+  Vec<D> v = Vec<D>::Zero();       ///< new velocity, of the middle of the step [m/s]
+  Vec<D> change = Vec<D>::Zero();  ///< v minus the old velocity [m/s]
   /// Any bit of it.
   bool is_seen() const noexcept
   {
@@ -119,6 +119,8 @@ struct Nodes {
   std::vector<std::uint8_t> active;  ///< takes part with a mass of its own
   std::vector<std::uint8_t> bound;   ///< under a wall condition: no local damping, its net force is known only after the wall's
   std::vector<Vec<D>> felt;          ///< net acceleration as particles feel it [m/s^2], in stages that seek rest
+  Vec<D> gravity = Vec<D>::Zero();   ///< of the step at hand [m/s^2]
+  Real kick{};                       ///< the time over which its forces act, from the old velocities to the new ones [s]
   Real least_share{};                ///< of the lightest particle around: nodes with less do not take part by themselves
   Real least_share_of_gross{};       ///< the same of `gross`
 };

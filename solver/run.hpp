@@ -204,6 +204,7 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
     m.energy.set_to_rest = now.kinetic;
     m.momentum.rest += Push<D>::of(-now.momentum, -now.angular);
     m.particles.v.assign(m.particles.v.size(), Vec<D>::Zero());
+    m.clock.lag = 0;
     for (auto* affine : {&m.particles.L, &m.particles.C})
       affine->assign(affine->size(), Mat<D>::Zero());
   }

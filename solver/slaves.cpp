@@ -189,7 +189,7 @@ void Slaves<D>::hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& node
 }
 
 template <int D>
-void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, Real end, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
+void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, Real mid, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
                        ExactSums<WallWork>& work)
 {
   tell_slaves(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, asked_});
@@ -201,13 +201,13 @@ void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, Real end, Walls
       mean.v += share * motion[static_cast<std::size_t>(master)].v;
       mean.change += share * motion[static_cast<std::size_t>(master)].change;
     });
-    walls.apply(slave.node, end, slave.mass, mean, work);
+    walls.apply(slave.node, mid, slave.mass, mean, work);
     motion[static_cast<std::size_t>(slave.node)] = mean;
   }
 }
 
 template <int D>
-void Slaves<D>::follow_velocity(const Mesh<D>& mesh, const OwnNodes& own, const Walls<D>& walls, Real time,
+void Slaves<D>::follow_velocity(const Mesh<D>& mesh, const OwnNodes& own, const Walls<D>& walls, Real mid,
                                 std::vector<NodeMotion<D>>& motion)
 {
   tell_slaves(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, asked_});
@@ -216,7 +216,7 @@ void Slaves<D>::follow_velocity(const Mesh<D>& mesh, const OwnNodes& own, const 
       continue;
     Vec<D> mean = Vec<D>::Zero();
     for_each_master(mesh, slave.node, [&](Index master, Real share) { mean += share * motion[static_cast<std::size_t>(master)].v; });
-    motion[static_cast<std::size_t>(slave.node)].v = walls.held(slave.node, time, mean);
+    motion[static_cast<std::size_t>(slave.node)].v = walls.held(slave.node, mid, mean);
   }
 }
 

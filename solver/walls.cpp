@@ -185,12 +185,12 @@ void Walls<D>::begin_stage(bool geostatic, Real time)
 }
 
 template <int D>
-void Walls<D>::find_reactions(Real dt, Exchange& ranks, const Nodes<D>& nodes)
+void Walls<D>::find_reactions(Exchange& ranks, const Nodes<D>& nodes)
 {
   std::vector<std::int64_t> bits(D * n_dashpots_, 0);  // each number is told by one rank, the others add nothing to it
   for (const Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
-    const Vec<D> reaction = -nodes.sum[n].mass / dt * nodes.motion[n].change;
+    const Vec<D> reaction = -nodes.sum[n].mass / nodes.kick * nodes.motion[n].change;
     for (int d = 0; d < D && dashpot.counted && nodes.active[n]; ++d)
       bits[D * dashpot.row + static_cast<std::size_t>(d)] = std::bit_cast<std::int64_t>(reaction[d]);
   }
@@ -218,9 +218,9 @@ bool Walls<D>::fits() const
 }
 
 /// The columns move on by themselves; what they do to the model in this step is what their stress was at its beginning, as that of the
-/// particles, and their velocity at its end.
+/// particles, and their new velocity, of its middle.
 template <int D>
-void Walls<D>::advance_columns(Real end, Real dt)
+void Walls<D>::advance_columns(Real mid, Real dt)
 {
   columns_then_ = shaking_.columns;
   for (std::size_t k = 0; k < free_fields_.size(); ++k) {
@@ -228,7 +228,7 @@ void Walls<D>::advance_columns(Real end, Real dt)
     const Wall<D>& below = walls_[static_cast<std::size_t>(side.foot)];
     Foot<D> foot;
     if (below.kind != WallKind::fixed)
-      foot.velocity = prescribed(below, end);
+      foot.velocity = prescribed(below, mid);
     if (below.kind == WallKind::compliant_base)
       foot.halfspace = below.halfspace;
     advance(side.column, foot, dt, shaking_.columns[k]);
@@ -236,11 +236,11 @@ void Walls<D>::advance_columns(Real end, Real dt)
 }
 
 template <int D>
-Vec<D> Walls<D>::wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real end) const noexcept
+Vec<D> Walls<D>::wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real mid) const noexcept
 {
   const Wall<D>& wall = walls_[static_cast<std::size_t>(part.wall)];
   if (wall.kind == WallKind::compliant_base)
-    return prescribed(wall, end);
+    return prescribed(wall, mid);
   return wall.column.velocity_at(wall.column.up.dot(place), shaking_.columns[free_field_number(part.wall)]);
 }
 
@@ -256,19 +256,20 @@ Vec<D> Walls<D>::drive(const typename Dashpot::Part& part, const Vec<D>& wave) c
   return force;
 }
 
-/// Implicit in the velocity at the end of the step, as a node may be lighter than what the dashpot carries off in a step:
-///   m (v - v_free) / dt = C (2 v_up - v) + reaction              of a base
-///   m (v - v_free) / dt = C (v_ff - v) + s_ff n A + reaction      of a side
+/// Implicit in the new velocity, as a node may be lighter than what the dashpot carries off in a step; waves and free fields are of the same
+/// time as that, the middle of the step:
+///   m (v - v_free) / kick = C (2 v_up - v) + reaction              of a base
+///   m (v - v_free) / kick = C (v_ff - v) + s_ff n A + reaction      of a side
 /// The halfspace takes C v off and brings 2 C v_up, of which one half is the wave itself and one the wave that it would send back [Joyner &
 /// Chen 1975].  Beside, only what differs from the free field (ff) leaves [Zienkiewicz, Bicanic & Shen 1988].
 template <int D>
-void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
+void Walls<D>::give_way(Real mid, Real dt, Exchange& ranks, Nodes<D>& nodes)
 {
   if (!shaking_.begun || n_dashpots_ == 0)
     return;
   if (!shaking_.knows_reactions)
-    find_reactions(dt, ranks, nodes);
-  advance_columns(end, dt);
+    find_reactions(ranks, nodes);
+  advance_columns(mid, dt);
   for (Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
     dashpot.impulse.setZero();
@@ -278,12 +279,12 @@ void Walls<D>::give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes)
     const Real mass = nodes.sum[n].mass;
     NodeMotion<D>& motion = nodes.motion[n];
     Mat<D> inertia = mass * Mat<D>::Identity();
-    Vec<D> momentum = mass * motion.v + dt * Eigen::Map<const Vec<D>>(&shaking_.reaction[D * dashpot.row]);
+    Vec<D> momentum = mass * motion.v + nodes.kick * Eigen::Map<const Vec<D>>(&shaking_.reaction[D * dashpot.row]);
     for (const auto& part : dashpot.parts) {
-      inertia += dt * part.resistance;
-      const Vec<D> wave = wave_at(part, dashpot.place, end);
-      momentum += dt * drive(part, wave);
-      dashpot.brought += dt * wave.dot(part.resistance * wave);
+      inertia += nodes.kick * part.resistance;
+      const Vec<D> wave = wave_at(part, dashpot.place, mid);
+      momentum += nodes.kick * drive(part, wave);
+      dashpot.brought += nodes.kick * wave.dot(part.resistance * wave);
     }
     const Vec<D> by = inertia.inverse() * momentum - motion.v;
     motion.v += by, motion.change += by;
@@ -302,7 +303,7 @@ Vec<D> Walls<D>::prescribed(const Wall<D>& wall, Real time) const noexcept
 }
 
 template <int D>
-void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
+void Walls<D>::act(const NodeRule& rule, Real mid, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
 {
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
@@ -323,7 +324,7 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
   };
   rubs = false;
   if (const Index whole = whole_of(rule); whole != none) {
-    push(whole, constrained(rule, end, v) - v);
+    push(whole, constrained(rule, mid, v) - v);
   } else {
     for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
       bool touched = false;
@@ -354,13 +355,13 @@ void Walls<D>::act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>&
 }
 
 template <int D>
-void Walls<D>::apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work)
+void Walls<D>::apply(Real mid, Nodes<D>& nodes, ExactSums<WallWork>& work)
 {
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     rule.rubs = false;
     if (nodes.active[n])
-      act(rule, end, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
+      act(rule, mid, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
   }
   for (const Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
@@ -372,22 +373,22 @@ void Walls<D>::apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work)
 }
 
 template <int D>
-void Walls<D>::apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work)
+void Walls<D>::apply(Real mid, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work)
 {
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     bool rubs{};
     if (sums[n].is_seen())
-      act(rule, end, sums[n].mass, hats[n].v, hats[n].change, rubs, work);
+      act(rule, mid, sums[n].mass, hats[n].v, hats[n].change, rubs, work);
   }
 }
 
 template <int D>
-void Walls<D>::apply(Index node, Real end, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work)
+void Walls<D>::apply(Index node, Real mid, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work)
 {
   bool rubs{};
   if (binds(node))
-    act(rule_of(node), end, mass, motion.v, motion.change, rubs, work);
+    act(rule_of(node), mid, mass, motion.v, motion.change, rubs, work);
 }
 
 template <int D>

@@ -95,18 +95,19 @@ class Walls {
 
   /// A stage begins at this time [s].  A geostatic one holds what others let go; records begin with the first other one after it.
   void begin_stage(bool geostatic, Real time);
-  /// Dashpots push the nodes over a step of length dt [s].  In the first one after a geostatic stage it is found what keeps each node in
-  /// balance, and from then on that force goes on: every rank has to ask.  The work is told by apply(), which knows with what velocity the
-  /// step ends.
-  void give_way(Real end, Real dt, Exchange& ranks, Nodes<D>& nodes);
+  /// Dashpots push the nodes in a step of length dt [s], whose new velocities are of the time `mid` [s].  In the first one after a geostatic
+  /// stage it is found what keeps each node in balance, and from then on that force goes on: every rank has to ask.  The work is counted by
+  /// apply(), which knows the velocity that comes out.
+  void give_way(Real mid, Real dt, Exchange& ranks, Nodes<D>& nodes);
 
-  /// The new velocities of nodes with active mass obey the walls at the end of the step [s].  The work done is added to `work`.
-  void apply(Real end, Nodes<D>& nodes, ExactSums<WallWork>& work);
+  /// The new velocities of nodes with active mass obey the walls at `mid` [s], the time of these velocities.  The work done is added to
+  /// `work`.
+  void apply(Real mid, Nodes<D>& nodes, ExactSums<WallWork>& work);
   /// So does what particles read on hats, where it is not that of the node alone: the row of a hat on a wall may reach nodes off it.
   /// `sums` say with which mass a hat moves, and which are seen.
-  void apply(Real end, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
+  void apply(Real mid, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
   /// And so does a node that follows others: its own mass [kg] gets its part of the walls' pushes.
-  void apply(Index node, Real end, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
+  void apply(Index node, Real mid, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
   /// The impulses of the step at hand, by wall, to be summed up over the ranks; then the walls keep them.
   std::span<ExactSums<Impulse>> pushed() noexcept { return pushed_; }
   void keep_impulses();
@@ -173,28 +174,28 @@ class Walls {
   void add_dashpots(const Mesh<D>& mesh, Parts parts);
   Parts base_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const;
   Parts side_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const;
-  void find_reactions(Real dt, Exchange& ranks, const Nodes<D>& nodes);
-  void advance_columns(Real end, Real dt);
+  void find_reactions(Exchange& ranks, const Nodes<D>& nodes);
+  void advance_columns(Real mid, Real dt);
   std::size_t free_field_number(Index wall) const noexcept
   {
     return static_cast<std::size_t>(std::find(free_fields_.begin(), free_fields_.end(), wall) - free_fields_.begin());
   }
   /// The velocity of the wave that comes up to a wall which gives way, or of the free field beside it [m/s], and what it does to a node
   /// that does not move [N].
-  Vec<D> wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real end) const noexcept;
+  Vec<D> wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real mid) const noexcept;
   Vec<D> drive(const typename Dashpot::Part& part, const Vec<D>& wave) const noexcept;
   /// The wall that sets all components of a node now, or none.
   Index whole_of(const NodeRule& rule) const noexcept { return rule.whole == none && !shaking_.begun ? rule.base : rule.whole; }
   bool lets_go(Index wall) const noexcept { return walls_[static_cast<std::size_t>(wall)].kind == WallKind::free_field; }
   bool holds(const Plane& plane) const noexcept { return !shaking_.begun || !lets_go(plane.wall); }
-  /// What a wall prescribes: its own velocity, or that of the wave which comes up to it.
+  /// What a wall prescribes at a time [s]: its own velocity, or that of the wave which comes up to it.
   Vec<D> prescribed(const Wall<D>& wall, Real time) const noexcept;
   const NodeRule& rule_of(Index node) const noexcept  ///< of a node that is bound
   {
     return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];
   }
   /// Pushes a mass [kg] that moves with v and has changed by `change` in this step; walls keep the impulses.
-  void act(const NodeRule& rule, Real end, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work);
+  void act(const NodeRule& rule, Real mid, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
 
   std::vector<Wall<D>> walls_;

@@ -219,6 +219,7 @@ TEST_F(Checkpoint, OfAnUnsoundStateIsRefused)
                             {"clock/time", infinity, "clock/time is inf s, not a time from 0 on"},
                             {"clock/step", -5, "clock/step is -5, not a number from 0 on"},
                             {"clock/dt", nan, "clock/dt is nan s"},
+                            {"clock/lag", -1, "clock/lag is -1 s, not a time from 0 on"},
                             {"stage/begin", nan, "stage/begin is nan s"},
                             {"stage/begin", 1, "the stage began at step 0, t = 1 s, and the state is of step "},
                             {"particles/id", 0, "there is more than one particle "},
