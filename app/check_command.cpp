@@ -4,6 +4,7 @@
 #include "app/commands.hpp"
 #include "app/duration.hpp"
 #include "app/quick.hpp"
+#include "app/threads.hpp"
 #include "app/trial.hpp"
 #include "app/water.hpp"
 #include "core/parallel.hpp"
@@ -98,12 +99,13 @@ enum class Times : std::uint8_t { left_out, measured };
 
 /// What a run would find wrong, and what it would cost.
 template <int D>
-void tell_cost(Scene scene, bool quick, Times times)
+void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_asked)
 {
   StopWatch watch;
   Real preparing = 0;
   auto mesh = load_mesh<D>(scene.mesh, folder_of(scene));
   auto setup = set_up(scene, mesh);
+  fit_threads(threads_asked, scene, setup.n_particles);
   watch.lap(preparing);
   if (quick)
     shorten(first_step(mesh, setup), setup.stages, scene.outputs);
@@ -136,19 +138,19 @@ void tell_cost(Scene scene, bool quick, Times times)
   fmt::print("{}: no errors{}\n", scene.file, measured ? ", nothing was written" : "");
 }
 
-void tell_cost(Scene scene, bool quick, Times times)
+void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_asked)
 {
   if (scene.dimension == 2)
-    tell_cost<2>(std::move(scene), quick, times);
+    tell_cost<2>(std::move(scene), quick, times, threads_asked);
   else
-    tell_cost<3>(std::move(scene), quick, times);
+    tell_cost<3>(std::move(scene), quick, times, threads_asked);
 }
 
 }  // namespace
 
 void check_scene(const std::filesystem::path& file, const std::vector<std::string>& set)
 {
-  tell_cost(read_scene(file, set), false, Times::left_out);
+  tell_cost(read_scene(file, set), false, Times::left_out, std::nullopt);
 }
 
 void dry_run(const RunOptions& options)
@@ -157,7 +159,7 @@ void dry_run(const RunOptions& options)
   take_threads(options.threads, scene);
   if (options.quick)
     coarsen(scene);
-  tell_cost(std::move(scene), options.quick, Times::measured);
+  tell_cost(std::move(scene), options.quick, Times::measured, options.threads);
 }
 
 }  // namespace talus

@@ -153,7 +153,8 @@ class CommandLine {
     what->require_option(1);
     run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with")
         ->type_name(folder_value);
-    run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or all")->check(CLI::Range(1, 1024));
+    run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or as many as pay for its particles")
+        ->check(CLI::Range(1, 1024));
     run->add_option("--set", run_.set, set_help);
     run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
         ->check(CLI::NonNegativeNumber);

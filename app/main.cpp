@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/cli.hpp"
+#include "app/threads.hpp"
 #include "core/error.hpp"
 #include "core/exchange.hpp"
 
@@ -16,6 +17,7 @@ constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3, run_stoppe
 
 int main(int argc, char** argv)
 {
+  talus::let_waiting_threads_sleep(argv);
   std::optional<talus::Ranks> ranks;
   const auto fail = [&](int code, const char* what) {
     if (ranks)

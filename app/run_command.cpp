@@ -12,6 +12,7 @@
 #include "app/shell_words.hpp"
 #include "app/signals.hpp"
 #include "app/summary.hpp"
+#include "app/threads.hpp"
 #include "app/traps.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
@@ -103,6 +104,7 @@ class Run {
     auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
     watch_.lap(mesh_seconds_);
     auto setup = set_up(scene_, mesh, world());
+    fit_threads(options_.threads, scene_, setup.n_particles);
     if (quick_)
       shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
     stages_ = setup.stages;

@@ -128,7 +128,8 @@ struct Scene {
         optional_choice("on_exit", &Scene::on_exit,
                         "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
         optional("watch", &Scene::watch, any, "-", "what no sound run does, and what becomes of one that does"),
-        optional("threads", &Scene::threads, non_negative, "-", "threads to use; 0 means all, --threads wins")};
+        optional("threads", &Scene::threads, non_negative, "-",
+                 "threads to use; 0: as many as pay for the particles, all at most; --threads wins")};
   }
 };
 
