@@ -1,6 +1,5 @@
 #include "app/threads.hpp"
 
-#include <sys/auxv.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -29,12 +28,11 @@ void let_waiting_threads_sleep(char** arguments) noexcept
 {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr || threads() == 1)
     return;
-  if (::getauxval(AT_BASE) == 0)  // the loader was called by name, and would be what is begun again
-    return;
   std::error_code unknown;
   const std::filesystem::path self =
-      std::filesystem::read_symlink("/proc/self/exe", unknown);  // by its name, which lists of processes show
-  if (!unknown && ::setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+      std::filesystem::read_symlink("/proc/self/exe", unknown);            // by its name, which lists of processes show
+  const bool by_the_loader = self.filename().string().starts_with("ld-");  // called by name: it would be what is begun again
+  if (!unknown && !by_the_loader && ::setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
     ::execv(self.c_str(), arguments);
 }
 
