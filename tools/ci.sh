@@ -8,7 +8,11 @@ python=/usr/bin/python3
 [ -x "$python" ] || python=python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
-all_stages=(setup "${lint_stages[@]}" dev docs site verify tutorials fuzz test)
+all_stages=(setup "${lint_stages[@]}" release docs site verify tutorials fuzz test)
+other_stages=(dev asan traps valgrind coverage aarch64 bench)
+
+# A warning of a compiler is an error here, and nowhere else: what a user types must not fail by one that only his compiler knows.
+export TALUS_WERROR=ON
 
 cxx_files() { git ls-files -- '*.hpp' '*.cpp'; }
 
@@ -44,17 +48,19 @@ stage_tidy() {
       2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
 
+# For this machine's processor; stage `test` compiles for another one.
 stage_dev() {
-  cmake --preset dev -D TALUS_UNITY=ON -Wno-dev >/dev/null
+  cmake --preset dev -D TALUS_WERROR=$TALUS_WERROR -Wno-dev >/dev/null
   cmake --build build/dev -j "$jobs"
 }
 
-stage_release() { make build JOBS="$jobs"; }
+stage_release() { make build TALUS_WERROR=OFF JOBS="$jobs"; }
+
+# The program of `make build`, of which the next stages are.
+talus=build/talus
 
 # The scene reference is written by the program: it must be the one in the tree.  Links lead somewhere, scenes shown pass `check`.
 stage_docs() {
-  local talus=build/dev/talus
-  [ -x "$talus" ] || talus=build/talus
   "$talus" manual | diff -u docs/reference/scene.md - || {
     echo "docs/reference/scene.md is stale: make docs" >&2
     return 1
@@ -62,23 +68,24 @@ stage_docs() {
   "$python" tools/check_docs.py "$talus"
 }
 
-# The benchmarks, quick level, with the program of stage dev: its asserts watch them, and to compile another takes longer than it is slower (by a third).
-# Ends badly where a run fails or a judged number does that passed in the release, whose values are of the program of `make build`: that one rounds
-# otherwise, so that a change is named from the second digit on. Cases of which nothing passed then can get no worse, and are left to `make verify`.
+# The benchmarks, quick level. Ends badly where a run fails or a judged number does that passed in the release; a change is named from the second
+# digit on, since compilers and processors round otherwise. Cases of which nothing passed then can get no worse, and are left to `make verify`.
 stage_verify() {
-  tools/verify.sh --program "$PWD/build/dev/talus" --level quick --judged --digits 2 --jobs "$jobs" --regression --out build/verify
+  tools/verify.sh --program "$PWD/$talus" --level quick --judged --digits 2 --jobs "$jobs" --regression --out build/verify
 }
 
 # The documentation as a site: build/site/index.html.  A warning, a broken link and a page that the navigation lacks are errors.
 stage_site() { "$python" -m mkdocs build --quiet --config-file tools/site/mkdocs.yml; }
 
-# Every command of docs/tutorials, with the program of stage dev: what they write is there, what they print is what the page shows.
-stage_tutorials() { "$python" tools/run_tutorials.py build/dev/talus; }
+# Every command of docs/tutorials: what they write is there, what they print is what the page shows.
+stage_tutorials() { "$python" tools/run_tutorials.py "$talus"; }
 
 # A minute of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
 stage_fuzz() { tools/fuzz.sh quick; }
 
-stage_test() { make test JOBS="$jobs"; }
+# What a newcomer types, in a folder that no other stage has touched, and for another processor than this machine's: what is said of code depends
+# on the instructions that it is compiled to.
+stage_test() { make test BUILD=build/newcomer LEVEL=x86-64-v3 JOBS="$jobs"; }
 
 # All tests but the nightly ones, and every scene, with address and undefined-behaviour sanitizers.
 stage_asan() {
@@ -106,6 +113,12 @@ stage_valgrind() {
   done
 }
 
+# Lines that the tests run; ends badly where a folder has fewer than it should.
+stage_coverage() { make coverage JOBS="$jobs"; }
+
+# Core, mesh, kernels and laws for another architecture, their tests under an emulator.
+stage_aarch64() { tools/cross_aarch64.sh; }
+
 stage_bench() { make bench JOBS="$jobs"; }
 
 run_stage() {
@@ -122,14 +135,14 @@ for name in "$@"; do
     all) stages+=("${all_stages[@]}") ;;
     lint) stages+=("${lint_stages[@]}") ;;
     *) declare -F "stage_$name" >/dev/null || {
-      echo "no stage '$name': all, lint, ${all_stages[*]}, asan, traps, valgrind, bench" >&2
+      echo "no stage '$name': all, lint, ${all_stages[*]}, ${other_stages[*]}" >&2
       exit 2
     }
       stages+=("$name") ;;
   esac
 done
 if [ ${#stages[@]} -eq 0 ]; then
-  echo "usage: tools/ci.sh <stage>...   all, lint, ${all_stages[*]}, asan, traps, valgrind, bench" >&2
+  echo "usage: tools/ci.sh <stage>...   all, lint, ${all_stages[*]}, ${other_stages[*]}" >&2
   exit 2
 fi
 
