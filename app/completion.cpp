@@ -120,8 +120,11 @@ complete -F _talus talus
 std::string zsh_text(std::string_view text)
 {
   std::string out;
-  for (const char c : text)
-    out += (c == '[' || c == ']' || c == ':' ? "\\" : "") + std::string(1, c);
+  for (const char c : text) {
+    if (c == '[' || c == ']' || c == ':')
+      out += '\\';
+    out += c;
+  }
   return out;
 }
 
