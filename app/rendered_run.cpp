@@ -13,6 +13,22 @@ namespace talus {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+/// Fields of the first file that can be read.  EnvironmentError of the last one, if none can.
+std::vector<std::pair<std::string, int>> fields_of_first(const std::vector<std::pair<Real, fs::path>>& files)
+{
+  for (std::size_t f = 0;; ++f)
+    try {
+      return stored_particle_fields(files[f].second);
+    } catch (const EnvironmentError&) {
+      if (f + 1 == files.size())
+        throw;
+    }
+}
+
+}  // namespace
+
 RenderedRun read_rendered_run(const fs::path& folder)
 {
   require_run(folder);
@@ -24,7 +40,7 @@ RenderedRun read_rendered_run(const fs::path& folder)
   if (files.empty())
     throw EnvironmentError(fmt::format("{} lists no file", series.string()));
   run.facts = {run.scene.dimension, files.size(), {}};
-  for (const auto& [name, components] : stored_particle_fields(files.front().second))
+  for (const auto& [name, components] : fields_of_first(files))
     run.facts.fields.push_back({name, components});
   return run;
 }

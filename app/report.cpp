@@ -78,7 +78,13 @@ void add_mesh(const fs::path& folder, Page& page)
   fs::path file = folder / "mesh.vtu";
   if (!fs::exists(file))
     return;
-  const StoredMesh mesh = read_mesh(file);
+  StoredMesh mesh;
+  try {
+    mesh = read_mesh(file);
+  } catch (const EnvironmentError& damaged) {
+    page.notes.push_back(fmt::format("mesh: it is left out: {}", damaged.what()));
+    return;
+  }
   MeshEdges edges = edges_of(mesh.dimension, mesh.nodes, mesh.corners);
   const std::vector<Real> nodes = renumber(mesh.nodes, edges);
   if (nodes.empty())

@@ -112,15 +112,31 @@ void begin(const StoredParticles& particles, const SurveyTask& task, RunSurvey& 
     const StoredField& there = *stored_field(particles, field.name);
     survey.labels.push_back(field.label(there.components));
     survey.units.push_back(there.unit);
+    survey.components.push_back(there.components);
   }
   survey.ids = particles.ids;
   survey.places = particles.fields.front().values;
+}
+
+/// Fields have the components that they had at first, velocities three, bodies one.
+void require_components(const StoredParticles& particles, const fs::path& file, const RunSurvey& survey)
+{
+  const auto require = [&](std::string_view name, int components) {
+    if (const StoredField* field = stored_field(particles, name); field != nullptr && field->components != components)
+      throw EnvironmentError(
+          fmt::format("cannot read {}: field \"{}\" has {} components, not {}", file.string(), name, field->components, components));
+  };
+  for (std::size_t f = 0; f < survey.fields.size(); ++f)
+    require(survey.fields[f].name, survey.components[f]);
+  require("velocity", 3);
+  require("body", 1);
 }
 
 FrameSurvey survey_of(Real time, const fs::path& file, const SurveyTask& task, RunSurvey& survey)
 {
   FrameSurvey frame{time, file, state_of(file), 0, {}, {}};
   const StoredParticles particles = read_particles(file);
+  require_components(particles, file, survey);
   if (!survey.begun)
     begin(particles, task, survey);
   frame.count = static_cast<std::int64_t>(particles.ids.size());
@@ -153,12 +169,18 @@ void look_over(const fs::path& folder, const SurveyTask& task, RunSurvey& survey
   survey.left_out.clear();
   std::vector<std::pair<Real, fs::path>> listed;
   if (fs::exists(folder / "particles.pvd"))
-    listed = read_pvd(folder / "particles.pvd");
+    try {
+      listed = read_pvd(folder / "particles.pvd");
+    } catch (const EnvironmentError& damaged) {
+      survey.left_out.push_back(fmt::format("all particles are left out: {}", damaged.what()));
+    }
   std::vector<FrameSurvey> known = std::move(survey.frames);
   survey.frames.clear();
   if (known.empty() || listed.empty() || known.front().file != listed.front().second ||
       known.front().state != state_of(known.front().file)) {
+    std::vector<std::string> left_out = std::move(survey.left_out);
     survey = {};  // another run than before
+    survey.left_out = std::move(left_out);
     known.clear();
   }
   for (const auto& entry : listed) {

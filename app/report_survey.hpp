@@ -51,6 +51,7 @@ struct RunSurvey {
   bool begun = false;  ///< what follows is known from the first frame
   std::vector<ViewedField> fields;
   std::vector<std::string> labels, units;  ///< of these
+  std::vector<int> components;             ///< of these
   std::vector<FrameSurvey> frames;
   std::vector<std::string> left_out;  ///< frames that could not be read, in words
   std::vector<std::int64_t> ids;      ///< of the first frame

@@ -156,7 +156,7 @@ class Follower {
     style.up = picture.up.size() == 3 ? Vec3(Eigen::Map<const Vec3>(picture.up.data())) : upright_of(run_.scene);
     if (picture.range.size() == 2)
       style.range = std::array{picture.range[0], picture.range[1]};
-    const auto cloud = last_cloud(run_, look_.files);
+    const auto cloud = last_cloud(run_, look_.files, look_.left_out);
     drawing_ = cloud ? drawn(*cloud, style) : std::vector<std::string>();
   }
 

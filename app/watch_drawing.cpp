@@ -152,6 +152,8 @@ std::vector<std::string> drawn(const Cloud& cloud, const DrawingStyle& style)
   const Real radius = drawn_radius(cloud.places, cloud.dimension);
   const Vec3 extent = high - low + Vec3::Constant(2 * radius);
   const Real scale = std::min(style.columns * dots_across / extent[0], style.rows * dots_down / extent[1]);  // dots per metre
+  if (!std::isfinite(scale) || !(scale > 0))  // a damaged file: no place, or places without a distance that is a number
+    return {};
   const auto letters = [&](Real metres, int dots) { return std::max(1, static_cast<int>(std::ceil(metres * scale / dots - 1e-9))); };
   DotSheet sheet(letters(extent[0], dots_across), letters(extent[1], dots_down));
   for (std::size_t p = 0; p < n; ++p) {

@@ -121,15 +121,20 @@ RunLook look_at(const RunFolder& run, const RunLook& before)
   if (look.marks == before.marks) {
     look.history = before.history;
     look.files.frames = before.files.frames;
+    look.left_out = before.left_out;
     return look;
   }
-  try {  // a run is at work on them
-    look.history = history.empty() ? HistoryTable{} : read_history(run.path / "history.csv");
-    if (!frames.empty())
-      look.files.frames = read_pvd(run.path / "particles.pvd");
-  } catch (const EnvironmentError&) {
-    look.marks.clear();  // next time
-  }
+  const auto attempt = [&](auto&& read) {
+    try {
+      read();
+    } catch (const EnvironmentError& damaged) {
+      look.left_out.emplace_back(damaged.what());
+    }
+  };
+  if (!history.empty())
+    attempt([&] { look.history = read_history(run.path / "history.csv"); });
+  if (!frames.empty())
+    attempt([&] { look.files.frames = read_pvd(run.path / "particles.pvd"); });
   return look;
 }
 
@@ -149,6 +154,8 @@ std::vector<std::string> described(const RunFolder& run, const RunLook& look)
   add("momentum [kg m/s]", momentum(look.history));
   for (const std::string& warning : run.summary.warnings)
     add("warning", warning);
+  for (const std::string& file : look.left_out)
+    add("left out", file);
   if (const auto& frames = look.files.frames; !frames.empty())
     add("frames",
         fmt::format("{}, the last {} at t = {:.6g} s", frames.size(), frames.back().second.filename().string(), frames.back().first));
@@ -170,7 +177,7 @@ std::string in_one_line(const RunFolder&, const RunLook& look)
   return text;
 }
 
-std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files)
+std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files, std::vector<std::string>& left_out)
 {
   const auto wanted = ViewedField::of(run.scene.outputs.picture.field);
   for (auto frame = files.frames.rbegin(); frame != files.frames.rend(); ++frame)
@@ -179,10 +186,15 @@ std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files)
       const StoredField* field = stored_field(particles, wanted.name);
       if (field == nullptr)
         return std::nullopt;
+      if (const auto names = component_names(field->components);
+          !wanted.component.empty() && std::find(names.begin(), names.end(), wanted.component) == names.end())
+        throw EnvironmentError(
+            fmt::format("cannot read {}: its field \"{}\" has no component \"{}\"", frame->second.string(), wanted.name, wanted.component));
       Cloud cloud{static_cast<int>(run.scene.dimension), {}, viewed_values(*field, wanted), wanted.label(field->components), field->unit};
       cloud.places = std::move(particles.fields.front().values);
       return cloud;
-    } catch (const EnvironmentError&) {  // it has not been written to its end
+    } catch (const EnvironmentError& damaged) {
+      left_out.emplace_back(damaged.what());
     }
   return std::nullopt;
 }

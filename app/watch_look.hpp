@@ -17,7 +17,8 @@ struct RunLook {
   std::optional<RunProgress> progress;
   HistoryTable history;
   RunFiles files;
-  std::string marks;  ///< changes when any of the files does
+  std::vector<std::string> left_out;  ///< files that cannot be read, each with the reason
+  std::string marks;                  ///< changes when any of the files does
 };
 
 /// Looks at the folder; what has not changed since `before` is taken from there.
@@ -28,7 +29,8 @@ std::vector<std::string> described(const RunFolder& run, const RunLook& look);
 /// One line, for logs.
 std::string in_one_line(const RunFolder& run, const RunLook& look);
 
-/// The last frame that can be read, with the field of the pictures; nothing if there is none.
-std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files);
+/// The last frame that can be read, with the field of the pictures; nothing if there is none.  Those behind it that cannot be read are added
+/// to `left_out`.
+std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files, std::vector<std::string>& left_out);
 
 }  // namespace talus

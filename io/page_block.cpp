@@ -106,9 +106,10 @@ std::vector<std::uint16_t> quantised(std::span<const Real> values, Real low, Rea
   constexpr std::uint16_t no_value = 65535;
   const Real scale = high > low ? most / (high - low) : 0;
   std::vector<std::uint16_t> numbers(values.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    numbers[i] =
-        std::isfinite(values[i]) ? static_cast<std::uint16_t>(std::lround(std::clamp((values[i] - low) * scale, 0.0, most))) : no_value;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const Real number = (values[i] - low) * scale;  // no finite one where the range is none
+    numbers[i] = std::isfinite(number) ? static_cast<std::uint16_t>(std::lround(std::clamp(number, 0.0, most))) : no_value;
+  }
   return numbers;
 }
 

@@ -30,7 +30,8 @@ void for_each_number(Progress& p, F&& f)
 std::optional<Real> RunProgress::left() const noexcept
 {
   const Real here = done - done_before;
-  return here > 0 ? std::optional(elapsed * std::max(total - done, 0.0) / here) : std::nullopt;
+  constexpr Real most = 1e12;  // s
+  return here > 0 ? std::optional(std::min(elapsed * std::max(total - done, 0.0) / here, most)) : std::nullopt;
 }
 
 void write_progress(const std::filesystem::path& file, const RunProgress& progress)
@@ -47,8 +48,15 @@ try {
   const ProgressJson json = ProgressJson::parse(read_whole(file));
   RunProgress progress;
   progress.stage = json.at("stage").get<std::string>();
-  for_each_number(progress, [&](const char* key, auto& number) { json.at(key).get_to(number); });
-  return progress;
+  bool fit = true;
+  for_each_number(progress, [&](const char* key, auto& number) {
+    constexpr Real most = 1e15;  // what no run comes to
+    const Real value = json.at(key).get<Real>();
+    fit = fit && value >= 0 && value < most;
+    if (fit)
+      number = static_cast<std::remove_reference_t<decltype(number)>>(value);
+  });
+  return fit ? std::optional(progress) : std::nullopt;
 } catch (const ProgressJson::exception&) {
   return std::nullopt;
 } catch (const EnvironmentError&) {  // it has gone between the question and the answer

@@ -12,6 +12,7 @@
 #include "io/render_canvas.hpp"
 #include "io/render_data.hpp"
 #include "io/render_outline.hpp"
+#include "io/render_series.hpp"
 
 namespace talus::render {
 
@@ -35,15 +36,22 @@ fs::path picture_path(const Settings& settings, std::size_t frame, const std::st
   return out.extension() == ".png" ? out : out / file_name(label, frame);
 }
 
-std::array<Real, 2> range_of(const Settings& settings, const std::vector<ResultFile>& files, const Cloud& last)
+/// What reads the field that is shown.
+auto cloud_reader(const Settings& settings)
+{
+  return [&settings](const fs::path& file) { return read_cloud(file, settings.field); };
+}
+
+std::array<Real, 2> range_of(const Settings& settings, FrameSeries& frames, const Cloud& last)
 {
   if (const auto* numbers = std::get_if<std::array<Real, 2>>(&settings.range))
     return *numbers;
   Extent extent(settings.log);
   extent.add(last.value);
   if (std::get<RangeOf>(settings.range) == RangeOf::whole)
-    for (std::size_t f = 0; f + 1 < files.size(); ++f)
-      extent.add(read_cloud(files[f].path, settings.field).value);
+    for (std::size_t f = 0; f + 1 < frames.size(); ++f)
+      if (const auto cloud = frames.read(f, cloud_reader(settings)))
+        extent.add(cloud->value);
   return extent.range(settings.map == Map::coolwarm);
 }
 
@@ -88,25 +96,33 @@ std::string words_of(const Plane& plane)
   return fmt::format("cut by ({:g}, {:g}, {:g}) x = {:g} m", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset);
 }
 
-Picture compose(const Settings& settings, const std::vector<ResultFile>& files, const RunFacts& facts, const Cloud& first,
-                const Cloud& last)
+/// Lines of the mesh, none where its file is damaged: a picture of the particles says more than none.
+Lines mesh_lines(const Settings& settings)
+try {
+  return read_mesh_lines(settings.folder, settings.mesh);
+} catch (const EnvironmentError& damaged) {
+  fmt::print(stderr, "warning: the mesh is left out: {}\n", damaged.what());
+  return {};
+}
+
+Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& facts, const Cloud& first, const Cloud& last)
 {
   Picture picture;
   picture.dimension = facts.dimension;
   picture.title = settings.title;
-  picture.scale = {settings.map, range_of(settings, files, last), settings.log};
+  picture.scale = {settings.map, range_of(settings, series, last), settings.log};
   picture.radius = settings.radius.value_or(drawn_radius(numbers_of(first.x), facts.dimension));
   std::vector<Vec3> shape = first.x;
   shape.insert(shape.end(), last.x.begin(), last.x.end());
-  if (const auto frames = chosen(settings.frames, files.size()); frames.size() == 1) {
-    const Cloud one = read_cloud(files[frames[0]].path, settings.field);
-    shape.insert(shape.end(), one.x.begin(), one.x.end());
-  }
+  if (const auto frames = chosen(settings.frames, series.size()); frames.size() == 1)
+    if (const auto one = series.read(frames[0], cloud_reader(settings)))
+      shape.insert(shape.end(), one->x.begin(), one->x.end());
   place_camera(settings, shape, picture);
   picture.mesh_lines = settings.mesh;
-  picture.mesh = read_mesh_lines(settings.folder, settings.mesh);
+  picture.mesh = mesh_lines(settings);
   if (settings.start_outline)
-    picture.start = outline_of(read_bodies(files.front().path, std::nullopt), facts.dimension, picture.camera);
+    picture.start =
+        outline_of(series.first([](const fs::path& file) { return read_bodies(file, std::nullopt); }), facts.dimension, picture.camera);
   if (settings.clip)
     picture.notes.push_back(words_of(*settings.clip));
   return picture;
@@ -119,24 +135,29 @@ void make_pictures(const Settings& settings, const std::function<void(const fs::
   const char* display = std::getenv("DISPLAY");
   if (display == nullptr || *display == '\0')
     throw EnvironmentError("there is no display (DISPLAY is not set): use `talus render`, or xvfb-run -a talus-render ...");
-  const auto files = particle_files(settings.folder);
-  const RunFacts facts = facts_of(files);
+  FrameSeries series(particle_files(settings.folder));
+  const RunFacts facts = series.first([&](const fs::path& file) { return facts_of(file, series.size()); });
   std::vector<std::string> problems;
   check(settings, facts, problems);
   require_none(problems);
-  Picture picture =
-      compose(settings, files, facts, read_cloud(files.front().path, settings.field), read_cloud(files.back().path, settings.field));
-  for (const std::size_t frame : chosen(settings.frames, files.size())) {
-    Cloud cloud = read_cloud(files[frame].path, settings.field);
+  Picture picture = compose(settings, series, facts, series.first(cloud_reader(settings)), series.last(cloud_reader(settings)));
+  bool any = false;
+  for (const std::size_t frame : chosen(settings.frames, series.size())) {
+    auto cloud = series.read(frame, cloud_reader(settings));
+    if (!cloud)
+      continue;
     if (settings.clip) {
-      cloud = clipped(std::move(cloud), *settings.clip);
-      picture.notes.back() = words_of(*settings.clip) + (cloud.x.empty() ? ": no particle is left" : "");
+      cloud = clipped(*std::move(cloud), *settings.clip);
+      picture.notes.back() = words_of(*settings.clip) + (cloud->x.empty() ? ": no particle is left" : "");
     }
-    picture.time = files[frame].time;
-    const fs::path png = picture_path(settings, frame, cloud.label);
-    draw(picture, cloud, png);
+    picture.time = series.time(frame);
+    const fs::path png = picture_path(settings, frame, cloud->label);
+    draw(picture, *cloud, png);
     written(png);
+    any = true;
   }
+  if (!any)
+    throw EnvironmentError("none of the frames that are asked for can be read");
 }
 
 }  // namespace talus::render

@@ -1,22 +1,11 @@
-// Result files back into plain arrays, by VTK's readers.
+// Result files back into plain arrays.
 #include "io/render_data.hpp"
 
 #include <fmt/format.h>
-#include <vtkCallbackCommand.h>
 #include <vtkCellArray.h>
-#include <vtkCellType.h>
-#include <vtkDataArray.h>
-#include <vtkExecutive.h>
 #include <vtkIdList.h>
-#include <vtkInformation.h>
-#include <vtkInformationStringKey.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
 #include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLPolyDataReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,38 +23,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void keep_message(vtkObject*, unsigned long, void* kept, void* message)
-{
-  auto& text = *static_cast<std::string*>(kept);
-  if (text.empty() && message != nullptr)
-    text = static_cast<const char*>(message);
-}
-
-/// VTK's readers go on after errors; this one stops.
-template <class Reader>
-void update(Reader& reader, const fs::path& file)
-{
-  std::string message;
-  vtkNew<vtkCallbackCommand> observer;
-  observer->SetCallback(keep_message);
-  observer->SetClientData(&message);
-  reader.AddObserver(vtkCommand::ErrorEvent, observer);
-  reader.GetExecutive()->AddObserver(vtkCommand::ErrorEvent, observer);
-  reader.SetFileName(file.c_str());
-  if (fs::exists(file))
-    reader.Update();
-  else
-    message = "there is no such file";
-  if (!message.empty() || reader.GetErrorCode() != 0)
-    throw EnvironmentError(fmt::format("cannot read {}: {}", file.string(), message));
-}
-
-std::vector<std::string> field_names(vtkPointData* data)
+std::vector<std::string> field_names(const StoredParticles& particles)
 {
   std::vector<std::string> names;
-  for (int i = 0; i < data->GetNumberOfArrays(); ++i)
-    if (data->GetArrayName(i) != nullptr && data->GetArrayName(i) != std::string("id"))
-      names.emplace_back(data->GetArrayName(i));
+  for (const StoredField& field : std::span(particles.fields).subspan(1))  // without the position
+    names.push_back(field.name);
   return names;
 }
 
@@ -77,32 +39,39 @@ std::string default_field(const std::vector<std::string>& names)
   return names.empty() ? "id" : names.front();
 }
 
-vtkDataArray* find_field(vtkPointData* data, const std::string& name, const fs::path& file)
+const StoredField* field_called(const StoredParticles& particles, std::string_view name)
 {
-  vtkDataArray* array = data->GetArray(name.c_str());
-  if (array == nullptr)
-    throw Error(fmt::format("{} has no field \"{}\"{}", file.string(), name, suggestion(name, field_names(data))));
-  return array;
+  const auto fields = std::span(particles.fields).subspan(1);
+  const auto found = std::find_if(fields.begin(), fields.end(), [&](const StoredField& field) { return field.name == name; });
+  return found == fields.end() ? nullptr : &*found;
 }
 
-std::vector<Vec3> points_of(vtkPointSet* data)
+StoredField find_field(const StoredParticles& particles, const std::string& name, const fs::path& file)
 {
-  std::vector<Vec3> x(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  if (name == "id")
+    return {name, 1, {particles.ids.begin(), particles.ids.end()}};
+  if (const StoredField* field = field_called(particles, name))
+    return *field;
+  throw Error(fmt::format("{} has no field \"{}\"{}", file.string(), name, suggestion(name, field_names(particles))));
+}
+
+std::vector<Vec3> points_of(std::span<const Real> numbers)
+{
+  std::vector<Vec3> x(numbers.size() / 3);
   for (std::size_t p = 0; p < x.size(); ++p)
-    data->GetPoint(static_cast<vtkIdType>(p), x[p].data());
+    x[p] = Eigen::Map<const Vec3>(numbers.data() + 3 * p);
   return x;
 }
 
-std::vector<Real> values_of(vtkPolyData* data, const ViewedField& field, const fs::path& file)
+std::vector<Real> values_of(const StoredField& field, const ViewedField& viewed)
 {
-  vtkDataArray* array = find_field(data->GetPointData(), field.name, file);
-  const int components = array->GetNumberOfComponents();
-  const auto component = field.component_of(components);
-  std::vector<Real> values(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  const auto width = static_cast<std::size_t>(field.components);
+  const auto component = viewed.component_of(field.components);
+  const std::span<const Real> all = field.values;
+  std::vector<Real> values(all.size() / width);
   for (std::size_t p = 0; p < values.size(); ++p) {
-    const auto row = static_cast<vtkIdType>(p);
-    values[p] =
-        component ? array->GetComponent(row, *component) : viewed_value({array->GetTuple(row), static_cast<std::size_t>(components)});
+    const auto entry = all.subspan(p * width, width);
+    values[p] = component ? entry[static_cast<std::size_t>(*component)] : viewed_value(entry);
   }
   return values;
 }
@@ -133,32 +102,23 @@ std::vector<ResultFile> particle_files(const fs::path& folder)
   return files;
 }
 
-RunFacts facts_of(const std::vector<ResultFile>& files)
+RunFacts facts_of(const fs::path& first, std::size_t n_frames)
 {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  update(*reader, files.front().path);
-  const std::vector<Vec3> x = points_of(reader->GetOutput());
+  const StoredParticles particles = read_particles(first);
+  const std::vector<Vec3> x = points_of(particles.fields.front().values);
   const bool flat = std::all_of(x.begin(), x.end(), [](const Vec3& point) { return point[2] == 0; });
-  RunFacts facts{flat ? 2 : 3, files.size(), {}};
-  for (const auto& [name, components] : stored_particle_fields(files.front().path))
-    facts.fields.push_back({name, components});
+  RunFacts facts{flat ? 2 : 3, n_frames, {}};
+  for (const StoredField& field : std::span(particles.fields).subspan(1))
+    facts.fields.push_back({field.name, field.components});
   return facts;
 }
 
 Cloud read_cloud(const fs::path& file, const std::optional<std::string>& field)
 {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  update(*reader, file);
-  vtkPolyData* data = reader->GetOutput();
-  Cloud cloud;
-  cloud.x = points_of(data);
-  const auto viewed = ViewedField::of(field ? *field : default_field(field_names(data->GetPointData())));
-  cloud.value = values_of(data, viewed, file);
-  vtkDataArray* array = data->GetPointData()->GetArray(viewed.name.c_str());
-  cloud.label = viewed.label(array->GetNumberOfComponents());
-  if (const char* unit = array->GetInformation()->Get(vtkDataArray::UNITS_LABEL()))
-    cloud.unit = unit;
-  return cloud;
+  const StoredParticles particles = read_particles(file);
+  const auto viewed = ViewedField::of(field ? *field : default_field(field_names(particles)));
+  const StoredField shown = find_field(particles, viewed.name, file);
+  return {points_of(particles.fields.front().values), values_of(shown, viewed), viewed.label(shown.components), shown.unit};
 }
 
 Lines read_mesh_lines(const fs::path& folder, MeshLines which)
@@ -166,26 +126,19 @@ Lines read_mesh_lines(const fs::path& folder, MeshLines which)
   const auto file = which == MeshLines::none ? std::nullopt : mesh_file(folder);
   if (!file)
     return {};
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  update(*reader, *file);
-  vtkUnstructuredGrid* grid = reader->GetOutput();
-  Lines lines{points_of(grid), {}};
-  std::vector<Index> corners;
-  vtkNew<vtkIdList> cell;
-  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    grid->GetCellPoints(c, cell);
-    for (const vtkIdType node : *cell)
-      corners.push_back(static_cast<Index>(node));
-  }
-  const int dimension = grid->GetNumberOfCells() > 0 && grid->GetCellType(0) == VTK_TRIANGLE ? 2 : 3;
-  MeshEdges edges = edges_of(dimension, numbers_of(lines.points), corners);
+  const StoredMesh mesh = read_mesh(*file);
+  Lines lines{points_of(mesh.nodes), {}};
+  MeshEdges edges = edges_of(mesh.dimension, mesh.nodes, mesh.corners);
   lines.ends = std::move(which == MeshLines::edges ? edges.all : edges.outline);
   return lines;
 }
 
 Lines lines_of(vtkPolyData* data)
 {
-  Lines lines{points_of(data), {}};
+  Lines lines;
+  lines.points.resize(static_cast<std::size_t>(data->GetNumberOfPoints()));
+  for (std::size_t p = 0; p < lines.points.size(); ++p)
+    data->GetPoint(static_cast<vtkIdType>(p), lines.points[p].data());
   vtkNew<vtkIdList> ends;
   vtkCellArray* cells = data->GetLines();
   for (cells->InitTraversal(); cells->GetNextCell(ends) != 0;)
@@ -196,24 +149,29 @@ Lines lines_of(vtkPolyData* data)
 
 std::map<int, Matter> read_bodies(const fs::path& file, const std::optional<std::string>& field)
 {
-  vtkNew<vtkXMLPolyDataReader> reader;
-  update(*reader, file);
-  vtkPolyData* data = reader->GetOutput();
-  vtkDataArray* volume = data->GetPointData()->GetArray("volume");
-  if (volume == nullptr)
+  const StoredParticles particles = read_particles(file);
+  const StoredField* const volume = field_called(particles, "volume");
+  if (volume == nullptr || volume->components != 1)
     throw Error(
         fmt::format("{} has no field \"volume\", from which surfaces are reckoned: run the scene again with it among "
                     "outputs.particles.fields",
                     file.string()));
-  vtkDataArray* body = data->GetPointData()->GetArray("body");
-  const std::vector<Real> values = field ? values_of(data, ViewedField::of(*field), file) : std::vector<Real>{};
-  const std::vector<Vec3> x = points_of(data);
+  const StoredField* const body = field_called(particles, "body");
+  std::vector<Real> values;
+  if (field) {
+    const auto viewed = ViewedField::of(*field);
+    values = values_of(find_field(particles, viewed.name, file), viewed);
+  }
+  const std::vector<Vec3> x = points_of(particles.fields.front().values);
+  constexpr Real most_bodies = 1e6;
   std::map<int, Matter> bodies;
   for (std::size_t p = 0; p < x.size(); ++p) {
-    const auto row = static_cast<vtkIdType>(p);
-    Matter& matter = bodies[body == nullptr ? 0 : static_cast<int>(body->GetComponent(row, 0))];
+    const Real number = body == nullptr ? 0 : body->values[p * static_cast<std::size_t>(body->components)];
+    if (!(number >= 0 && number < most_bodies))
+      throw EnvironmentError(fmt::format("cannot read {}: it is damaged: a particle of body {}", file.string(), number));
+    Matter& matter = bodies[static_cast<int>(number)];
     matter.x.push_back(x[p]);
-    matter.volume.push_back(volume->GetComponent(row, 0));
+    matter.volume.push_back(volume->values[p]);
     if (field)
       matter.value.push_back(values[p]);
   }

@@ -43,8 +43,9 @@ struct Bounds {
 /// The files that particles.pvd of a run's folder lists.  EnvironmentError if there is none or it lists nothing.
 std::vector<ResultFile> particle_files(const std::filesystem::path& folder);
 
-/// What pictures of these files can show.  A run is 2-D if all particles of its first frame have z = 0.
-RunFacts facts_of(const std::vector<ResultFile>& files);
+/// What pictures of a run with so many frames can show, of which this is the first that can be read.  A run is 2-D if all particles of that
+/// frame have z = 0.
+RunFacts facts_of(const std::filesystem::path& first, std::size_t n_frames);
 
 /// Particles of a .vtp with one field: scalars as they are, vectors by their length, symmetric tensors by their von Mises value;
 /// "velocity:x" and "stress:xy" are components.  Without a name: displacement, else velocity, else the first field there is.

@@ -21,7 +21,7 @@
 
 #include "core/error.hpp"
 #include "io/render_colours.hpp"
-#include "io/render_data.hpp"
+#include "io/render_series.hpp"
 #include "io/whole_file.hpp"
 
 namespace talus::render {
@@ -165,18 +165,25 @@ fs::path numbered(const fs::path& file, std::size_t frame)
 
 void make_surfaces(const SurfaceSettings& settings, const std::function<void(const fs::path&, const std::string&)>& written)
 {
-  const auto files = particle_files(settings.folder);
-  const RunFacts facts = facts_of(files);
+  FrameSeries series(particle_files(settings.folder));
+  const RunFacts facts = series.first([&](const fs::path& file) { return facts_of(file, series.size()); });
   std::vector<std::string> problems;
   check(settings, facts, problems);
   require_none(problems);
-  const auto frames = chosen(settings.frames, files.size());
+  const auto frames = chosen(settings.frames, series.size());
+  bool any = false;
   for (const std::size_t frame : frames) {
-    const Extracted result = extract(read_bodies(files[frame].path, settings.field), settings, facts.dimension);
+    const auto bodies = series.read(frame, [&](const fs::path& file) { return read_bodies(file, settings.field); });
+    if (!bodies)
+      continue;
+    const Extracted result = extract(*bodies, settings, facts.dimension);
     const fs::path file = frames.size() > 1 ? numbered(settings.out, frame) : settings.out;
     write(result.surface, file);
     written(file, result.said);
+    any = true;
   }
+  if (!any)
+    throw EnvironmentError("none of the frames that are asked for can be read");
 }
 
 }  // namespace talus::render

@@ -14,6 +14,8 @@ namespace {
 
 using SummaryJson = nlohmann::ordered_json;
 
+constexpr int deepest = 32;  // values within values: what is read of a file goes as deep as its values are nested
+
 /// The text behind a key, if there is one.
 std::string text_behind(const SummaryJson& json, const char* key)
 {
@@ -25,6 +27,13 @@ std::vector<std::string> texts_behind(const SummaryJson& json, const char* key)
 {
   const auto found = json.find(key);
   return found != json.end() ? found->get<std::vector<std::string>>() : std::vector<std::string>();
+}
+
+/// Zero where there is none.
+std::int64_t count_behind(const SummaryJson& json, const char* key)
+{
+  const auto found = json.find(key);
+  return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
 }
 
 /// "kinetic [J]" -> "kinetic", "J"
@@ -58,7 +67,12 @@ SummaryBack read_summary(const std::filesystem::path& file)
 {
   const std::string text = read_whole(file);
   try {
-    const SummaryJson json = SummaryJson::parse(text);
+    const SummaryJson json = SummaryJson::parse(text, [&](int depth, SummaryJson::parse_event_t, const SummaryJson&) {
+      if (depth > deepest)
+        throw EnvironmentError(
+            fmt::format("{} is not the summary of a run: its values are nested more than {} deep", file.string(), deepest));
+      return true;
+    });
     SummaryBack back;
     back.status = text_behind(json, "status");
     back.message = text_behind(json, "message");
@@ -70,8 +84,8 @@ SummaryBack read_summary(const std::filesystem::path& file)
     back.overrides = texts_behind(json.at("scene"), "set");
     back.warnings = texts_behind(json, "warnings");
     for (const SummaryJson& body : json.value("bodies", SummaryJson::array()))
-      back.bodies.push_back({text_behind(body, "name"), text_behind(body, "material"), text_behind(body, "law"),
-                             body.value("particles", std::int64_t{0}), 0});
+      back.bodies.push_back(
+          {text_behind(body, "name"), text_behind(body, "material"), text_behind(body, "law"), count_behind(body, "particles"), 0});
     back.text = text;
     for (const SummaryJson& stage : json.at("stages"))
       back.quick = back.quick || text_behind(stage, "result") == "quick";

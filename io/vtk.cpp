@@ -1,33 +1,12 @@
-// The only file of this library that knows VTK.  VTK reads; files are written here, as VTK's own writers lay them out, so that several ranks
-// can write one together.
+// Files are written here as VTK's own writers lay them out, so that several ranks can write one together.
 #include "io/vtk.hpp"
 
 #include <fmt/format.h>
-#include <vtkCellData.h>
 #include <vtkCellType.h>
-#include <vtkDoubleArray.h>
-#include <vtkFieldData.h>
-#include <vtkIdList.h>
-#include <vtkInformation.h>
-#include <vtkInformationStringKey.h>
-#include <vtkInformationVector.h>
 #include <vtkLZ4DataCompressor.h>
-#include <vtkLogger.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkSmartPointer.h>
-#include <vtkStringArray.h>
-#include <vtkStringOutputWindow.h>
-#include <vtkUnstructuredGrid.h>
-#include <vtkXMLDataElement.h>
-#include <vtkXMLPolyDataReader.h>
-#include <vtkXMLUnstructuredGridReader.h>
-#include <vtkXMLUtilities.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cstring>
 #include <stdexcept>
 
@@ -44,133 +23,10 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view id_name = "id", origin_name = "MadeBy";
 
-/// While this lives, VTK's complaints come here instead of to the screen: observers do not reach the parsers inside its readers.
-class VtkComplaints {
- public:
-  VtkComplaints() : window_(vtkOutputWindow::GetInstance()), log_(vtkLogger::GetCurrentVerbosityCutoff())
-  {
-    vtkOutputWindow::SetInstance(heard_);
-    vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
-  }
-  ~VtkComplaints()
-  {
-    vtkOutputWindow::SetInstance(window_);
-    vtkLogger::SetStderrVerbosity(log_);
-  }
-  VtkComplaints(const VtkComplaints&) = delete;
-  VtkComplaints& operator=(const VtkComplaints&) = delete;
-
-  /// The first complaint, without the place in VTK's sources; empty for none.
-  std::string first() const
-  {
-    const std::string all = heard_->GetOutput();
-    const auto object = all.find("): ");  // "ERROR: In file.cxx, line 1\nvtkClass (0x1234): what is wrong"
-    const auto begin = object == std::string::npos ? 0 : object + 3;
-    return all.substr(begin, all.find('\n', begin) - begin);
-  }
-
- private:
-  vtkSmartPointer<vtkOutputWindow> window_;
-  vtkLogger::Verbosity log_;
-  vtkNew<vtkStringOutputWindow> heard_;
-};
-
 /// What stands in front of an array in the appended data of a file with header_type="UInt64" and a compressor.
 struct BlockHeader {
   std::uint64_t blocks, size, last_size;  ///< number of blocks, bytes of each when unpacked, bytes of the last if it is not whole
 };
-
-/// Whether the blocks of the array at `begin` lie in the file.
-bool blocks_fit(std::string_view text, std::size_t begin)
-{
-  BlockHeader header{};
-  if (begin > text.size() || text.size() - begin < sizeof header)
-    return false;
-  std::memcpy(&header, text.data() + begin, sizeof header);
-  std::uint64_t room = text.size() - begin - sizeof header;
-  if (header.blocks == 0)
-    return header.last_size == 0;
-  if (header.size == 0 || header.last_size > header.size || header.blocks > room / sizeof(std::uint64_t))
-    return false;
-  const char* next = text.data() + begin + sizeof header;
-  room -= header.blocks * sizeof(std::uint64_t);
-  for (std::uint64_t block = 0; block < header.blocks; ++block, next += sizeof(std::uint64_t)) {
-    std::uint64_t packed = 0;
-    std::memcpy(&packed, next, sizeof packed);
-    if (packed > room)
-      return false;
-    room -= packed;
-  }
-  return true;
-}
-
-/// Throws unless the file is laid out as `write` does it and is long enough: VTK's readers trust the lengths before the numbers, divide by
-/// them, and take the numbers as they come where a word of the first line is damaged.
-void check_layout(const fs::path& file)
-{
-  const std::string text = read_whole(file);
-  const std::string_view all = text;
-  const std::size_t data = all.find("<AppendedData encoding=\"raw\">");
-  const std::size_t begin = data == std::string_view::npos ? data : all.find('_', data);
-  const std::string_view first_line = all.substr(0, all.find('>', all.find("<VTKFile")));
-  bool fits = begin != std::string_view::npos;
-  for (const std::string_view word : {"byte_order=\"LittleEndian\"", "header_type=\"UInt64\"", "compressor=\"vtkLZ4DataCompressor\""})
-    fits = fits && first_line.find(word) != std::string_view::npos;
-  constexpr std::string_view key = "offset=\"";
-  for (std::size_t at = all.find(key); fits && at < data; at = all.find(key, at + 1)) {
-    std::size_t offset = 0;
-    const char* number = text.data() + at + key.size();
-    fits = std::from_chars(number, text.data() + data, offset).ec == std::errc{} && offset < text.size() &&
-           blocks_fit(all, begin + 1 + offset);
-  }
-  if (!fits)
-    throw EnvironmentError(fmt::format("cannot read {}: it is damaged, or not written by talus", file.string()));
-}
-
-/// The file in the reader, or so much of it as `update` asks for.  VTK's readers go on after errors; this one stops.
-template <class Reader>
-void read_file(Reader& reader, const fs::path& file, void (vtkAlgorithm::*update)() = &vtkAlgorithm::Update)
-{
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored))
-    throw EnvironmentError(fmt::format("cannot read {}: there is no such file", file.string()));
-  check_layout(file);
-  const VtkComplaints complaints;
-  reader.SetFileName(file.c_str());
-  try {
-    (reader.*update)();
-  } catch (const std::exception&) {  // such as std::bad_alloc, for a length that is nonsense
-    throw EnvironmentError(fmt::format("cannot read {}: it is damaged, or larger than the memory", file.string()));
-  }
-  if (const std::string complaint = complaints.first(); !complaint.empty() || reader.GetErrorCode() != 0)
-    throw EnvironmentError(fmt::format("cannot read {}: it is damaged{}{}", file.string(), complaint.empty() ? "" : ": ", complaint));
-}
-
-StoredField stored(vtkDataArray& array, std::string name)
-{
-  StoredField field{std::move(name), array.GetNumberOfComponents(), {}};
-  const auto components = static_cast<std::size_t>(field.components);
-  field.values.resize(components * static_cast<std::size_t>(array.GetNumberOfTuples()));
-  for (vtkIdType i = 0; i < array.GetNumberOfTuples(); ++i)
-    array.GetTuple(i, field.values.data() + components * static_cast<std::size_t>(i));
-  if (const char* unit = array.GetInformation()->Get(vtkDataArray::UNITS_LABEL()))
-    field.unit = unit;
-  return field;
-}
-
-/// All arrays but the ids, and the points if there are any, as "position".
-std::vector<StoredField> stored_fields(vtkFieldData& data, vtkPoints* points)
-{
-  std::vector<StoredField> fields;
-  if (points != nullptr) {
-    fields.push_back(stored(*points->GetData(), "position"));
-    fields.back().unit = "m";
-  }
-  for (int i = 0; i < data.GetNumberOfArrays(); ++i)
-    if (vtkDataArray* array = data.GetArray(i); array != nullptr && array->GetName() != nullptr && id_name != array->GetName())
-      fields.push_back(stored(*array, array->GetName()));
-  return fields;
-}
 
 /// An array of which every rank has some rows, or the root all of the bytes.
 struct PartOfArray {
@@ -465,69 +321,6 @@ void write_mesh(const fs::path& file, Real time, const Mesh<D>& mesh, std::span<
 template void write_mesh<2>(const fs::path&, Real, const Mesh<2>&, std::span<const Column>, std::span<const Column>, const std::string&);
 template void write_mesh<3>(const fs::path&, Real, const Mesh<3>&, std::span<const Column>, std::span<const Column>, const std::string&);
 
-StoredParticles read_particles(const fs::path& file)
-{
-  vtkNew<vtkXMLPolyDataReader> reader;
-  read_file(*reader, file);
-  vtkPolyData* cloud = reader->GetOutput();
-  vtkDataArray* ids = cloud->GetPointData()->GetArray(id_name.data());
-  const int type = ids == nullptr ? VTK_VOID : ids->GetDataType();
-  if ((type != VTK_LONG && type != VTK_LONG_LONG && type != VTK_ID_TYPE) || ids->GetNumberOfComponents() != 1)
-    throw EnvironmentError(fmt::format("{}: its particles have no field \"{}\" of whole numbers", file.string(), id_name));
-  static_assert(sizeof(long) == sizeof(std::int64_t) && sizeof(vtkIdType) == sizeof(std::int64_t));
-  StoredParticles particles{{}, stored_fields(*cloud->GetPointData(), cloud->GetPoints()), {}};
-  if (auto* text = vtkStringArray::SafeDownCast(cloud->GetFieldData()->GetAbstractArray(origin_name.data()));
-      text && text->GetNumberOfValues() > 0)
-    particles.made_by = text->GetValue(0);
-  particles.ids.resize(static_cast<std::size_t>(ids->GetNumberOfTuples()));
-  if (!particles.ids.empty())
-    std::memcpy(particles.ids.data(), ids->GetVoidPointer(0), particles.ids.size() * sizeof(std::int64_t));
-  return particles;
-}
-
-std::vector<std::pair<std::string, int>> stored_particle_fields(const fs::path& file)
-{
-  vtkNew<vtkXMLPolyDataReader> reader;
-  read_file(*reader, file, &vtkAlgorithm::UpdateInformation);
-  std::vector<std::pair<std::string, int>> fields;
-  vtkInformationVector* heads = reader->GetOutputInformation(0)->Get(vtkDataObject::POINT_DATA_VECTOR());
-  for (int i = 0; heads != nullptr && i < heads->GetNumberOfInformationObjects(); ++i) {
-    vtkInformation* head = heads->GetInformationObject(i);
-    if (const char* name = head->Get(vtkDataObject::FIELD_NAME()); name != nullptr && name != id_name)
-      fields.emplace_back(name, head->Get(vtkDataObject::FIELD_NUMBER_OF_COMPONENTS()));
-  }
-  return fields;
-}
-
-StoredMeshFields read_mesh_fields(const fs::path& file)
-{
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  read_file(*reader, file);
-  vtkUnstructuredGrid* grid = reader->GetOutput();
-  return {stored_fields(*grid->GetPointData(), grid->GetPoints()), stored_fields(*grid->GetCellData(), nullptr)};
-}
-
-StoredMesh read_mesh(const fs::path& file)
-{
-  vtkNew<vtkXMLUnstructuredGridReader> reader;
-  read_file(*reader, file);
-  vtkUnstructuredGrid* grid = reader->GetOutput();
-  StoredMesh mesh;
-  mesh.nodes.resize(3 * static_cast<std::size_t>(grid->GetNumberOfPoints()));
-  for (vtkIdType n = 0; n < grid->GetNumberOfPoints(); ++n)
-    grid->GetPoint(n, mesh.nodes.data() + 3 * n);
-  mesh.dimension = grid->GetNumberOfCells() > 0 && grid->GetCellType(0) == VTK_TETRA ? 3 : 2;
-  vtkNew<vtkIdList> cell;
-  for (vtkIdType c = 0; c < grid->GetNumberOfCells(); ++c) {
-    grid->GetCellPoints(c, cell);
-    if (cell->GetNumberOfIds() != mesh.dimension + 1)
-      throw EnvironmentError(fmt::format("{}: its cells are not all triangles, or all tetrahedra", file.string()));
-    for (const vtkIdType node : *cell)
-      mesh.corners.push_back(static_cast<Index>(node));
-  }
-  return mesh;
-}
-
 void PvdSeries::drop_from(Real time)
 {
   std::erase_if(entries_, [&](const auto& entry) { return entry.first >= time; });
@@ -560,26 +353,6 @@ void PvdSeries::save() const
   for (const auto& [t, name] : entries_)
     text += fmt::format("    <DataSet timestep=\"{}\" part=\"0\" file=\"{}\"/>\n", t, escaped(name));
   write_whole(file_, text + "  </Collection>\n</VTKFile>\n");
-}
-
-std::vector<std::pair<Real, fs::path>> read_pvd(const fs::path& file)
-{
-  const std::string text = read_whole(file);
-  const VtkComplaints silenced;
-  const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromString(text.c_str()));
-  vtkXMLDataElement* list = root ? root->FindNestedElementWithName("Collection") : nullptr;
-  if (list == nullptr)
-    throw EnvironmentError(fmt::format("{} is not a list of VTK files (.pvd)", file.string()));
-  std::vector<std::pair<Real, fs::path>> entries;
-  for (int i = 0; i < list->GetNumberOfNestedElements(); ++i) {
-    vtkXMLDataElement* entry = list->GetNestedElement(i);
-    double time = 0;
-    const char* name = entry->GetAttribute("file");
-    if (name == nullptr || entry->GetScalarAttribute("timestep", time) == 0)
-      throw EnvironmentError(fmt::format("{}: entry {} has no file or no timestep", file.string(), i + 1));
-    entries.emplace_back(time, file.parent_path() / name);
-  }
-  return entries;
 }
 
 }  // namespace talus

@@ -1,11 +1,13 @@
 // talus watch: what it says of a run that is at work, and of one that has ended; what its page answers.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <thread>
 
 #include "app/results.hpp"
 #include "app/watch_pages.hpp"
 #include "io/progress_json.hpp"
+#include "io/vtk.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::follow_test {
@@ -57,6 +59,57 @@ TEST_F(Follow, ARunThatHasEndedIsToldWithWhatItReturned)
   EXPECT_THAT(failed.out, ContainsRegex("\nfailed .*\n +step [0-9]+, t = .* beyond watch.speed"));
   EXPECT_EQ(talus("watch nowhere").code, 2);
   EXPECT_EQ(talus("watch nowhere").err, "error: nowhere holds no results of a run (no summary.json)\n");
+}
+
+TEST_F(Follow, WhatCannotBeReadIsLeftOutAndNamed)
+{
+  const auto frames = read_pvd(folder_ / "out/particles.pvd");
+  const std::string last = frames.back().second.filename().string(), before = frames[frames.size() - 2].second.filename().string();
+  std::string text = read("out/" + last);
+  const auto damage = [&](const std::string& word, const std::string& other) {
+    std::string damaged = text;
+    ASSERT_NE(damaged.find(word), std::string::npos) << word;
+    write("out/" + last, damaged.replace(damaged.find(word), word.size(), other));
+  };
+  damage("NumberOfPoints=\"", "NumberOfPoints=\"-");
+  const Outcome negative = talus("watch out --once");
+  EXPECT_EQ(negative.code, 0) << negative.err;
+  EXPECT_THAT(negative.out, HasSubstr("\nleft out           cannot read out/" + last + ": it is damaged"));
+  EXPECT_THAT(negative.out, HasSubstr("⣿⣿⣿")) << "the frame before";
+  damage("NumberOfComponents=\"3\"", "NumberOfComponents=\"2147483648\"");
+  EXPECT_THAT(talus("watch out --once").out, HasSubstr("left out           cannot read out/" + last));
+  const Outcome report = talus("report out --page page.html");
+  EXPECT_EQ(report.code, 0) << report.err;
+  EXPECT_THAT(report.out, HasSubstr("is left out: cannot read out/" + last));
+  write("out/mesh.vtu", "no mesh");
+  write("out/particles.pvd", read("out/particles.pvd").substr(0, 150));
+  const Outcome without = talus("report out --page page.html");
+  EXPECT_EQ(without.code, 0) << without.err;
+  EXPECT_THAT(without.out, HasSubstr("mesh: it is left out: cannot read out/mesh.vtu"));
+  EXPECT_THAT(without.out, HasSubstr("all particles are left out: out/particles.pvd"));
+  EXPECT_THAT(talus("watch out --once").out, HasSubstr("\nleft out           out/particles.pvd"));
+}
+
+TEST_F(Follow, PicturesLeaveOutFramesThatCannotBeReadAndNameThem)
+{
+  const auto frames = read_pvd(folder_ / "out/particles.pvd");
+  const auto damage = [&](std::size_t frame) {
+    std::string text = read("out/" + frames[frame].second.filename().string());
+    const std::string word = "NumberOfPoints=\"";
+    write("out/" + frames[frame].second.filename().string(), text.insert(text.find(word) + word.size(), "-"));
+  };
+  damage(0);
+  const Outcome all = talus("render out --frames all --range whole --size 320x240");
+  EXPECT_EQ(all.code, 0) << all.err;
+  EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'), std::ssize(frames) - 1) << all.out;
+  EXPECT_THAT(all.err,
+              ContainsRegex("^warning: the frame at t = 0 s is left out: cannot read out/particles_0000.vtp: it is damaged[^\n]*\n$"));
+  for (std::size_t frame = 1; frame < frames.size(); ++frame)
+    damage(frame);
+  const Outcome none = talus("render out");
+  EXPECT_EQ(none.code, 3);
+  EXPECT_THAT(none.err, HasSubstr("particles_000"));
+  EXPECT_THAT(none.err, Not(HasSubstr("OpenGL")));
 }
 
 TEST_F(Follow, ARunAtWorkSaysHowFarItIs)

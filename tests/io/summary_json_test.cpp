@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "io/whole_file.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus::summary_json_test {
@@ -62,6 +63,22 @@ TEST(SummaryJson, RefusesWhatIsSomethingElse)
     std::ofstream(folder / "summary.json") << text;
     EXPECT_THROW(read_summary(folder / "summary.json"), EnvironmentError) << text;
   }
+}
+
+TEST(SummaryJson, WhatIsNestedTooDeeplyIsRefused)
+{
+  const ScratchFolder folder;
+  write_summary(folder / "summary.json", {});
+  const std::string whole = read_whole(folder / "summary.json");
+  const auto with = [&](const std::string& value) {
+    write_whole(folder / "b.json", "{\"more\": " + value + "," + whole.substr(whole.find('{') + 1));
+    read_summary(folder / "b.json");
+  };
+  const auto nested = [](std::size_t n) { return std::string(n, '[') + "1" + std::string(n, ']'); };
+  EXPECT_NO_THROW(with(nested(20)));
+  for (const std::size_t n : {100, 1000, 200'000})
+    EXPECT_THROW(with(nested(n)), EnvironmentError) << n;
+  EXPECT_THROW(with(std::string(200'000, '[')), EnvironmentError);
 }
 
 }  // namespace

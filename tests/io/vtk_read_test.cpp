@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/exchange.hpp"
 #include "io/vtk.hpp"
 #include "io/whole_file.hpp"
 #include "tests/io/scratch_folder.hpp"
@@ -110,6 +111,90 @@ TEST(VtkRead, WordsAndLengthsThatAreWrongAreErrors)
   ASSERT_EQ(blocks, std::string("\1\0\0\0\0\0\0\0", 8));
   EXPECT_THAT(spoilt("_" + blocks, "_" + std::string(8, '\xff')), HasSubstr("b.vtp: it is damaged"));
   EXPECT_THAT(spoilt("_" + blocks, "_" + blocks + std::string(8, '\0')), HasSubstr("b.vtp: it is damaged"));
+}
+
+/// Every number and some words of the head, one at a time, replaced by what crashed VTK's own readers or kept them busy without end.
+TEST(VtkRead, NothingInADamagedHeadIsBelieved)
+{
+  const ScratchFolder folder;
+  write_particles(folder / "a.vtp", 0.5, std::vector<Real>{1, 2, 3, 4, 5, 6}, std::vector<std::int64_t>{1, 2},
+                  std::vector<Column>{{"velocity", 3, {1, 2, 3, 4, 5, 6}, "m/s"}}, "talus");
+  const std::string whole = read_whole(folder / "a.vtp");
+  const std::size_t data = whole.find("<AppendedData");
+  std::size_t tried = 0, refused = 0;
+  for (std::size_t at = whole.find("=\""); at < data; at = whole.find("=\"", at + 1)) {
+    const std::size_t begin = at + 2, end = whole.find('"', begin);
+    if (whole.find_first_not_of("0123456789 ", begin) < end)
+      continue;
+    for (const char* other :
+         {"-5", "0", "3", "99999999999", "-9223372036854775808", "18446744073709551615", "2147483648", "", "x", "1e308"}) {
+      std::string text = whole;
+      write_whole(folder / "b.vtp", text.replace(begin, end - begin, other));
+      ++tried;
+      try {
+        EXPECT_EQ(read_particles(folder / "b.vtp").ids.size(), 2u);
+        stored_particle_fields(folder / "b.vtp");
+      } catch (const EnvironmentError& wrong) {
+        ++refused;
+        EXPECT_THAT(wrong.what(), HasSubstr("b.vtp"));
+      }
+    }
+  }
+  EXPECT_GT(tried, 150u);
+  EXPECT_GT(refused, tried / 2);
+  for (const auto& [word, other] : {std::pair{"NumberOfPoints=\"2\"", "NumberOfPoints=\"-5\""},
+                                    {"NumberOfTuples=\"1\"", "NumberOfTuples=\"-5\""},
+                                    {"NumberOfComponents=\"3\"", "NumberOfComponents=\"2147483648\""},
+                                    {"type=\"Float32\"", "type=\"Float64\""},
+                                    {"type=\"Int64\"", "type=\"String\""}}) {
+    std::string text = whole;
+    ASSERT_NE(text.find(word), std::string::npos) << word;
+    write_whole(folder / "b.vtp", text.replace(text.find(word), std::string_view(word).size(), other));
+    EXPECT_THAT(message_of(folder / "b.vtp"), HasSubstr("b.vtp: it is damaged")) << word;
+  }
+}
+
+TEST(VtkRead, PackedBytesThatAreDamagedAreAnError)
+{
+  const ScratchFolder folder;
+  write_particles(folder / "a.vtp", 0.5, std::vector<Real>(3000, 0.25), std::vector<std::int64_t>(1000, 7), {});
+  const std::string whole = read_whole(folder / "a.vtp");
+  const std::size_t data = whole.find('_', whole.find("<AppendedData")) + 1;
+  std::size_t refused = 0;
+  for (std::size_t at = data; at < whole.size(); at += whole.size() / 60) {
+    std::string text = whole;
+    text[at] = static_cast<char>(~static_cast<unsigned char>(text[at]));
+    write_whole(folder / "b.vtp", text);
+    testing::internal::CaptureStderr();
+    refused += message_of(folder / "b.vtp").empty() ? 0 : 1;
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << "VTK says nothing itself";
+  }
+  EXPECT_GT(refused, 10u);
+}
+
+TEST(VtkRead, AFileWithPlacesThatAreNoneIsDamaged)
+{
+  const ScratchFolder folder;
+  write_particles(folder / "a.vtp", 0, std::vector<Real>{1, 2, std::nan("")}, std::vector<std::int64_t>{1}, {});
+  EXPECT_THAT(message_of(folder / "a.vtp"), HasSubstr("a.vtp: it is damaged: position 0 is not finite"));
+}
+
+TEST(VtkRead, CornersOfCellsAreNodesOfTheMesh)
+{
+  const ScratchFolder folder;
+  const auto write = [&](const std::vector<Index>& corners, int dimension) {
+    write_mesh(one_rank(), folder / "a.vtu", 0, {dimension, {0, 4}, {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 1}, corners}, {}, {});
+  };
+  write({0, 1, 3}, 2);
+  const StoredMesh mesh = read_mesh(folder / "a.vtu");
+  EXPECT_EQ(mesh.dimension, 2);
+  EXPECT_THAT(mesh.corners, ElementsAre(0, 1, 3));
+  write({0, 1, 2, 3}, 3);
+  EXPECT_EQ(read_mesh(folder / "a.vtu").dimension, 3);
+  for (const Index wrong : {4, -1}) {
+    write({0, 1, wrong}, 2);
+    EXPECT_THROW(read_mesh(folder / "a.vtu"), EnvironmentError) << wrong;
+  }
 }
 
 TEST(VtkRead, FieldsOfAMeshAreReadByNodeAndByCell)

@@ -243,6 +243,25 @@ TEST(Pvd, FileThatIsNoListIsNamed)
   const ScratchFolder folder;
   std::ofstream(folder / "a.pvd") << "<VTKFile/>";
   EXPECT_THROW(read_pvd(folder / "a.pvd"), EnvironmentError);
+  const std::string begin = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\"><!-- by hand -->\n<Collection>\n",
+                    end = "</Collection></VTKFile>";
+  const auto refused = [&](const std::string& text) {
+    write_whole(folder / "a.pvd", text);
+    try {
+      read_pvd(folder / "a.pvd");
+    } catch (const EnvironmentError& wrong) {
+      return std::string(wrong.what()).find("a.pvd") != std::string::npos;
+    }
+    return false;
+  };
+  const std::string good = "<DataSet timestep='1' file='a.vtp'/>";
+  EXPECT_FALSE(refused(begin + good + end));
+  for (const std::string& damaged :
+       {good.substr(0, 20), std::string("<DataSet timestep=\"1\"/>"), std::string("<DataSet timestep=\"x\" file=\"a\"/>"),
+        std::string("<DataSet timestep=\"nan\" file=\"a\"/>"), std::string("<DataSet timestep=\"1\" file=\"\"/>"), std::string("< a/>"),
+        std::string("<!DOCTYPE a [<!ENTITY x SYSTEM \"file:///etc/passwd\">]>"), std::string("<!-- ")})
+    EXPECT_TRUE(refused(begin + damaged + end)) << damaged;
+  EXPECT_TRUE(refused(begin + good)) << "it has been cut short";
   EXPECT_THROW(read_pvd(folder / "none.pvd"), EnvironmentError);
 }
 
