@@ -44,12 +44,47 @@ std::string unit_in_short(const std::string& unit)
   return unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters" ? "m" : unit;
 }
 
+/// Compression has its limits: a short file that claims to have millions of cells is damaged, or made to fill the memory.
+void require_bytes(const fs::path& file, std::int64_t cells)
+{
+  constexpr std::uintmax_t most_from_one = 1000,
+                           of_any_file = 1'000'000;  // cells from a byte; four times what deflate makes of equal values
+  std::error_code unknown;
+  const std::uintmax_t bytes = fs::file_size(file, unknown);
+  if (!unknown && static_cast<std::uintmax_t>(cells) > of_any_file + most_from_one * bytes)
+    throw EnvironmentError(fmt::format("{}: {} cells cannot be in {} bytes: the file is damaged", file.string(), cells, bytes));
+}
+
+/// GDAL takes an ESRI ASCII grid for one of whole numbers if its beginning has no decimal point: a cell of "nan" is 0 then, and what follows a
+/// point further down is cut off.
+bool may_be_cut(GDALDatasetH dataset)
+{
+  return std::string_view(GDALGetDriverShortName(GDALGetDatasetDriver(dataset))) == "AAIGrid" && GDALGetRasterCount(dataset) > 0 &&
+         GDALGetRasterDataType(GDALGetRasterBand(dataset, 1)) == GDT_Int32;
+}
+
+Dataset open_raster(const GdalSession& session, const fs::path& file)
+{
+  Dataset dataset = open_dataset(session, file, GDAL_OF_RASTER);
+  if (!may_be_cut(dataset.get()))
+    return dataset;
+  CPLSetThreadLocalConfigOption("AAIGRID_DATATYPE", "Float64");
+  try {
+    dataset = open_dataset(session, file, GDAL_OF_RASTER);
+  } catch (...) {
+    CPLSetThreadLocalConfigOption("AAIGRID_DATATYPE", nullptr);
+    throw;
+  }
+  CPLSetThreadLocalConfigOption("AAIGRID_DATATYPE", nullptr);
+  return dataset;
+}
+
 }  // namespace
 
 Raster read_raster(const fs::path& file)
 {
   const GdalSession session;
-  const Dataset dataset = open_dataset(session, file, GDAL_OF_RASTER);
+  const Dataset dataset = open_raster(session, file);
   Raster raster;
   raster.columns = GDALGetRasterXSize(dataset.get());
   raster.rows = GDALGetRasterYSize(dataset.get());
@@ -61,6 +96,7 @@ Raster read_raster(const fs::path& file)
         fmt::format("{}: {} by {} cells are more than {} million; cut out what is needed first: gdal_translate -projwin WEST "
                     "NORTH EAST SOUTH {} part.tif",
                     file.string(), raster.columns, raster.rows, most / 1'000'000, file.filename().string()));
+  require_bytes(file, static_cast<std::int64_t>(raster.columns) * raster.rows);
   bool from_north = true;
   set_place(dataset.get(), file, raster, from_north);
   raster.crs = text_of(GDALGetSpatialRef(dataset.get()));

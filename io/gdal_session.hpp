@@ -33,7 +33,7 @@ struct CloseDataset {
   void operator()(GDALDatasetH dataset) const noexcept { GDALClose(dataset); }
 };
 using Dataset = std::unique_ptr<void, CloseDataset>;
-/// An ordinary file, for reading; `kind` is GDAL_OF_RASTER or GDAL_OF_VECTOR.
+/// An ordinary file of a format that holds its values itself, for reading; `kind` is GDAL_OF_RASTER or GDAL_OF_VECTOR.
 Dataset open_dataset(const GdalSession& session, const std::filesystem::path& file, unsigned kind);
 
 struct DestroyCrs {

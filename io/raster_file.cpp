@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "io/ascii_grid.hpp"
 #include "io/gdal_door.hpp"
 #include "io/whole_file.hpp"
 
@@ -44,7 +45,16 @@ std::string as_ascii_grid(const Raster& raster)
 
 }  // namespace
 
-Raster read_raster(const fs::path& file) { return gdal().read_raster(file); }
+Raster read_raster(const fs::path& file, std::vector<std::string>* passed_over)
+{
+  const GdalPart& part = gdal();
+  if (!not_ordinary(file) && is_ascii_grid(file)) {
+    std::vector<std::string> found = check_ascii_grid(file);
+    if (passed_over != nullptr)
+      *passed_over = std::move(found);
+  }
+  return part.read_raster(file);
+}
 
 void write_raster(const fs::path& file, const Raster& raster)
 {

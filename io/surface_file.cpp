@@ -230,7 +230,10 @@ std::optional<SurfaceRead> FileReader::from_raster(Raster raster)
 
 std::optional<SurfaceRead> FileReader::read_raster_surface()
 {
-  Raster raster = read_raster(path_);
+  std::vector<std::string> passed_over;
+  Raster raster = read_raster(path_, &passed_over);
+  for (const std::string& what : passed_over)
+    mend(what);
   if (!is_of_the_map(raster))
     return std::nullopt;
   return from_raster(std::move(raster));

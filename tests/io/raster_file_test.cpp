@@ -4,11 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <cmath>
 #include <limits>
+#include <mutex>
 
 #include "core/error.hpp"
+#include "io/http_server.hpp"
 #include "io/map_crs.hpp"
+#include "io/polygon_file.hpp"
 #include "io/whole_file.hpp"
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
@@ -172,11 +177,96 @@ TEST(RasterFile, CutShortIsNoticed)
 TEST(RasterFile, TurnedRasterIsRefusedWithTheCommandThatTurnsIt)
 {
   const ScratchFolder folder;
-  write_whole(folder / "turned.vrt",
-              "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><GeoTransform>0, 0.8, 0.6, 0, 0.6, -0.8</GeoTransform>"
-              "<VRTRasterBand dataType=\"Float32\" band=\"1\"/></VRTDataset>");
-  EXPECT_THAT(complaint_of([&] { read_raster(folder / "turned.vrt"); }),
+  write_whole(folder / "turned.bil", std::string(4, '\1'));
+  write_whole(folder / "turned.hdr", "NROWS 2\nNCOLS 2\nNBANDS 1\nNBITS 8\nLAYOUT BIL\n");
+  write_whole(folder / "turned.blw", "0.8\n0.6\n0.6\n-0.8\n0\n0\n");
+  EXPECT_THAT(complaint_of([&] { read_raster(folder / "turned.bil"); }),
               testing::AllOf(HasSubstr("turned by 36.87 degrees"), HasSubstr("gdalwarp")));
+}
+
+/// A server on this machine that writes down who asks for what, and answers with nothing.
+class Ears {
+ public:
+  Ears()
+      : server_(0, [this](const std::string& path) -> std::optional<HttpAnswer> {
+          const std::scoped_lock lock(heard_of_);
+          paths_.push_back(path);
+          return HttpAnswer{"text/plain", std::make_shared<const std::string>("EPSG:32633")};
+        })
+  {}
+  std::string url(const std::string& path) const { return "http://127.0.0.1:" + std::to_string(server_.port()) + path; }
+  std::vector<std::string> heard() const
+  {
+    const std::scoped_lock lock(heard_of_);
+    return paths_;
+  }
+
+ private:
+  mutable std::mutex heard_of_;
+  std::vector<std::string> paths_;
+  HttpServer server_;
+};
+
+TEST(RasterFile, NoFileIsAWayToTheNetworkOrToOtherFiles)
+{
+  const ScratchFolder folder;
+  const Ears ears;
+  write_raster(folder / "g.tif", sample());
+  const auto vrt = [&](const std::string& source) {
+    return "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><GeoTransform>0, 1, 0, 2, 0, -1</GeoTransform><VRTRasterBand "
+           "dataType=\"Float32\" band=\"1\">" +
+           source + "</VRTRasterBand></VRTDataset>";
+  };
+  const auto simple = [&](const std::string& name) {
+    return vrt("<SimpleSource><SourceFilename relativeToVRT=\"0\">" + name + "</SourceFilename><SourceBand>1</SourceBand></SimpleSource>");
+  };
+  for (const auto& [name, text] :
+       {std::pair<std::string, std::string>{"other.vrt", simple((folder / "g.tif").string())},
+        {"network.vrt", simple("/vsicurl/" + ears.url("/y.tif"))},
+        {"network.tif", simple("/vsicurl/" + ears.url("/z.tif"))},
+        {"wms.xml", "<GDAL_WMS><Service name=\"TMS\"><ServerUrl>" + ears.url("/${z}/${x}/${y}.png") +
+                        "</ServerUrl></Service><DataWindow><UpperLeftX>0</UpperLeftX><UpperLeftY>1</UpperLeftY><LowerRightX>1</LowerRightX>"
+                        "<LowerRightY>0</LowerRightY><SizeX>256</SizeX><SizeY>256</SizeY><TileLevel>0</TileLevel></DataWindow>"
+                        "<BandsCount>1</BandsCount></GDAL_WMS>"},
+        {"raw.vrt",
+         "<VRTDataset rasterXSize=\"3\" rasterYSize=\"2\"><GeoTransform>0, 1, 0, 2, 0, -1</GeoTransform><VRTRasterBand "
+         "dataType=\"Byte\" band=\"1\" subClass=\"VRTRawRasterBand\"><SourceFilename>/etc/passwd</SourceFilename>"
+         "</VRTRasterBand></VRTDataset>"}}) {
+    write_whole(folder / name, text);
+    EXPECT_THAT(complaint_of([&] { read_raster(folder / name); }),
+                testing::AllOf(HasSubstr(name), HasSubstr("is no raster of a format that is read")));
+  }
+  for (const std::string& name : {"/vsicurl/" + ears.url("/a.tif"), "/vsizip/" + (folder / "g.zip").string()})
+    EXPECT_THAT(complaint_of([&] { read_raster(name); }), HasSubstr("there is no such file"));
+  EXPECT_FALSE(crs_facts(ears.url("/crs")));
+  write_whole(folder / "crs.txt", "EPSG:32633");
+  EXPECT_FALSE(crs_facts((folder / "crs.txt").string())) << "a file is no text";
+  // Of GeoJSON a coordinate system may be an address.
+  write_whole(folder / "o.geojson", "{\"type\": \"FeatureCollection\", \"crs\": {\"type\": \"link\", \"properties\": {\"href\": \"" +
+                                        ears.url("/link") + "\", \"url\": \"" + ears.url("/link") +
+                                        "\"}}, \"features\": [{\"type\": \"Feature\", \"properties\": {}, \"geometry\": {\"type\": "
+                                        "\"Polygon\", \"coordinates\": [[[0, 0], [9, 0], [9, 9], [0, 0]]]}}]}");
+  try {
+    read_polygons(folder / "o.geojson");
+  } catch (const EnvironmentError&) {
+  }
+  EXPECT_THAT(ears.heard(), testing::IsEmpty());
+}
+
+TEST(RasterFile, APipeBesideARasterDoesNotKeepItWaiting)
+{
+  const ScratchFolder folder;
+  write_raster(folder / "ground.asc", sample());
+  std::filesystem::remove(folder / "ground.prj");
+  ASSERT_EQ(::mkfifo((folder / "ground.prj").c_str(), 0600), 0);
+  EXPECT_THAT(complaint_of([&] { read_raster(folder / "ground.asc"); }), HasSubstr("ground.prj, which belongs to it by its name"));
+}
+
+TEST(RasterFile, MoreCellsThanAFileCanHoldAreRefused)
+{
+  const ScratchFolder folder;
+  write_whole(folder / "g.asc", "ncols 14000\nnrows 14000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n");
+  EXPECT_THAT(complaint_of([&] { read_raster(folder / "g.asc"); }), HasSubstr("g.asc: 196000000 cells cannot be in"));
 }
 
 TEST(MapCrs, KnowsUnitsAndDegrees)

@@ -231,17 +231,68 @@ TEST_F(SurfaceFile, ImplausibleElevationsAreRefused)
 
 TEST_F(SurfaceFile, ValueForNoneThatIsNotDeclaredIsDroppedAndThatIsTold)
 {
-  write_whole(
-      folder / "ground.vrt",  // without a NODATA
-      "<VRTDataset rasterXSize=\"3\" rasterYSize=\"3\"><GeoTransform>0, 1, 0, 3, 0, -1</GeoTransform><VRTRasterBand dataType=\"Float32\" "
-      "band=\"1\"><SimpleSource><SourceFilename relativeToVRT=\"1\">g.asc</SourceFilename><SourceBand>1</SourceBand></SimpleSource>"
-      "</VRTRasterBand></VRTDataset>");
   write_whole(folder / "g.asc", "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n4 4 4\n4 -32768 4\n4 4 4\n");
-  const auto ground = read("ground.vrt");
+  const auto ground = read("g.asc");
   ASSERT_TRUE(ground);
   EXPECT_NEAR(ground->at({1.5, 1.5}), 4, 1e-9);
   ASSERT_EQ(repairs.size(), 3U);
   EXPECT_THAT(repairs[1], HasSubstr("1 cell has the value -32768, which is taken for none"));
+}
+
+TEST_F(SurfaceFile, CellsOfNanAreHolesInAWholeNumberedAsciiGridToo)
+{
+  const std::string whole_row = "100 100 100 100 100\n";
+  write_whole(folder / "g.asc", "ncols 5\nnrows 5\nxllcorner 0\nyllcorner 0\ncellsize 1\n" + whole_row + "100 nan 100 100 100\n" +
+                                    whole_row + "100 100 100 inf 100\n" + whole_row);
+  const auto ground = read("g.asc");
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->at({1.5, 3.5}), 100, 1e-9) << "0 would be a pit";
+  EXPECT_NEAR(ground->at({3.5, 1.5}), 100, 1e-9);
+  EXPECT_THAT(repairs.back(), HasSubstr("2 cells without a value"));
+}
+
+TEST_F(SurfaceFile, WordsAmongTheElevationsAreNamedByLineAndColumn)
+{
+  const std::string head = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  write_whole(folder / "g.asc", head + "100 100 100\n100 1O0 hole\n");
+  EXPECT_FALSE(read("g.asc"));
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_EQ(to_string(problems[0].where), (folder / "g.asc").string() + ":7:5");
+  EXPECT_THAT(problems[0].message, AllOf(HasSubstr("'1O0' is no number"), HasSubstr("slope.yaml:7:3")));
+  EXPECT_EQ(to_string(problems[1].where), (folder / "g.asc").string() + ":7:9");
+  for (const auto& [text, what] : {std::pair{head + "NODATA_value none\n1 2 3\n4 5 6\n", "nodata_value is 'none', which is no number"},
+                                   {head + "1 2 3\n4 5 1.0D+02\n", "'1.0D+02' is no number"},
+                                   {head + "nan 2 3\n4 5 6\n", "'nan' begins the first row"}}) {
+    problems.clear();
+    write_whole(folder / "h.asc", text);
+    EXPECT_FALSE(read("h.asc"));
+    EXPECT_THAT(only_problem(), HasSubstr(what));
+  }
+  problems.clear();
+  write_whole(folder / "k.asc", head + "1,5 2.5 +3\r\n\r\n1e2 -1.#IND 6 \r\n");
+  EXPECT_TRUE(read("k.asc")) << (problems.empty() ? "" : problems[0].message);
+}
+
+TEST_F(SurfaceFile, ValuesAfterTheLastRowAreTold)
+{
+  write_whole(folder / "g.asc", "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n4 5 6\n7 8 9\n");
+  const auto ground = read("g.asc");
+  ASSERT_TRUE(ground);
+  ASSERT_FALSE(repairs.empty());
+  EXPECT_THAT(repairs.front(), HasSubstr("g.asc: 3 values after the last row are passed over; the first is '7' in line 8"));
+  EXPECT_NEAR(ground->at({0.5, 1.5}), 1, 1e-9);
+}
+
+TEST_F(SurfaceFile, DecimalsFarDownInAnAsciiGridAreNotCutOff)
+{
+  std::string text = "ncols 200\nnrows 1000\nxllcorner 0\nyllcorner 0\ncellsize 1\n";
+  for (int row = 0; row < 1000; ++row)
+    for (int column = 0; column < 200; ++column)
+      text += row == 999 ? "7.75 " : "7 ";
+  write_whole(folder / "g.asc", text);
+  const auto ground = read("g.asc");
+  ASSERT_TRUE(ground);
+  EXPECT_NEAR(ground->at({100, 0.5}), 7.75, 1e-9);
 }
 
 TEST_F(SurfaceFile, MissingFileIsAProblemOfTheScene)
