@@ -58,8 +58,29 @@ std::vector<std::string> split(std::string_view line)
   return cells;
 }
 
-CsvColumn column_of(const std::string& cell)
+/// Spreadsheets run a cell that begins with =, +, - or @ as a formula, and a text may be a name out of a scene of somebody else: csv_cell() puts an
+/// apostrophe before such a text, if it is no number, and one more before one that begins with apostrophes and goes on like that, so that
+/// read_history() can take it off again.
+/// Whether a spreadsheet would take the text, behind the apostrophes that csv_cell() puts before it, for a formula.
+bool looks_like_formula(std::string_view text)
 {
+  text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
+  return !text.empty() && std::string_view("=+-@").find(text.front()) != std::string_view::npos;
+}
+
+bool is_plain_number(std::string_view text)
+{
+  if (text.starts_with('+'))
+    text.remove_prefix(1);
+  Real value{};
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return !text.empty() && code == std::errc{} && end == text.data() + text.size();
+}
+
+CsvColumn column_of(std::string cell)
+{
+  if (cell.starts_with('\'') && looks_like_formula(cell))
+    cell.erase(0, 1);
   const auto open = cell.rfind(" [");
   if (open == std::string::npos || cell.back() != ']')
     return {cell};
@@ -82,6 +103,8 @@ Real number(const std::string& cell, const fs::path& file, std::size_t line)
 std::string csv_cell(std::string text)
 {
   std::replace(text.begin(), text.end(), '\n', ' ');
+  if (looks_like_formula(text) && !is_plain_number(text))
+    text.insert(0, 1, '\'');
   if (text.find_first_of(",\"") == std::string::npos)
     return text;
   std::string quoted = "\"";

@@ -20,7 +20,7 @@ struct CsvColumn {
   friend bool operator==(const CsvColumn&, const CsvColumn&) = default;
 };
 
-/// A text as one cell: quoted as RFC 4180 says where it would not survive plainly; line ends become blanks, so a record stays one line.
+/// A text as one cell: quoted as RFC 4180 says, line ends become blanks.  A text that a spreadsheet would run gets an apostrophe (csv.cpp).
 std::string csv_cell(std::string text);
 /// "name [unit]"
 std::string csv_heading(const CsvColumn& column);

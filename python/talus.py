@@ -70,6 +70,11 @@ def tensors(values: np.ndarray) -> np.ndarray:
 # ---------------------------------------------------------------------------------------------------------------------------------- tables
 
 
+def _as_text(entry: str) -> str:
+    """Without the apostrophe that stands before what a spreadsheet would take for a formula."""
+    return entry[1:] if entry.startswith("'") and entry.lstrip("'")[:1] in ("=", "+", "-", "@") else entry
+
+
 class Table(Mapping[str, np.ndarray]):
     """Columns of a .csv by name: `table["kinetic"]` has one number a row, an empty entry is nan.  A column with an entry that is no number is
     an array of str.
@@ -85,7 +90,7 @@ class Table(Mapping[str, np.ndarray]):
         if not records:
             raise Damaged(f"{self.path}: there is no heading")
         self.units: dict[str, str] = {}
-        for heading in records[0]:
+        for heading in map(_as_text, records[0]):
             name, mark, unit = heading.rpartition(" [")
             self.units[name if mark else heading] = unit.removesuffix("]") if mark else PURE
         for number, record in enumerate(records[1:], 2):
@@ -122,7 +127,7 @@ def _numbers(entries: Sequence[str]) -> np.ndarray:
     try:
         return np.array([float(entry or "nan") for entry in entries])
     except ValueError:
-        return np.array(entries)
+        return np.array([_as_text(entry) for entry in entries])
 
 
 # -------------------------------------------------------------------------------------------------------------------- particles and meshes

@@ -95,6 +95,25 @@ TEST(Csv, ResumeDropsLaterRowsAndARowCutShort)
   EXPECT_THAT(read["kinetic_energy"].value(), ElementsAre(1.0 / 3, 1.0 / 3, 1.0 / 3, 7.0));
 }
 
+TEST(Csv, TextsThatASpreadsheetWouldRunAreWrittenAsTexts)
+{
+  EXPECT_EQ(csv_cell("=cmd|' /C calc'!A0"), "'=cmd|' /C calc'!A0");
+  EXPECT_EQ(csv_cell("=HYPERLINK(\"a\",\"b\")"), "\"'=HYPERLINK(\"\"a\"\",\"\"b\"\")\"");
+  EXPECT_EQ(csv_cell("@SUM(A1)"), "'@SUM(A1)");
+  EXPECT_EQ(csv_cell("-5 m"), "'-5 m");
+  EXPECT_EQ(csv_cell("+x"), "'+x");
+  EXPECT_EQ(csv_cell("'=x"), "''=x");
+  for (const char* plain : {"-5", "-1.5e-3", "+2", "-inf", "toe", "a=b", "'quoted'", ""})
+    EXPECT_EQ(csv_cell(plain), plain);
+  const ScratchFolder folder;
+  const std::vector<CsvColumn> named{{"time", "s"}, {"=1+1", "m"}, {"'@x"}, {"-5 m"}, {"'plain"}};
+  HistoryFile(folder / "history.csv", named).append(std::array{0.0, 1.0, 2.0, 3.0, 4.0});
+  EXPECT_EQ(read_whole(folder / "history.csv"), "time [s],'=1+1 [m],''@x,'-5 m,'plain\n0,1,2,3,4\n");
+  EXPECT_EQ(read_history(folder / "history.csv").columns, named);
+  HistoryFile::resume(folder / "history.csv", named, 0).append(std::array{1.0, 1.0, 2.0, 3.0, 4.0});
+  EXPECT_EQ(read_history(folder / "history.csv").rows(), 2u);
+}
+
 TEST(Csv, ResumeRefusesOtherColumns)
 {
   const ScratchFolder folder;

@@ -248,6 +248,9 @@ class Parts(unittest.TestCase):
             self.assertEqual(table.units, {"time": "s", "status": "-", "b [x], c": "J"})
             self.assertEqual((table["time"].tolist(), table["status"].tolist()), ([0, 0.5], ["done", 'a "b"']))
             np.testing.assert_array_equal(table["b [x], c"], [np.nan, 2])
+            path.write_text("time [s],'=1+1 [m],''@x,'plain,status\n0,1,2,3,'-a\n", encoding="utf-8")
+            self.assertEqual(list(talus.Table(path)), ["time", "=1+1", "'@x", "'plain", "status"])
+            self.assertEqual(talus.Table(path)["status"].tolist(), ["-a"])
             path.write_text("time [s],x\n0\n", encoding="utf-8")
             with self.assertRaisesRegex(talus.Damaged, "history.csv:2: 1 entries for 2 columns"):
                 talus.Table(path)
