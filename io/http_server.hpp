@@ -12,15 +12,19 @@ struct HttpAnswer {
   std::shared_ptr<const std::string> body;
 };
 
-/// Answers GET and HEAD on 127.0.0.1, on threads of its own, while it lives.  Requests under another name than 127.0.0.1 or localhost are
-/// refused: a page from elsewhere may have had its own name point here.
+/// Answers GET and HEAD on 127.0.0.1, on a thread of its own, while it lives, one request for each connection.  Requests under another name than
+/// 127.0.0.1 or localhost are refused: a page from elsewhere may have had its own name point here.
+///
+/// Nobody keeps it from answering others: a request that is not complete after 2 s is dropped, an answer that is not taken after 30 s too, and
+/// where there are more than 32 connections, or 16 from one address, the oldest of them makes room.
 class HttpServer {
  public:
-  /// What stands at a path such as "/stamp"; nothing: not found.  Called by several threads at once; what it throws is told as its message.
+  /// What stands at a path such as "/stamp"; nothing: not found.  Called on the thread of the server; what it throws is the answer, as its message.
   using Answer = std::function<std::optional<HttpAnswer>(const std::string& path)>;
 
   /// Port 0: any that is free.  EnvironmentError: the port is taken.
   HttpServer(int port, Answer answer);
+  /// Answers that have begun are given, for 2 s at most.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
