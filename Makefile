@@ -59,7 +59,7 @@ coverage:  ## which lines the tests run, a table by folder: build/coverage/lines
 	@$(packages) build draw scripts test coverage
 	@tools/coverage.sh
 
-fuzz:  ## damaged scenes, meshes and checkpoints into what reads them, MINUTES for each
+fuzz:  ## damaged files into what reads them, MINUTES for each kind
 	@$(packages) build fuzz
 	@tools/fuzz.sh long $(MINUTES)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Feeds damaged scenes, meshes and checkpoints to what reads them (tests/fuzz): tools/fuzz.sh quick (a minute, as in CI), or
+# Feeds damaged inputs to what reads them (tests/fuzz): tools/fuzz.sh quick (a minute of two cores, as in CI, shared out over the entries), or
 # tools/fuzz.sh long [minutes for each] [entry ...]. Inputs that break something are left in build/fuzz/findings; what has been tried and was
 # worth keeping, in build/fuzz/corpus, from where the next call goes on.
 set -euo pipefail
@@ -8,24 +8,25 @@ cd "$(dirname "$0")/.."
 jobs=${JOBS:-$(nproc)}
 build=build/fuzz
 findings=$build/findings
-quick_seconds=30 # of the three at once: a minute of two cores
+all=(scene msh checkpoint raster points stl outlines record particles series summary history request)
+quick_seconds=104 # of all entries together, JOBS of them at a time
 
 leg=${1-}
 shift || true
 case $leg in
-  quick) seconds=$quick_seconds ;;
+  quick) seconds=$((quick_seconds / ${#all[@]})) ;;
   long)
     minutes=${1:-60}
     shift || true
     seconds=$((minutes * 60))
     ;;
   *)
-    echo "usage: tools/fuzz.sh quick | long [minutes] [scene|msh|checkpoint ...]" >&2
+    echo "usage: tools/fuzz.sh quick | long [minutes] [entry ...]; entries: ${all[*]}" >&2
     exit 2
     ;;
 esac
 entries=("$@")
-[ ${#entries[@]} -gt 0 ] || entries=(scene msh checkpoint)
+[ ${#entries[@]} -gt 0 ] || entries=("${all[@]}")
 
 # The clang that is there: group fuzz of tools/debian-packages.txt.
 for clang in clang++-14 clang++; do
@@ -41,25 +42,34 @@ more_seeds() {
   esac
 }
 
-# Longer inputs only repeat what shorter ones do; a run of one takes milliseconds.
-fuzz() {
-  local entry=$1 seeds
-  read -ra seeds <<<"$(more_seeds "$entry")"
-  mkdir -p "$build/corpus/$entry" "$findings"
-  # OpenMP's threads would only wait: the inputs are small. What has been freed would fill the memory they may take.
-  OMP_NUM_THREADS=1 ASAN_OPTIONS=quarantine_size_mb=32 LSAN_OPTIONS=print_suppressions=0 "$build/talus_fuzz_$entry" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len=20000 \
-    -dict="tests/fuzz/$entry.dict" -artifact_prefix="$findings/$entry-" -print_final_stats=1 \
-    "$build/corpus/$entry" "tests/fuzz/corpus/$entry" "${seeds[@]}" >"$build/$entry.log" 2>&1
+# Longer inputs only repeat what shorter ones do; a run of one takes milliseconds. A raster has a thousand times as many cells as bytes.
+longest() {
+  case $1 in
+    raster) echo 4000 ;;
+    *) echo 20000 ;;
+  esac
 }
 
-declare -A process=()
+fuzz() {
+  local entry=$1 seeds dictionary=()
+  read -ra seeds <<<"$(more_seeds "$entry")"
+  mkdir -p "$build/corpus/$entry" "$findings"
+  [ ! -f "tests/fuzz/$entry.dict" ] || dictionary=("-dict=tests/fuzz/$entry.dict")
+  # OpenMP's threads would only wait: the inputs are small. What has been freed would fill the memory they may take.
+  OMP_NUM_THREADS=1 ASAN_OPTIONS=quarantine_size_mb=32 LSAN_OPTIONS=print_suppressions=0 "$build/talus_fuzz_$entry" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -malloc_limit_mb=1024 -max_len="$(longest "$entry")" \
+    "${dictionary[@]}" -artifact_prefix="$findings/$entry-" -print_final_stats=1 \
+    "$build/corpus/$entry" "tests/fuzz/corpus/$entry" "${seeds[@]}" >"$build/$entry.log" 2>&1 || touch "$build/$entry.failed"
+}
+
 for entry in "${entries[@]}"; do
+  rm -f "$build/$entry.failed"
+  while [ "$(jobs -rp | wc -l)" -ge "$jobs" ]; do wait -n || true; done
   fuzz "$entry" &
-  process[$entry]=$!
 done
+wait
 failed=()
 for entry in "${entries[@]}"; do
-  wait "${process[$entry]}" || failed+=("$entry")
+  [ ! -e "$build/$entry.failed" ] || failed+=("$entry")
   echo "$entry: $(sed -n 's/^stat::number_of_executed_units: */executions /p' "$build/$entry.log"), $(find "$build/corpus/$entry" -type f | wc -l) inputs kept"
 done
 

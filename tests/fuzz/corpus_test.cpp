@@ -11,22 +11,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Each file of the corpus of an entry.
-template <class Entry>
-void replay(const std::string& name, std::size_t fewest, Entry&& entry)
+class Corpus : public testing::TestWithParam<FuzzEntry> {};
+
+TEST_P(Corpus, IsReadOrRefused)
 {
   std::size_t played = 0;
-  for (const auto& file : fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / "tests/fuzz/corpus" / name)) {
+  for (const auto& file : fs::directory_iterator(fs::path(TALUS_SOURCE_DIR) / "tests/fuzz/corpus" / GetParam().name)) {
     SCOPED_TRACE(file.path());
-    EXPECT_NO_THROW(entry(read_whole(file.path())));
+    EXPECT_NO_THROW(GetParam().take(read_whole(file.path())));
     ++played;
   }
-  EXPECT_GE(played, fewest);
+  EXPECT_GE(played, 2u);
 }
 
-TEST(Corpus, OfScenesIsReadOrRefused) { replay("scene", 4, fuzz_scene); }
-TEST(Corpus, OfMeshesIsReadOrRefused) { replay("msh", 4, fuzz_msh); }
-TEST(Corpus, OfCheckpointsIsTakenOverOrRefused) { replay("checkpoint", 4, fuzz_checkpoint); }
+INSTANTIATE_TEST_SUITE_P(Of, Corpus, testing::ValuesIn(fuzz_entries), [](const auto& entry) { return std::string(entry.param.name); });
 
 }  // namespace
 }  // namespace talus::corpus_test

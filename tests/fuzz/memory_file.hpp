@@ -11,7 +11,7 @@ namespace talus {
 
 class MemoryFile {
  public:
-  explicit MemoryFile(std::string_view bytes = {}) : path_(new_path())
+  explicit MemoryFile(std::string_view bytes = {}, const std::string& extension = "") : path_(new_path() += extension)
   {
     std::ofstream(path_, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   }
