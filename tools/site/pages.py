@@ -24,7 +24,7 @@ KATEX = Path("/usr/share/javascript/katex")    # Debian: libjs-katex, fonts-kate
 FENCED = re.compile(r"^(```|~~~).*?^\1", re.S | re.M)
 LINK = re.compile(r"(\]\()([^)#\s]+)(#[^)\s]*)?(\))")
 PICTURES = {".png", ".svg", ".jpg"}
-OUTER = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "THIRD_PARTY.md"]
+OUTER = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "THIRD_PARTY.md"]
 written = Path(tempfile.mkdtemp(prefix="talus_site_"))    # what the site has and the tree has not
 
 
