@@ -75,7 +75,6 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
 {
   const EnergyLedger& e = frame.energy;
   EnergyNow now;
-  now.remapped = e.remapped;
   now.kinetic_start = kinetic_begin_;
   now.kinetic = totals(frame).kinetic;
   now.plastic = plastic_work(frame) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;

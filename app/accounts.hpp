@@ -15,7 +15,6 @@ struct EnergyNow {
   Real waves{};     ///< that waves brought to the walls: no term of the balance, but what is small beside it is small
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
-  bool remapped{};  ///< MUSL: transfer and defect may be large together and nearly cancel
 
   static constexpr auto fields()
   {
@@ -31,14 +30,10 @@ struct EnergyNow {
                       kept("walls", &EnergyNow::walls),
                       kept("waves", &EnergyNow::waves),
                       kept("transfer", &EnergyNow::transfer),
-                      kept("defect", &EnergyNow::defect),
-                      kept("remapped", &EnergyNow::remapped)};
+                      kept("defect", &EnergyNow::defect)};
   }
 
   Real dissipated() const noexcept { return plastic + friction + damping; }
-  /// What is judged: the defect.  MUSL takes strain from velocities that the forces did not work on; what they did beyond it is in the
-  /// loss, with the other sign: there the defect is what is left of both, if that is less.
-  Real unexplained() const noexcept { return remapped && std::abs(defect + transfer) < std::abs(defect) ? defect + transfer : defect; }
   Real largest_term() const noexcept;
 };
 

@@ -20,7 +20,6 @@ EnergyNow balance_of(const StageResult& stage)
 {
   const EnergyLedger& e = stage.energy;
   EnergyNow now;
-  now.remapped = e.remapped;
   now.kinetic_start = e.kinetic_start;
   now.kinetic = stage.kinetic_end;
   now.plastic = stage.plastic_end - e.plastic_start + e.plastic_deleted;
@@ -64,7 +63,7 @@ std::vector<NamedValue> named(const MeshQuality<D>& q)
 /// What the method keeps to round-off, and what only as well as the time step and the mesh allow.
 constexpr Real exactly = 1e-9, roughly = 5e-2;
 
-Closure closure_of(const EnergyNow& e) { return {share(e.unexplained(), e.largest_term()), roughly, "largest term"}; }
+Closure closure_of(const EnergyNow& e) { return {share(e.defect, e.largest_term()), roughly, "largest term"}; }
 
 template <int D>
 MassAudit audit(const MassLedger<D>& mass, Real there)
@@ -85,7 +84,7 @@ EnergyAudit audit(const Recorder<D>& recorder)
   for (const auto& [name, value] : terms_of(total))
     audit.terms.push_back({std::string(name), value, "J"});
   if (total.dissipated() > 0)
-    audit.terms.push_back({"unexplained / dissipated", share(total.unexplained(), total.dissipated()), ""});
+    audit.terms.push_back({"unexplained / dissipated", share(total.defect, total.dissipated()), ""});
   for (std::size_t s = 0; recorder.stages().size() > 1 && s < recorder.stages().size(); ++s) {
     const StageResult& stage = recorder.stages()[s];
     const EnergyNow balance = balance_of(stage);
@@ -93,7 +92,7 @@ EnergyAudit audit(const Recorder<D>& recorder)
     for (const auto& [name, value] : terms_of(balance))
       audit.terms.push_back({prefix + std::string(name), value, "J"});
     if (balance.dissipated() > 0)
-      audit.terms.push_back({prefix + "unexplained / dissipated", share(balance.unexplained(), balance.dissipated()), ""});
+      audit.terms.push_back({prefix + "unexplained / dissipated", share(balance.defect, balance.dissipated()), ""});
   }
   audit.closure = closure_of(total);
   return audit;
@@ -143,13 +142,13 @@ MomentumAudit angular_audit(const MomentumNow<D>& now)
   return {turning<D>(now.start.angular),
           turning<D>(now.end.angular),
           turning<D>(now.given.angular),
-          {now.angular_defect(), roughly, "their moments"}};
+          {now.angular_defect(), roughly, "moments of these"}};
 }
 
 std::string in_words(std::string_view what, const Closure& closure)
 {
   return closure.closes() ? fmt::format("{} closes to {:.2g}", what, closure.relative)
-                          : fmt::format("{} DOES NOT CLOSE: {:.2g} of its {} is not accounted for, allowed {:.2g}", what, closure.relative,
+                          : fmt::format("{} DOES NOT CLOSE: {:.2g} of the {} is not accounted for, allowed {:.2g}", what, closure.relative,
                                         closure.relative_to, closure.limit);
 }
 
@@ -275,10 +274,9 @@ std::string table(const Recorder<D>& recorder)
       text += fmt::format("{:>14}", f(balance));
     text += '\n';
   };
-  line("open/largest", [](const EnergyNow& b) { return fmt::format("{:.2g}", share(b.unexplained(), b.largest_term())); });
-  line("open/dissip.", [](const EnergyNow& b) {
-    return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.unexplained(), b.dissipated())) : std::string("-");
-  });
+  line("open/largest", [](const EnergyNow& b) { return fmt::format("{:.2g}", share(b.defect, b.largest_term())); });
+  line("open/dissip.",
+       [](const EnergyNow& b) { return b.dissipated() > 0 ? fmt::format("{:.2g}", share(b.defect, b.dissipated())) : std::string("-"); });
   text += run_out_lines(recorder.runout().numbers());
   for (const StageResult& stage : recorder.stages())
     if (stage.kind == "geostatic")

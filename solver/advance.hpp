@@ -30,7 +30,7 @@ void sum_on_nodes(Model<D, K>& m);
 template <int D, Kernel<D> K>
 void settle(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void show_to_particles(Model<D, K>& m, Real mid);
+void show_to_particles(Model<D, K>& m, const Kick& kick);
 template <int D, Kernel<D> K, class Then>
 void remap(Model<D, K>& m, Real mid, Real dt, Then&& then);
 template <int D, Kernel<D> K>
@@ -51,7 +51,8 @@ template <int D, Kernel<D> K>
 void advance(Model<D, K>& m, Real dt)
 {
   StopWatch watch;
-  const Real time = m.clock.time, mid = time + dt / 2, kick = m.clock.lag + dt / 2, ramp = m.stage.ramp(time);
+  const Real time = m.clock.time, ramp = m.stage.ramp(time);
+  const Kick kick{time - m.clock.lag, time + dt / 2};
   const Vec<D> gravity = m.loads.gravity(time, ramp);
 
   m.tally.clear();
@@ -66,24 +67,24 @@ void advance(Model<D, K>& m, Real dt)
 
   sum_on_nodes(m);  //  4
   apply(m.loads, time, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.own, m.nodes);          //  5
-  integrate(gravity, kick, m.nodes);              //  6
-  m.walls.give_way(mid, dt, *m.ranks, m.nodes);   //  7
-  m.walls.apply(mid, m.nodes, m.tally.at_nodes);  //  7
+  m.slaves.lump(m.mesh, m.own, m.nodes);              //  5
+  integrate(gravity, m.clock.lag + dt / 2, m.nodes);  //  6
+  m.walls.give_way(kick.to, dt, *m.ranks, m.nodes);   //  7
+  m.walls.apply(kick, m.nodes, m.tally.at_nodes);     //  7
   if (m.stage.seeks_rest)
     settle(m);
-  m.slaves.follow(m.mesh, m.own, mid, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
+  m.slaves.follow(m.mesh, m.own, kick, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
   m.copies.motion.send(m.nodes.motion, Whole{});
   count(m);
   add_work(m.loads, time, ramp, m.own, m.nodes, m.tally.work_on_mesh);
   watch.lap(m.timings.nodes);
 
-  show_to_particles(m, mid);  //  9
+  show_to_particles(m, kick);  //  9
   const auto stress = [&](Index body, Index block) { respond(m, body, block, dt); };
   m.stress_sums.assign(m.order.first.size(), {});
   if (m.transfer.musl) {
     gather_and_return_momentum(m, dt);  // 10
-    remap(m, mid, dt, stress);          // 11, 12
+    remap(m, kick.to, dt, stress);      // 11, 12
   } else {
     gather(m, dt, stress);  // 10, 12
   }
@@ -134,13 +135,13 @@ void settle(Model<D, K>& m)
 
 /// Motion of the nodes -> what particles read: the same, or hats, on which walls act once more where their values mix those of nodes.
 template <int D, Kernel<D> K>
-void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] Real mid)
+void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] const Kick& kick)
 {
   if constexpr (HasNodePart<K, D>) {
     spread(
         m.kernel.node_part(), m.nodes.motion, [&] { m.copies.motion.take(m.nodes.motion, Whole{}); }, m.hats);
     if constexpr (!HasOwnValues<K, D>)
-      m.walls.apply(mid, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
+      m.walls.apply(kick, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
   }
 }
 
@@ -164,6 +165,7 @@ void remap(Model<D, K>& m, Real mid, Real dt, Then&& then)
   m.walls.hold(mid, m.remapped);
   m.slaves.follow_velocity(m.mesh, m.own, m.walls, mid, m.remapped);
   m.copies.motion.send(m.remapped, Whole{});
+  add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.remap, [&](Index n) { return remap_work(m.nodes, m.remapped, n); });
   const auto arrive = [&] { m.copies.motion.take(m.remapped, Whole{}); };
   if constexpr (HasNodePart<K, D>) {
     spread_gradient(m.kernel.node_part(), m.remapped, arrive, m.hats);
@@ -242,7 +244,7 @@ void close_books(Model<D, K>& m)
   Tally<D>& t = m.tally;
   t.particles.add(static_cast<Real>(m.particles.size()));
   m.ranks->sum(t.digits, t.departed, t.on_particles, t.on_mesh, t.at_nodes, t.beyond_nodes, t.nodes, t.balance, t.work_on_mesh,
-               t.work_on_particles, t.internal, t.particles, m.walls.pushed());
+               t.work_on_particles, t.internal, t.remap, t.particles, m.walls.pushed());
   m.walls.keep_impulses();
   std::array<Real, 3> extremes{m.crossing, -m.watched.speed, -t.held_most};
   std::int64_t health = m.health.word();
@@ -259,10 +261,12 @@ void close_books(Model<D, K>& m)
   m.momentum.damping += work.damped;
   m.energy.gravity += work.gravity;
   m.energy.damping += work.damping;
-  m.energy.walls += walls.other + beyond.other;
+  m.energy.walls += walls.moved + beyond.moved;
+  m.energy.arrival += walls.arrival + beyond.arrival;
   m.energy.friction += walls.friction + beyond.friction;
   m.energy.waves += walls.waves;
-  m.energy.nodes += work.kinetic_after - work.kinetic_before + beyond.friction + beyond.other;
+  m.energy.nodes += work.kinetic_after - work.kinetic_before - walls.arrival + beyond.friction + beyond.moved;
+  m.energy.remap += t.remap.value();
   m.energy.loads += t.work_on_mesh.value() + t.work_on_particles.value();
   m.energy.internal += t.internal.value();
   m.timings.particle_steps += t.particles.value();

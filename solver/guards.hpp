@@ -37,7 +37,7 @@ template <int D, Kernel<D> K>
 Real energy_gain(const Model<D, K>& m, Real kinetic)
 {
   const EnergyLedger& e = m.energy;
-  const Real put_in = e.gravity + e.loads + e.walls + e.friction + e.damping;
+  const Real put_in = e.gravity + e.loads + e.walls + e.arrival + e.friction + e.damping;
   Real largest = m.guards.least_energy;
   for (const Real term :
        {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.waves, e.damping, e.carried_away})

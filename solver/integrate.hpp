@@ -94,6 +94,16 @@ NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, 
   return work;
 }
 
+/// Forces act on the mean of old and new velocity, and bodies strain by remapped velocities, which are the old ones of the next step: half
+/// of what forces do in the part of the new velocity that the remap takes out again comes from no strain [J].  `remapped`: remapped
+/// velocities in `v`, those of the step in `change`.
+template <int D>
+Real remap_work(const Nodes<D>& nodes, const std::vector<NodeMotion<D>>& remapped, Index n)
+{
+  const auto i = static_cast<std::size_t>(n);
+  return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(remapped[i].change - remapped[i].v) : 0;
+}
+
 /// Sums of the moduli of forces [N].
 struct Balance {
   Real net{};       ///< with wall reactions, without damping

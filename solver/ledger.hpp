@@ -10,17 +10,18 @@ namespace talus {
 struct EnergyLedger {
   Real gravity{};   ///< work of gravity
   Real loads{};     ///< work of tractions and pressures
-  Real walls{};     ///< work of walls other than friction: prescribed motion, inelastic arrival
+  Real walls{};     ///< work of walls other than friction: of those that move, and of dashpots
   Real friction{};  ///< work of friction, <= 0
   Real waves{};     ///< energy that waves brought to walls that give way: part of the work of walls, and a measure of it
   Real damping{};   ///< work of local damping, <= 0
-  Real nodes{};     ///< change of the nodes' kinetic energy within the steps, and what walls did to slaves and hats
+  Real arrival{};   ///< kinetic energy that mass loses where walls make it move as they do, <= 0: part of what transfer() gives
+  Real nodes{};     ///< change of the nodes' kinetic energy within the steps but for arrival, and what walls did to slaves and hats
+  Real remap{};     ///< MUSL: what internal forces and loads did in the part of the new velocities that the remap takes out again
   Real internal{};  ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
   Real carried_away{};                    ///< kinetic energy of the particles that were deleted
   Real plastic_deleted{};                 ///< plastic work that they had behind them
-  bool remapped{};                        ///< MUSL: strain is taken from velocities that the forces did not work on
   static constexpr auto fields()
   {
     return std::tuple{kept("gravity", &EnergyLedger::gravity),
@@ -29,18 +30,20 @@ struct EnergyLedger {
                       kept("friction", &EnergyLedger::friction),
                       kept("waves", &EnergyLedger::waves),
                       kept("damping", &EnergyLedger::damping),
+                      kept("arrival", &EnergyLedger::arrival),
                       kept("nodes", &EnergyLedger::nodes),
+                      kept("remap", &EnergyLedger::remap),
                       kept("internal", &EnergyLedger::internal),
                       kept("kinetic_start", &EnergyLedger::kinetic_start),
                       kept("plastic_start", &EnergyLedger::plastic_start),
                       kept("set_to_rest", &EnergyLedger::set_to_rest),
                       kept("carried_away", &EnergyLedger::carried_away),
-                      kept("plastic_deleted", &EnergyLedger::plastic_deleted),
-                      kept("remapped", &EnergyLedger::remapped)};
+                      kept("plastic_deleted", &EnergyLedger::plastic_deleted)};
   }
 
-  /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles, deleted ones included, did not get.
-  Real transfer(Real kinetic_now) const noexcept { return nodes - (kinetic_now - kinetic_start + carried_away); }
+  /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles, deleted ones included, did not get.  What
+  /// the remap takes out again nodes have gained in vain: strain, which is taken from remapped velocities, has not given it.
+  Real transfer(Real kinetic_now) const noexcept { return nodes - remap - (kinetic_now - kinetic_start + carried_away); }
   /// All work done on the bodies, minus what became of it: zero if everything is accounted for.
   Real defect(Real kinetic_now) const noexcept
   {

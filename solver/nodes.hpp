@@ -112,6 +112,12 @@ struct alignas(64) HatMotion {
   Mat<D> L = Mat<D>::Zero();       ///< velocity gradient [1/s]
 };
 
+/// The times of the old velocities and of the new ones: forces act from the one to the other [s].
+struct Kick {
+  Real from{}, to{};
+  Real length() const noexcept { return to - from; }
+};
+
 template <int D>
 struct Nodes {
   std::vector<NodeSum<D>> sum;

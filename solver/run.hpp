@@ -132,7 +132,7 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
   if (!stage.k0.empty())
     set_k0_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(time, ramp), stage.k0, m.order, only_bodies(stage.k0_bodies, m.bodies),
                   m.materials, m.particles);
-  m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m), .remapped = m.transfer.musl};
+  m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m)};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
 }
 

@@ -189,7 +189,7 @@ void Slaves<D>::hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& node
 }
 
 template <int D>
-void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, Real mid, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
+void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
                        ExactSums<WallWork>& work)
 {
   tell_slaves(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, asked_});
@@ -201,7 +201,7 @@ void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, Real mid, Walls
       mean.v += share * motion[static_cast<std::size_t>(master)].v;
       mean.change += share * motion[static_cast<std::size_t>(master)].change;
     });
-    walls.apply(slave.node, mid, slave.mass, mean, work);
+    walls.apply(slave.node, kick, slave.mass, mean, work);
     motion[static_cast<std::size_t>(slave.node)] = mean;
   }
 }

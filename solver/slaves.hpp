@@ -27,7 +27,7 @@ class Slaves {
   void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
   /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own; their
   /// work is added.
-  void follow(const Mesh<D>& mesh, const OwnNodes& own, Real mid, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
+  void follow(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
               ExactSums<WallWork>& work);
   /// The same for `v` alone.
   void follow_velocity(const Mesh<D>& mesh, const OwnNodes& own, const Walls<D>& walls, Real mid, std::vector<NodeMotion<D>>& motion);

@@ -16,13 +16,15 @@ struct Tally {
   ExactSums<NodeWork<D>> nodes;
   ExactSums<Balance> balance;
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
+  ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
   ExactSums<Real> particles;                                  ///< their number
   Digits digits;                                              ///< of these and of the pushes of walls, kept from step to step
   void clear() noexcept
   {
     held_most = 0;
     departed.clear(), on_particles.clear(), on_mesh.clear(), at_nodes.clear(), beyond_nodes.clear();
-    nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), particles.clear();
+    nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), remap.clear();
+    particles.clear();
   }
 };
 

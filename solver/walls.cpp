@@ -302,8 +302,19 @@ Vec<D> Walls<D>::prescribed(const Wall<D>& wall, Real time) const noexcept
   return (wall.record ? (*wall.record)(since) : wall.table(since)) * wall.velocity;
 }
 
+/// The mean velocity of the wall that sets all components of a node; planes do not move along their normals.
 template <int D>
-void Walls<D>::act(const NodeRule& rule, Real mid, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
+Vec<D> Walls<D>::moves(const NodeRule& rule, const Kick& kick) const
+{
+  const Index whole = whole_of(rule);
+  if (whole == none || walls_[static_cast<std::size_t>(whole)].kind != WallKind::velocity)
+    return Vec<D>::Zero();
+  const Wall<D>& wall = walls_[static_cast<std::size_t>(whole)];
+  return 0.5 * (prescribed(wall, kick.from) + prescribed(wall, kick.to));
+}
+
+template <int D>
+void Walls<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
 {
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
@@ -324,7 +335,7 @@ void Walls<D>::act(const NodeRule& rule, Real mid, Real mass, Vec<D>& v, Vec<D>&
   };
   rubs = false;
   if (const Index whole = whole_of(rule); whole != none) {
-    push(whole, constrained(rule, mid, v) - v);
+    push(whole, constrained(rule, kick.to, v) - v);
   } else {
     for (int sweep = 0; sweep < (rule.frictions.empty() ? 1 : sweeps); ++sweep) {
       bool touched = false;
@@ -348,47 +359,47 @@ void Walls<D>::act(const NodeRule& rule, Real mid, Real mass, Vec<D>& v, Vec<D>&
   }
   note();
   const Vec<D> v_mid = 0.5 * (v_old + v);
-  const Real friction = mass * rubbed.dot(v_mid);
+  const Real friction = mass * rubbed.dot(v_mid), all = mass * (v - v_free).dot(v_mid), moved = mass * (v - v_free).dot(moves(rule, kick));
   change = v - v_old;
   if (rule.counted)
-    work.add({friction, mass * (v - v_free).dot(v_mid) - friction, 0});
+    work.add({friction, moved, all - friction - moved, 0});
 }
 
 template <int D>
-void Walls<D>::apply(Real mid, Nodes<D>& nodes, ExactSums<WallWork>& work)
+void Walls<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<WallWork>& work)
 {
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     rule.rubs = false;
     if (nodes.active[n])
-      act(rule, mid, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
+      act(rule, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
   }
   for (const Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
     if (!shaking_.begun || !dashpot.counted || !nodes.active[n])
       continue;
     pushed_[static_cast<std::size_t>(dashpot.parts.front().wall)].add({dashpot.impulse, moment<D>(dashpot.place, dashpot.impulse)});
-    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change), dashpot.brought});
+    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change), 0, dashpot.brought});
   }
 }
 
 template <int D>
-void Walls<D>::apply(Real mid, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work)
+void Walls<D>::apply(const Kick& kick, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work)
 {
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
     bool rubs{};
     if (sums[n].is_seen())
-      act(rule, mid, sums[n].mass, hats[n].v, hats[n].change, rubs, work);
+      act(rule, kick, sums[n].mass, hats[n].v, hats[n].change, rubs, work);
   }
 }
 
 template <int D>
-void Walls<D>::apply(Index node, Real mid, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work)
+void Walls<D>::apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work)
 {
   bool rubs{};
   if (binds(node))
-    act(rule_of(node), mid, mass, motion.v, motion.change, rubs, work);
+    act(rule_of(node), kick, mass, motion.v, motion.change, rubs, work);
 }
 
 template <int D>

@@ -66,7 +66,8 @@ struct Shaking {
 /// What walls did to the energy of the bodies in a step [J].
 struct WallWork {
   Real friction{};  ///< of tangential impulses of friction walls, <= 0
-  Real other{};     ///< of all other impulses: prescribed motion, inelastic arrival, dashpots
+  Real moved{};     ///< of all other impulses with the velocity that the wall has itself, and of dashpots
+  Real arrival{};   ///< what these take beyond it, from mass that does not move as the wall does: numerical, as the mesh makes it so
   Real waves{};     ///< energy that waves brought to dashpots, whether it stays or leaves again, >= 0
 };
 
@@ -100,14 +101,13 @@ class Walls {
   /// apply(), which knows the velocity that comes out.
   void give_way(Real mid, Real dt, Exchange& ranks, Nodes<D>& nodes);
 
-  /// The new velocities of nodes with active mass obey the walls at `mid` [s], the time of these velocities.  The work done is added to
-  /// `work`.
-  void apply(Real mid, Nodes<D>& nodes, ExactSums<WallWork>& work);
+  /// The new velocities of nodes with active mass obey the walls at their time.  The work done is added to `work`.
+  void apply(const Kick& kick, Nodes<D>& nodes, ExactSums<WallWork>& work);
   /// So does what particles read on hats, where it is not that of the node alone: the row of a hat on a wall may reach nodes off it.
   /// `sums` say with which mass a hat moves, and which are seen.
-  void apply(Real mid, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
+  void apply(const Kick& kick, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
   /// And so does a node that follows others: its own mass [kg] gets its part of the walls' pushes.
-  void apply(Index node, Real mid, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
+  void apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
   /// The impulses of the step at hand, by wall, to be summed up over the ranks; then the walls keep them.
   std::span<ExactSums<Impulse>> pushed() noexcept { return pushed_; }
   void keep_impulses();
@@ -195,8 +195,9 @@ class Walls {
     return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];
   }
   /// Pushes a mass [kg] that moves with v and has changed by `change` in this step; walls keep the impulses.
-  void act(const NodeRule& rule, Real mid, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work);
+  void act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
+  Vec<D> moves(const NodeRule& rule, const Kick& kick) const;
 
   std::vector<Wall<D>> walls_;
   std::vector<ExactSums<Impulse>> pushed_;  ///< by each wall in this step

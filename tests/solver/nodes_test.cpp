@@ -40,7 +40,7 @@ TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
     row = {Vec<2>(3, -2), Vec<2>(0.5, 0)};
   Walls<2> none_at_all;
   ExactSums<WallWork> work;
-  slaves.follow(mesh, all_nodes(mesh), 0, none_at_all, nodes.motion, work);
+  slaves.follow(mesh, all_nodes(mesh), Kick{}, none_at_all, nodes.motion, work);
   for (const auto& row : nodes.motion)
     EXPECT_LT((row.v - Vec<2>(3, -2)).norm() + (row.change - Vec<2>(0.5, 0)).norm(), 1e-14) << "a uniform motion stays one";
 }

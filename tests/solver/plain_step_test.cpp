@@ -127,7 +127,7 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticlesInBothPrecisi
       Dice dice;
       for (auto& node : m.nodes.motion)
         node = {.v = dice.any<Vec<D>>(), .change = dice.any<Vec<D>>()};
-      show_to_particles(m, 0);
+      show_to_particles(m, Kick{});
       const std::size_t n = m.particles.id.size();
       const Real dt = 0.25;
       std::vector<Vec<D>> v(n, Vec<D>::Zero()), x(m.particles.x.begin(), m.particles.x.end()), read_v(n), read_x(n);

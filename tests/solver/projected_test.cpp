@@ -57,7 +57,7 @@ void read_random_motion(Model<D, K>& m)
   for (auto& node : m.nodes.motion)
     for (int d = 0; d < D; ++d)
       node.change[d] = node.v[d] = number(random);
-  show_to_particles(m, 0);
+  show_to_particles(m, Kick{});
 }
 
 TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
@@ -108,7 +108,7 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
   sum_on_nodes(m);
   for (Index n = 0; n < m.mesh.n_nodes(); ++n)
     m.nodes.motion[static_cast<std::size_t>(n)].v = A * m.mesh.node(n) + Vec<D>::Ones();
-  show_to_particles(m, 0);
+  show_to_particles(m, Kick{});
   gather(m, 0);
   for (std::size_t p = 0; p < m.particles.L.size(); ++p)
     ASSERT_LT((m.particles.L[p] - A).norm(), 1e-12);

@@ -39,7 +39,7 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
     row.mass = 1;
   nodes.motion[at] = {v, v};
   ExactSums<WallWork> work;
-  walls.apply(0.1, nodes, work);
+  walls.apply(Kick{0.1, 0.1}, nodes, work);
   return nodes.motion[at].v;
 }
 
