@@ -98,6 +98,10 @@ void find_faults(const StageState& stage, const Clock& now, std::vector<std::str
 {
   must_not_be_negative("stage/begin", stage.begin, faults);
   must_not_be_negative("stage/ramp_time", stage.ramp_time, faults);
+  if (!(stage.altitude > 0))
+    faults.push_back(fmt::format("stage/altitude is {} m, not above 0", stage.altitude));
+  if (!(stage.pull >= 0 && std::isfinite(stage.pull)))
+    faults.push_back(fmt::format("stage/pull is {} m/s^2, not a number from 0 on", stage.pull));
   if (std::isgreater(stage.begin, now.time) || stage.first_step > now.step)
     faults.push_back(fmt::format("the stage began at step {}, t = {:.6g} s, and the state is of step {}, t = {:.6g} s", stage.first_step,
                                  stage.begin, now.step, now.time));

@@ -32,20 +32,23 @@ struct Clock {
 
 /// What a stage sets for every step it makes, and how far it is.
 struct StageState {
-  Index number = 0;               ///< of the stage
-  std::int64_t first_step = 0;    ///< steps done when it began
-  int balanced = 0;               ///< steps in balance, one after the other, up to now
-  Real damping = 0;               ///< local, share of the unbalanced force
-  Real first_residual = 0;        ///< unbalanced force over the loads in its first step
-  Real begin = 0, ramp_time = 0;  ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
-  bool elastic = false;           ///< yielding suspended
-  bool seeks_rest = false;        ///< ends at rest, or is damped
-  bool done = false;              ///< it has ended
+  Index number = 0;                                       ///< of the stage
+  std::int64_t first_step = 0;                            ///< steps done when it began
+  int balanced = 0;                                       ///< steps in balance, one after the other, up to now
+  Real damping = 0;                                       ///< local, share of the unbalanced force
+  Real first_residual = 0;                                ///< unbalanced force over the loads in its first step
+  Real begin = 0, ramp_time = 0;                          ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
+  Real altitude = std::numeric_limits<Real>::infinity();  ///< least one of the cells that held particles when it began [m]
+  Real pull = 0;                                          ///< largest acceleration by forces on particles then [m/s^2]
+  bool elastic = false;                                   ///< yielding suspended
+  bool seeks_rest = false;                                ///< ends at rest, or is damped
+  bool done = false;                                      ///< it has ended
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
   static constexpr auto fields()
   {
     return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
                       kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
+                      kept("altitude", &StageState::altitude), kept("pull", &StageState::pull),
                       kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
                       kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest),
                       kept("done", &StageState::done),         kept("first_residual", &StageState::first_residual)};

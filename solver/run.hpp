@@ -134,13 +134,21 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
                   m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m)};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
+  ExactSums<Push<D>> total;
+  apply(m.loads, time, m.stage.ramp(time), m.followed, m.order, m.particles, total);
+  m.stage.altitude = m.ranks->min(least_altitude(m.mesh, m.particles));
+  m.stage.pull = m.ranks->max(largest_pull(m.particles));
 }
 
-/// The longest step that is stable [s].
+/// The longest step that is stable [s], and in which loads alone do not move anything by more than a share of a cell: waves know nothing of
+/// the velocity that a strong load gives to a soft body at rest.  dt <= cfl sqrt(h / |a|), as in smoothed particle hydrodynamics [Monaghan
+/// 1992]; it is the shorter one only where rho |a| h, what a cell weighs on its base, is more than its stiffness rho c^2.
 template <int D, Kernel<D> K>
 Real wanted_step(const Model<D, K>& m, const StepLimits& limits)
 {
-  return std::min(limits.cfl * m.crossing, limits.longest);
+  const Real time = m.clock.time, pull = m.loads.gravity(time, m.stage.ramp(time)).norm() + m.stage.pull;
+  const Real of_loads = pull > 0 ? std::sqrt(m.stage.altitude / pull) : std::numeric_limits<Real>::infinity();
+  return std::min(limits.cfl * std::min(m.crossing, of_loads), limits.longest);
 }
 
 /// Why the run cannot take its next step, if so.

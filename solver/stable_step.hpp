@@ -28,6 +28,23 @@ Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materia
   return least;
 }
 
+/// Least altitude of a cell that holds a particle [m]; infinite without particles.
+template <int D>
+Real least_altitude(const Mesh<D>& mesh, const Particles<D>& particles)
+{
+  return parallel_min(particles.size(), std::numeric_limits<Real>::infinity(),
+                      [&](Index row) { return mesh.altitude(particles.cell[static_cast<std::size_t>(row)]); });
+}
+/// Largest force over mass of a particle, of those that apply(loads) has left [m/s^2].
+template <int D>
+Real largest_pull(const Particles<D>& particles)
+{
+  return particles.applied.empty() ? 0 : -parallel_min(particles.size(), Real{0}, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
+    return -particles.applied[p].norm() / particles.mass[p];
+  });
+}
+
 /// A particle of this rank, or none, and what it was chosen for.
 struct Chosen {
   Index row = none;

@@ -78,5 +78,29 @@ TEST(EnergyAudit, AMovingWallDoesItsImpulseTimesItsVelocity)
   EXPECT_LT(std::abs(m.energy.defect(kinetic)), 0.03 * largest_term(m, kinetic));
 }
 
+/// The step at the start of soft bodies under strong loads is bounded by these too; a usual one is that of the waves.
+TEST(StepLength, IsBoundedByLoadsOnlyWhereCellsWeighMoreThanTheirStiffness)
+{
+  const auto step_of_waves = [](Real modulus, Real gravity, bool on_particles) {
+    Block m = with_defaults(8);
+    add_body<2>(m, "block", rubber(modulus, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 2 && x[1] < 2; });
+    if (on_particles)
+      m.loads.of_place.push_back({[=](const Vec<2>&, Real) { return Vec<2>(0, -gravity); }});
+    else
+      m.loads.gravity.acceleration = Vec<2>(0, -gravity);
+    make_ready(m);
+    begin_stage(m, test_stage(1), 0);
+    return std::array{wanted_step(m, StepLimits{}), 0.4 * m.crossing, 0.4 * std::sqrt(least_altitude(m.mesh, m.particles) / gravity)};
+  };
+  for (const bool on_particles : {false, true}) {
+    const auto [usual, of_waves, not_of_loads] = step_of_waves(1e6, 9.81, on_particles);
+    EXPECT_EQ(usual, of_waves);
+    EXPECT_GT(not_of_loads, 2 * of_waves);
+    const auto [soft, too_long, of_loads] = step_of_waves(1, 1e6, on_particles);
+    EXPECT_NEAR(soft, of_loads, 1e-12 * of_loads);
+    EXPECT_GT(too_long, 1000 * of_loads);
+  }
+}
+
 }  // namespace
 }  // namespace talus::testing::audit_test
