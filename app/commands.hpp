@@ -28,7 +28,8 @@ struct RunOptions {
   std::optional<std::int64_t> rebalance;  ///< ranks share the run out anew every so many steps; 0: never; default: when it pays
   std::vector<std::string> set;
   bool quick = false, quiet = false;
-  bool dry = false;  ///< only tell what the run would cost
+  bool strict = false;  ///< as the scene's key of this name
+  bool dry = false;     ///< only tell what the run would cost
 };
 /// Runs a scene, or goes on with one, and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError; Stopped by a signal or
 /// where it was to stop.

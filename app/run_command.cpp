@@ -7,6 +7,7 @@
 
 #include "app/checkpoints.hpp"
 #include "app/commands.hpp"
+#include "app/failed_accounts.hpp"
 #include "app/quick.hpp"
 #include "app/results.hpp"
 #include "app/shell_words.hpp"
@@ -186,9 +187,23 @@ class Run {
     }
     if (!options_.quiet && world().is_root())
       fmt::print("{}results in {}; as one page for the browser: talus report {}\n", table(recorder), folder_.string(), shell_word(folder_));
+    world().together([&] { tell_failed_accounts(); });
   }
 
  private:
+  bool strict() const noexcept { return scene_.strict || options_.strict; }
+
+  /// RunError: they are an error here.
+  void tell_failed_accounts() const
+  {
+    std::fflush(stdout);
+    if (!failed_accounts_.empty() && strict())
+      throw RunError(strict_message());
+    for (const std::string& what : failed_accounts_)
+      fmt::print(stderr, "warning: {}\n", what);
+  }
+  std::string strict_message() const { return fmt::format("{} (strict); the results are complete", fmt::join(failed_accounts_, "; ")); }
+
   bool is_over(const Frame<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
 
   RunIdentity identity_of(std::uint64_t mesh_digest, const Setup<D>& setup) const
@@ -393,6 +408,11 @@ class Run {
     summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
     summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
     complete(recorder, quick_, summary);
+    if (status == RunStatus::done)
+      failed_accounts_ = failed_accounts(summary);
+    summary.warnings.insert(summary.warnings.begin(), failed_accounts_.begin(), failed_accounts_.end());
+    if (!failed_accounts_.empty() && strict())
+      summary.status = RunStatus::failed, summary.message = strict_message();
     summary.ranks.rebalances = rebalances_, summary.ranks.rebalancing = rebalancing_;
     summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
     if (summary.origin)
@@ -413,8 +433,9 @@ class Run {
   Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
   std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
   std::vector<Stage> stages_;
-  std::vector<std::string> notes_;   // of the set-up
-  RunSummary summary_;               // as it begins
+  std::vector<std::string> notes_;  // of the set-up
+  RunSummary summary_;              // as it begins
+  std::vector<std::string> failed_accounts_;
   std::optional<fs::path> initial_;  // what bodies begin with
   bool began_ = false;               // the folder is this run's
   FolderLock lock_;
@@ -428,7 +449,7 @@ namespace {
 Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes)
 {
   const auto is_free = [](std::string_view change) {
-    static constexpr std::array<std::string_view, 4> whole{"time.", "watch.", "outputs.checkpoint.", "on_exit="};
+    static constexpr std::array<std::string_view, 5> whole{"time.", "watch.", "outputs.checkpoint.", "on_exit=", "strict="};
     const auto begins = [&](std::string_view key) { return change.starts_with(key); };
     // What else a stage says it has said when it began.
     const bool of_stage = begins("stages[") && (change.find("].duration=") != change.npos || change.find("].residual=") != change.npos);
@@ -440,7 +461,7 @@ Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes
       problems.push_back(
           {Where{"--set " + change, 0, 0, ""},
            "a run that goes on can change only what stands in time, watch and outputs.checkpoint, duration and residual of stages, "
-           "and on_exit",
+           "on_exit and strict",
            ""});
   if (!problems.empty())
     throw SceneErrors(std::move(problems));

@@ -98,6 +98,7 @@ struct Scene {
   OnExit on_exit = OnExit::stop;
   WatchSpec watch;
   Index threads = 0;
+  bool strict = false;
   Where where;
   static constexpr auto fields()
   {
@@ -129,7 +130,11 @@ struct Scene {
                         "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
         optional("watch", &Scene::watch, any, "-", "what no sound run does, and what becomes of one that does"),
         optional("threads", &Scene::threads, non_negative, "-",
-                 "threads to use; 0: as many as pay for the particles, all at most; --threads wins")};
+                 "threads to use; 0: as many as pay for the particles, all at most; --threads wins"),
+        optional(
+            "strict", &Scene::strict, any, "-",
+            "a run fails at its end, with its results written and exit code 1, if a balance does not close or transfer_loss is more than "
+            "a tenth of the plastic work; without it these are warnings")};
   }
 };
 
