@@ -6,7 +6,9 @@ import lab as tools
 CASE = "manufactured_solution"
 SIGNS = [1, -1, -1]  # phases 0, pi, pi: nothing is displaced at the start
 # name: scene, Poisson's ratio, axes that move, amplitudes [m]
-PROBLEMS = {"bar": ("scene_bar.yaml", 0, 1, [0.05, 0.0001]), "square": ("scene.yaml", 0.3, 2, [0.1, 0.0001]), "cube": ("scene_cube.yaml", 0.3, 3, [0.1])}
+PROBLEMS = {"bar": ("scene_bar.yaml", 0, 1, [0.05, 0.0001]), "square": ("scene.yaml", 0.3, 2, [0.1, 0.0001]), "cube": ("scene_cube.yaml", 0.3, 3, [0.1]),
+            "ring": ("scene_ring.yaml", 0, 2, [0.1])}
+RING = (0.4, 0.6, 0.5)  # m, radii: inside, outside, and where the amplitude is that of the problem
 JUDGED = {"bar": 0.05, "square": 0.1, "cube": 0.1}  # amplitude at which the order is asked of all kernels but linear
 
 
@@ -14,8 +16,8 @@ def counts(problem, kernel, amplitude, level):
     """Cells along an edge of 1 m."""
     if level == "quick":
         fine = kernel != "linear" and amplitude == 0.1
-        return {"bar": [8, 16, 32], "square": [8, 16, 32] if fine else [8, 16], "cube": [3, 6]}[problem]
-    return {"bar": [8, 16, 32, 64], "square": [8, 16, 32, 64] if kernel != "linear" else [8, 16, 32], "cube": [3, 6, 12]}[problem]
+        return {"bar": [8, 16, 32], "square": [8, 16, 32] if fine else [8, 16], "cube": [3, 6], "ring": [20, 40]}[problem]
+    return {"bar": [8, 16, 32, 64], "square": [8, 16, 32, 64] if kernel != "linear" else [8, 16, 32], "cube": [3, 6, 12], "ring": [20, 40, 80]}[problem]
 
 
 def formulas(problem, amplitude, data):
@@ -36,9 +38,38 @@ def formulas(problem, amplitude, data):
     return velocity + idle, force + idle
 
 
+def swell(radius):
+    """The form q(R) of the ring's swing and its first and second derivative: no stretch along the radius at both surfaces, 1 in between."""
+    inside, outside, middle = RING
+
+    def form(at):
+        return at**3 / 3 - (inside + outside) / 2 * at**2 + inside * outside * at
+
+    size = form(middle)
+    return form(radius) / size, (radius - inside) * (radius - outside) / size, (2 * radius - inside - outside) / size
+
+
+def ring_formulas(amplitude, data):
+    """The same of the ring, u_R = A q(R) sin(pi c t), nu = 0: with F_r = 1 + u', F_t = 1 + u / R the force along the radius is
+
+    u.. - mu/rho [ (1 + 1 / F_r^2) u'' + (F_r - 1 / F_r - F_t + 1 / F_t) / R ].
+    """
+    speed, square_s = np.sqrt(data["modulus [Pa]"] / data["density [kg/m^3]"]), data["modulus [Pa]"] / 2 / data["density [kg/m^3]"]
+    inside, outside, middle = RING
+    size = middle**3 / 3 - (inside + outside) / 2 * middle**2 + inside * outside * middle
+    radius, sine = "sqrt(x^2 + y^2)", f"sin({speed:.17g} * pi * t)"
+    form = f"({1 / (3 * size):.17g} * {radius}^3 - {(inside + outside) / (2 * size):.17g} * {radius}^2 + {inside * outside / size:.17g} * {radius})"
+    slope = f"({1 / size:.17g} * ({radius} - {inside}) * ({radius} - {outside}))"
+    bend = f"({1 / size:.17g} * (2 * {radius} - {inside + outside:.17g}))"
+    stretch, hoop = f"(1 + {amplitude:.17g} * {sine} * {slope})", f"(1 + {amplitude:.17g} * {sine} * {form} / {radius})"
+    force = (f"(-{(speed * np.pi)**2:.17g} * {amplitude:.17g} * {sine} * {form} - {square_s:.17g} * ((1 + 1 / {stretch}^2) * {amplitude:.17g} * {sine} * "
+             f"{bend} + ({stretch} - 1 / {stretch} - {hoop} + 1 / {hoop}) / {radius}))")
+    return [f"{amplitude * speed:.17g} * pi * {form} * {axis} / {radius}" for axis in "xy"], [f"{force} * {axis} / {radius}" for axis in "xy"]
+
+
 def start(lab, problem, kernel, amplitude, count, data):
     """Starts one run."""
-    velocity, force = formulas(problem, amplitude, data)
+    velocity, force = ring_formulas(amplitude, data) if problem == "ring" else formulas(problem, amplitude, data)
     mesh = {"mesh.grid.cells": [count, 2], "mesh.grid.high": [1, 2 / count], "bodies[0].shape.high": [1, 2 / count]} if problem == "bar" else {
         "mesh.size": 1 / count}
     return lab.run(f"{CASE}/{PROBLEMS[problem][0]}", f"{problem}_{kernel}_G{amplitude:g}_{count}", {
@@ -51,8 +82,12 @@ def error(run, problem, amplitude, data):
     largest = 0.0
     for frame, time in zip(run.frames, run.frames.times):
         moved = frame["displacement"].astype(float)
-        exact = np.zeros_like(moved)
-        exact[:, :axes] = amplitude * np.sin(omega * time) * np.array(SIGNS[:axes]) * np.sin(np.pi * (frame["position"] - moved)[:, :axes])
+        exact, place = np.zeros_like(moved), (frame["position"] - moved)[:, :axes]
+        if problem == "ring":
+            radius = np.linalg.norm(place, axis=1, keepdims=True)
+            exact[:, :axes] = amplitude * np.sin(omega * time) * swell(radius)[0] * place / radius
+        else:
+            exact[:, :axes] = amplitude * np.sin(omega * time) * np.array(SIGNS[:axes]) * np.sin(np.pi * place)
         largest = max(largest, np.sqrt(np.average(np.sum((moved - exact)**2, axis=1), weights=frame["mass"])) / amplitude)
     return float(largest)
 
@@ -63,7 +98,7 @@ def judge(lab, key, runs, data):
     sizes, errors = [1 / count for count in runs], [error(run, problem, amplitude, data) for run in runs.values()]
     name = f"{problem}, {kernel}, G = {amplitude:g} m"
     published = {label: dict(map(tuple, rows)) for label, rows in data["published"].get(problem, {}).get(f"{amplitude:g}", {}).items()}
-    judged = kernel != "linear" and JUDGED[problem] == amplitude
+    judged = kernel != "linear" and JUDGED.get(problem) == amplitude
     results = []
     for (count, run), value in zip(runs.items(), errors):
         asked = judged and problem == "square" and count == 32
