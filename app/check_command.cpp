@@ -110,6 +110,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   if (quick)
     shorten(first_step(mesh, setup), setup.stages, scene.outputs);
   const auto warnings = setup.warnings;
+  const auto names = setup.bodies;
   const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup);
   const std::string terrain = terrain_in_words(mesh, "  ");
@@ -125,10 +126,17 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   const bool measured = times == Times::measured;
   const auto trials = measured ? try_stages(scene, mesh, setup) : std::vector<StageTrial>{};
   const Estimate cost = estimate(scene, std::move(mesh), std::move(setup));
-  for (const std::string& warning : warnings)
-    fmt::print(stderr, "warning: {}\n", warning);
+  for (const std::vector<std::string>& some : {warnings, warnings_of(cost.shared_nodes, names)})
+    for (const std::string& warning : some)
+      fmt::print(stderr, "warning: {}\n", warning);
   fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, cells, nodes, particles,
              terrain, bodies);
+  if (const std::string contacts = contacts_in_words(cost.shared_nodes, names); !contacts.empty())
+    fmt::print("  {}\n", contacts);
+  if (cost.nodes_as_corners > 0)
+    fmt::print(
+        "  {} of {} nodes lie on curved or creased boundaries where no positive weights along the boundary exist: treated as corners\n",
+        cost.nodes_as_corners, nodes);
   fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
              static_cast<Real>(cost.steps) * particles / million);
   fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,

@@ -349,6 +349,17 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
         bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.hats.sum) + bytes(m.hats.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
     if constexpr (HasNodePart<K, D>)
       cost.node_bytes += static_cast<std::int64_t>(m.kernel.node_part().size_bytes());
+    cost.shared_nodes = find_shared_nodes<D>(m.mesh, m.particles, m.bodies, [&m](Index c, std::vector<Index>& nodes) {
+      for (const Index n : m.kernel.stencil(m.mesh, c))
+        if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>)
+          m.kernel.node_part().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
+            if (S != 0)
+              nodes.push_back(v);
+          });
+        else
+          nodes.push_back(n);
+    });
+    cost.nodes_as_corners = count_nodes_as_corners(m);
     cost.files = file_sizes(frame_of(m, first_stage), scene.outputs);
   });
   return cost;

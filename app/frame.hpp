@@ -1,5 +1,7 @@
 #pragma once
 // What an observer sees of a run: the model without its kernel, to look at and not to touch.
+#include <algorithm>
+
 #include "solver/run.hpp"
 
 namespace talus {
@@ -27,8 +29,19 @@ struct Frame {
   const Guards& guards;
   const Timings& timings;
   Real residual, crossing;
-  std::int64_t migrated;  ///< particles that came to this rank or left it so far
+  std::int64_t migrated;          ///< particles that came to this rank or left it so far
+  std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners for want of positive weights
 };
+
+/// How many nodes of this rank the kernel treats as corners because no positive weights keep linear fields there.
+template <int D, Kernel<D> K>
+std::int64_t count_nodes_as_corners([[maybe_unused]] const Model<D, K>& m)
+{
+  if constexpr (requires { m.kernel.nodes_as_corners(); })
+    return std::ranges::count_if(m.kernel.nodes_as_corners(), [&](Index n) { return m.own.has(n); });
+  else
+    return 0;
+}
 
 template <int D, Kernel<D> K>
 Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
@@ -55,7 +68,8 @@ Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
           .timings = m.timings,
           .residual = m.residual,
           .crossing = m.crossing,
-          .migrated = m.migration.moved()};
+          .migrated = m.migration.moved(),
+          .nodes_as_corners = count_nodes_as_corners(m)};
 }
 
 /// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.

@@ -26,6 +26,17 @@ std::optional<std::size_t> last_change(const Scene& scene, const BodySpec& body,
   return std::nullopt;
 }
 
+/// Names those with which the body, as it is in a stage, is averaged as one.  It is the same in all stages until the body is renewed.
+Index group_of_averages(const Scene& scene, const BodySpec& body, const MaterialSpec& material, Index stage)
+{
+  Index since = presence_of(body.name, scene.stages).from;
+  for (Index s = since + 1; s <= stage; ++s)
+    if (is_renewed(scene, body, s))
+      since = s;
+  const auto number = static_cast<Index>(&material - scene.materials.data()), stages = static_cast<Index>(scene.stages.size()) + 1;
+  return 2 * (number * stages + since) + (body.fills() ? 1 : 0);
+}
+
 }  // namespace
 
 const MaterialSpec* material_of(const Scene& scene, const BodySpec& body, Index stage)
@@ -47,6 +58,15 @@ Real weakened_by(const Scene& scene, const BodySpec& body, Index stage)
   return factor;
 }
 
+bool is_renewed(const Scene& scene, const BodySpec& body, Index stage)
+{
+  if (stage == 0 || !presence_of(body.name, scene.stages).in(stage - 1))
+    return false;
+  const MaterialSpec &before = *material_of(scene, body, stage - 1), &after = *material_of(scene, body, stage);
+  const bool has_strength = std::visit([]<class L>(const L&) { return HasStrength<L>; }, after.law);
+  return &before != &after || (has_strength && weakened_by(scene, body, stage) != weakened_by(scene, body, stage - 1));
+}
+
 AnyBatch law_in_force(const Scene& scene, const BodySpec& body, Index stage)
 {
   const MaterialSpec& material = *material_of(scene, body, stage);
@@ -61,6 +81,7 @@ AnyBatch law_in_force(const Scene& scene, const BodySpec& body, Index stage)
       [&]<class L>(Batch<L>& typed) {
         typed.viscosity = material.bulk_viscosity;
         typed.averages_volume = body.f_bar.value_or(is_isochoric<L>());
+        typed.averages_with = group_of_averages(scene, body, material, stage);
       },
       batch);
   return batch;

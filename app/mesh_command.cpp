@@ -77,8 +77,10 @@ void show_mesh(const MeshOptions& options)
   std::optional<Mesh<3>> solid;
   try {
     solid = load_mesh<3>(wanted.spec, wanted.folder);
-  } catch (const SceneErrors&) {
-    return show_in(plane);  // no tetrahedra; if there are no triangles either, that is what the message will be about
+  } catch (const SceneErrors& of_solid) {
+    if (std::string_view(of_solid.what()).find("has no tetrahedra") == std::string_view::npos)
+      throw;
+    return show_in(plane);  // if there are no triangles either, that is what the message will be about
   }
   show(*solid, options);
 }

@@ -147,6 +147,7 @@ class Run {
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
     audience.ready = [&](const Frame<D>& frame) {
+      summary_.nodes_as_corners = world().sum(frame.nodes_as_corners);
       world().together([&] { prepare(frame); });
       began_ = true;  // for the other ranks too
       whole_.reset();

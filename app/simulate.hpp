@@ -4,6 +4,7 @@
 
 #include "app/disk_space.hpp"
 #include "app/setup.hpp"
+#include "app/shared_nodes.hpp"
 #include "app/state.hpp"
 
 namespace talus {
@@ -43,7 +44,9 @@ struct Estimate {
   Real dt;             ///< first step [s]
   std::int64_t steps;  ///< of all stages with that step
   std::int64_t particle_bytes, mesh_bytes, node_bytes;
-  FileSizes files;  ///< on the disk
+  std::int64_t nodes_as_corners;          ///< by the kernel, see Frame
+  std::vector<SharedNodes> shared_nodes;  ///< of the bodies that are there at the start
+  FileSizes files;                        ///< on the disk
 };
 
 template <int D>

@@ -51,7 +51,7 @@ bool has_strength(const MaterialSpec& material)
 /// In words what becomes of the law of a body in a stage; empty if it stays what it is.
 std::string renewal(const Scene& scene, const BodySpec& body, Index stage)
 {
-  if (stage == 0 || !presence_of(body.name, scene.stages).in(stage - 1))
+  if (!is_renewed(scene, body, stage))
     return {};
   const MaterialSpec &before = *material_of(scene, body, stage - 1), &after = *material_of(scene, body, stage);
   const Real weaker = weakened_by(scene, body, stage) / (&before == &after ? weakened_by(scene, body, stage - 1) : 1);

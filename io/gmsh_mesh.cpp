@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "io/cell_count.hpp"
@@ -9,7 +10,10 @@
 #include "io/gmsh_read.hpp"
 #include "io/mesh_groups.hpp"
 #include "io/terrain_mesh.hpp"
+#include "mesh/check.hpp"
 #include "mesh/generate.hpp"
+#include "mesh/overlap.hpp"
+#include "mesh/simplex.hpp"
 
 namespace talus {
 
@@ -67,6 +71,48 @@ auto located(const MeshSpec& spec, F&& f)
   }
 }
 
+/// Meshes that Talus did not make itself may hold faults that no facet shows.
+bool is_foreign(const MeshSpec& spec) { return !spec.file.empty() || !spec.geometry.empty(); }
+
+template <int D>
+void note_unjoined_nodes(MeshData<D>& data)
+{
+  const auto groups = unjoined_nodes(data);
+  if (groups.empty())
+    return;
+  const auto& at = data.nodes[static_cast<std::size_t>(groups.front().front())];
+  data.notes.push_back(fmt::format(
+      "at {} place{} there is more than one node, the first at {}: the cells there are not joined, and the mesh has a crack whose "
+      "sides are part of the boundary; in gmsh Coherence (or BooleanFragments) joins them",
+      groups.size(), groups.size() == 1 ? "" : "s", place<D>(at)));
+}
+
+/// The cell groups of a cell, in words.
+template <int D>
+std::string groups_of(const Mesh<D>& mesh, Index cell)
+{
+  std::string names;
+  for (const std::string& name : mesh.cell_set_names()) {
+    const auto cells = *mesh.cell_set(name);
+    if (std::binary_search(cells.begin(), cells.end(), cell))
+      names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", name);
+  }
+  return names.empty() ? "no group" : names;
+}
+
+template <int D>
+void refuse_overlap(const Mesh<D>& mesh)
+{
+  const auto overlap = find_overlap(mesh);
+  if (!overlap)
+    return;
+  const Vec<D> middle = (centroid<D>(mesh.corners(overlap->first)) + centroid<D>(mesh.corners(overlap->second))) / 2;
+  throw std::invalid_argument(fmt::format(
+      "cells overlap although they share no facet: {} pair{}, the first near {}, one cell of {}, the other of {}; mass there would count "
+      "twice",
+      overlap->pairs, overlap->pairs == 1 ? "" : "s", place<D>(middle), groups_of(mesh, overlap->first), groups_of(mesh, overlap->second)));
+}
+
 }  // namespace
 
 template <int D>
@@ -75,6 +121,12 @@ MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directo
   return located(spec, [&] {
     MeshData<D> data = make_unnamed<D>(spec, directory);
     add_automatic_groups<D>(data);
+    if (is_foreign(spec)) {
+      note_unjoined_nodes(data);
+      for (std::string& note : data.notes)
+        note = fmt::format("{}: mesh file \"{}\": {}", to_string(spec.where), spec.file.empty() ? spec.geometry : spec.file, note);
+    }
+    add_side_groups<D>(data, spec.regions);
     add_groups<D>(data, spec.groups);
     return data;
   });
@@ -83,7 +135,12 @@ MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directo
 template <int D>
 Mesh<D> load_mesh(const MeshSpec& spec, const std::filesystem::path& directory)
 {
-  return located(spec, [&] { return Mesh<D>(make_mesh<D>(spec, directory)); });
+  return located(spec, [&] {
+    Mesh<D> mesh(make_mesh<D>(spec, directory));
+    if (is_foreign(spec))
+      refuse_overlap(mesh);
+    return mesh;
+  });
 }
 
 template MeshData<2> make_mesh<2>(const MeshSpec&, const std::filesystem::path&);

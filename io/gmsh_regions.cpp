@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "io/gmsh_session.hpp"
 #include "io/whole_file.hpp"
@@ -56,14 +57,11 @@ class ShapeMaker {
 
   gmsh::vectorpair operator()(const Polygon& polygon) const
   {
-    const std::vector<Vec<2>> corners = checked_corners(polygon);
     const Real bottom = bottom_of(polygon);
-    std::vector<int> points, lines;
-    for (const Vec<2>& x : corners)
-      points.push_back(gmsh::model::occ::addPoint(x[0], x[1], bottom));
-    for (std::size_t i = 0; i < points.size(); ++i)
-      lines.push_back(gmsh::model::occ::addLine(points[i], points[(i + 1) % points.size()]));
-    const int face = gmsh::model::occ::addPlaneSurface({gmsh::model::occ::addCurveLoop(lines)});
+    std::vector<int> loops{loop_of(polygon.points, bottom)};
+    for (const auto& hole : polygon.holes)
+      loops.push_back(loop_of(hole, bottom));
+    const int face = gmsh::model::occ::addPlaneSurface(loops);
     if constexpr (D == 2)
       return one(face);
     gmsh::vectorpair swept;
@@ -72,7 +70,68 @@ class ShapeMaker {
     return swept;
   }
 
+  gmsh::vectorpair operator()(const Ring& ring) const
+  {
+    if (!(ring.inner_radius < ring.radius))
+      refuse("inner_radius is not smaller than radius");
+    return cut((*this)(Sphere{ring.centre, ring.radius}), (*this)(Sphere{ring.centre, ring.inner_radius}));
+  }
+
+  gmsh::vectorpair operator()(const Difference& difference) const
+  {
+    gmsh::vectorpair taken;
+    for (const SimpleShape& part : difference.without) {
+      const gmsh::vectorpair more = std::visit(*this, part);
+      taken.insert(taken.end(), more.begin(), more.end());
+    }
+    return cut(std::visit(*this, difference.of), taken);
+  }
+
+  gmsh::vectorpair operator()(const Union& all) const
+  {
+    gmsh::vectorpair sum = std::visit(*this, all.of.front()), joined;
+    std::vector<gmsh::vectorpair> unused;
+    for (std::size_t i = 1; i < all.of.size(); ++i) {
+      gmsh::model::occ::fuse(sum, std::visit(*this, all.of[i]), joined, unused);
+      sum = std::exchange(joined, {});
+    }
+    return sum;
+  }
+
+  gmsh::vectorpair operator()(const Intersection& all) const
+  {
+    gmsh::vectorpair common = std::visit(*this, all.of.front()), left;
+    std::vector<gmsh::vectorpair> unused;
+    for (std::size_t i = 1; i < all.of.size(); ++i) {
+      gmsh::model::occ::intersect(common, std::visit(*this, all.of[i]), left, unused);
+      common = std::exchange(left, {});
+      if (common.empty())
+        refuse("the shapes have nothing in common");
+    }
+    return common;
+  }
+
  private:
+  gmsh::vectorpair cut(const gmsh::vectorpair& whole, const gmsh::vectorpair& taken) const
+  {
+    gmsh::vectorpair left;
+    std::vector<gmsh::vectorpair> unused;
+    gmsh::model::occ::cut(whole, taken, left, unused);
+    if (left.empty())
+      refuse("nothing is left of the shape without the others");
+    return left;
+  }
+
+  int loop_of(const std::vector<std::vector<Real>>& ring, Real z) const
+  {
+    std::vector<int> points, lines;
+    for (const Vec<2>& x : checked_corners(ring))
+      points.push_back(gmsh::model::occ::addPoint(x[0], x[1], z));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      lines.push_back(gmsh::model::occ::addLine(points[i], points[(i + 1) % points.size()]));
+    return gmsh::model::occ::addCurveLoop(lines);
+  }
+
   [[noreturn]] void refuse(const std::string& why) const
   {
     throw SceneErrors(region_.where, fmt::format("region \"{}\": {}", region_.name, why));
@@ -106,10 +165,10 @@ class ShapeMaker {
   }
 
   /// OpenCASCADE makes nonsense of polygons that cross themselves, in silence.
-  std::vector<Vec<2>> checked_corners(const Polygon& polygon) const
+  std::vector<Vec<2>> checked_corners(const std::vector<std::vector<Real>>& ring) const
   {
     std::vector<Vec<2>> corners;
-    for (const auto& numbers : polygon.points) {
+    for (const auto& numbers : ring) {
       if (numbers.size() != 2)
         refuse("every point of a polygon has two numbers");
       corners.emplace_back(numbers[0], numbers[1]);

@@ -108,6 +108,8 @@ class Manual {
   template <class T>
   std::string link(const std::string& path)
   {
+    if constexpr (std::same_as<T, SimpleShape>)
+      return link<Shape>(path);  // the same but for those that are put together, as the meaning of the key says
     const std::string own = std::same_as<T, Shape>         ? "shape"
                             : std::same_as<T, Box>         ? "box"
                             : std::same_as<T, SurfaceSpec> ? "surface"
@@ -234,6 +236,10 @@ class Manual {
   std::string type(std::type_identity<std::vector<Index>>, const std::string&) { return "list of whole numbers"; }
   std::string type(std::type_identity<std::vector<std::string>>, const std::string&) { return "list of texts"; }
   std::string type(std::type_identity<std::vector<std::vector<Real>>>, const std::string&) { return "list of lists of numbers"; }
+  std::string type(std::type_identity<std::vector<std::vector<std::vector<Real>>>>, const std::string&)
+  {
+    return "list of lists of lists of numbers";
+  }
   template <class T>
   std::string type(std::type_identity<std::optional<T>>, const std::string& path)
   {

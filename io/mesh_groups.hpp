@@ -13,13 +13,21 @@ namespace talus {
 template <int D>
 void add_automatic_groups(MeshData<D>& data);
 
+/// Adds the sides of regions that have names: `<region>:<side>` for each named side of a polygon, `<region>:hole_<i>` for its holes, counted from
+/// 1, and `<region>:inner` for the inside of a ring, chosen from the outline of the region.  Throws SceneErrors for a named side on which no facet
+/// of the region lies, and for names the mesh has already.  Call it after add_automatic_groups().
+template <int D>
+void add_side_groups(MeshData<D>& data, std::span<const RegionSpec> regions);
+
 /// Adds the facet sets of the scene, in order, chosen from sets that exist: call it after add_automatic_groups().  Throws SceneErrors
-/// for a box that is none or holds no facet, for a name the mesh has already, and for a set to choose from that it has not.
+/// for a box that is none, where no facet lies in the box or faces the direction, for a name the mesh has already, and for a set to choose from that it has not.
 template <int D>
 void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups);
 
 extern template void add_automatic_groups<2>(MeshData<2>&);
 extern template void add_automatic_groups<3>(MeshData<3>&);
+extern template void add_side_groups<2>(MeshData<2>&, std::span<const RegionSpec>);
+extern template void add_side_groups<3>(MeshData<3>&, std::span<const RegionSpec>);
 extern template void add_groups<2>(MeshData<2>&, std::span<const GroupSpec>);
 extern template void add_groups<3>(MeshData<3>&, std::span<const GroupSpec>);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+#include <utility>
 
 #include "mesh/check.hpp"
 #include "mesh/simplex.hpp"
@@ -239,11 +240,30 @@ MeshData<D> MshAssembler<D>::finish(bool repeats)
     for (Index& n : cell)
       n = node_number[n];
 
+  std::vector<std::uint8_t> in_group(cell_number.size(), 0);
+  std::vector<Index> repeated;  // cells that are there more than once for no reason
   for (const auto& [key, cells] : cells_of_) {
     auto& set = data.cell_sets[name_of(key)];
-    for (const Index c : cells)
+    for (const Index c : cells) {
       set.push_back(cell_number[c]);
+      in_group[c] = 1;
+    }
+    std::sort(set.begin(), set.end());
+    for (std::size_t i = 1; i < set.size(); ++i)
+      if (set[i] == set[i - 1])
+        repeated.push_back(set[i]);
     sort_unique(set);
+  }
+  std::vector<std::uint8_t> is_there(data.cells.size(), 0);
+  for (std::size_t c = 0; repeats && c < cell_number.size(); ++c)
+    if (std::exchange(is_there[cell_number[c]], 1) != 0 && in_group[c] == 0)
+      repeated.push_back(cell_number[c]);
+  if (sort_unique(repeated); !repeated.empty()) {
+    Vec<D> centre = Vec<D>::Zero();
+    for (const Index n : data.cells[repeated.front()])
+      centre += data.nodes[n] / (D + 1);
+    data.notes.push_back(fmt::format("{} of {} cells are in the file more than once, the first at {}: each was taken once", repeated.size(),
+                                     data.cells.size(), place<D>(centre)));
   }
   for (const auto& [key, facets] : facets_of_) {
     auto& set = data.facet_sets[name_of(key)];

@@ -27,7 +27,8 @@ class MshAssembler {
   /// `groups` are the tags of its physical groups (none is fine), `node_tags` dimension + 1 nodes.
   void add_element(std::int64_t tag, int dimension, std::span<const std::int64_t> groups, std::span<const std::int64_t> node_tags);
   /// Nodes that no cell uses are dropped; groups without elements are left out; groups without a name are called
-  /// physical_<dimension>_<tag>.  `repeats`: a cell in several groups was written several times (format 2.2), and becomes one.
+  /// physical_<dimension>_<tag>.  `repeats`: a cell in several groups was written several times (format 2.2), and becomes one.  A cell that
+  /// was written several times in one group, or in none, is noted.
   MeshData<D> finish(bool repeats);
 
  private:

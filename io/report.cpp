@@ -150,7 +150,11 @@ std::string to_json(const RunSummary& s)
   json["kernel"] = s.kernel;
   json["transfer"] = s.transfer;
   json["precision"] = s.precision;
-  json["mesh"] = {{"nodes", s.mesh_nodes}, {"cells", s.mesh_cells}, {"digest", s.mesh_digest}, {"quality", to_object(s.mesh_quality)}};
+  json["mesh"] = {{"nodes", s.mesh_nodes},
+                  {"cells", s.mesh_cells},
+                  {"nodes_treated_as_corners", s.nodes_as_corners},
+                  {"digest", s.mesh_digest},
+                  {"quality", to_object(s.mesh_quality)}};
   json["bodies"] = to_list(s.bodies);
   if (s.origin)
     json["initial"] = to_object(*s.origin);

@@ -120,8 +120,9 @@ struct RunSummary {
   RanksSummary ranks;
 
   std::int64_t mesh_nodes{}, mesh_cells{};
-  std::string scene_digest;  ///< of the text and of what changed it
-  std::string mesh_digest;   ///< of nodes, cells and groups: runs with the same have the same mesh
+  std::int64_t nodes_as_corners{};  ///< on curved or creased boundaries, where the kernel finds no positive weights along the boundary
+  std::string scene_digest;         ///< of the text and of what changed it
+  std::string mesh_digest;          ///< of nodes, cells and groups: runs with the same have the same mesh
   std::vector<NamedValue> mesh_quality;
   std::vector<BodySummary> bodies;
   std::optional<OriginSummary> origin;

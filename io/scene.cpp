@@ -31,6 +31,14 @@ void table_or_record(const Table& table, const std::optional<RecordSpec>& record
 
 void GridSpec::check(std::vector<std::string>& problems) const { check_corners(low, high, problems); }
 
+void GroupSpec::check(std::vector<std::string>& problems) const
+{
+  if (!within && facing.empty())
+    problems.emplace_back("within, facing or both say which facets belong to the group");
+  if (!facing.empty() && std::all_of(facing.begin(), facing.end(), [](Real x) { return x == 0; }))
+    problems.emplace_back("facing is no direction: all of its numbers are 0");
+}
+
 void MeshSpec::check(std::vector<std::string>& problems) const
 {
   exactly_one("file, geometry, regions, grid or terrain",

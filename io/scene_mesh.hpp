@@ -23,18 +23,25 @@ struct RegionSpec {
   }
 };
 
-/// Names the facets whose corners all lie in a box.
+/// Names the facets whose corners all lie in a box, or that face a direction, or both.
 struct GroupSpec {
   std::string name, of = "boundary";
-  Box within;
+  std::optional<Box> within;
   Where where;
+  std::vector<Real> facing = {};
+  Real angle = 30;
   static constexpr auto fields()
   {
-    return std::tuple{required("name", &GroupSpec::name, any, "-", "name of the facets: boundaries and loads refer to it"),
-                      optional("of", &GroupSpec::of, any, "-",
-                               "facet group to choose from: the outline of a region is region:boundary, that of the mesh boundary"),
-                      group("within", &GroupSpec::within, "facets with all corners in this box (give it some slack)")};
+    return std::tuple{
+        required("name", &GroupSpec::name, any, "-", "name of the facets: boundaries and loads refer to it"),
+        optional("of", &GroupSpec::of, any, "-",
+                 "facet group to choose from: the outline of a region is region:boundary, that of the mesh boundary"),
+        group("within", &GroupSpec::within, "facets with all corners in this box (give it some slack)"),
+        optional("facing", &GroupSpec::facing, any, "-",
+                 "facets whose normal, out of the mesh or out of the region whose outline they are, points into this direction"),
+        optional("angle", &GroupSpec::angle, between(0, 180), "deg", "by which the normal may differ from facing")};
   }
+  void check(std::vector<std::string>& problems) const;
 };
 
 /// A box in which cells are smaller.

@@ -98,6 +98,23 @@ class Rules {
     if (scene_.dimension == 2 && !polygon.extrude.empty())
       add(path + ".extrude", "a polygon is extruded in 3 dimensions only");
   }
+  void fits(const std::string& path, const Ring& ring) { fits(path + ".centre", ring.centre); }
+  void fits(const std::string& path, const SimpleShape& shape)
+  {
+    std::visit([&](const auto& s) { fits(path, s); }, shape);
+  }
+  void fits_all(const std::string& path, const std::vector<SimpleShape>& parts)
+  {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      fits(fmt::format("{}[{}]", path, i), parts[i]);
+  }
+  void fits(const std::string& path, const Difference& difference)
+  {
+    fits(path + ".of", difference.of);
+    fits_all(path + ".without", difference.without);
+  }
+  void fits(const std::string& path, const Union& all) { fits_all(path + ".of", all.of); }
+  void fits(const std::string& path, const Intersection& all) { fits_all(path + ".of", all.of); }
   void fits(const std::string& path, const Shape& shape)
   {
     std::visit([&](const auto& s) { fits(path, s); }, shape);
@@ -113,7 +130,9 @@ class Rules {
     for (std::size_t i = 0; i < mesh.refine.size(); ++i)
       fits(fmt::format("mesh.refine[{}].within", i), mesh.refine[i].within);
     for (std::size_t i = 0; i < mesh.groups.size(); ++i) {
-      fits(fmt::format("mesh.groups[{}].within", i), mesh.groups[i].within);
+      if (mesh.groups[i].within)
+        fits(fmt::format("mesh.groups[{}].within", i), *mesh.groups[i].within);
+      fits(fmt::format("mesh.groups[{}].facing", i), mesh.groups[i].facing);
       static constexpr std::array<std::string_view, 7> taken{"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "boundary"};
       if (std::find(taken.begin(), taken.end(), mesh.groups[i].name) != taken.end())
         add(fmt::format("mesh.groups[{}].name", i), fmt::format("every mesh has a group \"{}\" already", mesh.groups[i].name));

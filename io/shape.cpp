@@ -104,23 +104,111 @@ bool holds(const Cylinder& cylinder, std::span<const Real> x)
   return share >= 0 && share <= 1 && distance <= cylinder.radius;
 }
 
+enum class Place : std::uint8_t { inside, on_a_side, outside };
+
 /// Counts the sides crossed by a ray to the right; corners belong to the side above them.
+Place place_in(const std::vector<std::vector<Real>>& corners, const Point& p)
+{
+  bool inside = false;
+  const std::size_t n = corners.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const Point a = point(corners[i]), b = point(corners[(i + 1) % n]);
+    const Real side = turn(a, b, p);
+    if (side == 0 && between_ends(a, b, p))
+      return Place::on_a_side;
+    if ((a[1] <= p[1]) != (b[1] <= p[1]) && (side > 0) == (b[1] > a[1]))
+      inside = !inside;
+  }
+  return inside ? Place::inside : Place::outside;
+}
+
 bool holds(const Polygon& polygon, std::span<const Real> x)
 {
   if (x.size() == 3 && (x[2] < polygon.extrude[0] || x[2] > polygon.extrude[1]))
     return false;
   const Point p{x[0], x[1]};
-  bool inside = false;
-  const std::size_t n = polygon.points.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Point a = point(polygon.points[i]), b = point(polygon.points[(i + 1) % n]);
-    const Real side = turn(a, b, p);
-    if (side == 0 && between_ends(a, b, p))
-      return true;
-    if ((a[1] <= p[1]) != (b[1] <= p[1]) && (side > 0) == (b[1] > a[1]))
-      inside = !inside;
+  return place_in(polygon.points, p) != Place::outside &&
+         std::none_of(polygon.holes.begin(), polygon.holes.end(), [&](const auto& hole) { return place_in(hole, p) == Place::inside; });
+}
+
+bool holds(const Ring& ring, std::span<const Real> x)
+{
+  Real distance2 = 0;
+  for (std::size_t d = 0; d < x.size(); ++d)
+    distance2 += (x[d] - ring.centre[d]) * (x[d] - ring.centre[d]);
+  return distance2 <= ring.radius * ring.radius && distance2 >= ring.inner_radius * ring.inner_radius;
+}
+
+bool holds(const SimpleShape& shape, std::span<const Real> x)
+{
+  return std::visit([&](const auto& s) { return holds(s, x); }, shape);
+}
+bool holds(const Difference& difference, std::span<const Real> x)
+{
+  return holds(difference.of, x) &&
+         std::none_of(difference.without.begin(), difference.without.end(), [&](const SimpleShape& part) { return holds(part, x); });
+}
+bool holds(const Union& all, std::span<const Real> x)
+{
+  return std::any_of(all.of.begin(), all.of.end(), [&](const SimpleShape& part) { return holds(part, x); });
+}
+bool holds(const Intersection& all, std::span<const Real> x)
+{
+  return std::all_of(all.of.begin(), all.of.end(), [&](const SimpleShape& part) { return holds(part, x); });
+}
+
+/// Complains unless the corners are those of a simple polygon; `key` is what they are called.  True if they are.
+bool check_ring(const std::string& key, const std::vector<std::vector<Real>>& points, std::vector<std::string>& problems)
+{
+  const auto complain = [&](std::string what) {
+    problems.push_back(std::move(what));
+    return false;
+  };
+  const std::string of_hole = key == "points" ? "" : key + ": ";
+  if (points.size() < 3)
+    return complain(fmt::format("{}a polygon needs at least 3 points, not {}", of_hole, points.size()));
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (points[i].size() != 2)
+      return complain(fmt::format("{}[{}] has {} numbers, not 2", key, i, points[i].size()));
+  Real area = 0, scale = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Point a = point(points[i]), b = point(points[(i + 1) % points.size()]), origin = point(points[0]);
+    if (a == b)
+      return complain(i + 1 < points.size() ? fmt::format("{0}[{1}] and {0}[{2}] are the same", key, i, i + 1)
+                                            : of_hole + "the last point repeats the first: the polygon closes by itself");
+    area += turn(origin, a, b) / 2;
+    scale = std::max({scale, std::abs(a[0] - origin[0]), std::abs(a[1] - origin[1])});
   }
-  return inside;
+  if (std::abs(area) <= 1e-12 * scale * scale)  // round-off of the sum, relative to the box around it
+    return complain(of_hole + "the polygon has no area");
+  if (const auto sides = colliding_sides(points))
+    return complain(fmt::format("the side after {0}[{1}] meets the side after {0}[{2}]", key, sides->first, sides->second));
+  return true;
+}
+
+/// Whether a side of one ring has a point in common with a side of the other.
+bool rings_meet(const std::vector<std::vector<Real>>& first, const std::vector<std::vector<Real>>& second)
+{
+  for (std::size_t i = 0; i < first.size(); ++i)
+    for (std::size_t j = 0; j < second.size(); ++j)
+      if (meet(point(first[i]), point(first[(i + 1) % first.size()]), point(second[j]), point(second[(j + 1) % second.size()])))
+        return true;
+  return false;
+}
+
+void check_holes(const Polygon& polygon, std::vector<std::string>& problems)
+{
+  for (std::size_t h = 0; h < polygon.holes.size(); ++h) {
+    const auto& hole = polygon.holes[h];
+    if (!check_ring(fmt::format("holes[{}]", h), hole, problems))
+      return;
+    if (rings_meet(hole, polygon.points) || place_in(polygon.points, point(hole.front())) != Place::inside)
+      return problems.push_back(fmt::format("holes[{}] does not lie inside the polygon", h));
+    for (std::size_t other = 0; other < h; ++other)
+      if (rings_meet(hole, polygon.holes[other]) || place_in(polygon.holes[other], point(hole.front())) == Place::inside ||
+          place_in(hole, point(polygon.holes[other].front())) == Place::inside)
+        return problems.push_back(fmt::format("holes[{}] and holes[{}] overlap or touch", other, h));
+  }
 }
 
 }  // namespace
@@ -142,28 +230,23 @@ void Cylinder::check(std::vector<std::string>& problems) const
 
 void Polygon::check(std::vector<std::string>& problems) const
 {
-  if (points.size() < 3)
-    return problems.push_back(fmt::format("a polygon needs at least 3 points, not {}", points.size()));
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (points[i].size() != 2)
-      return problems.push_back(fmt::format("points[{}] has {} numbers, not 2", i, points[i].size()));
-  Real area = 0, scale = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Point a = point(points[i]), b = point(points[(i + 1) % points.size()]), origin = point(points[0]);
-    if (a == b)
-      return problems.push_back(i + 1 < points.size() ? fmt::format("points[{}] and points[{}] are the same", i, i + 1)
-                                                      : "the last point repeats the first: the polygon closes by itself");
-    area += turn(origin, a, b) / 2;
-    scale = std::max({scale, std::abs(a[0] - origin[0]), std::abs(a[1] - origin[1])});
-  }
-  if (std::abs(area) <= 1e-12 * scale * scale)  // round-off of the sum, relative to the box around it
-    return problems.push_back("the polygon has no area");
-  if (const auto sides = colliding_sides(points))
-    problems.push_back(fmt::format("the side after points[{}] meets the side after points[{}]", sides->first, sides->second));
+  if (check_ring("points", points, problems))
+    check_holes(*this, problems);
+  if (!sides.empty() && sides.size() != points.size())
+    problems.push_back(fmt::format("sides needs a name for each of the {} sides, not {}", points.size(), sides.size()));
+  for (const std::string& side : sides)
+    if (side.empty() || side == "boundary" || side.starts_with("hole_"))
+      return problems.push_back(fmt::format("\"{}\" cannot be the name of a side: boundary and hole_i are groups of their own", side));
   if (!extrude.empty() && extrude.size() != 2)
     problems.push_back(fmt::format("extrude needs 2 numbers [z from, z to], not {}", extrude.size()));
   else if (!extrude.empty() && !(extrude[0] < extrude[1]))
     problems.push_back(fmt::format("extrude must grow: {} and {}", extrude[0], extrude[1]));
+}
+
+void Ring::check(std::vector<std::string>& problems) const
+{
+  if (!(inner_radius < radius))
+    problems.push_back(fmt::format("inner_radius must be smaller than radius: {} and {}", inner_radius, radius));
 }
 
 bool contains(const Shape& shape, std::span<const Real> x) noexcept

@@ -132,17 +132,30 @@ Plan<3> inside(const MeshData<2>& data, const TerrainInput& input)
   return plan;
 }
 
+/// Outlines of areas as far as they have sides in the domain or near it: an outline may be that of a country.
+std::vector<Polygon> outlines_in_domain(const TerrainInput& input, const PlanSizes& sizes)
+{
+  constexpr Real around = 2.236;  // cells beside the domain, not a round number: corners of outlines often are
+  auto [low, high] = bounds_of(input.domain);
+  for (std::size_t d = 0; d < 2; ++d)
+    low[d] -= around * sizes.size, high[d] += around * sizes.size;
+  std::vector<Polygon> outlines;
+  for (const Area& area : areas_of(input))
+    for (const MapLine& ring : area.rings)
+      for (const MapLine& line : cut_to(thinned(ring, sizes), low, high))
+        outlines.push_back(local(line, input.frame));
+  return outlines;
+}
+
 Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const Where& where)
 {
-  const std::vector<Area> areas = areas_of(input);
-  if (input.is_rectangle && areas.empty() && sizes.strips.empty())
+  const std::vector<Polygon> outlines = outlines_in_domain(input, sizes);
+  if (input.is_rectangle && outlines.empty() && sizes.strips.empty())
     return grid_of(input, sizes.size);
   std::vector<Polygon> polygons;
   for (const MapLine& ring : input.domain.rings)
     polygons.push_back(local(thinned(ring, sizes), input.frame));
-  for (const Area& area : areas)
-    for (const MapLine& ring : area.rings)
-      polygons.push_back(local(thinned(ring, sizes), input.frame));
+  polygons.insert(polygons.end(), outlines.begin(), outlines.end());
   const auto size = [&](const Vec<2>& x) { return sizes(on_map<3>(input.frame, x)); };
   return inside(gmsh().mesh_plan(polygons, size, sizes.size, where), input);
 }

@@ -5,11 +5,11 @@ namespace talus {
 namespace {
 
 template <int D>
-std::vector<Real> value_rows(const Mesh<D>& mesh, const ProjectedOptions& options)
+MaxentValues value_rows(const Mesh<D>& mesh, const ProjectedOptions& options)
 {
   switch (options.values) {
-    case ValueStencil::l2: return l2_values(mesh);
-    case ValueStencil::mls: return mls_values(mesh, options.alpha);
+    case ValueStencil::l2: return {l2_values(mesh), {}};
+    case ValueStencil::mls: return {mls_values(mesh, options.alpha), {}};
     case ValueStencil::maxent: break;
   }
   return maxent_values(mesh, options.alpha);
@@ -18,8 +18,12 @@ std::vector<Real> value_rows(const Mesh<D>& mesh, const ProjectedOptions& option
 }  // namespace
 
 template <int D>
-Projected<D>::Projected(const Mesh<D>& mesh, const Options& options)
-    : hats_(mesh), values_(options.values), node_part_(mesh, value_rows(mesh, options), averaged_gradients(mesh))
+Projected<D>::Projected(const Mesh<D>& mesh, const Options& options) : Projected(mesh, options.values, value_rows(mesh, options))
+{}
+
+template <int D>
+Projected<D>::Projected(const Mesh<D>& mesh, ValueStencil values, MaxentValues rows)
+    : hats_(mesh), values_(values), as_corners_(std::move(rows.as_corners)), node_part_(mesh, std::move(rows.S), averaged_gradients(mesh))
 {}
 
 template class Projected<2>;

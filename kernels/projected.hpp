@@ -23,7 +23,6 @@ class Projected {
   using Cell = typename Linear<D>::Cell;
   using Options = ProjectedOptions;
 
-  /// Throws std::invalid_argument where a node has no positive weights (maxent).
   explicit Projected(const Mesh<D>& mesh, const Options& options = {});
 
   Claims claims() const noexcept
@@ -45,10 +44,15 @@ class Projected {
     hats_.evaluate(cell, x, count, out);
   }
   const NodeOperators<D>& node_part() const noexcept { return node_part_; }
+  /// Nodes that have no positive weights which keep linear fields, and are treated as corners (maxent), ascending.
+  std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }
 
  private:
+  Projected(const Mesh<D>& mesh, ValueStencil values, MaxentValues rows);
+
   Linear<D> hats_;
   ValueStencil values_;
+  std::vector<Index> as_corners_;
   NodeOperators<D> node_part_;
 };
 

@@ -1,12 +1,9 @@
 // Value stencils of a node part: lumped L2, moving least squares, largest entropy.
 #include "kernels/value_stencils.hpp"
 
-#include <fmt/format.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <stdexcept>
-#include <string>
+#include <cmath>
 
 #include "kernels/node_operators.hpp"
 
@@ -146,15 +143,16 @@ std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha)
 }
 
 template <int D>
-std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha)
+MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha)
 {
   std::vector<std::vector<Facet>> facets(static_cast<std::size_t>(mesh.n_nodes()));
   for (const Facet facet : mesh.boundary_facets())
     for (const Index v : mesh.nodes_of(facet))
       facets[static_cast<std::size_t>(v)].push_back(facet);
 
-  std::vector<Real> S(mesh.ring_of_node().item.size());
-  std::vector<std::uint8_t> failed(static_cast<std::size_t>(mesh.n_nodes()), 0);
+  MaxentValues values;
+  values.S.assign(mesh.ring_of_node().item.size(), 0);
+  std::vector<std::uint8_t> as_corner(static_cast<std::size_t>(mesh.n_nodes()), 0);
   parallel_for(mesh.n_nodes(), [&](Index n) {
     if (!mesh.is_whole(n))
       return;  // another rank's
@@ -169,18 +167,18 @@ std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha)
       prior[i] = v == n ? 1 : reaches(mesh, here, facets[static_cast<std::size_t>(v)], along.cols()) ? alpha : 0;
     }
     const auto weights = of_largest_entropy(prior, y);
-    failed[static_cast<std::size_t>(n)] = weights.empty() ? 1 : 0;
-    std::copy(weights.begin(), weights.end(), S.begin() + static_cast<std::ptrdiff_t>(ring.first));
+    const auto row = values.S.begin() + static_cast<std::ptrdiff_t>(ring.first);
+    if (weights.empty()) {
+      as_corner[static_cast<std::size_t>(n)] = 1;
+      std::transform(ring.nodes.begin(), ring.nodes.end(), row, [n](Index v) { return v == n ? Real{1} : Real{0}; });
+    } else {
+      std::copy(weights.begin(), weights.end(), row);
+    }
   });
   for (Index n = 0; n < mesh.n_nodes(); ++n)
-    if (failed[static_cast<std::size_t>(n)]) {
-      std::string place;
-      for (int d = 0; d < D; ++d)
-        place += fmt::format("{}{:.6g}", d ? ", " : "", mesh.node(n)[d]);
-      throw std::invalid_argument(
-          fmt::format("node {} at ({}) is so badly surrounded that it has no positive weights; values: l2 needs none", n, place));
-    }
-  return S;
+    if (as_corner[static_cast<std::size_t>(n)] != 0)
+      values.as_corners.push_back(n);
+  return values;
 }
 
 template std::vector<Real> identity_values<2>(const Mesh<2>&);
@@ -189,7 +187,7 @@ template std::vector<Real> l2_values<2>(const Mesh<2>&);
 template std::vector<Real> l2_values<3>(const Mesh<3>&);
 template std::vector<Real> mls_values<2>(const Mesh<2>&, Real);
 template std::vector<Real> mls_values<3>(const Mesh<3>&, Real);
-template std::vector<Real> maxent_values<2>(const Mesh<2>&, Real);
-template std::vector<Real> maxent_values<3>(const Mesh<3>&, Real);
+template MaxentValues maxent_values<2>(const Mesh<2>&, Real);
+template MaxentValues maxent_values<3>(const Mesh<3>&, Real);
 
 }  // namespace talus

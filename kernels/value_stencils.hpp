@@ -18,6 +18,13 @@ std::vector<Real> l2_values(const Mesh<D>& mesh);
 template <int D>
 std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha);
 
+/// Rows of largest entropy, and the nodes for which there are none.
+struct MaxentValues {
+  std::vector<Real> S;  ///< rows on the entries of mesh.ring_of_node()
+  std::vector<Index>
+      as_corners;  ///< nodes whose row is the node itself because no positive weights keep linear fields: treated as corners, ascending
+};
+
 /// Weights of largest entropy about the prior a (1 for the node itself, `alpha` for its neighbours) under sum S_nv (x_v - x_n) = 0
 /// [Sukumar 2004; Arroyo & Ortiz 2006, doi 10.1002/nme.1534, here at nodes]: S_nv = a_v exp(lambda . (x_v - x_n)) / Z.  Positive, and
 /// exact for linear fields at every interior node.
@@ -26,8 +33,11 @@ std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha);
 /// the wall.  So the row of a node there stays in the wall: in its face, along its edge, at the node itself in a corner.  Were a share left
 /// to nodes inside, linear fields would be read and handed on at places off the wall, which an affine transfer amplifies from step to
 /// step (measured: by 1e8 in 500 steps where the side of the mesh is free).
-/// Throws std::invalid_argument naming node and place where the iteration ends without the answer.
+///
+/// On curved and creased boundaries the neighbours in the wall may all lie on one side of a node, and then there are no such weights.
+/// This node is treated as a corner: its row is the node itself, S_nn = 1, which is the plain linear shape function.  It is positive, sums to
+/// one and is exact for linear fields, but averages over nothing.
 template <int D>
-std::vector<Real> maxent_values(const Mesh<D>& mesh, Real alpha);
+MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha);
 
 }  // namespace talus

@@ -51,6 +51,11 @@ bool averages_volume(const AnyBatch& batch) noexcept
   return std::visit([](const auto& typed) { return typed.averages_volume; }, batch);
 }
 
+Index averages_with(const AnyBatch& batch) noexcept
+{
+  return std::visit([](const auto& typed) { return typed.averages_volume ? typed.averages_with : none; }, batch);
+}
+
 bool has_bulk_viscosity(const AnyBatch& batch) noexcept
 {
   return std::visit([](const auto& typed) { return typed.viscosity.has_value(); }, batch);

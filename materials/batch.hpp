@@ -25,6 +25,7 @@ struct Batch {
   std::string name{};
   std::optional<BulkViscosity> viscosity{};
   bool averages_volume = false;  ///< F-bar through nodes
+  Index averages_with = none;    ///< F-bar: bodies of the same number are averaged as one; `none`: the body alone
   Rows<State> scratch{};         ///< of permute()
 
   Index size() const noexcept { return end - begin; }
@@ -183,6 +184,7 @@ Real plastic_work(const AnyBatch& batch, Index i, Real volume0);
 Real density(const AnyBatch& batch) noexcept;
 Real wave_speed(const AnyBatch& batch, const Mat3& F) noexcept;
 bool averages_volume(const AnyBatch& batch) noexcept;
+Index averages_with(const AnyBatch& batch) noexcept;  ///< `none` as well where the body does not average
 bool has_bulk_viscosity(const AnyBatch& batch) noexcept;
 bool conducts_heat(const AnyBatch& batch) noexcept;
 std::string_view law_name(const AnyBatch& batch) noexcept;

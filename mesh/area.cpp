@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 namespace talus {
 
@@ -39,6 +40,67 @@ bool overlap(const MapPlace& a, const MapPlace& b, const MapPlace& p, const MapP
   return std::max(from, to) > 0 && std::min(from, to) < dot(way, way);
 }
 
+/// Ends of the part of the way from a to b that lies in the rectangle, on its border where the way comes from outside or goes there; nothing
+/// where only the border is touched.
+std::optional<std::pair<MapPlace, MapPlace>> part_in(const MapPlace& a, const MapPlace& b, const MapPlace& low,
+                                                     const MapPlace& high) noexcept
+{
+  Real from = 0, to = 1;
+  MapPlace first = a, last = b;
+  std::optional<std::size_t> entry, exit;  // axes whose border is met
+  for (std::size_t d = 0; d < 2; ++d) {
+    const Real way = b[d] - a[d];
+    if (way == 0 && (a[d] <= low[d] || a[d] >= high[d]))
+      return std::nullopt;
+    if (way == 0)
+      continue;
+    const Real near = ((way > 0 ? low[d] : high[d]) - a[d]) / way, far = ((way > 0 ? high[d] : low[d]) - a[d]) / way;
+    if (near >= from && near >= 0)
+      from = near, entry = d;
+    if (far <= to)
+      to = far, exit = d;
+  }
+  if (!(from < to))
+    return std::nullopt;
+  const auto on_border = [&](std::size_t axis, Real share, bool is_upper) {
+    MapPlace place = at(a, b, share);
+    for (std::size_t d = 0; d < 2; ++d)
+      place[d] = std::clamp(place[d], low[d], high[d]);
+    place[axis] = is_upper ? high[axis] : low[axis];
+    return place;
+  };
+  if (entry)
+    first = on_border(*entry, from, b[*entry] < a[*entry]);
+  if (exit)
+    last = on_border(*exit, to, b[*exit] > a[*exit]);
+  return std::pair(first, last);
+}
+
+/// Closes a line that begins and ends on the border of the rectangle: counterclockwise along it from its end to its beginning.
+void close_along_border(const MapPlace& low, const MapPlace& high, MapLine& line)
+{
+  const std::array<MapPlace, 4> corners{{{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}}};
+  const auto along = [&](const MapPlace& x) {  // sides passed since the lower left corner
+    if (x[1] == low[1] && x[0] < high[0])
+      return (x[0] - low[0]) / (high[0] - low[0]);
+    if (x[0] == high[0] && x[1] < high[1])
+      return 1 + (x[1] - low[1]) / (high[1] - low[1]);
+    if (x[1] == high[1] && x[0] > low[0])
+      return 2 + (high[0] - x[0]) / (high[0] - low[0]);
+    return 3 + (high[1] - x[1]) / (high[1] - low[1]);
+  };
+  if (line.front() == line.back()) {
+    line.pop_back();
+    return;
+  }
+  const Real from = along(line.back());
+  Real to = along(line.front());
+  if (to <= from)
+    to += 4;
+  for (auto corner = static_cast<std::size_t>(std::floor(from)) + 1; static_cast<Real>(corner) < to; ++corner)
+    line.push_back(corners[corner % 4]);
+}
+
 }  // namespace
 
 bool Area::contains(const MapPlace& place) const noexcept
@@ -73,11 +135,18 @@ std::pair<MapPlace, MapPlace> bounds_of(const Area& area) noexcept
   return {low, high};
 }
 
-std::optional<MapPlace> crossing_of(const MapLine& ring) noexcept
+// Sides are swept from west to east, so that an outline of many short sides takes little more than sorting them.
+std::optional<MapPlace> crossing_of(const MapLine& ring)
 {
   const std::size_t n = ring.size();
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = i + 1; j < n; ++j) {
+  const auto west = [&](std::size_t i) { return std::min(ring[i][0], ring[(i + 1) % n][0]); };
+  const auto east = [&](std::size_t i) { return std::max(ring[i][0], ring[(i + 1) % n][0]); };
+  std::vector<std::size_t> order(n);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return std::pair(west(i), i) < std::pair(west(j), j); });
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t m = k + 1; m < n && west(order[m]) <= east(order[k]); ++m) {
+      const auto [i, j] = std::minmax(order[k], order[m]);
       const MapPlace &a = ring[i], &b = ring[(i + 1) % n], &p = ring[j], &q = ring[(j + 1) % n];
       if (overlap(a, b, p, q))
         return p;
@@ -86,6 +155,31 @@ std::optional<MapPlace> crossing_of(const MapLine& ring) noexcept
         return at(a, b, *share);
     }
   return std::nullopt;
+}
+
+std::vector<MapLine> cut_to(const MapLine& ring, const MapPlace& low, const MapPlace& high)
+{
+  const auto is_inside = [&](const MapPlace& x) { return x[0] > low[0] && x[0] < high[0] && x[1] > low[1] && x[1] < high[1]; };
+  const auto first_outside = std::find_if_not(ring.begin(), ring.end(), is_inside);
+  if (first_outside == ring.end())
+    return {ring};
+  std::vector<MapLine> lines;
+  const std::size_t n = ring.size(), start = static_cast<std::size_t>(first_outside - ring.begin());
+  for (std::size_t i = 0; i < n; ++i) {
+    const MapPlace &a = ring[(start + i) % n], &b = ring[(start + i + 1) % n];
+    const bool from_inside = is_inside(a), to_inside = is_inside(b);
+    auto piece = part_in(a, b, low, high);
+    if (!piece && (from_inside || to_inside))
+      piece.emplace(a, b);  // round-off: one end is on the border
+    if (!piece)
+      continue;
+    if (!from_inside)
+      lines.push_back({piece->first});
+    lines.back().push_back(piece->second);
+    if (!to_inside)
+      close_along_border(low, high, lines.back());
+  }
+  return lines;
 }
 
 std::vector<Real> crossings(const Area& area, const MapPlace& from, const MapPlace& to)

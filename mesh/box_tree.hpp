@@ -27,6 +27,10 @@ struct Extent {
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
   }
+  bool meets(const Extent& other) const noexcept
+  {
+    return (low.array() <= other.high.array()).all() && (other.low.array() <= high.array()).all();
+  }
   bool holds(const Vec<D>& x) const noexcept { return (x.array() >= low.array()).all() && (x.array() <= high.array()).all(); }
   Real squared_distance(const Vec<D>& x) const noexcept { return (low - x).cwiseMax(x - high).cwiseMax(0).squaredNorm(); }
 };
@@ -54,23 +58,13 @@ class BoxTree {
   template <class Visit>
   void around(const Vec<D>& x, Visit&& visit) const noexcept
   {
-    Stack stack;
-    if (n_items_ > 0)
-      stack.push(top(), 0);
-    while (!stack.empty()) {
-      const auto [level, i] = stack.pop();
-      if (!levels_[level][i].holds(x))
-        continue;
-      const Index first = i * fan, last = std::min(first + fan, level == 0 ? n_items_ : size_of(level - 1));
-      if (level == 0) {
-        for (Index item = first; item < last; ++item)
-          if (visit(item))
-            return;
-      } else {
-        for (Index child = last; child-- > first;)
-          stack.push(level - 1, child);
-      }
-    }
+    where([&](const Extent<D>& box) { return box.holds(x); }, visit);
+  }
+  /// visit(i), ascending, for the items of every lowest box that meets the other box, until visit answers true.
+  template <class Visit>
+  void around(const Extent<D>& other, Visit&& visit) const noexcept
+  {
+    where([&](const Extent<D>& box) { return box.meets(other); }, visit);
   }
 
   /// The item with the least squared_distance(i); the lowest of equals.  There must be one.
@@ -112,6 +106,30 @@ class BoxTree {
   };
   Index top() const noexcept { return static_cast<Index>(levels_.size()) - 1; }
   Index size_of(Index level) const noexcept { return static_cast<Index>(levels_[level].size()); }
+
+  /// visit(i), ascending, for the items of every lowest box of which `wanted` is true and was true of all boxes above it, until visit answers
+  /// true.
+  template <class Wanted, class Visit>
+  void where(Wanted&& wanted, Visit&& visit) const noexcept
+  {
+    Stack stack;
+    if (n_items_ > 0)
+      stack.push(top(), 0);
+    while (!stack.empty()) {
+      const auto [level, i] = stack.pop();
+      if (!wanted(levels_[level][i]))
+        continue;
+      const Index first = i * fan, last = std::min(first + fan, level == 0 ? n_items_ : size_of(level - 1));
+      if (level == 0) {
+        for (Index item = first; item < last; ++item)
+          if (visit(item))
+            return;
+      } else {
+        for (Index child = last; child-- > first;)
+          stack.push(level - 1, child);
+      }
+    }
+  }
 
   void push_nearest_last(Stack& stack, Index level, Index first, Index last, const Vec<D>& x) const noexcept
   {

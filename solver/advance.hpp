@@ -186,6 +186,23 @@ void respond(Model<D, K>& m, Index body, Index block, Real dt)
                                                             pore_water(m, body, m.clock.time + dt), m.particles, m.health);
 }
 
+/// Whether the body averages its volume ratio with bodies before it, or else, into `bodies`, with which of those that follow.
+template <int D, Kernel<D> K>
+bool averages_with_earlier(const Model<D, K>& m, Index body, std::vector<Index>& bodies)
+{
+  const auto group = [&](Index b) { return averages_with(m.materials[static_cast<std::size_t>(b)]); };
+  bodies.assign(1, body);
+  if (group(body) == none)
+    return false;
+  for (Index other = 0; other < body; ++other)
+    if (group(other) == group(body))
+      return true;
+  for (Index other = body + 1; other < m.n_bodies(); ++other)
+    if (group(other) == group(body))
+      bodies.push_back(other);
+  return false;
+}
+
 /// What is of a body as a whole: volumes averaged before the stress, heat after it; and what the particles report.
 template <int D, Kernel<D> K>
 void respond_as_bodies(Model<D, K>& m, Real dt)
@@ -193,7 +210,8 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
   for (Index body = 0; body < m.n_bodies(); ++body) {
     AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
     if (averages_volume(material)) {
-      average_volume(m.mesh, m.order, body, dt, m.particles, *m.stars, m.averaged);
+      if (!averages_with_earlier(m, body, m.averaged_bodies))
+        average_volume(m.mesh, m.order, m.averaged_bodies, dt, m.particles, *m.stars, m.averaged);
       parallel_for_uneven(m.order.blocks, [&](Index block) {
         m.stress_sums[m.order.key(body, block)] = update_stress(m.mesh, material, m.order.rows(body, block), dt, m.stage.elastic,
                                                                 m.averaged, pore_water(m, body, m.clock.time + dt), m.particles, m.health);

@@ -89,4 +89,36 @@ void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& 
   }
 }
 
+/// f(cell, runs) for each cell of a block that holds particles of the bodies, ascending; runs(g) calls g(run) for the particles of each of
+/// these bodies in the cell.  Allocates nothing.
+template <class F>
+void for_each_cell_of(const CellOrder& order, std::span<const Index> bodies, Index block, std::span<const Index> cell, F&& f)
+{
+  if (bodies.size() == 1)
+    return for_each_run(order.rows(bodies.front(), block), cell,
+                        [&](Index c, std::span<const Index> run) { f(c, [run](auto&& g) { g(run); }); });
+  const auto cell_of = [cell](Index row) { return cell[static_cast<std::size_t>(row)]; };
+  const auto run_of = [&](Index body, Index c) {
+    const auto rows = order.rows(body, block);
+    const auto begin = std::partition_point(rows.begin(), rows.end(), [&](Index row) { return cell_of(row) < c; });
+    return std::span(begin, std::partition_point(begin, rows.end(), [&](Index row) { return cell_of(row) == c; }));
+  };
+  const auto next_cell = [&](Index after) {
+    Index next = none;
+    for (const Index body : bodies) {
+      const auto rows = order.rows(body, block);
+      const auto found = std::partition_point(rows.begin(), rows.end(), [&](Index row) { return cell_of(row) <= after; });
+      if (found != rows.end() && (next == none || cell_of(*found) < next))
+        next = cell_of(*found);
+    }
+    return next;
+  };
+  for (Index c = next_cell(none); c != none; c = next_cell(c))
+    f(c, [&](auto&& g) {
+      for (const Index body : bodies)
+        if (const auto run = run_of(body, c); !run.empty())
+          g(run);
+    });
+}
+
 }  // namespace talus

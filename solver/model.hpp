@@ -165,6 +165,7 @@ struct Model {
   std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
   std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
   std::vector<Real> averaged;           ///< volume ratios of average_volume(), scratch
+  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() takes as one, scratch
   std::vector<StressSums> stress_sums;  ///< of the particles of each body in each block, scratch
 
   Tally<D> tally;  ///< of the step at hand
@@ -254,6 +255,7 @@ inline constexpr Real least_share_of_hats = 0.2;
 template <int D, Kernel<D> K>
 void follow_rows(Model<D, K>& m)
 {
+  m.averaged_bodies.reserve(m.bodies.size());
   if (m.stars)
     m.averaged.resize(m.particles.id.size());
   m.followed.find(m.particles.id);

@@ -2,6 +2,7 @@
 // Sums over the stars of nodes by hats, for scalars that are averaged or conducted: cheap, and apart from the kernel of the momentum.
 #include <algorithm>
 #include <array>
+#include <utility>
 #include <vector>
 
 #include "solver/halo.hpp"
@@ -63,16 +64,25 @@ class StarSums {
   template <class Add>
   void gather(const CellOrder& order, Index body, const Particles<D>& particles, Add&& add)
   {
+    gather(order, std::span<const Index>(&body, 1), particles, std::forward<Add>(add));
+  }
+  /// The same for several bodies as if they were one: `add` is called for each body that has particles in the cell, one after the other, and
+  /// the corners keep what was added before.  So the sums are bitwise those of one body whose particles have the same order in each cell.
+  template <class Add>
+  void gather(const CellOrder& order, std::span<const Index> bodies, const Particles<D>& particles, Add&& add)
+  {
     for_each_own_block<Whole>(blocks_, halo_, [&](Index block) {
       const auto rows = blocks_.rows(block);
       std::fill(rows.begin(), rows.end(), Row{});
-      for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
+      bool occupied = false;
+      for_each_cell_of(order, bodies, block, particles.cell, [&](Index c, auto&& runs) {
         std::array<Row, D + 1> corners{};
-        add(c, run, corners);
+        runs([&](std::span<const Index> run) { add(c, run, corners); });
         for (std::size_t a = 0; a <= D; ++a)
           rows[blocks_.slots(c)[a]] += corners[a];
+        occupied = true;
       });
-      blocks_.occupied[static_cast<std::size_t>(block)] = order.rows(body, block).empty() ? 0 : 1;
+      blocks_.occupied[static_cast<std::size_t>(block)] = occupied ? 1 : 0;
     });
     assemble<Whole>(blocks_, own_, halo_, copies_, of_node_);
   }

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/app/program.hpp"
 
 namespace talus::check_test {
@@ -85,6 +87,74 @@ TEST_F(Check, WarnsOfBodiesThatShareCells)
   EXPECT_EQ(outcome.code, 0);
   EXPECT_THAT(outcome.err,
               testing::MatchesRegex("warning: two\\.yaml:7:5: bodies \"block\" and \"other\" share [0-9]+ cells at the start\n"));
+}
+
+/// Two blocks in a mesh of squares of 0.25 m, the second from x on.
+std::string two_blocks(const std::string& x, const std::string& kernel = "projected")
+{
+  return "title: Two\ndimension: 2\nkernel: " + kernel +
+         "\nmesh: {grid: {low: [0, 0], high: [5, 2], cells: [20, 8]}}\ntime: {end: 0.1}\n"
+         "materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\n"
+         "bodies:\n"
+         "  - {name: left, material: rubber, shape: {type: box, low: [0, 0], high: [1, 1]}}\n"
+         "  - {name: right, material: rubber, shape: {type: box, low: [" +
+         x + ", 0], high: [4, 1]}}\n";
+}
+
+TEST_F(Check, TellsBodiesThatShareNodesAcrossAGapFromThoseThatTouch)
+{
+  write("gap.yaml", two_blocks("1.25"));
+  const Outcome gap = talus("check gap.yaml");
+  EXPECT_EQ(gap.code, 0) << gap.err;
+  EXPECT_THAT(gap.err, HasSubstr("warning: bodies \"left\" and \"right\" are 0.2"));
+  EXPECT_THAT(gap.err, HasSubstr("share 18 nodes at the start: cells of 0.2"));
+  EXPECT_THAT(gap.out, testing::Not(HasSubstr("bodies that touch")));
+  write("touch.yaml", two_blocks("1"));
+  const Outcome touch = talus("check touch.yaml");
+  EXPECT_EQ(touch.err, "");
+  EXPECT_THAT(touch.out,
+              HasSubstr("  bodies that touch at the start and move as one where they do, without slip: \"left\" and \"right\" ("));
+  write("wide.yaml", two_blocks("1.75"));
+  const Outcome wide = talus("check wide.yaml");
+  EXPECT_EQ(wide.err, "");
+  EXPECT_THAT(wide.out, testing::Not(HasSubstr("left\" and \"right")));
+  write("linear.yaml", two_blocks("1.5", "linear"));
+  EXPECT_EQ(talus("check linear.yaml").err, "") << "its particles act on the nodes of their own cells only";
+}
+
+/// A slope with a slip surface, a bowl, as a raster of its own.
+TEST_F(Check, SaysHowManyNodesOfASlipSurfaceAreTreatedAsCornersAndTheSceneRuns)
+{
+  std::string ground, slip;
+  for (std::string* raster : {&ground, &slip})
+    *raster = "ncols 33\nnrows 27\nxllcorner -2.5\nyllcorner -2.5\ncellsize 4\nNODATA_value -9999\n";
+  for (int row = 0; row < 27; ++row) {
+    for (int column = 0; column < 33; ++column) {
+      const Real x = 4 * column, y = 4 * (26 - row), height = 100 - 0.3 * x;
+      const Real inside = 1 - std::pow((x - 60) / 40, 2) - std::pow((y - 50) / 30, 2);
+      ground += std::to_string(height) + " ";
+      slip += inside > 0 ? std::to_string(height - 15 * std::sqrt(inside)) + " " : "-9999 ";
+    }
+    ground += "\n", slip += "\n";
+  }
+  write("ground.asc", ground);
+  write("slip.asc", slip);
+  write("bowl.yaml",
+        "title: Bowl\ndimension: 3\n"
+        "mesh:\n  size: 8\n  terrain: {ground: {file: ground.asc}, layers: [{name: slide, bottom: {file: slip.asc}}], air: {height: 20}}\n"
+        "materials: [{name: soil, law: drucker_prager, density: 2000, youngs_modulus: 4.0e+6, poisson_ratio: 0.3, friction_angle: 30, "
+        "cohesion: "
+        "0, match: plane_strain}]\n"
+        "bodies: [{name: slide, material: soil, region: \"layer:slide\"}]\n"
+        "loads: [{type: gravity, acceleration: [0, 0, -9.81]}]\n"
+        "boundaries: [{type: friction, on: base, coefficient: 0.2}]\n"
+        "on_exit: delete\ntime: {end: 0.2}\n");
+  const Outcome check = talus("check bowl.yaml");
+  ASSERT_EQ(check.code, 0) << check.err;
+  EXPECT_THAT(check.out, testing::ContainsRegex("[1-9][0-9]* of [0-9]* nodes lie on curved or creased boundaries"));
+  const Outcome run = talus("run bowl.yaml --quiet --out r");
+  ASSERT_EQ(run.code, 0) << run.err;
+  EXPECT_THAT(read("r/summary.json"), testing::ContainsRegex("\"nodes_treated_as_corners\": [1-9]"));
 }
 
 }  // namespace

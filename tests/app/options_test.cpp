@@ -3,6 +3,7 @@
 
 #include <fstream>
 
+#include "app/laws_in_force.hpp"
 #include "app/setup.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
@@ -35,6 +36,44 @@ TEST_F(Options, VolumesAreAveragedByDefaultWherePlasticFlowKeepsThem)
   EXPECT_FALSE(averages_volume(material("von_mises, yield_stress: 1.0e3, " + elastic, ", f_bar: false")));
   EXPECT_FALSE(averages_volume(material("neo_hookean, " + elastic, "")));
   EXPECT_TRUE(averages_volume(material("neo_hookean, " + elastic, ", f_bar: true")));
+}
+
+/// Which bodies average their volume ratio as one, by stage.
+TEST_F(Options, BodiesOfOneMaterialAreAveragedAsOneWhileTheirVolumesCountFromOneState)
+{
+  write("scene.yaml",
+        "title: t\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [9, 1], cells: [9, 1]}}\n"
+        "materials:\n"
+        "  - {name: clay, law: von_mises, yield_stress: 1.0e3, " +
+            elastic +
+            "}\n"
+            "  - {name: peat, law: von_mises, yield_stress: 1.0e3, " +
+            elastic +
+            "}\n"
+            "bodies:\n"
+            "  - {name: left, material: clay, shape: {type: box, low: [0, 0], high: [1, 1]}}\n"
+            "  - {name: right, material: clay, shape: {type: box, low: [1, 0], high: [2, 1]}}\n"
+            "  - {name: other, material: peat, shape: {type: box, low: [2, 0], high: [3, 1]}}\n"
+            "  - {name: own, material: clay, shape: {type: box, low: [3, 0], high: [4, 1]}, f_bar: false}\n"
+            "  - {name: lift, material: clay, shape: {type: box, low: [4, 0], high: [5, 1]}}\n"
+            "stages:\n"
+            "  - {type: run, duration: 1}\n"
+            "  - {type: run, duration: 1, appear: [lift]}\n"
+            "  - {type: run, duration: 1, weaken: [{body: right, factor: 2}]}\n"
+            "  - {type: run, duration: 1, change: [{body: left, material: peat}, {body: other, material: clay}]}\n");
+  const Scene scene = read_scene(folder_ / "scene.yaml");
+  const auto laws = laws_of_stages(scene);
+  const auto group = [&](std::size_t stage, std::size_t body) { return averages_with(laws.at(stage).at(body)); };
+  enum : std::size_t { left, right, other, own, lift };
+  EXPECT_NE(group(0, left), none);
+  EXPECT_EQ(group(0, left), group(0, right));
+  EXPECT_NE(group(0, left), group(0, other)) << "another material";
+  EXPECT_EQ(group(0, own), none) << "averages nothing";
+  EXPECT_NE(group(1, lift), group(1, left)) << "the ratio of the lift counts from a later state";
+  EXPECT_EQ(group(2, left), group(0, left)) << "a body that is not renewed keeps its number: its law is not set anew";
+  EXPECT_NE(group(2, right), group(2, left)) << "a law that is set anew counts from there";
+  EXPECT_NE(group(3, other), group(3, right)) << "the same material, from another stage on";
+  EXPECT_NE(group(3, left), group(3, other));
 }
 
 TEST_F(Options, BulkViscosityBelongsToTheMaterial)

@@ -89,7 +89,7 @@ TEST(Scene, ReadsInlineGeometry)
   ASSERT_EQ(mesh.groups.size(), 1U);
   EXPECT_EQ(mesh.groups[0].name, "crest");
   EXPECT_EQ(mesh.groups[0].of, "soil:boundary");
-  EXPECT_THAT(mesh.groups[0].within.high, ElementsAre(4.1, 5.1));
+  EXPECT_THAT(mesh.groups[0].within->high, ElementsAre(4.1, 5.1));
   EXPECT_FALSE(mesh.grid.has_value());
 }
 

@@ -177,6 +177,23 @@ TEST(TerrainMesh, ObstaclesAreLeftOut)
   EXPECT_NEAR(area(line, "obstacle:wall"), 0.8 + 2 * 1.3, 1e-10);
 }
 
+TEST(TerrainMesh, OutlinesMayBeFarLargerThanWhatIsMeshed)
+{
+  const auto mesh_within = [](const std::string& corners) {
+    return mesh_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: " + corners + "}]\n    air: {height: 4}\n");
+  };
+  // A country, of which the domain is a small part: the same as without an outline.
+  const Mesh<3> all = mesh_within("[[-1.0e+6, 4.0e+6], [2.0e+6, 6.0e+6]]");
+  EXPECT_NEAR(volume(all, "layer:fill"), 60 * 30 * 3, 1e-6);
+  EXPECT_EQ(all.n_cells(), mesh_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}}]\n    air: {height: 4}\n").n_cells());
+  // Its border crosses the domain from (512020, 5180000) to (512040, 5180030).
+  const Mesh<3> half = mesh_within("[[512020, 5180000], [1.0e+6, 5.0e+6], [1.0e+6, 6.0e+6], [512040, 5180030]]");
+  EXPECT_NEAR(volume(half, "layer:fill"), 30 * 30 * 3, 1e-6);
+  EXPECT_LT(half.n_cells(), 2 * all.n_cells());
+  EXPECT_THAT(complaint<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: [[520000, 5180000], [600000, 5280000]]}]\n"),
+              HasSubstr("layer \"fill\" has no part within what is meshed"));
+}
+
 TEST(TerrainMesh, OutsideOfItsAreaALayerIsTheNextOne)
 {
   const Mesh<3> mesh = mesh_of<3>(hill + R"(

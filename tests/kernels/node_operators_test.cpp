@@ -122,7 +122,7 @@ TYPED_TEST(NodeOperatorsIn, MaxentIsNotNegativeSumsToOneAndIsExactForLinearField
 {
   constexpr int D = TypeParam::D;
   for (const auto& [name, mesh] : meshes<D>()) {
-    const auto S = maxent_values(mesh, 0.5);
+    const auto S = maxent_values(mesh, 0.5).S;
     for (Index n = 0; n < mesh.n_nodes(); ++n) {
       const auto begin = S.begin() + mesh.ring_of_node().begin[static_cast<std::size_t>(n)];
       const auto end = begin + static_cast<std::ptrdiff_t>(mesh.ring_of_node()[n].size());
@@ -137,7 +137,7 @@ TYPED_TEST(NodeOperatorsIn, MaxentReachesAllNeighboursInsideAndNoneOffTheWallOnI
 {
   constexpr int D = TypeParam::D;
   const Mesh<D>& mesh = jittered_mesh<D>();
-  const auto S = maxent_values(mesh, 0.5);
+  const auto S = maxent_values(mesh, 0.5).S;
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (const Index v : mesh.ring_of_node()[n]) {
       bool beside = true;  // v lies on every wall of the box that n lies on
@@ -161,7 +161,7 @@ TYPED_TEST(NodeOperatorsIn, SmallerWeightsOfNeighboursDrawTheMassToTheNode)
 {
   constexpr int D = TypeParam::D;
   const Mesh<D>& mesh = jittered_mesh<D>();
-  const auto narrow = maxent_values(mesh, 0.1), wide = maxent_values(mesh, 1);
+  const auto narrow = maxent_values(mesh, 0.1).S, wide = maxent_values(mesh, 1).S;
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     const std::size_t own = entry_of(mesh.ring_of_node(), n, n);
     const bool corner = (mesh.node(n).array() - 0.5).abs().minCoeff() > 0.5 - 1e-9;  // alone on all its walls

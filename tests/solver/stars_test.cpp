@@ -1,6 +1,8 @@
 // What is averaged or conducted over the stars of nodes, and artificial viscosity: the additions to the stress of the last step.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -23,6 +25,8 @@ Model<D, Linear<D>> block(const L& law, Index cells, Real jitter = 0.2)
   m.transfer.musl = false;
   return m;
 }
+
+constexpr std::array<Index, 1> only_body{0};
 
 /// Sorts the particles by cell, as a step does before anything else.
 template <int D>
@@ -67,7 +71,7 @@ void averages_volumes()
 
   const Mat<D> uniform = -5 * Mat<D>::Identity();
   m.particles.L.assign(m.particles.L.size(), uniform);
-  average_volume(m.mesh, m.order, 0, dt, m.particles, sums, averaged);
+  average_volume(m.mesh, m.order, only_body, dt, m.particles, sums, averaged);
   const Real ratio = (Mat<D>::Identity() + dt * uniform).determinant();
   for (const Real J : averaged)
     EXPECT_NEAR(J, ratio, 1e-14);
@@ -77,7 +81,7 @@ void averages_volumes()
   Real volume = 0, kept = 0, spread = 0, spread_averaged = 0;
   for (std::size_t p = 0; p < averaged.size(); ++p)
     m.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
-  average_volume(m.mesh, m.order, 0, dt, m.particles, sums, averaged);
+  average_volume(m.mesh, m.order, only_body, dt, m.particles, sums, averaged);
   for (std::size_t p = 0; p < averaged.size(); ++p) {
     const Real own = (Mat<D>::Identity() + dt * m.particles.L[p]).determinant();
     volume += own * m.particles.volume0[p];
@@ -91,6 +95,87 @@ void averages_volumes()
 TEST(AverageVolume, KeepsUniformRatiosAndTheTotalAndSmoothsTheRestIn2D) { averages_volumes<2>(); }
 TEST(AverageVolume, KeepsUniformRatiosAndTheTotalAndSmoothsTheRestIn3D) { averages_volumes<3>(); }
 
+/// The block drawn as one body, or as three that meet in a rough line and in an island.
+template <int D>
+Model<D, Linear<D>> drawn_as(int bodies, const auto& law)
+{
+  Model<D, Linear<D>> m(unit_box<D>(6, 0.2));
+  const auto part = [bodies](const Vec<D>& x) {
+    return bodies == 1 ? 0 : (x - Vec<D>::Constant(0.3)).norm() < 0.2 ? 2 : x[0] < 0.5 ? 1 : 0;
+  };
+  for (int b = 0; b < bodies; ++b)
+    add_body<D>(m, "part", law, D + 1, [&, b](const Vec<D>& x) { return part(x) == b; });
+  m.transfer.musl = false;
+  return m;
+}
+
+/// Index of each particle among all in the order of their cells, particles of a cell in that of their places: it does not depend on bodies.
+template <int D>
+std::vector<std::size_t> by_place(const Particles<D>& particles)
+{
+  std::vector<std::size_t> order(particles.id.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(particles.cell[a], particles.id[a]) < std::pair(particles.cell[b], particles.id[b]);
+  });
+  return order;
+}
+
+template <int D>
+void averages_as_one()
+{
+  const auto ratios = [](int bodies) {
+    auto m = drawn_as<D>(bodies, rubber(1e5, 0.3, 1000));
+    m.particles.volume = m.particles.volume0;
+    sort(m);
+    std::mt19937 bits(3);
+    std::uniform_real_distribution<Real> any_rate(-20, 20);
+    for (const std::size_t p : by_place(m.particles))
+      m.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
+    StarSums<D, 2> sums(m.mesh);
+    std::vector<Real> averaged(m.particles.id.size()), in_order;
+    std::vector<Index> together(static_cast<std::size_t>(bodies));
+    std::iota(together.begin(), together.end(), 0);
+    average_volume(m.mesh, m.order, together, 1e-3, m.particles, sums, averaged);
+    for (const std::size_t p : by_place(m.particles))
+      in_order.push_back(averaged[p]);
+    return in_order;
+  };
+  EXPECT_EQ(ratios(1), ratios(3)) << "bitwise";
+}
+TEST(AverageVolume, OfASoilDrawnAsSeveralBodiesIsThatOfOneIn2D) { averages_as_one<2>(); }
+TEST(AverageVolume, OfASoilDrawnAsSeveralBodiesIsThatOfOneIn3D) { averages_as_one<3>(); }
+
+/// Pressure of all particles after some steps of a block that falls onto its base.
+std::vector<Real> pressure_after_steps(int bodies, std::initializer_list<Index> groups)
+{
+  auto m = drawn_as<2>(bodies, rubber(1e5, 0.49, 1000));
+  for (std::size_t b = 0; b < m.materials.size(); ++b)
+    std::visit([&](auto& batch) { batch.averages_volume = true, batch.averages_with = std::data(groups)[b]; }, m.materials[b]);
+  testing::close_off(m, "y_min", WallKind::fixed);
+  m.loads.gravity.acceleration = {0, -9.81};
+  make_ready(m);
+  testing::run_until(m, 0.02);
+  std::vector<Real> pressure;
+  for (const std::size_t p : by_place(m.particles))
+    pressure.push_back(m.particles.stress[p][0] + m.particles.stress[p][1] + m.particles.stress[p][2]);
+  return pressure;
+}
+
+TEST(AverageVolume, StepsTakeBodiesOfOneNumberAsOneAndOthersApart)
+{
+  const auto one = pressure_after_steps(1, {none}), together = pressure_after_steps(3, {4, 4, 4}),
+             apart = pressure_after_steps(3, {4, 5, none});
+  Real largest = 0, by_drawing = 0, by_averaging = 0;
+  for (std::size_t p = 0; p < one.size(); ++p) {
+    largest = std::max(largest, std::abs(one[p]));
+    by_drawing = std::max(by_drawing, std::abs(together[p] - one[p]));
+    by_averaging = std::max(by_averaging, std::abs(apart[p] - one[p]));
+  }
+  EXPECT_LE(by_drawing, 1e-9 * largest);  // momentum is summed body by body: round-off
+  EXPECT_GE(by_averaging, 1e-3 * largest);
+}
+
 TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
 {
   const auto stress_of = [](const auto& law) {
@@ -102,7 +187,7 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
     std::uniform_real_distribution<Real> any_rate(-10, 10);
     for (int step = 0; step < 5; ++step) {
       set_each(m.particles.L, [&](std::size_t) { return Mat<2>(Mat<2>::NullaryExpr([&] { return any_rate(bits); })); });
-      average_volume(m.mesh, m.order, 0, 1e-3, m.particles, *m.stars, m.averaged);
+      average_volume(m.mesh, m.order, only_body, 1e-3, m.particles, *m.stars, m.averaged);
       update_all(m, 1e-3);
     }
     return m.particles.stress;

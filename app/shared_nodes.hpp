@@ -1,0 +1,39 @@
+#pragma once
+// Bodies that share nodes at the start: those that touch, and those that act upon each other across a gap because cells are coarse.
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/particles.hpp"
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// Two bodies with mass on the same nodes.
+struct SharedNodes {
+  Index first, second;  ///< bodies
+  std::int64_t nodes;
+  bool touch;  ///< no more than a particle's own spacing lies between them
+  Real gap;    ///< [m], where they do not touch
+  Real cell;   ///< mean edge length of the cells there [m]
+};
+
+/// Appends the nodes that get mass from particles of a cell; a node may be named more than once.
+using NodesOfCell = std::function<void(Index cell, std::vector<Index>& nodes)>;
+
+/// All pairs of bodies that share nodes, by their numbers.
+template <int D>
+std::vector<SharedNodes> find_shared_nodes(const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies,
+                                           const NodesOfCell& nodes_of);
+
+/// A sentence for each pair that does not touch.
+std::vector<std::string> warnings_of(const std::vector<SharedNodes>& pairs, const std::vector<Body>& bodies);
+/// One line about all pairs that touch, or nothing.
+std::string contacts_in_words(const std::vector<SharedNodes>& pairs, const std::vector<Body>& bodies);
+
+extern template std::vector<SharedNodes> find_shared_nodes<2>(const Mesh<2>&, const Particles<2>&, const std::vector<Body>&,
+                                                              const NodesOfCell&);
+extern template std::vector<SharedNodes> find_shared_nodes<3>(const Mesh<3>&, const Particles<3>&, const std::vector<Body>&,
+                                                              const NodesOfCell&);
+
+}  // namespace talus
