@@ -106,7 +106,10 @@ void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
     setup.walls.add(wall, block.mesh, facets);
   }
   if (setting.option == bench_options::body_force)
-    setup.loads.of_place.push_back({[](const Vec<D>& x, Real) { return Vec<D>(-x); }, false});
+    setup.loads.of_place.push_back({[](std::span<const Vec<D>> places, Real, std::span<Vec<D>> accelerations) {
+                                      std::ranges::transform(places, accelerations.begin(), [](const Vec<D>& x) { return Vec<D>(-x); });
+                                    },
+                                    false});
   if (setting.option == bench_options::history) {
     HistoryOutputSpec history;
     history.points.push_back({"middle", std::vector<Real>(D, 0.5), "", {}});

@@ -7,18 +7,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numbers>
 #include <stdexcept>
 
+#include "core/parallel.hpp"
 #include "core/words.hpp"
 
 namespace talus {
-
-struct Formula::Machine {
-  mu::Parser parser;
-  Vec3 place = Vec3::Zero();
-  Real time = 0;
-};
 
 namespace {
 
@@ -67,23 +63,71 @@ Real read_formula(const std::string& text, std::string_view known, Define&& defi
 
 }  // namespace
 
-Formula::Formula(const std::string& text) : machine_(std::make_shared<Machine>())
-{
-  mu::Parser& parser = machine_->parser;
-  const auto place_and_time = [&] {
-    parser.DefineVar("x", &machine_->place[0]);
-    parser.DefineVar("y", &machine_->place[1]);
-    parser.DefineVar("z", &machine_->place[2]);
-    parser.DefineVar("t", &machine_->time);
-  };
-  read_formula(text, "x, y, z and t", place_and_time, parser);
-}
+/// A parser has its variables by their addresses, so it serves one thread at a time.
+struct Formula::Machine {
+  mu::Parser parser;
+  Vec3 place = Vec3::Zero();
+  Real time = 0;
+
+  explicit Machine(const std::string& text)
+  {
+    const auto place_and_time = [&] {
+      parser.DefineVar("x", &place[0]);
+      parser.DefineVar("y", &place[1]);
+      parser.DefineVar("z", &place[2]);
+      parser.DefineVar("t", &time);
+    };
+    read_formula(text, "x, y, z and t", place_and_time, parser);
+  }
+  Machine(const Machine&) = delete;
+  Machine& operator=(const Machine&) = delete;
+};
+
+/// As many machines for one text as threads have asked at once so far.
+class Formula::Machines {
+ public:
+  explicit Machines(std::string text) : text_(std::move(text)) { give(take()); }
+
+  std::unique_ptr<Machine> take()
+  {
+    const std::lock_guard lock(mutex_);
+    if (idle_.empty())
+      return std::make_unique<Machine>(text_);
+    std::unique_ptr<Machine> machine = std::move(idle_.back());
+    idle_.pop_back();
+    return machine;
+  }
+  void give(std::unique_ptr<Machine> machine)
+  {
+    const std::lock_guard lock(mutex_);
+    idle_.push_back(std::move(machine));
+  }
+
+ private:
+  std::string text_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Machine>> idle_;
+};
+
+Formula::Formula(const std::string& text) : machines_(std::make_shared<Machines>(text)) {}
 
 Real Formula::operator()(const Vec3& place, Real time) const
 {
-  machine_->place = place;
-  machine_->time = time;
-  return machine_->parser.Eval();
+  Real value = 0;
+  (*this)(std::span(&place, 1), time, std::span(&value, 1));
+  return value;
+}
+
+void Formula::operator()(std::span<const Vec3> places, Real time, std::span<Real> values) const
+{
+  // One by one: muParser's own evaluation of many at once gives the same values and is no faster (docs/speed.md).
+  std::unique_ptr<Machine> machine = machines_->take();
+  machine->time = time;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    machine->place = places[i];
+    values[i] = machine->parser.Eval();
+  }
+  machines_->give(std::move(machine));
 }
 
 namespace {
@@ -122,11 +166,14 @@ std::vector<Vec3> gradients(const std::string& formula, std::span<const Vec3> pl
 
 std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> places)
 {
+  constexpr Index at_once = 1024;  // places that a thread takes
   const Formula value(formula);
-  std::vector<Real> values;
-  values.reserve(places.size());
-  for (const Vec3& place : places)
-    values.push_back(value(place, 0));
+  std::vector<Real> values(places.size());
+  parallel_for((static_cast<Index>(places.size()) + at_once - 1) / at_once, [&](Index chunk) {
+    const auto begin = static_cast<std::size_t>(chunk * at_once);
+    const std::size_t n = std::min<std::size_t>(at_once, places.size() - begin);
+    value(places.subspan(begin, n), 0, std::span(values).subspan(begin, n));
+  });
   for (std::size_t i = 0; i < values.size(); ++i)
     if (!std::isfinite(values[i]))
       throw std::invalid_argument(

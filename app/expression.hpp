@@ -9,16 +9,19 @@
 
 namespace talus {
 
-/// A formula of x, y, z [m] and the time t [s], read once and evaluated often.  One thread at a time.
+/// A formula of x, y, z [m] and the time t [s], read once and evaluated often, by any number of threads at once.
 class Formula {
  public:
   /// std::invalid_argument, in words: no formula.
   explicit Formula(const std::string& text);
   Real operator()(const Vec3& place, Real time) const;
+  /// The same at many places; `values` has their number.  Cheaper than one by one.
+  void operator()(std::span<const Vec3> places, Real time, std::span<Real> values) const;
 
  private:
   struct Machine;
-  std::shared_ptr<Machine> machine_;
+  class Machines;
+  std::shared_ptr<Machines> machines_;
 };
 
 /// Value of `formula` at each place (x, y, z; [m]).  Known are x, y, z, the time t (here 0), the constant pi, the operators + - * / ^, comparisons,

@@ -62,15 +62,20 @@ class LoadBuilder {
       }
     if (formulas.size() < D)
       return;
-    setup_.loads.of_place.push_back({[formulas](const Vec<D>& place, Real time) {
-                                       Vec3 at = Vec3::Zero();
-                                       at.template head<D>() = place;
-                                       Vec<D> acceleration;
-                                       for (int d = 0; d < D; ++d)
-                                         acceleration[d] = formulas[static_cast<std::size_t>(d)](at, time);
-                                       return acceleration;
-                                     },
-                                     spec.place == PlaceOf::start});
+    const auto evaluate_all = [formulas](std::span<const Vec<D>> places, Real time, std::span<Vec<D>> accelerations) {
+      static thread_local std::vector<Vec3> at;
+      static thread_local std::vector<Real> values;
+      at.assign(places.size(), Vec3::Zero());
+      values.resize(places.size());
+      for (std::size_t i = 0; i < at.size(); ++i)
+        at[i].template head<D>() = places[i];
+      for (int d = 0; d < D; ++d) {
+        formulas[static_cast<std::size_t>(d)](at, time, values);
+        for (std::size_t i = 0; i < values.size(); ++i)
+          accelerations[i][d] = values[i];
+      }
+    };
+    setup_.loads.of_place.push_back({evaluate_all, spec.place == PlaceOf::start});
   }
   void operator()(const TractionSpec& spec)
   {

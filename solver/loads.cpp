@@ -1,6 +1,7 @@
 #include "solver/loads.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 namespace talus {
@@ -87,8 +88,17 @@ void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& foll
   }
   for (const auto& load : loads.of_place) {
     const Rows<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
-    for (std::size_t p = 0; p < particles.applied.size(); ++p)
-      add(p, ramp * particles.mass[p] * load.acceleration(place[p], time));
+    constexpr std::size_t at_once = 256;
+    const std::size_t n = particles.applied.size();
+    parallel_for(static_cast<Index>((n + at_once - 1) / at_once), [&](Index chunk) {
+      const std::size_t begin = static_cast<std::size_t>(chunk) * at_once, count = std::min(at_once, n - begin);
+      std::array<Vec<D>, at_once> places, accelerations;
+      for (std::size_t i = 0; i < count; ++i)
+        places[i] = place[begin + i];
+      load.acceleration(std::span(places).first(count), time, std::span(accelerations).first(count));
+      for (std::size_t i = 0; i < count; ++i)
+        add(begin + i, ramp * particles.mass[begin + i] * accelerations[i]);
+    });
   }
   add_particles(order, total, [&](Index row) {
     const auto p = static_cast<std::size_t>(row);

@@ -1,6 +1,7 @@
 #pragma once
 // Loads: gravity at the nodes, forces of place and time, tractions carried by particles or by facets of the mesh.
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "core/error.hpp"
@@ -26,7 +27,8 @@ struct Gravity {
 /// Force per mass [m/s^2] as a function of place and time, such as that of a manufactured solution.
 template <int D>
 struct BodyForce {
-  std::function<Vec<D>(const Vec<D>& place, Real time)> acceleration;
+  /// Writes the acceleration at each place.  Called by several threads at once; must not throw.
+  std::function<void(std::span<const Vec<D>> places, Real time, std::span<Vec<D>> accelerations)> acceleration;
   bool at_start = false;  ///< the place is that at the start (particles.x0, which must be kept), not that of now
 };
 

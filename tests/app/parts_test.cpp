@@ -9,6 +9,7 @@
 #include "app/quick.hpp"
 #include "app/recorder.hpp"
 #include "app/results.hpp"
+#include "core/parallel.hpp"
 
 namespace talus::parts_test {
 
@@ -28,6 +29,29 @@ TEST(Expression, FormulaFollowsPlaceAndTime)
   EXPECT_EQ(formula({2, 1, 0}, 3), 7);
   EXPECT_EQ(formula({2, 5, 0}, 0), 5);
   EXPECT_THROW(Formula("x * velocity"), std::invalid_argument);
+}
+
+TEST(Expression, ManyPlacesAndManyThreadsGiveTheNumbersOfOneByOne)
+{
+  const Formula formula("x > 1 ? sin(pi * x) * exp(-t) : x ^ y + cos(3 * t)");
+  std::vector<Vec3> places;
+  for (int i = 0; i < 5000; ++i)
+    places.emplace_back(0.0007 * i, 2 - 0.0003 * i, 0);
+  std::vector<Real> one_by_one;
+  for (const Vec3& place : places)
+    one_by_one.push_back(formula(place, 0.25));
+  const int before = threads();
+  for (const int n : {1, 2, 4}) {
+    set_threads(n);
+    std::vector<Real> values(places.size());
+    parallel_for(50, [&](Index chunk) {
+      const auto begin = static_cast<std::size_t>(chunk) * 100;
+      formula(std::span(places).subspan(begin, 100), 0.25, std::span(values).subspan(begin, 100));
+    });
+    EXPECT_EQ(values, one_by_one) << n << " threads";
+  }
+  set_threads(before);
+  EXPECT_EQ(evaluate("x > 1 ? sin(pi * x) * exp(-t) : x ^ y + cos(3 * t)", places)[4999], formula(places[4999], 0));
 }
 
 TEST(Expression, RefusesWhatIsNoFormula)

@@ -113,7 +113,9 @@ void move_all(Bar& m)
 std::vector<Case> cases()
 {
   const Real accelerated = pull * second_integral_of_swelling(end), moved = pull * end * integral_of_swelling(end);
-  const auto place = [](const Vec<2>&, Real t) { return Vec<2>(pull * (1 + std::sin(w * t)), 0); };
+  const auto place = [](std::span<const Vec<2>>, Real t, std::span<Vec<2>> accelerations) {
+    std::ranges::fill(accelerations, Vec<2>(pull * (1 + std::sin(w * t)), 0));
+  };
   return {{"gravity",
            [](Bar& m) {
              m.loads.gravity = {Vec<2>(pull, 0), swelling()};
