@@ -4,8 +4,18 @@
 #include <span>
 
 #include "core/types.hpp"
+#include "io/scene_runout.hpp"
 
 namespace talus {
+
+/// Which particles have moved, and where the front of these is.
+struct ReachRule {
+  Real moved;       ///< a particle that has come less far counts as ground still [m]
+  Real mass_share;  ///< of the mass that has moved, which lies no further than the front
+};
+/// As the scene says; a scene without `outputs.runout` is one that leaves its keys out.  `cell`: edge of the cells of the maps, by default the
+/// mean size of the cells of the mesh [m].
+ReachRule reach_rule(const std::optional<RunoutSpec>& spec, Real cell);
 
 /// From the crown to the front.
 struct Reach {
@@ -18,6 +28,9 @@ struct Reach {
 /// further than the front: 1 is the outermost particle.  Nothing without particles.
 std::optional<Reach> reach_of(std::span<const Vec3> then, std::span<const Vec3> now, std::span<const Real> mass, const Vec3& up,
                               Real mass_share);
+
+/// The value that `mass_share` of the mass does not exceed: the largest where it is 1.  Zero without values.
+Real not_exceeded_by(std::span<const Real> values, std::span<const Real> mass, Real mass_share);
 
 /// The part of a way that is on the level.
 inline Vec3 on_the_level(const Vec3& way, const Vec3& up) { return way - way.dot(up) * up; }

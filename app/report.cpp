@@ -11,6 +11,7 @@
 #include "app/summary.hpp"
 #include "app/upright.hpp"
 #include "core/error.hpp"
+#include "io/ground_file.hpp"
 #include "io/reader.hpp"
 #include "io/whole_file.hpp"
 #include "mesh/outline.hpp"
@@ -73,31 +74,38 @@ std::vector<Real> renumber(std::span<const Real> nodes, MeshEdges& edges)
   return kept;
 }
 
-void add_mesh(const fs::path& folder, Page& page)
+PagePlaces places_of(std::span<const Real> nodes, Page& page)
 {
-  fs::path file = folder / "mesh.vtu";
-  if (!fs::exists(file))
-    return;
-  StoredMesh mesh;
-  try {
-    mesh = read_mesh(file);
-  } catch (const EnvironmentError& damaged) {
-    page.notes.push_back(fmt::format("mesh: it is left out: {}", damaged.what()));
-    return;
+  PagePlaces places;
+  for (std::size_t d = 0; d < static_cast<std::size_t>(page.dimension); ++d) {
+    const std::vector<Real> values = axis_of(nodes, d);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    places.low[static_cast<Index>(d)] = *low;
+    places.high[static_cast<Index>(d)] = *high;
+    places.axes.push_back(page.add(packed(quantised(values, *low, *high))));
   }
+  return places;
+}
+
+/// Nothing where there is no mesh file, or a damaged one, which the page says.
+std::optional<StoredMesh> mesh_in(const fs::path& folder, Page& page)
+try {
+  const fs::path file = folder / "mesh.vtu";
+  return fs::exists(file) ? std::optional(read_mesh(file)) : std::nullopt;
+} catch (const EnvironmentError& damaged) {
+  page.notes.push_back(fmt::format("mesh: it is left out: {}", damaged.what()));
+  return std::nullopt;
+}
+
+void add_mesh(const StoredMesh& mesh, Page& page)
+{
   MeshEdges edges = edges_of(mesh.dimension, mesh.nodes, mesh.corners);
   const std::vector<Real> nodes = renumber(mesh.nodes, edges);
   if (nodes.empty())
     return;
   PageMesh shown;
   shown.nodes = static_cast<std::int64_t>(nodes.size() / 3);
-  for (std::size_t d = 0; d < static_cast<std::size_t>(page.dimension); ++d) {
-    const std::vector<Real> values = axis_of(nodes, d);
-    const auto [low, high] = std::minmax_element(values.begin(), values.end());
-    shown.x.low[static_cast<Index>(d)] = *low;
-    shown.x.high[static_cast<Index>(d)] = *high;
-    shown.x.axes.push_back(page.add(packed(quantised(values, *low, *high))));
-  }
+  shown.x = places_of(nodes, page);
   shown.outline = add_edges(edges.outline, page);
   if (edges.all.size() <= most_cell_edges)
     shown.cells = add_edges(edges.all, page);
@@ -106,16 +114,38 @@ void add_mesh(const fs::path& folder, Page& page)
   page.mesh = std::move(shown);
 }
 
-/// A history that cannot be read is left out.
-HistoryTable history_in(const fs::path& folder, Page& page)
+/// A mesh file that cannot be read leaves a page without ground, which says so.
+void add_ground(const fs::path& folder, Page& page)
 {
-  const fs::path file = folder / "history.csv";
+  std::optional<RigidGround> ground;
+  try {
+    ground = read_ground(folder, page.dimension);
+  } catch (const EnvironmentError& e) {
+    page.notes.push_back(fmt::format("the ground is not shown: {}", e.what()));
+  }
+  if (!ground)
+    return;
+  PageGround shown;
+  shown.nodes = static_cast<std::int64_t>(ground->nodes.size() / 3);
+  shown.x = places_of(ground->nodes, page);
+  std::vector<std::uint32_t> corners;
+  for (const auto& triangle : ground->triangles)
+    for (const Index node : triangle)
+      corners.push_back(static_cast<std::uint32_t>(node));
+  shown.rigid = page.dimension == 2 ? add_edges(ground->lines, page) : page.add(packed(corners));
+  shown.layers = add_edges(ground->layers, page);
+  page.ground = std::move(shown);
+}
+
+/// A table that cannot be read is left out.
+HistoryTable table_in(const fs::path& file, const std::string& what, Page& page)
+{
   if (!fs::exists(file))
     return {};
   try {
     return read_history(file);
   } catch (const EnvironmentError& e) {
-    page.notes.push_back(fmt::format("history: {}", e.what()));
+    page.notes.push_back(fmt::format("{}: {}", what, e.what()));
     return {};
   }
 }
@@ -142,6 +172,25 @@ std::vector<std::string> names_of_bodies(const std::vector<PageBody>& bodies)
   for (const PageBody& body : bodies)
     names.push_back(body.name);
   return names;
+}
+
+ReachRule rule_of(const std::optional<RunoutSpec>& runout, const std::optional<StoredMesh>& mesh)
+{
+  const bool asked = runout && runout->cell;
+  return reach_rule(runout, asked ? *runout->cell : mesh ? mean_node_size(mesh->dimension, mesh->nodes, mesh->corners) : 0);
+}
+
+SurveyTask survey_task(const RunFolder& run, const PageWishes& wishes, const std::vector<PageBody>& bodies, const ReachRule& rule,
+                       const Vec3& up)
+{
+  SurveyTask task{up, bodies.size(), wishes.fields, run.scene.outputs.picture.field, rule, {}, {}};
+  const auto& runout = run.scene.outputs.runout;
+  for (const PageBody& body : bodies)
+    task.runs_out.push_back(!runout || runout->bodies.empty() ||
+                            std::find(runout->bodies.begin(), runout->bodies.end(), body.name) != runout->bodies.end());
+  for (const BodySummary& body : run.summary.bodies)
+    task.mass.push_back(body.mass);
+  return task;
 }
 
 Page begin_page(const RunFolder& run, const PageWishes& wishes)
@@ -200,22 +249,31 @@ std::string page_of(const RunFolder& run, const PageWishes& wishes, const fs::pa
   const std::string text = read_whole(template_file);
   Page page = begin_page(run, wishes);
   const std::vector<PageBody> bodies = bodies_of(run);
-  look_over(run.path, {page.up, bodies.size(), wishes.fields, run.scene.outputs.picture.field}, survey);
+  const std::optional<StoredMesh> mesh = mesh_in(run.path, page);
+  const auto& outputs = run.scene.outputs;
+  const ReachRule rule = rule_of(outputs.runout, mesh);
+  look_over(run.path, survey_task(run, wishes, bodies, rule, page.up), survey);
   page.notes.insert(page.notes.end(), survey.left_out.begin(), survey.left_out.end());
   if (survey.frames.empty() && !wishes.fields.empty())
     throw Error(fmt::format("--fields: {} has no particle files", run.path.string()));
 
-  const HistoryTable history = history_in(run.path, page);
-  const auto& outputs = run.scene.outputs;
-  const MetricTask task{page.dimension, page.up, against_gravity(run.scene).has_value(), names_of_bodies(bodies),
-                        outputs.history ? outputs.history->fronts : std::vector<FrontSpec>()};
+  const HistoryTable history = table_in(run.path / "history.csv", "history", page);
+  const MetricTask task{page.dimension,
+                        page.up,
+                        against_gravity(run.scene).has_value(),
+                        names_of_bodies(bodies),
+                        outputs.history ? outputs.history->fronts : std::vector<FrontSpec>(),
+                        rule,
+                        table_in(run.path / "runout.csv", "run-out", page)};
   page.metrics = metrics_of(survey, history, task);
   if (!survey.frames.empty()) {
     const RunOutTable run_out = run_out_of(survey, task);
     page.run_out = table_of(run_out.columns, run_out.values, wishes.history_rows, page);
   }
   add_history_table(history, wishes.history_rows, page);
-  add_mesh(run.path, page);
+  if (mesh)
+    add_mesh(*mesh, page);
+  add_ground(run.path, page);
 
   const Real room = bytes_of_megabyte * wishes.megabytes - static_cast<Real>(text.size() + to_json(page).size() + page.block_bytes());
   if (room < 0)

@@ -108,15 +108,27 @@ class MassMetrics {
          fmt::format("outermost particle at t = {:.6g} s; at t = {:.6g} s {:.6g} m", end(), begin(), from));
     tell("advance along " + way.word, way.advance(from, to), "m", "how far the outermost particle is beyond the one at the first output");
   }
+  /// What the run has found itself is told as it is, so that page, summary and runout.csv have one number.
   void add_way(const MovedMass& moved)
   {
-    const std::string what = "of the particles that have moved further than a twentieth of what the furthest one has";
-    tell("height H", moved.height, "m",
-         fmt::format("from the crest of the source, the highest place at the first output {}, down to the toe", what));
-    tell("length L", moved.length, "m", fmt::format("on the level, from that crest to the toe: the furthest place at the end {}", what));
-    if (moved.length > 0) {
-      tell("H / L", moved.height / moved.length, "", "the smaller, the more mobile");
-      tell("angle of reach", std::atan2(moved.height, moved.length) * 180 / std::numbers::pi, "deg", "its tangent is H / L");
+    Real height = moved.height, length = moved.length;
+    std::string when = fmt::format("at t = {:.6g} s", end());
+    if (const auto H = task_.runout["H"], L = task_.runout["L"], time = task_.runout["time"];
+        m_ == 0 && H && L && time && !H->empty() && std::isfinite(H->back())) {
+      height = H->back(), length = L->back();
+      when = fmt::format("by runout.csv at t = {:.6g} s", time->back());
+    }
+    tell("height H", height, "m",
+         fmt::format("from the crown, the highest place at the start of what has come further than {:.4g} m, down to the front; {}",
+                     task_.rule.moved, when));
+    tell("length L", length, "m",
+         task_.rule.mass_share < 1
+             ? fmt::format("from the crown out to the front on the level; {:.3g} % of the mass that has moved lies beyond",
+                           100 * (1 - task_.rule.mass_share))
+             : std::string("from the crown out to the front on the level, the outermost particle that has moved"));
+    if (length > 0) {
+      tell("H/L", height / length, "", "the smaller, the more mobile");
+      tell("angle of reach", std::atan2(height, length) * 180 / std::numbers::pi, "deg", "its tangent is H/L");
     }
     tell("share that has moved", static_cast<Real>(moved.count) / static_cast<Real>(last_.count), "",
          "particles that have moved, as above, over all");

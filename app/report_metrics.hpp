@@ -12,6 +12,8 @@ struct MetricTask {
   bool gravity = true;              ///< without it nothing falls: only extents and motion are told
   std::vector<std::string> bodies;  ///< names
   std::vector<FrontSpec> fronts;    ///< columns of the history
+  ReachRule rule;                   ///< by which the survey found what has moved
+  HistoryTable runout;              ///< runout.csv, which the run itself has written; may be empty
 };
 
 /// `history`: as the run has written it; may be empty.

@@ -58,6 +58,18 @@ std::vector<Real> coordinate(const std::vector<Real>& places, std::size_t axis)
   return values;
 }
 
+constexpr Real largest_growth = 1.25;
+
+/// The page draws all particles equally large: in 2-D so large that the first frame has no holes, unless it is loose there.
+Real page_radius(std::span<const Real> places, int dimension)
+{
+  const Real radius = drawn_radius(places, dimension);
+  if (dimension != 2)
+    return radius;
+  const std::vector<Real> radii = closing_radii(places, radius);
+  return std::min(*std::max_element(radii.begin(), radii.end()), largest_growth * radius);
+}
+
 /// Puts frames into a page one after the other.  What does not change from one to the next is there once.
 class FrameWriter {
  public:
@@ -90,7 +102,7 @@ class FrameWriter {
       frame.fields.push_back(shown.fields[f].empty() && !shown.ids.empty() ? std::nullopt
                                                                            : std::optional(page_.add(std::move(blocks[dimension_ + f]))));
     if (radius_ == 0 && !shown.ids.empty())
-      radius_ = drawn_radius(shown.places, static_cast<int>(dimension_));
+      radius_ = page_radius(shown.places, static_cast<int>(dimension_));
     return frame;
   }
   Real radius() const noexcept { return radius_; }

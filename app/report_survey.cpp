@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "app/differences.hpp"
-#include "app/reach.hpp"
 #include "core/error.hpp"
 
 namespace talus {
@@ -15,16 +14,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Real share_of_furthest = 0.05;  // displaced further than this of the furthest: it has moved
-constexpr Real share_of_extent = 1e-4;    // below that nothing has moved [-]
-
 Vec3 place(std::span<const Real> places, std::size_t p) { return Eigen::Map<const Vec3>(places.data() + 3 * p); }
 
 /// What is looked at in a frame.
 struct Looked {
   std::span<const Real> places;
-  const StoredField* velocity;
+  const StoredField *velocity, *displacement;
   std::vector<Real> body;
+  Vec3 start(std::size_t row, const Vec3& in_first_frame) const
+  {
+    return displacement == nullptr ? in_first_frame : Vec3(place(places, row) - place(displacement->values, row));
+  }
 };
 
 std::optional<ValueRange> finite_range(const std::vector<Real>& values)
@@ -40,34 +40,40 @@ std::optional<ValueRange> finite_range(const std::vector<Real>& values)
   return range;
 }
 
-/// Of the pairs of places of one body.
-std::optional<MovedMass> moved_mass(const std::vector<Vec3>& then, const std::vector<Vec3>& now, Real furthest, const Vec3& up)
+struct Way {
+  Vec3 then, now;
+  Real mass;
+};
+
+std::optional<MovedMass> moved_mass(const std::vector<Way>& ways, const ReachRule& rule, const Vec3& up)
 {
   MovedMass moved;
-  std::vector<std::size_t> rows;
-  for (std::size_t p = 0; p < now.size(); ++p)
-    if ((now[p] - then[p]).norm() > share_of_furthest * furthest)
-      rows.push_back(p);
-  if (rows.empty())
+  std::vector<Vec3> then, now;
+  std::vector<Real> masses;
+  for (const Way& way : ways)
+    if ((way.now - way.then).norm() >= rule.moved)
+      then.push_back(way.then), now.push_back(way.now), masses.push_back(way.mass);
+  if (now.empty())
     return std::nullopt;
-  moved.count = static_cast<std::int64_t>(rows.size());
-  moved.low = moved.high = now[rows.front()];
-  std::vector<Vec3> from, to;
-  for (const std::size_t p : rows) {
-    moved.low = moved.low.cwiseMin(now[p]);
-    moved.high = moved.high.cwiseMax(now[p]);
-    from.push_back(then[p]), to.push_back(now[p]);
+  moved.count = static_cast<std::int64_t>(now.size());
+  moved.low = moved.high = now.front();
+  for (const Vec3& x : now) {
+    moved.low = moved.low.cwiseMin(x);
+    moved.high = moved.high.cwiseMax(x);
   }
-  const Reach reach = *reach_of(from, to, std::vector<Real>(rows.size(), 1), up, 1);
-  moved.crest = reach.crown, moved.toe = reach.front;
+  const Reach reach = *reach_of(then, now, masses, up, rule.mass_share);
   moved.height = reach.height, moved.length = reach.length;
   return moved;
 }
 
 /// Of the rows that belong to body `b`, or of all.
-MassSurvey survey_of(const Looked& looked, const Pairs& common, std::span<const Real> start, std::optional<std::size_t> b, const Vec3& up)
+MassSurvey survey_of(const Looked& looked, const Pairs& common, const RunSurvey& run, std::optional<std::size_t> b, const SurveyTask& task)
 {
   const auto belongs = [&](std::size_t row) { return !b || (row < looked.body.size() && looked.body[row] == static_cast<Real>(*b)); };
+  const auto runs_out = [&](std::size_t row) {
+    const auto body = static_cast<std::size_t>(row < looked.body.size() ? looked.body[row] : 0);
+    return b || body >= task.runs_out.size() || task.runs_out[body];
+  };
   MassSurvey mass;
   constexpr Real infinity = std::numeric_limits<Real>::infinity();
   Vec3 low = Vec3::Constant(infinity), high = Vec3::Constant(-infinity);
@@ -79,7 +85,7 @@ MassSurvey survey_of(const Looked& looked, const Pairs& common, std::span<const 
     const Vec3 x = place(looked.places, row);
     low = low.cwiseMin(x);
     high = high.cwiseMax(x);
-    crest = std::max(crest, x.dot(up));
+    crest = std::max(crest, x.dot(task.up));
     if (looked.velocity != nullptr)
       speed = std::max(speed, place(looked.velocity->values, row).norm());
   }
@@ -88,20 +94,39 @@ MassSurvey survey_of(const Looked& looked, const Pairs& common, std::span<const 
   mass.low = low, mass.high = high, mass.crest = crest;
   if (looked.velocity != nullptr)
     mass.speed = speed;
-  std::vector<Vec3> then, now;
-  Real furthest = 0;
+  std::vector<Way> ways;
+  std::optional<Real> furthest;
   for (const auto& [first, row] : common.both)
     if (belongs(row)) {
-      then.push_back(place(start, first));
-      now.push_back(place(looked.places, row));
-      furthest = std::max(furthest, (now.back() - then.back()).norm());
+      const Vec3 now = place(looked.places, row), in_first_frame = place(run.places, first);
+      furthest = std::max(furthest.value_or(0), (now - in_first_frame).norm());
+      if (runs_out(row))
+        ways.push_back({looked.start(row, in_first_frame), now, run.masses[first]});
     }
-  if (then.empty())
-    return mass;
   mass.displacement = furthest;
-  if (furthest > share_of_extent * (high - low).norm())
-    mass.moved = moved_mass(then, now, furthest, up);
+  mass.moved = moved_mass(ways, task.rule, task.up);
   return mass;
+}
+
+/// Volumes of the first frame times the density of their bodies, where that is known.
+std::vector<Real> masses_of(const StoredParticles& particles, const SurveyTask& task)
+{
+  const StoredField* volume = stored_field(particles, "volume");
+  if (volume == nullptr)
+    return std::vector<Real>(particles.ids.size(), 1);
+  std::vector<Real> masses = volume->values;
+  const StoredField* body = stored_field(particles, "body");
+  if (body == nullptr || task.mass.empty())
+    return masses;
+  std::vector<Real> whole(task.mass.size(), 0);
+  const auto number = [&](std::size_t p) {
+    return static_cast<std::size_t>(std::clamp<Real>(body->values[p], 0, static_cast<Real>(whole.size() - 1)));
+  };
+  for (std::size_t p = 0; p < masses.size(); ++p)
+    whole[number(p)] += masses[p];
+  for (std::size_t p = 0; p < masses.size(); ++p)
+    masses[p] *= task.mass[number(p)] / whole[number(p)];
+  return masses;
 }
 
 void begin(const StoredParticles& particles, const SurveyTask& task, RunSurvey& survey)
@@ -116,6 +141,7 @@ void begin(const StoredParticles& particles, const SurveyTask& task, RunSurvey& 
   }
   survey.ids = particles.ids;
   survey.places = particles.fields.front().values;
+  survey.masses = masses_of(particles, task);
 }
 
 /// Fields have the components that they had at first, velocities three, bodies one.
@@ -144,13 +170,13 @@ FrameSurvey survey_of(Real time, const fs::path& file, const SurveyTask& task, R
     const StoredField* field = stored_field(particles, viewed.name);
     frame.fields.push_back(field == nullptr ? std::nullopt : finite_range(viewed_values(*field, viewed)));
   }
-  Looked looked{particles.fields.front().values, stored_field(particles, "velocity"), {}};
+  Looked looked{particles.fields.front().values, stored_field(particles, "velocity"), stored_field(particles, "displacement"), {}};
   if (const StoredField* body = stored_field(particles, "body"))
     looked.body = body->values;
   const Pairs common = match_ids(survey.ids, particles.ids);
-  frame.masses.push_back(survey_of(looked, common, survey.places, std::nullopt, task.up));
+  frame.masses.push_back(survey_of(looked, common, survey, std::nullopt, task));
   for (std::size_t b = 0; task.bodies > 1 && b < task.bodies; ++b)
-    frame.masses.push_back(survey_of(looked, common, survey.places, b, task.up));
+    frame.masses.push_back(survey_of(looked, common, survey, b, task));
   return frame;
 }
 

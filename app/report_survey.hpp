@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "app/reach.hpp"
 #include "app/report_fields.hpp"
 
 namespace talus {
@@ -13,12 +14,12 @@ struct ValueRange {
   Real low, high;  ///< finite
 };
 
-/// Of the particles that have moved since the first frame: further than a twentieth of what the furthest one has.
+/// Of the particles that have moved, as the rule says: from where they were when displacements were last reset, or in the first frame where
+/// displacements were not written.
 struct MovedMass {
   std::int64_t count = 0;
   Vec3 low, high;       ///< of where they are [m]
-  Vec3 crest, toe;      ///< where the highest of them was; where the one is that is furthest from there on the level
-  Real height, length;  ///< from crest to toe, down and on the level [m]
+  Real height, length;  ///< from the crown to the front, down and on the level [m]
 };
 
 /// Of one body, or of all.
@@ -45,6 +46,9 @@ struct SurveyTask {
   std::size_t bodies = 1;
   std::vector<std::string> fields;  ///< asked for
   std::string of_picture;
+  ReachRule rule;
+  std::vector<bool> runs_out;  ///< whether a body counts in what all of them do
+  std::vector<Real> mass;      ///< of each body at the start [kg]; empty where it is not known
 };
 
 struct RunSurvey {
@@ -56,6 +60,7 @@ struct RunSurvey {
   std::vector<std::string> left_out;  ///< frames that could not be read, in words
   std::vector<std::int64_t> ids;      ///< of the first frame
   std::vector<Real> places;           ///< there, 3 numbers a particle [m]
+  std::vector<Real> masses;           ///< of these [kg], or in another unit that is the same for all
 };
 
 /// Looks at the frames that particles.pvd of a run names and that are not known yet; one that cannot be read is left out.  Error: see

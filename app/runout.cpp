@@ -22,7 +22,6 @@ namespace fs = std::filesystem;
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
 constexpr Real never = std::numeric_limits<Real>::infinity();
 constexpr Real threshold_of_cell = 0.1;
-constexpr Real still = 0.01;  // kinetic energy over its peak: below it the slide has stopped
 constexpr auto terrain_group = "terrain";
 
 template <int D>
@@ -161,7 +160,7 @@ void Runout<D>::lay_out(const Frame<D>& frame)
     fit(axes_.plan[1], grid_.south, grid_.dy, grid_.rows);
   else
     grid_.rows = 1;
-  moved_ = spec_->moved.value_or(cell);
+  moved_ = reach_rule(spec_, cell).moved;
   threshold_ = spec_->threshold.value_or(threshold_of_cell * cell);
 }
 
@@ -340,19 +339,21 @@ template <int D>
 void Runout<D>::count_altogether(const std::vector<Moved>& moved)
 {
   std::vector<Vec3> then, now;
-  std::vector<Real> masses;
+  std::vector<Real> masses, speeds;
   Vec3 moment = Vec3::Zero(), moment_then = Vec3::Zero();
-  Real mass = 0;
+  Real mass = 0, mass_times_speed = 0;
   now_.volume = now_.entrained = now_.kinetic = now_.fastest = 0;
   for (const Moved& p : moved) {
-    then.push_back(p.then()), now.push_back(p.now()), masses.push_back(p.mass);
-    mass += p.mass;
+    then.push_back(p.then()), now.push_back(p.now()), masses.push_back(p.mass), speeds.push_back(p.speed);
+    mass += p.mass, mass_times_speed += p.mass * p.speed;
     moment += p.mass * p.now(), moment_then += p.mass * p.then();
     now_.volume += p.volume;
     now_.entrained += p.eroded != 0 ? p.volume : 0;
     now_.kinetic += p.mass * p.speed * p.speed / 2;
     now_.fastest = std::max(now_.fastest, p.speed);
   }
+  now_.mean_speed = mass > 0 ? mass_times_speed / mass : 0;
+  now_.bulk = not_exceeded_by(speeds, masses, spec_->mass_share);
   const auto reach = reach_of(then, now, masses, axes_.up, spec_->mass_share);
   const Vec3 nowhere = Vec3::Constant(no_value);
   now_.front = reach ? reach->front : nowhere;
@@ -360,6 +361,13 @@ void Runout<D>::count_altogether(const std::vector<Moved>& moved)
   now_.centre = reach ? Vec3(moment / mass) : nowhere;
   const Vec3 way = reach ? Vec3((moment - moment_then) / mass) : nowhere;
   now_.centre_height = 0 - way.dot(axes_.up), now_.centre_length = on_the_level(way, axes_.up).norm();
+}
+
+/// On average it would come less far than a cell of the maps in as much time as has passed since looks began: what the maps show changes no more.
+template <int D>
+bool Runout<D>::at_rest() const
+{
+  return now_.mean_speed * (time_ - start_) < (D == 3 ? std::max(grid_.dx, grid_.dy) : grid_.dx);
 }
 
 template <int D>
@@ -375,8 +383,7 @@ void Runout<D>::look(const Frame<D>& frame, bool with_frame)
     count_on_cells(moved, time_ - start_);
     count_altogether(moved);
     fastest_ = std::max(fastest_, now_.fastest), thickest_ = std::max(thickest_, now_.thickest);
-    peak_ = std::max(peak_, now_.kinetic);
-    if (now_.kinetic >= still * peak_)
+    if (!at_rest())
       still_since_ = never;
     else if (!std::isfinite(still_since_))
       still_since_ = time_;
@@ -566,6 +573,8 @@ std::vector<CsvColumn> Runout<D>::columns() const
                          {"mean_thickness", "m"},
                          {"largest_thickness", "m"},
                          {"largest_speed", "m/s"},
+                         {"mean_speed", "m/s"},
+                         {"bulk_speed", "m/s"},
                          {"kinetic", "J"}});
   if (!spec_->eroded.empty())
     all.push_back({"entrained", volume});
@@ -598,7 +607,7 @@ std::vector<Real> Runout<D>::row(Real time) const
   row.insert(row.end(), {now_.height, now_.length, over(now_.height, now_.length)});
   place(now_.centre);
   row.insert(row.end(), {now_.centre_height, now_.centre_length, over(now_.centre_height, now_.centre_length), now_.volume, now_.area,
-                         now_.mean, now_.thickest, now_.fastest, now_.kinetic});
+                         now_.mean, now_.thickest, now_.fastest, now_.mean_speed, now_.bulk, now_.kinetic});
   if (!spec_->eroded.empty())
     row.push_back(now_.entrained);
   return row;
@@ -618,6 +627,7 @@ std::vector<NamedValue> Runout<D>::numbers() const
   all.push_back({"angle_of_reach", std::atan2(now_.height, now_.length) * 180 / std::numbers::pi, "deg"});
   all.push_back({"largest_thickness", thickest_, "m"});
   all.push_back({"largest_speed", fastest_, "m/s"});
+  all.push_back({"mass_share", spec_->mass_share, ""});
   all.push_back({"stopped", std::isfinite(still_since_) ? still_since_ : no_value, "s"});
   return all;
 }

@@ -26,12 +26,14 @@ PlanAxes plan_axes(const Vec<D>& gravity);
 
 /// Of all that has moved, at a look.  NaN where nothing has.
 struct RunoutNumbers {
-  Real volume = 0;    ///< of what has moved [m^D]
-  Real area = 0;      ///< where it is thicker than the threshold [m^(D-1)]
-  Real mean = 0;      ///< its thickness there [m]
-  Real thickest = 0;  ///< [m]
-  Real fastest = 0;   ///< of a particle [m/s]
-  Real kinetic = 0;   ///< [J]
+  Real volume = 0;      ///< of what has moved [m^D]
+  Real area = 0;        ///< where it is thicker than the threshold [m^(D-1)]
+  Real mean = 0;        ///< its thickness there [m]
+  Real thickest = 0;    ///< [m]
+  Real fastest = 0;     ///< of a particle [m/s]
+  Real mean_speed = 0;  ///< of the mass that has moved [m/s]
+  Real bulk = 0;        ///< speed that `mass_share` of the mass that has moved does not exceed [m/s]
+  Real kinetic = 0;     ///< [J]
   Vec3 front = Vec3::Zero();
   Real height = 0, length = 0;                ///< from the crown to the front [m]
   Vec3 centre = Vec3::Zero();                 ///< of mass
@@ -45,6 +47,8 @@ struct RunoutNumbers {
                       kept("mean", &N::mean),
                       kept("thickest", &N::thickest),
                       kept("fastest", &N::fastest),
+                      kept("mean_speed", &N::mean_speed),
+                      kept("bulk", &N::bulk),
                       kept("kinetic", &N::kinetic),
                       kept("front", &N::front),
                       kept("height", &N::height),
@@ -91,7 +95,6 @@ class Runout {
                       kept("now", &Runout::now_),
                       kept("fastest", &Runout::fastest_),
                       kept("thickest", &Runout::thickest_),
-                      kept("peak", &Runout::peak_),
                       kept("still_since", &Runout::still_since_),
                       kept("ground", &Runout::ground_),
                       kept("base", &Runout::base_),
@@ -121,6 +124,7 @@ class Runout {
   std::vector<Real> tops(const Frame<D>& frame) const;
   void count_on_cells(const std::vector<Moved>& moved, Real since_start);
   void count_altogether(const std::vector<Moved>& moved);
+  bool at_rest() const;
   std::array<Real, 2> on_plan(const Vec3& x) const;
   Real elevation(const Vec3& x) const { return axes_.sign * x[axes_.upright]; }
   std::vector<CsvColumn> columns() const, columns_of_file() const;
@@ -146,7 +150,7 @@ class Runout {
   Real time_ = -1;  // of the last look [s]
   RunoutNumbers now_;
   Real fastest_ = 0, thickest_ = 0;  // so far [m/s], [m]
-  Real peak_ = 0, still_since_ = 0;  // of the kinetic energy [J]; since when it has been far below [s]
+  Real still_since_ = 0;             // since when it has been at rest, infinite while it is not [s]
   std::vector<Real> ground_, base_, surface_, surface_max_, thickness_, thickness_max_, speed_max_, intensity_max_, arrival_, source_,
       erosion_;
 };

@@ -111,9 +111,14 @@ std::string run_out_lines(const std::vector<NamedValue>& runout)
       fmt::format("run-out: H {:.4g} m, L {:.4g} m, H/L {:.3g} (angle of reach {:.3g} deg); of the centre of mass H/L {:.3g}\n", value("H"),
                   value("L"), value("H/L"), value("angle_of_reach"), value("centre_H/L"));
   const auto volume = std::find_if(runout.begin(), runout.end(), [](const NamedValue& number) { return number.name == "volume"; });
-  text += fmt::format("  moved {:.4g} {}, at most {:.3g} m thick, at most {:.3g} m/s; ", volume->value, volume->unit,
+  text += fmt::format("  moved {:.4g} {}, at most {:.3g} m thick, at most {:.3g} m/s\n", volume->value, volume->unit,
                       value("largest_thickness"), value("largest_speed"));
-  return text + (std::isnan(value("stopped")) ? "still moving\n" : fmt::format("stopped at t = {:.4g} s\n", value("stopped")));
+  const Real share = value("mass_share");
+  const std::string speeds =
+      fmt::format("{:.3g} m/s on average, {} {:.3g} m/s", value("mean_speed"),
+                  share < 1 ? fmt::format("{:.3g} % of the mass faster than", 100 * (1 - share)) : "the fastest", value("bulk_speed"));
+  return text + (std::isnan(value("stopped")) ? fmt::format("  still moving: {}\n", speeds)
+                                              : fmt::format("  at rest since t = {:.4g} s: {}\n", value("stopped"), speeds));
 }
 
 template <class Vector>

@@ -60,6 +60,14 @@ struct PageMesh {
   std::optional<BlockId> cells;  ///< pairs of nodes, unless there are too many
 };
 
+/// What is rigid in a mesh of terrain.
+struct PageGround {
+  std::int64_t nodes = 0;
+  PagePlaces x;
+  BlockId rigid = 0;   ///< 3-D: triples of nodes; 2-D: pairs
+  BlockId layers = 0;  ///< pairs of nodes: where layers end
+};
+
 struct PageTable {
   std::vector<CsvColumn> columns;      ///< the first is the time [s]
   std::int64_t rows = 0, thinned = 1;  ///< of so many one is here
@@ -84,6 +92,7 @@ struct Page {
   std::vector<std::string> notes;  ///< what is not in the page, in words
   std::optional<PageParticles> particles;
   std::optional<PageMesh> mesh;
+  std::optional<PageGround> ground;
   std::optional<PageTable> history, run_out;
   std::vector<PageMetric> metrics;
   std::vector<PageBlock> blocks;

@@ -32,6 +32,7 @@ class PageWriter {
             {"notes", page_.notes},
             {"particles", of(page_.particles)},
             {"mesh", of(page_.mesh)},
+            {"ground", of(page_.ground)},
             {"history", of(page_.history)},
             {"run_out", of(page_.run_out)},
             {"metrics", list(page_.metrics)}};
@@ -111,6 +112,14 @@ class PageWriter {
     add(mesh.x, object);
     object["outline"] = block(mesh.outline);
     object["cells"] = block(mesh.cells);
+    return object;
+  }
+  PageJson of(const PageGround& ground) const
+  {
+    PageJson object{{"count", ground.nodes}};
+    add(ground.x, object);
+    object["rigid"] = block(ground.rigid);
+    object["layers"] = block(ground.layers);
     return object;
   }
   PageJson of(const PageTable& table) const

@@ -181,6 +181,8 @@ void set(const std::string& option, const Values& values, Settings& s)
     s.mesh = choice<MeshLines>(values[0], option);
   else if (option == "--no-mesh")
     s.mesh = MeshLines::none;
+  else if (option == "--no-ground")
+    s.ground = false;
   else if (option == "--outline")
     s.start_outline = values[0] == "start" ? true : throw Error(fmt::format("--outline: unknown \"{}\"; known is start", values[0]));
   else if (option == "--out")

@@ -39,6 +39,7 @@ inline constexpr std::array picture_options{
     Option{"--clip", 2, 4, "AXIS OFFSET|NX NY NZ OFFSET", "leave out the particles beyond a plane, those with n.x > offset [m]"},
     Option{"--mesh", 1, 1, "{outline,edges,none}", "lines; edges: of all cells, in 3-D of the boundary; default what the scene says"},
     Option{"--no-mesh", 0, 0, "", "as --mesh none"},
+    Option{"--no-ground", 0, 0, "", "without the ground of a mesh of terrain"},
     Option{"--outline", 1, 1, "start", "draw the outline of the bodies at the start over the particles"},
     Option{"--out", 1, 1, "PATH", "a .png or a folder; default DIR/pictures"}};
 
@@ -96,6 +97,7 @@ struct Settings {
   std::optional<std::array<Real, 4>> window;  ///< m, 2-D: low corner, high corner
   std::optional<Plane> clip;
   MeshLines mesh = MeshLines::outline;
+  bool ground = true;  ///< that of a mesh of terrain is drawn
   bool start_outline = false;
   std::optional<std::filesystem::path> out;  ///< a .png, or a folder; default: pictures/ in `folder`
   std::string title;

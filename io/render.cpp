@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/spacing.hpp"
+#include "io/ground_file.hpp"
 #include "io/render_canvas.hpp"
 #include "io/render_data.hpp"
 #include "io/render_outline.hpp"
@@ -69,7 +70,6 @@ void place_camera(const Settings& settings, const std::vector<Vec3>& shape, Pict
   picture.camera =
       settings.window ? window_camera(*settings.window, aspect) : fit_camera(shape, from, !flat && settings.perspective, aspect);
   zoom_in(settings.zoom, picture.camera);
-  picture.cut_off = settings.window || settings.zoom > 1 || !settings.look_at.empty();
   for (std::size_t d = 0; d < settings.look_at.size(); ++d)
     picture.camera.centre[static_cast<Index>(d)] = settings.look_at[d];
 }
@@ -97,12 +97,21 @@ std::string words_of(const Plane& plane)
 }
 
 /// Lines of the mesh, none where its file is damaged: a picture of the particles says more than none.
-Lines mesh_lines(const Settings& settings)
+Lines mesh_lines(const fs::path& folder, MeshLines which)
 try {
-  return read_mesh_lines(settings.folder, settings.mesh);
+  return read_mesh_lines(folder, which);
 } catch (const EnvironmentError& damaged) {
   fmt::print(stderr, "warning: the mesh is left out: {}\n", damaged.what());
   return {};
+}
+
+/// The same of the ground.
+std::optional<RigidGround> ground_in(const fs::path& folder, int dimension)
+try {
+  return read_ground(folder, dimension);
+} catch (const EnvironmentError& damaged) {
+  fmt::print(stderr, "warning: the ground is left out: {}\n", damaged.what());
+  return std::nullopt;
 }
 
 Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& facts, const Cloud& first, const Cloud& last)
@@ -118,8 +127,16 @@ Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& f
     if (const auto one = series.read(frames[0], cloud_reader(settings)))
       shape.insert(shape.end(), one->x.begin(), one->x.end());
   place_camera(settings, shape, picture);
-  picture.mesh_lines = settings.mesh;
-  picture.mesh = mesh_lines(settings);
+  if (settings.ground) {
+    picture.ground = ground_in(settings.folder, facts.dimension);
+    picture.upwards = settings.up.normalized();
+    picture.clip = settings.clip;
+  }
+  const bool asked = std::find(settings.given.begin(), settings.given.end(), "--mesh") != settings.given.end();
+  picture.mesh_lines = picture.ground && facts.dimension == 3 && !asked ? MeshLines::none : settings.mesh;  // else that of the air above
+  picture.mesh = mesh_lines(settings.folder, picture.mesh_lines);
+  if (picture.ground && !picture.ground->layers.empty())
+    picture.notes.emplace_back("brown: where layers end at the start");
   if (settings.start_outline)
     picture.start =
         outline_of(series.first([](const fs::path& file) { return read_bodies(file, std::nullopt); }), facts.dimension, picture.camera);

@@ -14,7 +14,7 @@ namespace talus::render {
 namespace {
 
 constexpr Real margin = 0.03;       // of the panel, on each side
-constexpr Real panel_right = 0.87;  // of the picture's width
+constexpr Real panel_right = 0.85;  // of the picture's width
 constexpr Real view_angle = 25;     // degrees, over the height of the panel
 constexpr Real degree = std::numbers::pi / 180;
 constexpr Real above = 2.6, below = 2.4;  // letters: title, length scale
@@ -82,6 +82,12 @@ Viewpoint viewpoint(const std::variant<Vec3, NamedView>& view, const Vec3& up)
     case NamedView::iso: break;
   }
   return {front + right + up.normalized(), up};
+}
+
+Vec3 light_of(const Camera& camera)
+{
+  const Vec3 right = camera.up.cross(camera.towards);
+  return (0.35 * camera.towards + 0.85 * camera.up - 0.4 * right).normalized();
 }
 
 Panel panel_of(const std::array<int, 2>& size)

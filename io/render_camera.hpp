@@ -18,6 +18,9 @@ struct Camera {
   Real half_height{};  ///< m, of what is seen, if parallel
 };
 
+/// From where the light falls: from above, over the reader's left shoulder.
+Vec3 light_of(const Camera& camera);
+
 /// Directions to the camera, and upwards in the picture.
 struct Viewpoint {
   Vec3 towards, up;

@@ -6,6 +6,7 @@
 #include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkCellArray.h>
+#include <vtkDoubleArray.h>
 #include <vtkMath.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -22,6 +23,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/spacing.hpp"
+#include "io/render_ground.hpp"
 #include "io/render_legend.hpp"
 #include "io/render_png.hpp"
 #include "io/render_sheet.hpp"
@@ -33,6 +36,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Colour grey{178, 178, 178}, edge_grey{140, 140, 140};
+constexpr auto radius_name = "radius";
 constexpr Real shadow = 0.45;        // brightness taken from a surface that turns its back on the light
 constexpr Real gloss = 0.14;         // white added to a surface that faces it: without it the dark end of the colours shows no shape
 constexpr Real shading_reach = 3.0;  // radii of particles over which the surface normal is averaged
@@ -44,8 +48,7 @@ vtkSmartPointer<vtkPolyData> coloured(const Picture& picture, const Cloud& cloud
   vtkNew<vtkUnsignedCharArray> colours;
   colours->SetNumberOfComponents(3);
   colours->SetNumberOfTuples(static_cast<vtkIdType>(cloud.x.size()));
-  const Vec3 right = picture.camera.up.cross(picture.camera.towards);
-  const Vec3 light = (0.35 * picture.camera.towards + 0.85 * picture.camera.up - 0.4 * right).normalized();
+  const Vec3 light = light_of(picture.camera);
   const auto lit = picture.dimension == 3 ? facing(cloud, light, shading_reach * picture.radius) : std::vector<Real>{};
   for (std::size_t p = 0; p < cloud.x.size(); ++p) {
     // Relative to the centre: single precision on the graphics side would show steps at map coordinates.
@@ -60,6 +63,13 @@ vtkSmartPointer<vtkPolyData> coloured(const Picture& picture, const Cloud& cloud
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(points);
   data->GetPointData()->SetScalars(colours);
+  const std::vector<Real> radii =
+      picture.dimension == 2 ? closing_radii(numbers_of(cloud.x), picture.radius) : std::vector<Real>(cloud.x.size(), picture.radius);
+  vtkNew<vtkDoubleArray> widths;
+  widths->SetName(radius_name);
+  for (const Real radius : radii)
+    widths->InsertNextValue(radius);
+  data->GetPointData()->AddArray(widths);
   return data;
 }
 
@@ -67,7 +77,8 @@ void add_particles(vtkRenderer* renderer, const Picture& picture, const Cloud& c
 {
   vtkNew<vtkPointGaussianMapper> mapper;
   mapper->SetInputData(coloured(picture, cloud));
-  mapper->SetScaleFactor(picture.radius);
+  mapper->SetScaleFactor(1);
+  mapper->SetScaleArray(radius_name);
   mapper->EmissiveOff();
   mapper->SetTriangleScale(1);  // the disc fills the triangle: no fragments are spent outside
   mapper->SetSplatShaderCode(
@@ -79,17 +90,39 @@ void add_particles(vtkRenderer* renderer, const Picture& picture, const Cloud& c
   renderer->AddActor(actor);
 }
 
-struct Pen {
-  Colour colour;
-  float width;  ///< pixels of the picture
-  Real opacity;
-};
+/// Both fill the panel, so that nothing passes behind the words, and look through the same camera, which sees from the nearest to the farthest
+/// thing of either.
+void aim(vtkRenderer* scene, vtkRenderer* over, const Camera& camera, const Panel& panel)
+{
+  for (vtkRenderer* renderer : {scene, over})
+    renderer->SetViewport(panel.left, panel.bottom, panel.right, panel.top);
+  vtkCamera* eye = scene->GetActiveCamera();
+  over->SetActiveCamera(eye);
+  const Vec3 place = camera.distance * camera.towards;
+  eye->SetFocalPoint(0, 0, 0);
+  eye->SetPosition(place.data());
+  eye->SetViewUp(camera.up.data());
+  eye->SetParallelProjection(camera.perspective ? 0 : 1);
+  eye->SetParallelScale(camera.half_height);
+  if (camera.perspective)
+    eye->SetViewAngle(360 / std::numbers::pi * std::atan(camera.slope));
+  vtkBoundingBox all;
+  for (vtkRenderer* renderer : {scene, over})
+    if (std::array<double, 6> bounds{}; renderer->ComputeVisiblePropBounds(bounds.data()), vtkMath::AreBoundsInitialized(bounds.data()))
+      all.AddBounds(bounds.data());
+  if (std::array<double, 6> bounds{}; all.IsValid()) {
+    all.GetBounds(bounds.data());
+    scene->ResetCameraClippingRange(bounds.data());
+  }
+}
 
-void add_lines(vtkRenderer* renderer, const Camera& camera, const Lines& lines, const Pen& pen)
+}  // namespace
+
+void add_lines(vtkRenderer* renderer, const Picture& picture, const Lines& lines, const Pen& pen)
 {
   vtkNew<vtkPoints> points;
   for (const Vec3& point : lines.points) {
-    const Vec3 x = point - camera.centre;
+    const Vec3 x = point - picture.camera.centre;
     points->InsertNextPoint(x.data());
   }
   vtkNew<vtkCellArray> cells;
@@ -112,36 +145,6 @@ void add_lines(vtkRenderer* renderer, const Camera& camera, const Lines& lines, 
   renderer->AddActor(actor);
 }
 
-/// Both look through the same camera, which sees from the nearest to the farthest thing of either.  The view may be larger than the panel, which
-/// the camera was fitted to.
-void aim(vtkRenderer* scene, vtkRenderer* over, const Camera& camera, const Panel& panel, const Panel& view)
-{
-  for (vtkRenderer* renderer : {scene, over})
-    renderer->SetViewport(view.left, view.bottom, view.right, view.top);
-  const Real share = panel.height() / view.height();
-  vtkCamera* eye = scene->GetActiveCamera();
-  over->SetActiveCamera(eye);
-  const Vec3 place = camera.distance * camera.towards;
-  eye->SetFocalPoint(0, 0, 0);
-  eye->SetPosition(place.data());
-  eye->SetViewUp(camera.up.data());
-  eye->SetParallelProjection(camera.perspective ? 0 : 1);
-  eye->SetParallelScale(camera.half_height / share);
-  eye->SetWindowCenter(0, (view.bottom + view.top - panel.bottom - panel.top) / view.height());
-  if (camera.perspective)
-    eye->SetViewAngle(360 / std::numbers::pi * std::atan(camera.slope / share));
-  vtkBoundingBox all;
-  for (vtkRenderer* renderer : {scene, over})
-    if (std::array<double, 6> bounds{}; renderer->ComputeVisiblePropBounds(bounds.data()), vtkMath::AreBoundsInitialized(bounds.data()))
-      all.AddBounds(bounds.data());
-  if (std::array<double, 6> bounds{}; all.IsValid()) {
-    all.GetBounds(bounds.data());
-    scene->ResetCameraClippingRange(bounds.data());
-  }
-}
-
-}  // namespace
-
 void draw(const Picture& picture, const Cloud& cloud, const fs::path& png)
 {
   const Panel panel = panel_of(picture.size);
@@ -158,11 +161,11 @@ void draw(const Picture& picture, const Cloud& cloud, const fs::path& png)
   front->InteractiveOff();
 
   const bool edges = picture.mesh_lines == MeshLines::edges;
-  add_lines(edges && picture.dimension == 2 ? over : scene, picture.camera, picture.mesh,
-            edges ? Pen{edge_grey, 0.75, 0.9} : Pen{grey, 1.5, 1});
+  add_ground(scene, over, picture);
+  add_lines(edges && picture.dimension == 2 ? over : scene, picture, picture.mesh, edges ? Pen{edge_grey, 0.75, 0.9} : Pen{grey, 1.5, 1});
   add_particles(scene, picture, cloud);
-  add_lines(over, picture.camera, picture.start, {start_colour, 1.5, 1});
-  aim(scene, over, picture.camera, panel, picture.cut_off ? panel : Panel{panel.left, 0, panel.right, 1});
+  add_lines(over, picture, picture.start, {start_colour, 1.5, 1});
+  aim(scene, over, picture.camera, panel);
 
   Sheet sheet(front, letter_height * oversampling * picture.size[0]);
   add_words(sheet, picture, cloud);

@@ -112,11 +112,11 @@ void show_span(vtkAxis* axis, Real low, Real high, Real margin)
   axis->SetCustomTickPositions(places, words);
 }
 
-/// Marks the powers of ten of an axis that shows logarithms.
-void show_decades(vtkAxis* axis, Real low, Real high)
+/// Marks the powers of ten of an axis that shows logarithms from `low` to `high`, with a share of it on either side.
+void show_decades(vtkAxis* axis, Real low, Real high, Real margin)
 {
   axis->SetBehavior(vtkAxis::FIXED);
-  axis->SetRange(low, high);
+  axis->SetRange(low - margin * (high - low), high + margin * (high - low));
   vtkNew<vtkDoubleArray> places;
   vtkNew<vtkStringArray> words;
   for (Real decade = std::ceil(low); decade <= high; ++decade) {
@@ -160,6 +160,17 @@ std::vector<Real> logarithms(const std::vector<Real>& values)
   return logs;
 }
 
+/// From the lowest to the highest x of rows and upright lines.
+std::pair<Real, Real> reach_along(const Chart& chart, const std::vector<Real>& x)
+{
+  if (x.empty())
+    throw Error(fmt::format("{} has no rows to draw", chart.table.string()));
+  auto [low, high] = std::pair{*std::min_element(x.begin(), x.end()), *std::max_element(x.begin(), x.end())};
+  for (const Chart::Level& line : chart.uprights)
+    low = std::min(low, line.value), high = std::max(high, line.value);
+  return {low, low < high ? high : low + 1};
+}
+
 void put_on_paper(vtkChartXY* plot, const std::filesystem::path& out)
 {
   vtkNew<vtkRenderWindow> window;
@@ -178,6 +189,7 @@ void letter_chart(vtkChartXY* plot, const std::string& title)
 {
   plot->SetTitle(title);
   plot->GetTitleProperties()->SetFontSize(letter);
+  plot->SetHiddenAxisBorder(2 * letter);  // on the right half of the last number, above the title: both stand outside the frame
   plot->SetShowLegend(true);
   plot->GetLegend()->SetLabelSize(letter);
   plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
@@ -220,9 +232,10 @@ void draw(const Chart& chart)
   letter_chart(plot, chart.title);
   letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", x_name, x_unit));
   letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit.name));
-  show_span(plot->GetAxis(vtkAxis::BOTTOM), x.front(), x.back(), 0);
+  const auto [first, last] = reach_along(chart, x);
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), first, last, chart.marks ? headroom : 0);  // marks are wider than the points they stand for
   if (chart.log)
-    show_decades(plot->GetAxis(vtkAxis::LEFT), low, high);
+    show_decades(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
   else
     show_span(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
   vtkPlot* const drawn = add(plot, curve(chart.curve, x, y), 0);

@@ -96,6 +96,28 @@ MeshEdges edges_of_tetrahedra(std::span<const Real> nodes, std::span<const Index
 
 }  // namespace
 
+Real mean_node_size(int dimension, std::span<const Real> nodes, std::span<const Index> corners)
+{
+  const auto width = static_cast<std::size_t>(dimension) + 1;
+  std::vector<Edge> edges;
+  for (std::size_t c = 0; c + width <= corners.size(); c += width)
+    for (std::size_t a = 0; a < width; ++a)
+      for (std::size_t b = a + 1; b < width; ++b)
+        edges.push_back(edge(corners[c + a], corners[c + b]));
+  sort_once(edges);
+  std::vector<Real> length(nodes.size() / 3, 0), count(length);
+  for (const Edge& one : edges)
+    for (const Index n : one) {
+      length[static_cast<std::size_t>(n)] += (point(nodes, one[0]) - point(nodes, one[1])).norm();
+      count[static_cast<std::size_t>(n)] += 1;
+    }
+  Real sum = 0, used = 0;
+  for (std::size_t n = 0; n < length.size(); ++n)
+    if (count[n] > 0)
+      sum += length[n] / count[n], used += 1;
+  return used > 0 ? sum / used : 0;
+}
+
 MeshEdges edges_of(int dimension, std::span<const Real> nodes, std::span<const Index> corners)
 {
   return dimension == 2 ? edges_of_triangles(corners) : edges_of_tetrahedra(nodes, corners);

@@ -18,4 +18,7 @@ struct MeshEdges {
 /// Of the cells of a mesh in `dimension`, which have dimension + 1 `corners` each; `nodes` has 3 numbers a node.  Both lists ascend.
 MeshEdges edges_of(int dimension, std::span<const Real> nodes, std::span<const Index> corners);
 
+/// Mean over the nodes of the mean length of the edges at each [m], as Mesh::node_size has it; arguments as above.
+Real mean_node_size(int dimension, std::span<const Real> nodes, std::span<const Index> corners);
+
 }  // namespace talus

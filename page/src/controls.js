@@ -260,6 +260,14 @@ function make_display_group(run, state) {
         )
       : null,
     run.mesh ? choice('mesh', meshes, {name: 'mesh', change: ({target}) => state.set({mesh: target.value})}) : null,
+    run.ground
+      ? el(
+          'label',
+          {class: 'tick'},
+          el('input', {type: 'checkbox', name: 'ground', change: ({target}) => state.set({ground: target.checked})}),
+          'ground',
+        )
+      : null,
     run.dimension === 3
       ? el(
           'label',
@@ -271,7 +279,7 @@ function make_display_group(run, state) {
   );
   const show = () => {
     const choices = state.get();
-    for (const name of ['size', 'mesh', 'orthographic']) show_value(root, name, choices[name]);
+    for (const name of ['size', 'mesh', 'ground', 'orthographic']) show_value(root, name, choices[name]);
   };
   state.listen(show);
   show();

@@ -54,6 +54,13 @@ function nearest_frame(frames, time) {
   return nearest;
 }
 
+/** When what has been put into the page is on the screen, or soon, where nothing is painted (a page in the background). */
+const painted = () =>
+  new Promise((go_on) => {
+    requestAnimationFrame(() => setTimeout(go_on));
+    setTimeout(go_on, 200);
+  });
+
 async function show(run) {
   const state = make_state();
   const blocks = make_blocks();
@@ -66,18 +73,10 @@ async function show(run) {
   fill('scene-body', (element) => show_scene(element, run.scene, remarks, run.summary?.scene?.set));
   fill('cost-body', (element) => show_cost(element, run));
 
+  // Numbers first: the picture takes the browser's time while its programs are made, seconds where no graphics card helps.
   let viewer = null;
-  await fill('stage', () => {
-    viewer = start_viewer(run, state, blocks);
-    make_keys(run, viewer, viewer ? make_controls(run, viewer, state).save_picture : null);
-  });
-  if (!viewer) place('viewer').classList.add('without');
-
   const frames = run.particles?.frames ?? [];
   const timeline = make_timeline((time) => viewer?.go_to(nearest_frame(frames, time)));
-  viewer?.listen(({frame}) => timeline.set_now(frame.time));
-  await viewer?.ready;
-  if (frames.length && viewer) timeline.set_now(frames[viewer.current()].time);
 
   let columns = null;
   await fill('histories-body', async (element) => {
@@ -112,6 +111,14 @@ async function show(run) {
     if (!element.childElementCount) element.append(el('p', {class: 'empty'}, 'Nothing to measure: no particles were written.'));
   });
 
+  await painted();
+  await fill('stage', () => {
+    viewer = start_viewer(run, state, blocks);
+    make_keys(run, viewer, viewer ? make_controls(run, viewer, state).save_picture : null);
+  });
+  if (!viewer) place('viewer').classList.add('without');
+  viewer?.listen(({frame}) => timeline.set_now(frame.time));
+
   place('zoom-in').addEventListener('click', () => timeline.zoom_by(2));
   place('zoom-out').addEventListener('click', () => timeline.zoom_by(0.5));
   place('zoom-all').addEventListener('click', () => timeline.whole());
@@ -137,6 +144,8 @@ async function show(run) {
     follow(run.live, state.keep);
     go_back();
   }
+  await viewer?.ready;
+  if (frames.length && viewer) timeline.set_now(frames[viewer.current()].time);
   document.documentElement.dataset.ready = 'yes';
 }
 

@@ -3,14 +3,15 @@ import * as THREE from 'three';
 import {make_eye} from './camera.js';
 import {body_pixels, map_pixels} from './colours.js';
 import {value_of} from './decode.js';
+import {contour_step, ground_material} from './ground_shader.js';
 import {map_texture, particle_material} from './particle_shader.js';
 import {make_shade_pass} from './shade_pass.js';
 
 /** Everything that is ever shown, in the coordinates of the run [m]. */
-function bounds_of({particles, mesh, dimension}) {
+function bounds_of({particles, mesh, ground, dimension}) {
   const box = new THREE.Box3();
   const corner = (numbers) => new THREE.Vector3(numbers[0], numbers[1], dimension === 3 ? numbers[2] : 0);
-  for (const part of [...(particles?.frames ?? []), ...(mesh ? [mesh] : [])])
+  for (const part of [...(particles?.frames ?? []), ...(mesh ? [mesh] : []), ...(ground ? [ground] : [])])
     if (part.count) box.expandByPoint(corner(part.low)).expandByPoint(corner(part.high));
   return box.isEmpty() ? new THREE.Box3(new THREE.Vector3(0, 0, 0), new THREE.Vector3(1, 1, 1)) : box;
 }
@@ -39,6 +40,7 @@ export function make_view(canvas, run, moved) {
   points.frustumCulled = false;
   const mark = make_mark(scene);
   const lines = {};
+  let ground = null; // the surface, in 3-D
   scene.add(points);
   const shaded = flat ? null : make_shade_pass(renderer);
   const eye = make_eye(canvas, {
@@ -123,6 +125,10 @@ export function make_view(canvas, run, moved) {
       const normal = new THREE.Vector3(...section.normal);
       u.section.value.set(normal.x, normal.y, normal.z, section.at - normal.dot(origin));
     }
+    if (ground) {
+      ground.material.uniforms.cuts.value = u.cuts.value;
+      ground.material.uniforms.section.value.copy(u.section.value);
+    }
     draw_soon();
   }
 
@@ -143,10 +149,34 @@ export function make_view(canvas, run, moved) {
     draw_soon();
   }
 
+  /** The rigid surface of a mesh of terrain. @param {Float32Array} places as above @param {Uint32Array} triples of nodes */
+  function add_ground(places, triples) {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setAttribute('position', new THREE.BufferAttribute(places, 3));
+    geometry.setIndex(new THREE.BufferAttribute(triples, 1));
+    geometry.computeVertexNormals();
+    const up = eye.around.up;
+    ground = new THREE.Mesh(geometry, ground_material(up, contour_step(places, up)));
+    ground.material.uniforms.origin.value.copy(origin);
+    ground.frustumCulled = false;
+    ground.position.copy(origin).negate();
+    scene.add(ground);
+    take_colours();
+  }
+
+  function show_ground(yes) {
+    if (ground) ground.visible = yes;
+    draw_soon();
+  }
+
   function take_colours() {
     for (const [name, object] of Object.entries(lines)) {
-      object.material.color = css_colour('--line');
-      object.material.opacity = name === 'outline' ? 0.75 : 0.22;
+      object.material.color = css_colour(name === 'rigid' || name === 'layers' ? '--layer' : '--line');
+      object.material.opacity = name === 'cells' ? 0.22 : name === 'outline' ? 0.75 : 1;
+    }
+    if (ground) {
+      ground.material.uniforms.rock.value = css_colour('--rock');
+      ground.material.uniforms.contour.value = css_colour('--contour');
     }
     mark.material.uniforms.colour.value = css_colour('--mark');
     draw_soon();
@@ -208,6 +238,8 @@ export function make_view(canvas, run, moved) {
     set_looks,
     add_lines,
     show_lines,
+    add_ground,
+    show_ground,
     particle_at,
     set_mark,
     count_drawn: () => renderer.info.render.points,

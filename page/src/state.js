@@ -16,6 +16,7 @@ const CHOICES = {
   lowest: ['number', null],
   highest: ['number', null],
   mesh: ['text', 'outline'], // none, outline or cells
+  ground: ['flag', true], // of a mesh of terrain
   size: ['number', 1], // of the particles, times their radius
   orthographic: ['flag', null],
   towards: ['numbers', null], // unit vector from what is looked at to the eye

@@ -19,7 +19,7 @@ function join_values(count, colouring, limiting) {
   return values;
 }
 
-/** Nodes of the mesh as places [m], three numbers each. */
+/** Nodes of the mesh, or of the ground, as places [m], three numbers each. */
 async function mesh_places(mesh, blocks) {
   const axes = await Promise.all([mesh.x, mesh.y, mesh.z].map((block) => (block ? blocks.numbers(block) : null)));
   const places = new Float32Array(3 * mesh.count);
@@ -251,9 +251,26 @@ export function start_viewer(run, state, blocks) {
     const places = await mesh_places(run.mesh, blocks);
     view.add_lines('outline', places, await blocks.numbers(run.mesh.outline));
     if (run.mesh.cells) view.add_lines('cells', places, await blocks.numbers(run.mesh.cells));
-    show_mesh();
+    show_lines();
   }
-  const show_mesh = () => view.show_lines({none: [], outline: ['outline'], cells: ['outline', 'cells']}[state.get().mesh] ?? ['outline']);
+
+  async function load_ground() {
+    if (!run.ground) return;
+    const places = await mesh_places(run.ground, blocks);
+    const rigid = await blocks.numbers(run.ground.rigid);
+    if (run.dimension === 3) view.add_ground(places, rigid);
+    else view.add_lines('rigid', places, rigid);
+    view.add_lines('layers', places, await blocks.numbers(run.ground.layers));
+    show_lines();
+    apply();
+  }
+
+  function show_lines() {
+    const {mesh, ground} = state.get();
+    const of_mesh = {none: [], outline: ['outline'], cells: ['outline', 'cells']}[mesh] ?? ['outline'];
+    view.show_lines(ground ? [...of_mesh, 'rigid', 'layers'] : of_mesh);
+    view.show_ground(ground);
+  }
 
   function restore_eye() {
     const {towards, target, height, orthographic} = state.get();
@@ -286,7 +303,7 @@ export function start_viewer(run, state, blocks) {
     const any = (...names) => names.some((name) => changed.has(name));
     if (any('frame', 'field', 'only') && !playing) load();
     else if (any('map', 'range', 'from', 'to', 'section', 'at', 'normal', 'flip', 'lowest', 'highest', 'size')) apply();
-    if (any('mesh')) show_mesh();
+    if (any('mesh', 'ground')) show_lines();
     if (any('particle')) show_picked();
     if (any('orthographic')) {
       view.eye.set_orthographic(choices.orthographic ?? run.dimension === 2);
@@ -305,6 +322,9 @@ export function start_viewer(run, state, blocks) {
   restore_eye();
   load_mesh().catch((error) => {
     count_line.textContent = `The mesh cannot be shown: ${error.message}`;
+  });
+  load_ground().catch((error) => {
+    count_line.textContent = `The ground cannot be shown: ${error.message}`;
   });
   const ready = load();
   if (!particles) count_line.textContent = run.live ? 'no particles so far, only the mesh' : 'no particles were written, only the mesh';

@@ -401,6 +401,58 @@ async function test_solid_run(browser, file) {
   await close();
 }
 
+/** The ground of a mesh of terrain: shaded, cut with the particles, hidden on demand. */
+async function test_ground(browser, file) {
+  const {page, complaints, requests, close} = await open(browser, file);
+  await bare(page);
+  const count = async () => {
+    await settle(page);
+    const {data} = await pixels(page, VIEW);
+    let rock = 0,
+      particles = 0;
+    for (let i = 0; i < data.length; i += 4) {
+      const [r, g, b] = [data[i], data[i + 1], data[i + 2]];
+      if (r >= g && g > b && r - b >= 8 && r - b <= 40 && r < 240) ++rock;
+      if (Math.max(r, g, b) - Math.min(r, g, b) > 60) ++particles;
+    }
+    return {rock, particles};
+  };
+  const whole = await count();
+  assert.ok(whole.rock > 10000, `the ground is drawn: ${whole.rock} pixels`);
+  assert.ok(whole.particles > 1000, 'and particles on it');
+  await set(page, 'section', 'x');
+  await set(page, 'at', 6);
+  const cut = await count();
+  assert.ok(cut.rock < 0.75 * whole.rock, `a section cuts it, too: ${cut.rock} of ${whole.rock} pixels`);
+  await set(page, 'section', 'none');
+  await page.locator('[name="ground"]').uncheck();
+  const without = await count();
+  assert.ok(without.rock < 0.02 * whole.rock, `and it can be hidden: ${without.rock} pixels are left`);
+  assert.ok(whole.particles > 0.95 * without.particles, 'it hid nothing that lies on it');
+  assert.match(await page.evaluate(() => location.hash), /ground=no/);
+  assert.deepEqual([complaints, requests], [[], []]);
+  await close();
+}
+
+/** Where drawing takes long (software, a large run) the numbers do not wait for it. */
+async function test_numbers_first(browser, file) {
+  const {page, close} = await open(browser, file, {
+    before: () => {
+      const get = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        if (/webgl/.test(kind) && window.plots_before_the_picture === undefined)
+          window.plots_before_the_picture = ['histories', 'balances', 'runout'].map(
+            (part) => document.querySelectorAll(`#${part} .plot canvas`).length,
+          );
+        return get.call(this, kind, ...rest);
+      };
+    },
+  });
+  const [histories, balances, runout] = await page.evaluate(() => window.plots_before_the_picture);
+  assert.ok(histories >= 3 && balances >= 1 && runout >= 1, `plots before the picture: ${[histories, balances, runout]}`);
+  await close();
+}
+
 /** Nothing to show is said in words; what cannot be read is, too. */
 async function test_words(browser, at, template) {
   const look = async (file, selector, pattern, options) => {
@@ -527,10 +579,12 @@ try {
   } else {
     const template = readFileSync(name, 'utf8');
     const at = (sample) => join(folder, `${sample}.html`);
-    const samples = Object.fromEntries(['column', 'block', 'failed', 'bare'].map((sample) => [sample, SAMPLES[sample]()]));
+    const samples = Object.fromEntries(['column', 'block', 'valley', 'failed', 'bare'].map((sample) => [sample, SAMPLES[sample]()]));
     for (const [sample, {run, texts}] of Object.entries(samples)) writeFileSync(at(sample), fill(template, run, texts));
     const others = async () => {
       await timed('a run in three dimensions', () => test_solid_run(browser, at('block')));
+      await timed('ground', () => test_ground(browser, at('valley')));
+      await timed('numbers first', () => test_numbers_first(browser, at('block')));
       await timed('words', () => test_words(browser, at, template));
       await timed('a live page', () => test_live(browser, template));
     };

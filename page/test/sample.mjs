@@ -1,4 +1,4 @@
-// Reports with made-up runs, written as talus report writes them. Usage: node sample.mjs TEMPLATE OUT [column|block|million|failed|bare]
+// Reports with made-up runs, written as talus report writes them. Usage: node sample.mjs TEMPLATE OUT [column|block|valley|million|failed|bare]
 import {readFileSync, writeFileSync} from 'node:fs';
 import {fileURLToPath} from 'node:url';
 import {deflateSync} from 'node:zlib';
@@ -151,6 +151,39 @@ function pack_mesh(packer, low, high, cells) {
     z: z ?? null,
     outline: packer.pack(pairs, 'u32', {delta: true, planes: true}),
     cells: all.length ? packer.pack(all, 'u32', {delta: true, planes: true}) : null,
+  };
+}
+
+/** A rigid plane under the block, in squares of a metre, and the line around a part of it. @param {(x: number) => number} height */
+function pack_ground(packer, height) {
+  const [nx, ny] = [12, 4];
+  const nodes = [],
+    triples = [];
+  const node = (i, j) => j * (nx + 1) + i;
+  for (let j = 0; j <= ny; ++j)
+    for (let i = 0; i <= nx; ++i) {
+      nodes.push([i, j - 1, height(i)]);
+      if (i < nx && j < ny) triples.push(node(i, j), node(i + 1, j), node(i, j + 1), node(i + 1, j), node(i + 1, j + 1), node(i, j + 1));
+    }
+  const low = [0, -1, height(nx)],
+    high = [nx, ny - 1, height(0)];
+  const [x, y, z] = low.map((_, axis) =>
+    packer.positions(
+      nodes.map((place) => place[axis]),
+      low[axis],
+      high[axis],
+    ),
+  );
+  const layers = [node(0, 1), node(3, 1), node(3, 1), node(3, 3), node(3, 3), node(0, 3), node(0, 3), node(0, 1)];
+  return {
+    count: nodes.length,
+    low,
+    high,
+    x,
+    y,
+    z,
+    rigid: packer.pack(triples, 'u32', {delta: true, planes: true}),
+    layers: packer.pack(layers, 'u32', {delta: true, planes: true}),
   };
 }
 
@@ -402,7 +435,7 @@ export function collapsing_column(count = 6000) {
 }
 
 /** A block that slides down a plane and breaks in two. */
-export function sliding_block(across = 15, frames = 9) {
+export function sliding_block(across = 15, frames = 9, on_ground = false) {
   const packer = make_packer();
   const random = make_random(2);
   const [lx, ly, lz] = [3, 2, 1];
@@ -456,6 +489,7 @@ export function sliding_block(across = 15, frames = 9) {
     notes: [],
     particles,
     mesh: pack_mesh(packer, [0, 0, 0], [12, 2, 6]),
+    ground: on_ground ? pack_ground(packer, (x) => 4.6 - slope * x) : null,
     history,
     run_out: pack_run_out(packer, times),
     metrics: METRICS,
@@ -499,6 +533,7 @@ export function bare_run() {
 export const SAMPLES = {
   column: collapsing_column,
   block: sliding_block,
+  valley: () => sliding_block(8, 3, true),
   million: () => sliding_block(55, 3),
   failed: failed_run,
   bare: bare_run,

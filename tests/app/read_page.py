@@ -71,6 +71,14 @@ def told(page):
         yield "radius", particles["radius"]
     yield "mesh", mesh and (f"{mesh['count']} nodes, {len(page.block(mesh['outline'])) // 2} outline, "
                             f"{len(page.block(mesh['cells'])) // 2 if mesh['cells'] else 0} edges")
+    if ground := run["ground"]:
+        corners = page.block(ground["rigid"])
+        assert max(corners) < ground["count"]
+        heights = page.places(ground)[2 if run["dimension"] == 3 else 1]
+        yield "ground", (f"{ground['count']} nodes, {len(corners) // run['dimension']} facets, {len(page.block(ground['layers'])) // 2} layer edges, "
+                         f"{min(heights):.6g} to {max(heights):.6g} m")
+    else:
+        yield "ground", None
     for name in ("history", "run_out"):
         if table := run[name]:
             values, rows = page.block(table["values"]), table["rows"]

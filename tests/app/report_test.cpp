@@ -10,6 +10,7 @@
 #include "app/report_plan.hpp"
 #include "app/watch_drawing.hpp"
 #include "core/error.hpp"
+#include "io/summary_json.hpp"
 #include "io/vtk.hpp"
 #include "tests/app/program.hpp"
 
@@ -171,6 +172,49 @@ TEST_F(Report, ParticlesOfThePageAreThoseOfTheRun)
   EXPECT_THAT(told_of_page, ContainsRegex("run-out, all bodies.largest displacement \\[m\\] = 0.2"));
   EXPECT_THAT(told_of_page, ContainsRegex("fronts of the history.toe \\[m\\] = 2.6"));
   EXPECT_THAT(told_of_page, ContainsRegex("run_out.small: crest \\[m\\] = 1.[0-9]+ to 1.[0-9]+ in "));
+}
+
+/// A block that flies in a parabola.
+std::string thrown_block(const std::string& runout)
+{
+  return "title: Thrown block\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [6, 4], cells: [24, 16]}}\n"
+         "materials:\n  - {name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}\n"
+         "  - {name: foam, law: neo_hookean, density: 100, youngs_modulus: 1.0e4, poisson_ratio: 0.3}\n"
+         "bodies:\n  - {name: block, material: rubber, shape: {type: box, low: [0.5, 2.5], high: [1.5, 3.5]}, particles_per_cell: 12, "
+         "velocity: [4, 0]}\n"
+         "  - {name: chip, material: foam, shape: {type: box, low: [2.25, 3.25], high: [2.5, 3.5]}, particles_per_cell: 3, velocity: [6, "
+         "0]}\n"
+         "time: {end: 0.5}\nloads: [{type: gravity, acceleration: [0, -10]}]\n"
+         "outputs:\n  particles: {every: 0.1, fields: [displacement]}\n" +
+         runout;
+}
+
+Real number_in(const std::string& told, const std::string& key)
+{
+  const auto at = told.find(key + " = ");
+  EXPECT_NE(at, std::string::npos) << key << " in\n" << told;
+  return at == std::string::npos ? std::numeric_limits<Real>::quiet_NaN() : std::stod(told.substr(at + key.size() + 3));
+}
+
+TEST_F(Report, HeightOverLengthIsTheNumberOfTheRunAndNeedsNoRunOutInTheScene)
+{
+  write("looked.yaml", thrown_block("  runout: {every: 0.05}\n"));
+  write("plain.yaml", thrown_block(""));
+  ASSERT_EQ(talus("run looked.yaml --quiet --out looked").code, 0);
+  ASSERT_EQ(talus("run plain.yaml --quiet --out plain").code, 0);
+  ASSERT_EQ(report("looked").code, 0);
+  ASSERT_EQ(report("plain").code, 0);
+  const auto numbers = read_summary(folder_ / "looked/summary.json").numbers;
+  const std::string looked = told("looked/report.html'"), plain = told("plain/report.html'");
+  for (const auto& [of_run, of_page] : std::vector<std::pair<std::string, std::string>>{
+           {"H", "height H [m]"}, {"L", "length L [m]"}, {"H/L", "H/L []"}, {"angle_of_reach", "angle of reach [deg]"}}) {
+    const Real expected = find_number(numbers, "runout." + of_run)->value;
+    EXPECT_NEAR(number_in(looked, "run-out, all bodies." + of_page), expected, 1e-5 * expected);
+    EXPECT_NEAR(number_in(plain, "run-out, all bodies." + of_page), expected, 1e-4 * expected) << "by the same rule, from particle files";
+  }
+  const Real length = find_number(numbers, "runout.L")->value;
+  EXPECT_LT(length, 3.2) << "the chip is two metres ahead, but less than a hundredth of the mass";
+  EXPECT_GT(number_in(plain, "run-out, chip.length L [m]"), 2.9);
 }
 
 TEST_F(Report, ASmallPageHasFewerFramesOrASampleAndSaysSo)

@@ -29,6 +29,15 @@ TEST(Reach, GoesFromTheHighestPlaceToTheFurthest)
   EXPECT_FALSE(reach_of({}, {}, {}, Vec3::UnitZ(), 1));
 }
 
+TEST(Reach, ASpeedOfTheBulkLeavesOutTheFastestPartOfTheMass)
+{
+  const std::vector<Real> speed{1, 12, 3, 2}, mass{50, 0.5, 1, 48.5};
+  EXPECT_EQ(not_exceeded_by(speed, mass, 1), 12);
+  EXPECT_EQ(not_exceeded_by(speed, mass, 0.99), 3) << "half a percent is faster";
+  EXPECT_EQ(not_exceeded_by(speed, mass, 0.98), 2) << "one and a half percent are";
+  EXPECT_EQ(not_exceeded_by({}, {}, 0.99), 0);
+}
+
 class RunOut : public Program {
  protected:
   HistoryTable table(const std::string& file) const { return read_history(folder_ / file); }
@@ -60,6 +69,8 @@ TEST_F(RunOut, OfAFlyingBlockIsThatOfItsMotion)
   EXPECT_NEAR(last(rows, "centre_H"), 0, 1e-9);
   EXPECT_NEAR(last(rows, "centre_x"), 2.5, 1e-9);
   EXPECT_NEAR(last(rows, "largest_speed"), 2, 1e-9);
+  EXPECT_NEAR(last(rows, "mean_speed"), 2, 1e-9);
+  EXPECT_NEAR(last(rows, "bulk_speed"), 2, 1e-9);
   EXPECT_NEAR(last(rows, "kinetic"), 2000, 1e-6);
   EXPECT_NEAR(last(rows, "front_x") - first(rows, "front_x"), 2, 0.5) << "another particle may be the furthest";
   EXPECT_GE(rows.rows(), 15U);
@@ -113,6 +124,36 @@ TEST_F(RunOut, OfAFlyingBlockIsThatOfItsMotion)
   EXPECT_THAT(misspelt.err, HasSubstr("thickness_max"));
   ASSERT_EQ(talus("run scene.yaml --out out --quiet --set time.end=0.01").code, 0);
   EXPECT_FALSE(exists("out/maps/thickness_0002.tif")) << "of the run before";
+}
+
+/// A block glides to a stop on a rough floor, a light one flies on above it: the slide is at rest although something is fast.
+TEST_F(RunOut, IsAtRestWhenTheMassIsAndNotWhenItsEnergyIsSmall)
+{
+  write("scene.yaml",
+        "title: Stop\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [6, 3], cells: [24, 12]}}\n"
+        "materials:\n  - {name: stone, law: linear_elastic, density: 2000, youngs_modulus: 1.0e6, poisson_ratio: 0.3}\n"
+        "  - {name: foam, law: linear_elastic, density: 2, youngs_modulus: 1.0e3, poisson_ratio: 0.3}\n"
+        "bodies:\n  - {name: block, material: stone, shape: {type: box, low: [0, 0], high: [1, 0.5]}, velocity: [2, 0]}\n"
+        "  - {name: feather, material: foam, shape: {type: box, low: [0.5, 2.5], high: [0.75, 2.75]}, velocity: [4, 1]}\n"
+        "loads: [{type: gravity, acceleration: [0, -5]}]\nboundaries: [{type: friction, on: y_min, coefficient: 0.5}]\n"
+        "on_exit: delete\ntime: {end: 1.1}\noutputs: {runout: {every: 0.02, cell: 0.2, moved: 0.01}}\n");
+  const Outcome outcome = talus("run scene.yaml --out out");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const HistoryTable rows = table("out/runout.csv");
+  const auto time = rows["time"], mean = rows["mean_speed"];
+  ASSERT_TRUE(time && mean);
+  Real since = -1;
+  for (std::size_t i = 0; i < time->size(); ++i)
+    if ((*mean)[i] * (*time)[i] >= 0.2)
+      since = -1;
+    else if (since < 0)
+      since = (*time)[i];
+  const Real stopped = find_number(read_summary(folder_ / "out/summary.json").numbers, "runout.stopped")->value;
+  EXPECT_NEAR(stopped, since, 1e-9);
+  EXPECT_NEAR(stopped, 0.68, 0.06) << "(2 - 0.5 5 t) t = 0.2";
+  EXPECT_GT(last(rows, "largest_speed"), 4) << "of the feather";
+  EXPECT_THAT(outcome.out, HasSubstr("at rest since t = "));
+  EXPECT_THAT(outcome.out, HasSubstr("1 % of the mass faster than "));
 }
 
 /// Two blocks in a plane: one of 1 m/s, the other of half that, which counts as ground.

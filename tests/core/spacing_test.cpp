@@ -1,0 +1,54 @@
+// Disks around points: wide enough to close holes between neighbours, no wider, and voids stay open.
+#include "core/spacing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace talus::spacing_test {
+
+namespace {
+
+std::vector<Real> lattice(int n, Real distance)
+{
+  std::vector<Real> x;
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      x.insert(x.end(), {i * distance, j * distance, 0});
+  return x;
+}
+
+bool is_covered(Real x, Real y, const std::vector<Real>& points, const std::vector<Real>& radii)
+{
+  for (std::size_t p = 0; p < radii.size(); ++p)
+    if (std::hypot(points[3 * p] - x, points[3 * p + 1] - y) <= radii[p])
+      return true;
+  return false;
+}
+
+TEST(ClosingRadii, HolesBetweenNeighboursAreClosed)
+{
+  const std::vector<Real> points = lattice(8, 1);
+  const std::vector<Real> radii = closing_radii(points, 0.6);  // the middle of each square is 0.707 away
+  for (Real x = 0; x <= 7; x += 0.0371)
+    for (Real y = 0; y <= 7; y += 0.0371)
+      ASSERT_TRUE(is_covered(x, y, points, radii)) << x << " " << y;
+  EXPECT_LT(*std::max_element(radii.begin(), radii.end()), 0.708 + 0.6 / 6);
+}
+
+TEST(ClosingRadii, DisksThatTouchStayAsTheyAreAndVoidsStayOpen)
+{
+  const std::vector<Real> dense = lattice(8, 1);
+  EXPECT_EQ(closing_radii(dense, 0.8), std::vector<Real>(64, 0.8));
+  std::vector<Real> ring;
+  for (int k = 0; k < 24; ++k)
+    ring.insert(ring.end(), {3 * std::cos(k * M_PI / 12), 3 * std::sin(k * M_PI / 12), 0});
+  EXPECT_EQ(closing_radii(ring, 0.5), std::vector<Real>(24, 0.5)) << "its inside is five radii wide";
+  EXPECT_EQ(closing_radii(lattice(2, 10), 0.5), std::vector<Real>(4, 0.5)) << "apart";
+  EXPECT_TRUE(closing_radii({}, 1).empty());
+}
+
+}  // namespace
+
+}  // namespace talus::spacing_test
