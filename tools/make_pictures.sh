@@ -18,6 +18,7 @@ docs() {
   build/talus map runs/landslide_maps --only thickness_max --size 900x580
   cp runs/landslide_maps/pictures/section_path.png docs/images/runout_section.png
   cp runs/landslide_maps/pictures/map_thickness_max.png docs/images/runout_thickness.png
+  build/talus render runs/landslide_maps --size 900x640 --frames 8 --range 0 25 --out docs/images/pictures_ground.png
   render slope_failure_3d --view iso --clip z 5 --outline start --out docs/images/pictures_clip.png
 }
 
