@@ -197,4 +197,12 @@ Real evaluate(const std::string& formula, std::span<const NamedNumber> names)
   return value;
 }
 
+std::vector<std::string> functions_of_formulas()
+{
+  std::vector<std::string> names;
+  for (const auto& [name, function] : mu::Parser().GetFunDef())
+    names.push_back(name);
+  return names;
+}
+
 }  // namespace talus

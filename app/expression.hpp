@@ -38,6 +38,9 @@ struct NamedNumber {
 /// not finite.
 Real evaluate(const std::string& formula, std::span<const NamedNumber> names);
 
+/// Names of the functions that formulas know.
+std::vector<std::string> functions_of_formulas();
+
 /// Derivatives of `formula` along x, y, z at each place by central differences; `sizes` [m] are lengths over which the formula is meant
 /// to be resolved there, such as those of cells.  They err by about eps^(2/3) of value / size; what does not depend on a coordinate has
 /// the derivative 0 along it to the bit.  Beside a jump, or the end of where the formula is finite, the derivative is that of the

@@ -8,6 +8,8 @@
 #include <optional>
 #include <system_error>
 
+#include "io/key_words.hpp"
+
 namespace talus {
 
 namespace {
@@ -25,10 +27,22 @@ int count_characters(std::string_view text)
 
 }  // namespace
 
+const Node::Key* Node::find_key(std::string_view word) const noexcept
+{
+  const auto at = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.text == word; });
+  return at == keys.end() ? nullptr : &*at;
+}
+
+std::string_view Node::word_for(std::string_view key) const noexcept
+{
+  const std::string_view other = other_word_for(key);
+  return !other.empty() && find_key(key) == nullptr && find_key(other) != nullptr ? other : key;
+}
+
 const Node* Node::find(std::string_view key) const noexcept
 {
-  const auto at = std::find_if(keys.begin(), keys.end(), [&](const Key& k) { return k.text == key; });
-  return at == keys.end() ? nullptr : &items[static_cast<std::size_t>(at - keys.begin())];
+  const Key* const there = find_key(word_for(key));
+  return there == nullptr ? nullptr : &items[static_cast<std::size_t>(there - keys.data())];
 }
 
 std::string::const_iterator first_control(const std::string& text)
@@ -167,9 +181,10 @@ std::optional<std::vector<Step>> steps_of(std::string_view path)
   return expects_key ? std::nullopt : std::optional(std::move(steps));
 }
 
-std::string extended(const std::string& path, const Step& step, const Node& node)
+/// `in`: the value that the step leads into, and `node` the one to which it leads.
+std::string extended(const std::string& path, const Step& step, const Node& in, const Node& node)
 {
-  return step.number ? path_to(path, *step.number, node) : path_to(path, step.key);
+  return step.number ? path_to(path, *step.number, node) : path_to(path, in.word_for(step.key));
 }
 
 }  // namespace
@@ -195,8 +210,9 @@ void set_value(Document& document, std::string_view path, Node value, const Plac
       node->keys.push_back({std::string(step.key), origin});
       node->items.push_back({.place = origin});
     }
+    const Node& in = *node;
     node = step.number ? &node->items[*step.number] : const_cast<Node*>(node->find(step.key));
-    shown = extended(shown, step, *node);
+    shown = extended(shown, step, in, *node);
   }
   *node = std::move(value);
 }
@@ -212,7 +228,7 @@ Found find_nearest(const Node& root, std::string_view path)
       found.whole = false;
       break;
     }
-    found = {next, extended(found.path, step, *next)};
+    found = {next, extended(found.path, step, *found.node, *next)};
   }
   return found;
 }

@@ -45,8 +45,12 @@ struct Node {
   std::vector<Node> items{};
   std::vector<Key> keys{};
 
-  /// The value of a key, or nothing if this is no mapping or has no such key.
+  /// The value of a key, by either of its words, or nothing if this is no mapping or has no such key.
   const Node* find(std::string_view key) const noexcept;
+  /// A key as it is written; nullptr: there is none.
+  const Key* find_key(std::string_view word) const noexcept;
+  /// The word for the key that stands here; where neither does, that which is given.
+  std::string_view word_for(std::string_view key) const noexcept;
 };
 
 /// The first character of a text that does not print, such as a line end: it would stand in messages, tables and names of columns, where

@@ -2,19 +2,41 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "io/key_words.hpp"
+
 namespace talus {
 
 const Node* Mapping::find(std::string_view key)
 {
   known_.emplace_back(key);
+  if (const std::string_view other = other_word_for(key); !other.empty()) {
+    known_.emplace_back(other);
+    if (const Node::Key* one = node_.find_key(key), *two = node_.find_key(other); one != nullptr && two != nullptr)
+      problems_.add(two->place, path_, fmt::format("\"{}\" and \"{}\" are two words for the same key: give one of them", key, other));
+  }
   return node_.find(key);
 }
 
 const Node* Mapping::find_required(std::string_view key, std::string_view unit)
 {
   const Node* value = find(key);
-  if (value == nullptr)
-    complain(fmt::format("missing key \"{}\"{}", key, unit == "-" ? "" : fmt::format(" [{}]", unit)));
+  if (value != nullptr)
+    return value;
+  const auto changed = std::find_if(node_.keys.begin(), node_.keys.end(), [](const Node::Key& there) { return was_on(there.text); });
+  if (key == "on" && changed != node_.keys.end()) {
+    known_.push_back(changed->text);
+    problems_.add(
+        changed->place, path_,
+        fmt::format("\"{}\" is what a reader of YAML 1.1, such as PyYAML, makes of the key on: write \"where\", which every reader "
+                    "leaves as it is, or \"on\"",
+                    changed->text));
+    return value;
+  }
+  const std::string_view other = other_word_for(key);
+  complain(fmt::format("missing key \"{}\"{}{}", key, other.empty() ? "" : fmt::format(" (or \"{}\")", other),
+                       unit == "-" ? "" : fmt::format(" [{}]", unit)));
   return value;
 }
 
@@ -22,7 +44,9 @@ void Mapping::close()
 {
   for (const auto& [key, place] : node_.keys)
     if (!any_key_ && std::find(known_.begin(), known_.end(), key) == known_.end())
-      problems_.add(place, path_, fmt::format("unknown key \"{}\"{}", key, suggestion(key, known_)));
+      problems_.add(place, path_,
+                    not_computed(key).empty() ? fmt::format("unknown key \"{}\"{}", key, suggestion(key, known_))
+                                              : fmt::format("unknown key \"{}\": {}", key, not_computed(key)));
   if (problems_.size() > before_)
     return;
   std::vector<std::string> broken;

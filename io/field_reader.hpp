@@ -33,7 +33,8 @@ class Mapping {
   {}
 
   Where where() const { return to_where(node_.place, path_); }
-  std::string path_of(std::string_view key) const { return path_to(path_, key); }
+  /// With the word for the key that stands there.
+  std::string path_of(std::string_view key) const { return path_to(path_, node_.word_for(key)); }
   void complain(std::string message) { problems_.add(node_.place, path_, std::move(message)); }
 
   /// The value of a key, or nothing; the key is known from now on.

@@ -16,6 +16,8 @@
 #include "core/words.hpp"
 #include "io/field_reader.hpp"
 #include "io/field_words.hpp"
+#include "io/formula_words.hpp"
+#include "io/key_words.hpp"
 #include "io/scene.hpp"
 #include "kernels/kernels.hpp"
 
@@ -193,7 +195,7 @@ class Manual {
             HasFields<Value> ? "" : std::string(field.unit),
             to_string(field.range) == "any" ? "" : to_string(field.range),
             need(field.need, default_of(defaults.*field.member, field.range)),
-            std::string(field.meaning)};
+            meaning_of(field)};
   }
   template <class T, class Value>
   Row row(const Choice<T, Value>& field, const std::type_identity_t<T>& defaults, const std::string&)
@@ -226,6 +228,12 @@ class Manual {
             std::string(field.meaning)};
   }
 
+  template <class Field>
+  static std::string meaning_of(const Field& field)
+  {
+    const std::string_view other = other_word_for(field.key);
+    return std::string(field.meaning) + (other.empty() ? "" : fmt::format("; \"{}\" is another word for this key", other));
+  }
   static std::string need(Need needed, const std::string& fallback) { return needed == Need::required ? "required" : fallback; }
   std::string type(std::type_identity<Real>, const std::string&) { return "number"; }
   std::string type(std::type_identity<Index>, const std::string&) { return "whole number"; }
@@ -268,8 +276,35 @@ What a scene file can say. This page is written by `talus manual` out of the lis
 * A table is a list of `[time, value]` with growing times: linear in between, constant outside.
 * Paths of files are relative to the scene.
 * Anchors, aliases, merge keys and tags of YAML are not read.
+* `where` is another word for the key `on`, which programs that read YAML 1.1 (PyYAML) take for the switch `true`.
 * `--set key=value` on the command line replaces or adds a value: `--set time.end=2 --set 'bodies[0].particles_per_cell=6'`.
 )";
+
+constexpr std::string_view about_formulas =
+    R"md(Where a key takes a formula (`velocity` of a body, `acceleration` of a load of type `body_force`), it is written in quotes: `"0.1 * sin(pi * x / 50)"`.
+
+* It may name the place `x`, `y`, `z` [m], the time `t` [s], which is 0 in what begins with the scene, and the constants `pi` and `_e`; a template of `talus new` its own answers instead.
+* Operators, the weakest first: `condition ? a : b`, `||`, `&&`, comparisons `==` `!=` `<` `>` `<=` `>=` (1 where they hold, else 0), `+` `-`, `*` `/`, `^`. Powers are taken from the right, and before a sign: `-2^2` is -4.
+* Decimals have a point. Nothing can be assigned. A value that is not finite is an error that names the place.
+)md";
+
+/// What formulas may use, in Markdown.
+std::string formula_manual()
+{
+  std::vector<std::array<std::string, 2>> rows;
+  for (const FormulaFunction& function : formula_functions)
+    rows.push_back({code(function.call), std::string(function.meaning)});
+  return std::string(about_formulas) + "\n" + to_table({"function", "value"}, rows);
+}
+
+/// As `talus manual` says it of a word: of a function, or of formulas as a whole.
+std::string manual_of_formula(std::string_view word)
+{
+  for (const FormulaFunction& function : formula_functions)
+    if (word == function.name)
+      return fmt::format("{}\n  {}\n  function of formulas; all of them: talus manual formula\n", function.call, function.meaning);
+  return word == "formula" || word == "formulas" ? formula_manual() : "";
+}
 
 std::vector<std::array<std::string_view, 2>> kernel_summaries()
 {
@@ -287,7 +322,7 @@ std::string scene_manual()
     after_first += fmt::format("* `{}`: {}\n", kernel[0], kernel[1]);
   for (const ManualPart& part : Manual::write<Scene>())
     text += to_markdown(part) + std::exchange(after_first, "");
-  return text;
+  return text + "\n## formulas\n\n" + formula_manual();
 }
 
 namespace {
@@ -493,6 +528,7 @@ std::vector<std::string> words_of_manual(const std::vector<ManualPart>& manual)
   }
   for (const auto& kernel : kernel_summaries())
     words.emplace(kernel.front());
+  words.emplace("formula");
   return {words.begin(), words.end()};
 }
 
@@ -503,7 +539,12 @@ std::string manual_of(const std::string& word)
   const auto manual = Manual::write<Scene>();
   if (std::string text = Entry(manual, word).text(); !text.empty())
     return text;
+  if (std::string text = manual_of_formula(word); !text.empty())
+    return text;
   const std::string asked = words_of_path(word).back();
+  if (const std::string_view other = other_word_for(asked); !other.empty())
+    if (std::string text = Entry(manual, word.substr(0, word.size() - asked.size()) + std::string(other)).text(); !text.empty())
+      return text;
   const auto near = closest_match(asked, words_of_manual(manual));
   throw Error(fmt::format("the manual knows no \"{}\"{}", word,
                           !near            ? "; talus manual prints all of it"

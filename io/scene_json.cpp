@@ -12,6 +12,7 @@
 
 #include "io/field_reader.hpp"
 #include "io/field_words.hpp"
+#include "io/key_words.hpp"
 #include "io/manual.hpp"
 #include "io/scene_rules.hpp"
 #include "kernels/kernels.hpp"
@@ -202,9 +203,14 @@ template <class Field>
 void add_key(Json& schema, const Field& field)
 {
   auto [key, needed] = key_of(field);
+  const std::string_view other = other_word_for(field.key);
+  if (!other.empty())
+    schema["properties"][std::string(other)] = key;
   schema["properties"][std::string(field.key)] = std::move(key);
-  if (needed)
+  if (needed && other.empty())
     schema["required"].push_back(field.key);
+  else if (needed)
+    schema["oneOf"] = {{{"required", {field.key}}}, {{"required", {other}}}};
 }
 template <class T, class Value>
 void add_key(Json& schema, const Alternative<T, Value>& field)

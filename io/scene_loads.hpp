@@ -39,7 +39,8 @@ struct BodyForceSpec {
   {
     return std::tuple{
         required("acceleration", &BodyForceSpec::acceleration, any, "m/s^2",
-                 "force per mass: one number or formula of x, y, z and the time t per dimension, such as \"3 * sin(pi * x) * cos(8 * t)\""),
+                 "force per mass: one number or formula of x, y, z and the time t per dimension, such as \"3 * sin(pi * x) * cos(8 * t)\": "
+                 "see formulas"),
         optional_choice("place", &BodyForceSpec::place,
                         "x, y, z of a particle are where it is now or where it was at the start (for manufactured solutions)")};
   }

@@ -10,6 +10,8 @@
 #include "app/recorder.hpp"
 #include "app/results.hpp"
 #include "core/parallel.hpp"
+#include "io/formula_words.hpp"
+#include "io/manual.hpp"
 
 namespace talus::parts_test {
 
@@ -60,6 +62,36 @@ TEST(Expression, RefusesWhatIsNoFormula)
   for (const char* wrong : {"", "2 +", "velocity", "sin(", "1 / x", "sqrt(x - 1)"})
     EXPECT_THROW(evaluate(wrong, places), std::invalid_argument) << wrong;
   EXPECT_THROW(evaluate("2 +", std::span<const Vec3>{}), std::invalid_argument) << "even where there is nothing to evaluate";
+}
+
+TEST(Formulas, TheManualHasTheFunctionsThatThereAre)
+{
+  std::vector<std::string> told;
+  for (const FormulaFunction& function : formula_functions)
+    told.emplace_back(function.name);
+  EXPECT_THAT(told, testing::UnorderedElementsAreArray(functions_of_formulas()));
+  EXPECT_THAT(manual_of("atan2"), testing::HasSubstr("atan2(y, x)"));
+  EXPECT_THAT(manual_of("formula"), testing::HasSubstr("rint(a)"));
+}
+
+TEST(Formulas, AreWorthWhatTheManualSays)
+{
+  const std::vector<Vec3> here{Vec3(2, 3, 4)};
+  const auto value = [&](const std::string& formula) { return evaluate(formula, here).at(0); };
+  EXPECT_NEAR(value("sin(1)^2 + cos(1)^2 + tan(1) - sin(1) / cos(1)"), 1, 1e-14);
+  EXPECT_NEAR(value("asin(sin(0.3)) + acos(cos(0.4)) + atan(tan(0.5))"), 1.2, 1e-14);
+  EXPECT_NEAR(value("atan2(1, -1)"), 3 * std::numbers::pi / 4, 1e-14) << "y first";
+  EXPECT_NEAR(value("asinh(sinh(0.3)) + acosh(cosh(0.4)) + atanh(tanh(0.5))"), 1.2, 1e-14);
+  EXPECT_NEAR(value("ln(exp(2)) + log(_e) + log2(8) + log10(100)"), 8, 1e-14);
+  EXPECT_EQ(value("sqrt(9) + abs(-4) + sign(-7) + sign(0)"), 6);
+  EXPECT_EQ(value("rint(2.4)"), 2);
+  EXPECT_EQ(value("rint(2.5)"), 3);
+  EXPECT_EQ(value("rint(-2.5)"), -2);
+  EXPECT_EQ(value("min(x, y, z) + 10 * max(x, y, z) + 100 * sum(x, y, z) + 1000 * avg(x, y, z)"), 2 + 40 + 900 + 3000);
+  EXPECT_EQ(value("-2^2"), -4);
+  EXPECT_EQ(value("2^3^2"), 512);
+  EXPECT_EQ(value("x < y && y <= z || 0 ? 5 : 6"), 5);
+  EXPECT_EQ(value("(x == 2) + (x != 2) + (z >= 4) + (z > 4)"), 2);
 }
 
 TEST(Expression, GradientOfALinearFieldIsExactToRoundOff)
