@@ -1,11 +1,15 @@
 // talus check, and talus run --dry-run
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "app/commands.hpp"
 #include "app/duration.hpp"
 #include "app/quick.hpp"
+#include "app/rest_time.hpp"
 #include "app/threads.hpp"
 #include "app/trial.hpp"
+#include "app/upright.hpp"
 #include "app/water.hpp"
 #include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
@@ -20,8 +24,43 @@ constexpr Real megabyte = 1e6, million = 1e6;
 /// Time of a whole run over that of as many steps at its start: particles that get faster ask for shorter steps, those that rest for less work.
 /// Of four of scenes/ it was 1.1 to 2.0, on a machine with other work.
 constexpr Real quicker_steps = 0.8, slower_steps = 2.1;
-/// Share of its time after which a stage that seeks rest may have found it.
-constexpr Real soonest_rest = 0.1;
+
+/// How many steps; two numbers where stages end at rest.
+struct StepRange {
+  std::int64_t least = 0, most = 0;
+  StepRange& operator+=(const StepRange& other) noexcept
+  {
+    least += other.least, most += other.most;
+    return *this;
+  }
+  Real middle() const noexcept { return static_cast<Real>(least + most) / 2; }
+};
+
+std::int64_t steps_of(Real time, Real dt) { return static_cast<std::int64_t>(std::ceil(time / dt)); }
+StepRange steps_of(const RestTime& time, Real dt) { return {steps_of(time.soonest, dt), steps_of(time.latest, dt)}; }
+
+/// "12" or "12 to 40", the numbers times a factor
+std::string in_words(const StepRange& range, Real factor = 1)
+{
+  const auto word = [&](std::int64_t n) {
+    return factor == 1 ? fmt::format("{}", n) : fmt::format("{:.3g}", static_cast<Real>(n) * factor);
+  };
+  return range.least == range.most ? word(range.least) : fmt::format("{} to {}", word(range.least), word(range.most));
+}
+
+/// A line for each stage that ends at rest: the number of its steps is not known before.
+std::string describe_rest(const std::vector<Stage>& stages, Real passage, Real dt)
+{
+  std::string text;
+  for (std::size_t s = 0; s < stages.size(); ++s)
+    if (const Stage& stage = stages[s]; stage.residual) {
+      const RestTime time = time_to_rest(stage, passage);
+      text +=
+          fmt::format("  stage {} \"{}\" ends at rest, usually after {:.2g} to {:.2g} s, {} steps; at most {:.6g} s, {} steps\n", s,
+                      stage.name, time.soonest, time.latest, in_words(steps_of(time, dt)), stage.duration, steps_of(stage.duration, dt));
+    }
+  return text;
+}
 
 std::string in_megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / megabyte); }
 
@@ -61,27 +100,30 @@ std::string describe_changes(const Setup<D>& setup)
   return text;
 }
 
-std::string describe_time(const std::vector<StageTrial>& trials, Real preparing, Index particles)
+std::string describe_time(const std::vector<StageTrial>& trials, const std::vector<Stage>& stages, Real passage, Real preparing,
+                          Index particles)
 {
   if (trials.empty())
     return "  time: the run has too few steps to measure\n";
   std::string text;
-  Real usual = 0, least = 0, most = 0;
-  std::int64_t made = 0, steps = 0;
+  Real usual = 0, least = 0, most = 0, steps = 0;
+  std::int64_t made = 0;
   for (const StageTrial& trial : trials) {
-    const auto n = static_cast<Real>(trial.steps);
+    const StepRange range = steps_of(time_to_rest(stages[trial.stage], passage), trial.dt);
+    const Real n = range.middle();
     if (trials.size() > 1)
-      text += fmt::format("  stage {}: {} {} steps of {:.3g} ms: {}\n", trial.name, trial.ends_at_rest ? "at most" : "about", trial.steps,
-                          1e3 * trial.usual, duration_in_words(n * trial.usual));
-    usual += n * trial.usual, least += n * trial.quickest * (trial.ends_at_rest ? soonest_rest : quicker_steps),
-        most += n * trial.slowest * slower_steps;
-    made += trial.made, steps += trial.steps;
+      text += fmt::format("  stage {}: about {} steps of {:.3g} ms: {}\n", trial.name, in_words(range), 1e3 * trial.usual,
+                          duration_in_words(n * trial.usual));
+    usual += n * trial.usual, least += static_cast<Real>(range.least) * trial.quickest * quicker_steps;
+    // A stage that seeks rest may need all of its time.
+    most += static_cast<Real>(steps_of(stages[trial.stage].duration, trial.dt)) * trial.slowest * slower_steps;
+    made += trial.made, steps += n;
   }
   return text + fmt::format(
                     "  speed: {:.3g} million particle-steps/s with {} thread{}, measured in {} steps\n"
                     "  time: about {}, likely between {} and {}\n",
-                    static_cast<Real>(steps) * particles / usual / million, threads(), threads() == 1 ? "" : "s", made,
-                    duration_in_words(preparing + usual), duration_in_words(preparing + least), duration_in_words(preparing + most));
+                    steps * particles / usual / million, threads(), threads() == 1 ? "" : "s", made, duration_in_words(preparing + usual),
+                    duration_in_words(preparing + least), duration_in_words(preparing + most));
 }
 
 /// Which stress the law of a body sees, where there is water.
@@ -112,7 +154,8 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   const auto warnings = setup.warnings;
   const auto names = setup.bodies;
   const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
-  const Real duration = total_duration(setup);
+  const Real duration = total_duration(setup), passage = passage_time<D>(setup, upright_of(scene).template head<D>());
+  const std::vector<Stage> stages = setup.stages;
   const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
   for (std::size_t b = 0; b < setup.bodies.size(); ++b)
@@ -137,12 +180,15 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
     fmt::print(
         "  {} of {} nodes lie on curved or creased boundaries where no positive weights along the boundary exist: treated as corners\n",
         cost.nodes_as_corners, nodes);
-  fmt::print("  first step {:.3g} s, so about {} steps and {:.3g} million particle-steps\n", cost.dt, cost.steps,
-             static_cast<Real>(cost.steps) * particles / million);
+  StepRange steps;
+  for (const Stage& stage : stages)
+    steps += steps_of(time_to_rest(stage, passage), cost.dt);
+  fmt::print("  first step {:.3g} s, so about {} steps and {} million particle-steps\n{}", cost.dt, in_words(steps),
+             in_words(steps, particles / million), describe_rest(stages, passage, cost.dt));
   fmt::print("  memory: particles {:.1f} MB, mesh {:.1f} MB, nodes {:.1f} MB\n", static_cast<Real>(cost.particle_bytes) / megabyte,
              static_cast<Real>(cost.mesh_bytes) / megabyte, static_cast<Real>(cost.node_bytes) / megabyte);
   fmt::print("{}{}", describe_disk_use(cost.files, disk_use(cost.files, scene.outputs, duration)),
-             measured ? describe_time(trials, preparing, particles) : "");
+             measured ? describe_time(trials, stages, passage, preparing, particles) : "");
   fmt::print("{}: no errors{}\n", scene.file, measured ? ", nothing was written" : "");
 }
 

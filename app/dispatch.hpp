@@ -183,6 +183,8 @@ class Simulation {
     const auto n = static_cast<std::size_t>(model_->stage.number);
     if (n < changes_.size() && changes_[n].walls)
       take_walls(*model_, *changes_[n].walls);
+    if (n < changes_.size() && changes_[n].table)
+      take_table(*model_, *changes_[n].table);
   }
 
   /// To the end of the stage of that number, which begins; without a number, of that which is on its way.
@@ -334,8 +336,6 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   Estimate cost{};
   cost.dt = first_step(mesh, setup);
   const Stage first_stage = setup.stages.front();
-  for (const Stage& stage : setup.stages)
-    cost.steps += static_cast<std::int64_t>(std::ceil(stage.duration / cost.dt));
   with_kernel<D>(scene.kernel, [&]<class K>() {
     const auto m = build<D, K>(scene, std::move(mesh), std::move(setup));
     const auto bytes = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };

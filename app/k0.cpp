@@ -35,14 +35,23 @@ Table constant(Real value) { return {{{0, value}}}; }
 /// (1 - sin phi) ocr^(sin phi), at most passive [Jaky 1944; Mayne & Kulhawy 1982].
 Real from_friction(Real sine, Real ocr) { return std::min((1 - sine) * std::pow(ocr, sine), (1 + sine) / (1 - sine)); }
 
+Mat3 matrix_of(const UniformStressSpec& s)
+{
+  Mat3 stress;
+  stress << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+  return stress;
+}
+
 }  // namespace
 
-std::vector<Table> k0_of_bodies(const K0Spec& spec, const Scene& scene, Complaints& complaints)
+std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, Complaints& complaints)
 {
-  std::vector<Table> all;
+  std::vector<StartStress> all;
   for (const BodySpec& body : scene.bodies) {
     const K0Rule& rule = spec.of(body.name);
-    Table& table = all.emplace_back(constant(rule.k0.value_or(1)));
+    Table& table = all.emplace_back(StartStress{.k0 = constant(rule.k0.value_or(1))}).k0;
+    if (rule.stress)
+      all.back().given = matrix_of(*rule.stress);
     if (!rule.k0_table.empty())
       table.points.clear();
     for (const std::vector<Real>& point : rule.k0_table)

@@ -56,6 +56,9 @@ template <int D>
 std::uint64_t digest_of_files(const Setup<D>& setup)
 {
   std::vector<Real> numbers = setup.water.table;
+  for (const StageChange<D>& change : setup.changes)
+    if (change.table)
+      numbers.insert(numbers.end(), change.table->begin(), change.table->end());
   for (const Wall<D>& wall : setup.walls.walls())
     if (wall.record)
       for (const std::vector<Real>* part : {&wall.record->time, &wall.record->velocity, &wall.record->acceleration})
@@ -151,7 +154,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   set_stages(scene, complaints, setup);
   setup.water = water_of(
       scene, mesh, setup.bodies, [&](Index cell) { return at_start(cell); }, complaints, setup.warnings);
-  saturate(scene, mesh, setup.water, setup.bodies, setup.particles);
+  saturate(scene, 0, mesh, setup.water, setup.bodies, setup.particles);
   if (setup.water.any())
     warn_if_dry(mesh, ranks, setup);
   check_laws(scene, complaints);
@@ -170,8 +173,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
       (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
     setup.particles.x0 = setup.particles.x;
   setup.guards = guards_of(scene, mesh, setup, ranks);
-  setup.from_files = digest_of_files(setup);
   set_changes(scene, mesh, ranks, setup);
+  setup.from_files = digest_of_files(setup);
   return setup;
 }
 

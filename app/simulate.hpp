@@ -41,8 +41,7 @@ struct Moves {
 
 /// What a model costs before it has made a step.
 struct Estimate {
-  Real dt;             ///< first step [s]
-  std::int64_t steps;  ///< of all stages with that step
+  Real dt;  ///< first step [s]
   std::int64_t particle_bytes, mesh_bytes, node_bytes;
   std::int64_t nodes_as_corners;          ///< by the kernel, see Frame
   std::vector<SharedNodes> shared_nodes;  ///< of the bodies that are there at the start

@@ -102,6 +102,8 @@ void find_faults(const StageState& stage, const Clock& now, std::vector<std::str
     faults.push_back(fmt::format("stage/altitude is {} m, not above 0", stage.altitude));
   if (!(stage.pull >= 0 && std::isfinite(stage.pull)))
     faults.push_back(fmt::format("stage/pull is {} m/s^2, not a number from 0 on", stage.pull));
+  if (stage.ramp_shape != RampShape::linear && stage.ramp_shape != RampShape::smooth)
+    faults.push_back(fmt::format("stage/ramp_shape is {}, which is none", static_cast<int>(stage.ramp_shape)));
   if (std::isgreater(stage.begin, now.time) || stage.first_step > now.step)
     faults.push_back(fmt::format("the stage began at step {}, t = {:.6g} s, and the state is of step {}, t = {:.6g} s", stage.first_step,
                                  stage.begin, now.step, now.time));

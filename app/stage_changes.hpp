@@ -1,5 +1,5 @@
 #pragma once
-// What stages of a scene change between two steps: bodies appear, vanish and become another material, other walls act.
+// What stages of a scene change between two steps: bodies appear, vanish and become another material, other walls act, the water table moves.
 #include "app/state.hpp"
 #include "solver/bodies_of_stages.hpp"
 
@@ -17,9 +17,10 @@ struct StageChange {
   std::vector<Index> appear, vanish;  ///< bodies
   Crowd<D> coming;                    ///< particles of those that appear, in cells of the whole mesh: a share of them on each rank
   std::vector<Renewal> renew;
-  std::optional<Walls<D>> walls;  ///< that act from here on, of the whole mesh; none: those of the stage before
-  std::vector<std::string> told;  ///< of walls, in words
-  bool any() const noexcept { return !appear.empty() || !vanish.empty() || !renew.empty() || walls; }
+  std::optional<Walls<D>> walls;           ///< that act from here on, of the whole mesh; none: those of the stage before
+  std::optional<std::vector<Real>> table;  ///< of the water from here on, at the nodes of the whole mesh; none: that of the stage before
+  std::vector<std::string> told;           ///< of walls and water, in words
+  bool any() const noexcept { return !appear.empty() || !vanish.empty() || !renew.empty() || walls || table; }
 };
 
 /// What has been done, a line for each body.
@@ -60,6 +61,13 @@ void take_walls(Model<D, K>& m, Walls<D> walls)
   bind_walls(m);
 }
 
+/// The water table of a stage, of the whole mesh, takes the place of that which was.  Pore pressures follow when the stage begins.
+template <int D, Kernel<D> K>
+void take_table(Model<D, K>& m, const std::vector<Real>& table)
+{
+  m.water.table = m.share.alone() ? table : part_of_table(m.share, table);
+}
+
 /// Does all that the stage changes, between two steps, before the stage begins.  What comes is moved out of `change`.
 template <int D, Kernel<D> K>
 StageNews enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
@@ -82,6 +90,8 @@ StageNews enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch
   }
   if (change.walls)
     take_walls(m, *change.walls);
+  if (change.table)
+    take_table(m, *change.table);
   return news;
 }
 

@@ -5,6 +5,7 @@
 #include "app/k0.hpp"
 #include "app/laws_in_force.hpp"
 #include "app/walls_of_scene.hpp"
+#include "app/water.hpp"
 #include "io/history_columns.hpp"
 #include "materials/strength.hpp"
 
@@ -18,9 +19,10 @@ Stage stage_of(const GeostaticSpec& spec)
   return {.duration = spec.duration,
           .damping = spec.damping,
           .ramp = spec.ramp,
+          .ramp_shape = spec.ramp_shape,
           .elastic = spec.elastic,
           .residual = spec.residual,
-          .k0 = {},
+          .start_stress = {},
           .reset_displacement = spec.reset_displacement,
           .where = spec.where};
 }
@@ -62,6 +64,21 @@ std::string renewal(const Scene& scene, const BodySpec& body, Index stage)
   return text;
 }
 
+/// How a new water table lies to the one before it, in words.  Of a table that something is wrong with there is nothing.
+template <int D>
+std::string moved_table(const Mesh<D>& mesh, const std::vector<Real>& before, const std::vector<Real>& after)
+{
+  if (after.empty() || before.size() != after.size())
+    return "the water table changes";
+  Real rise = 0, fall = 0;
+  for (std::size_t n = 0; n < after.size(); ++n)
+    rise = std::max(rise, after[n] - before[n]), fall = std::max(fall, before[n] - after[n]);
+  if (rise == 0 && fall == 0)
+    return fmt::format("the water table stays where it is, at all {} nodes", mesh.n_nodes());
+  const std::string up = fmt::format("rises by up to {:.4g} m", rise), down = fmt::format("falls by up to {:.4g} m", fall);
+  return fmt::format("the water table {}", fall == 0 ? up : rise == 0 ? down : up + " and " + down);
+}
+
 }  // namespace
 
 template <int D>
@@ -76,9 +93,9 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
     const auto* spec = std::get_if<GeostaticSpec>(&scene.stages[s]);
     if (spec == nullptr || !spec->initial_stress)
       continue;
-    stage.k0 = k0_of_bodies(*spec->initial_stress, scene, complaints);
+    stage.start_stress = start_stress_of_bodies(*spec->initial_stress, scene, complaints);
     if (s > 0)
-      stage.k0_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.bodies);
+      stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.bodies);
     for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
       const Index from = presence_of(setup.bodies[b].name, scene.stages).from;
       if (std::cmp_equal(from, s) && !can_start_from_stress(setup.materials[b]))
@@ -152,6 +169,8 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
   });
   const bool walls_differ = bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
                                                          [](const BoundarySpec& boundary) { return !during_of(boundary).empty(); });
+  const bool tables_differ =
+      std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
   const auto names = wall_names(scene.boundaries);
   Complaints complaints(scene);
   for (std::size_t s = 1; s < n; ++s) {
@@ -161,10 +180,19 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       if (std::string becomes = renewal(scene, scene.bodies[b], static_cast<Index>(s)); !becomes.empty())
         change.renew.push_back({static_cast<Index>(b), std::move(becomes)});
-    if (!walls_differ)
+    if (tables_differ)  // in every stage, so that a run that goes on in any of them finds the one that holds there
+      change.table = setup.changes[s - 1].table ? setup.changes[s - 1].table : setup.water.table;
+    if (!walls_differ && !said(s).water)
       continue;
     const auto there = [&](const std::string& body) { return presence_of(body, scene.stages).in(static_cast<Index>(s)); };
     const Filled<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
+    if (said(s).water) {
+      change.table = table_of_stage(
+          scene, *said(s).water, mesh, [&](Index cell) { return filled(cell); }, complaints, setup.warnings);
+      change.told.push_back(moved_table(mesh, setup.changes[s - 1].table ? *setup.changes[s - 1].table : setup.water.table, *change.table));
+    }
+    if (!walls_differ)
+      continue;
     change.walls.emplace();
     add_walls(scene, mesh, filled, ranks, said(s).label, false, complaints, setup, *change.walls);
     for (std::size_t w = 0; w < names.size(); ++w) {
@@ -174,6 +202,12 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
     }
   }
   ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
+  for (std::size_t s = 1; s < n; ++s)
+    if (!setup.changes[s].appear.empty()) {
+      Water water = setup.water;
+      water.table = setup.changes[s].table.value_or(water.table);
+      saturate(scene, static_cast<Index>(s), mesh, water, setup.bodies, setup.particles);
+    }
   for (std::size_t s = 1; s < n; ++s)
     if (!setup.changes[s].appear.empty())
       setup.changes[s].coming = take_out_bodies<D>(setup.changes[s].appear, setup.bodies, setup.materials, setup.particles);

@@ -18,17 +18,13 @@ struct Timed {
   Real time = 0;              // simulated in these [s]
 };
 
-StageTrial trial_of(const Stage& stage, Timed timed)
+StageTrial trial_of(const Stage& stage, std::size_t number, Timed timed)
 {
   std::vector<Real>& sorted = timed.seconds;
   std::sort(sorted.begin(), sorted.end());
   const auto at_share = [&](Real share) { return sorted[static_cast<std::size_t>(share * static_cast<Real>(sorted.size() - 1))]; };
   const auto made = static_cast<std::int64_t>(sorted.size());
-  const Real dt = timed.time / static_cast<Real>(made);
-  return {stage.name,     dt,
-          at_share(0.25), at_share(0.5),
-          at_share(0.75), stage.residual.has_value(),
-          made,           static_cast<std::int64_t>(std::ceil(stage.duration / dt))};
+  return {stage.name, number, timed.time / static_cast<Real>(made), at_share(0.25), at_share(0.5), at_share(0.75), made};
 }
 
 }  // namespace
@@ -68,7 +64,7 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
   std::vector<StageTrial> trials;
   for (std::size_t s = 0; s < whole.size(); ++s)
     if (!timed[s].seconds.empty())
-      trials.push_back(trial_of(whole[s], std::move(timed[s])));
+      trials.push_back(trial_of(whole[s], s, std::move(timed[s])));
   if (trials.empty() && trouble)
     throw RunError(*trouble);
   return trials;

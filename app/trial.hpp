@@ -7,10 +7,10 @@ namespace talus {
 /// Some steps of a stage, made from the state at the start of the run.
 struct StageTrial {
   std::string name;
+  std::size_t stage;              ///< its number
   Real dt;                        ///< their mean length [s]
   Real quickest, usual, slowest;  ///< the median of their wall times and the quartiles around it [s]
-  bool ends_at_rest;              ///< so perhaps long before its time is over
-  std::int64_t made, steps;       ///< steps made; steps of that length that the stage has
+  std::int64_t made;              ///< steps made
 };
 
 /// The first steps of each stage, in memory, one stage after the other; nothing is written.  A stage is left where a step fails: then those

@@ -20,9 +20,9 @@ constexpr Real steepest_axes = 0.87;
 
 /// A table that is not given by its depth, over places on the map where there is one; none if something is wrong with it.
 template <int D>
-Surface surface_of(const Scene& scene, const Mesh<D>& mesh, Complaints& complaints, std::vector<std::string>& warnings)
+Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, Complaints& complaints,
+                   std::vector<std::string>& warnings)
 {
-  const SurfaceSpec& spec = scene.water->table;
   const bool on_map = D == 3 || (scene.mesh.terrain && scene.mesh.terrain->section);
   MapPlan plan{.directory = folder_of(scene), .crs = mesh.map() ? mesh.map()->crs : "", .is_line = !on_map, .ground = {}};
   std::vector<Problem> problems;
@@ -109,6 +109,52 @@ void check_gravity(const Scene& scene, Complaints& complaints)
     }
 }
 
+/// The table at the nodes; none if something is wrong with it.
+template <int D>
+std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, const std::function<bool(Index)>& filled,
+                                 Complaints& complaints, std::vector<std::string>& warnings)
+{
+  const Ground<D> ground(mesh, filled);
+  const Surface given = spec.depth ? Surface() : surface_of(scene, spec, mesh, complaints, warnings);
+  if (!given && !spec.depth)
+    return {};
+  const auto table = [&](const Vec<D>& x) {
+    const auto place = Ground<D>::plan(x);
+    if (spec.depth)
+      return ground(place) - *spec.depth;
+    return given(mesh.map() ? mesh.map()->to_map(place[0], place[1]) : place);
+  };
+  judge(flood_of<D>(ground, table), spec.where, complaints, warnings);
+
+  std::vector<Real> at_nodes(static_cast<std::size_t>(mesh.n_nodes()));
+  parallel_for(mesh.n_nodes(), [&](Index n) {
+    const Vec<D>& x = mesh.node(n);
+    at_nodes[static_cast<std::size_t>(n)] = std::min(table(x), ground(Ground<D>::plan(x)));  // NaN if the table is, in this order
+  });
+  std::vector<std::uint8_t> needed(at_nodes.size(), 0);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (const Index n : mesh.cell(c))
+      needed[static_cast<std::size_t>(n)] |= static_cast<std::uint8_t>(filled(c));
+  Index unknown = 0, unknown_in_material = none;
+  for (std::size_t n = 0; n < at_nodes.size(); ++n)
+    if (std::isnan(at_nodes[n])) {
+      ++unknown;
+      if (needed[n] != 0 && unknown_in_material == none)
+        unknown_in_material = static_cast<Index>(n);
+      at_nodes[n] = mesh.low()[D - 1];
+    }
+  if (unknown_in_material != none)
+    complaints.add(
+        spec.where, "",
+        fmt::format("the water table is not known everywhere above the bodies: not at {}", in_words<D>(mesh.node(unknown_in_material))));
+  else if (unknown > 0)
+    warnings.push_back(
+        fmt::format("{}: the water table is not known at {} nodes of the mesh, where no body is at the start: there is no "
+                    "water there",
+                    to_string(spec.where), unknown));
+  return at_nodes;
+}
+
 }  // namespace
 
 template <int D>
@@ -123,54 +169,24 @@ Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>&
   water.unit_weight = spec.unit_weight, water.suction = spec.suction;
   for (const Body& body : bodies)
     water.drained.push_back(is_drained(spec, body.name) ? 1 : 0);
-
-  const Ground<D> ground(mesh, filled);
-  const Surface given = spec.table.depth ? Surface() : surface_of(scene, mesh, complaints, warnings);
-  if (!given && !spec.table.depth)
-    return water;
-  const auto table = [&](const Vec<D>& x) {
-    const auto place = Ground<D>::plan(x);
-    if (spec.table.depth)
-      return ground(place) - *spec.table.depth;
-    return given(mesh.map() ? mesh.map()->to_map(place[0], place[1]) : place);
-  };
-  judge(flood_of<D>(ground, table), spec.table.where, complaints, warnings);
-
-  water.table.resize(static_cast<std::size_t>(mesh.n_nodes()));
-  parallel_for(mesh.n_nodes(), [&](Index n) {
-    const Vec<D>& x = mesh.node(n);
-    water.table[static_cast<std::size_t>(n)] = std::min(table(x), ground(Ground<D>::plan(x)));  // NaN if the table is, in this order
-  });
-  std::vector<std::uint8_t> needed(water.table.size(), 0);
-  for (Index c = 0; c < mesh.n_cells(); ++c)
-    for (const Index n : mesh.cell(c))
-      needed[static_cast<std::size_t>(n)] |= static_cast<std::uint8_t>(filled(c));
-  Index unknown = 0, unknown_in_material = none;
-  for (std::size_t n = 0; n < water.table.size(); ++n)
-    if (std::isnan(water.table[n])) {
-      ++unknown;
-      if (needed[n] != 0 && unknown_in_material == none)
-        unknown_in_material = static_cast<Index>(n);
-      water.table[n] = mesh.low()[D - 1];
-    }
-  if (unknown_in_material != none)
-    complaints.add(
-        spec.table.where, "",
-        fmt::format("the water table is not known everywhere above the bodies: not at {}", in_words<D>(mesh.node(unknown_in_material))));
-  else if (unknown > 0)
-    warnings.push_back(
-        fmt::format("{}: the water table is not known at {} nodes of the mesh, where no body is at the start: there is no "
-                    "water there",
-                    to_string(spec.table.where), unknown));
+  water.table = table_at_nodes(scene, spec.table, mesh, filled, complaints, warnings);
   return water;
 }
 
 template <int D>
-void saturate(const Scene& scene, const Mesh<D>& mesh, const Water& water, const std::vector<Body>& bodies, Particles<D>& particles)
+std::vector<Real> table_of_stage(const Scene& scene, const StageWaterSpec& spec, const Mesh<D>& mesh,
+                                 const std::function<bool(Index)>& filled, Complaints& complaints, std::vector<std::string>& warnings)
+{
+  return table_at_nodes(scene, spec.table, mesh, filled, complaints, warnings);
+}
+
+template <int D>
+void saturate(const Scene& scene, Index stage, const Mesh<D>& mesh, const Water& water, const std::vector<Body>& bodies,
+              Particles<D>& particles)
 {
   for (const BodySpec& spec : scene.bodies) {
     const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const Body& b) { return b.name == spec.name; });
-    if (!water.any() || !spec.saturated_density || body == bodies.end())
+    if (!water.any() || !spec.saturated_density || body == bodies.end() || presence_of(spec.name, scene.stages).from != stage)
       continue;
     parallel_for(body->size(), [&](Index i) {
       const auto p = static_cast<std::size_t>(body->begin + i);
@@ -195,8 +211,12 @@ template Water water_of<2>(const Scene&, const Mesh<2>&, const std::vector<Body>
                            std::vector<std::string>&);
 template Water water_of<3>(const Scene&, const Mesh<3>&, const std::vector<Body>&, const std::function<bool(Index)>&, Complaints&,
                            std::vector<std::string>&);
-template void saturate<2>(const Scene&, const Mesh<2>&, const Water&, const std::vector<Body>&, Particles<2>&);
-template void saturate<3>(const Scene&, const Mesh<3>&, const Water&, const std::vector<Body>&, Particles<3>&);
+template std::vector<Real> table_of_stage<2>(const Scene&, const StageWaterSpec&, const Mesh<2>&, const std::function<bool(Index)>&,
+                                             Complaints&, std::vector<std::string>&);
+template std::vector<Real> table_of_stage<3>(const Scene&, const StageWaterSpec&, const Mesh<3>&, const std::function<bool(Index)>&,
+                                             Complaints&, std::vector<std::string>&);
+template void saturate<2>(const Scene&, Index, const Mesh<2>&, const Water&, const std::vector<Body>&, Particles<2>&);
+template void saturate<3>(const Scene&, Index, const Mesh<3>&, const Water&, const std::vector<Body>&, Particles<3>&);
 template Index count_wet<2>(const Mesh<2>&, const Water&, const Body&, const Particles<2>&);
 template Index count_wet<3>(const Mesh<3>&, const Water&, const Body&, const Particles<3>&);
 

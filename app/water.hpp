@@ -12,9 +12,16 @@ template <int D>
 Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>& bodies, const std::function<bool(Index)>& filled,
                Complaints& complaints, std::vector<std::string>& warnings);
 
-/// The mass of particles below the table becomes that of their body's saturated density, where it has one.
+/// The elevation of the table of a later stage at each node, found in the same way with the cells that are filled then.
 template <int D>
-void saturate(const Scene& scene, const Mesh<D>& mesh, const Water& water, const std::vector<Body>& bodies, Particles<D>& particles);
+std::vector<Real> table_of_stage(const Scene& scene, const StageWaterSpec& spec, const Mesh<D>& mesh,
+                                 const std::function<bool(Index)>& filled, Complaints& complaints, std::vector<std::string>& warnings);
+
+/// Of the bodies that are there from the stage of that number on: the mass of particles below the table becomes that of their body's saturated
+/// density, where it has one.
+template <int D>
+void saturate(const Scene& scene, Index stage, const Mesh<D>& mesh, const Water& water, const std::vector<Body>& bodies,
+              Particles<D>& particles);
 
 /// Particles of a body, of this rank, that lie below the table.
 template <int D>

@@ -93,6 +93,8 @@ void GeostaticSpec::check(std::vector<std::string>& problems) const
 {
   if (ramp > duration)
     problems.push_back(fmt::format("ramp {} s is longer than the stage, {} s", ramp, duration));
+  if (ramp_shape != RampShape::linear && ramp == 0)
+    problems.emplace_back("ramp_shape is of a ramp, and there is none: give ramp, the time over which the loads grow");
 }
 
 void SectionSpec::check(std::vector<std::string>& problems) const
@@ -122,14 +124,14 @@ void K0Rule::check_rule(std::vector<std::string>& problems) const
 
 void K0OfBody::check(std::vector<std::string>& problems) const
 {
-  exactly_one("k0, k0_table or from_friction", given(), problems);
+  exactly_one("k0, k0_table, from_friction or stress", given(), problems);
   check_rule(problems);
 }
 
 void K0Spec::check(std::vector<std::string>& problems) const
 {
   if (given() > 1 || bodies.empty())
-    exactly_one("k0, k0_table or from_friction", given(), problems);
+    exactly_one("k0, k0_table, from_friction or stress", given(), problems);
   check_rule(problems);
 }
 

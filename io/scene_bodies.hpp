@@ -1,7 +1,10 @@
 #pragma once
 // The blocks `materials` and `bodies` of a scene.
+#include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -54,12 +57,29 @@ struct BodySpec {
                  "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
                  "johnson_cook, whose flow keeps the volume, false otherwise"),
         optional("velocity", &BodySpec::velocity, any, "m/s",
-                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\""),
+                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\": see formulas"),
         optional("saturated_density", &BodySpec::saturated_density, positive, "kg/m^3",
                  "mass density, pores full of water, of the particles that lie below the water table at the start; default that of the "
                  "material")};
   }
   bool fills() const noexcept { return !region.empty() || shape.has_value(); }
+
+  /// Keys of a body whose particles come from another run.  All others say how a body is filled, and would not be used there.
+  static constexpr std::array<std::string_view, 3> keys_without_filling{"name", "material", "f_bar"};
+  /// f(key, whether it is given) for every other key.
+  template <class F>
+  void for_each_key_of_filling(F&& f) const
+  {
+    for_each_field<BodySpec>([&](const auto& field) {
+      if (std::find(keys_without_filling.begin(), keys_without_filling.end(), field.key) != keys_without_filling.end())
+        return;
+      const auto& value = this->*field.member;
+      if constexpr (requires { value.has_value(); })
+        f(field.key, value.has_value());
+      else
+        f(field.key, !value.empty());
+    });
+  }
 };
 
 }  // namespace talus

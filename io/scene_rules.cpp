@@ -190,9 +190,21 @@ class Rules {
     }
     for (const std::string& body : known)
       if (presence_of(body, scene_.stages).from == number && spec.of(body).given() == 0)
-        add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table or from_friction is needed for the bodies that the list does "
-                              "not name",
+        add(path, fmt::format("body \"{}\" has no k0: one of k0, k0_table, from_friction or stress is needed for the bodies that the "
+                              "list does not name",
                               body));
+    if (spec.stress)
+      plane_stress(path + ".stress", *spec.stress);
+    for (std::size_t i = 0; i < spec.bodies.size(); ++i)
+      if (spec.bodies[i].stress)
+        plane_stress(fmt::format("{}.bodies[{}].stress", path, i), *spec.bodies[i].stress);
+  }
+
+  /// In plane strain nothing is sheared out of the plane.
+  void plane_stress(const std::string& path, const UniformStressSpec& stress)
+  {
+    if (scene_.dimension == 2 && (stress.yz != 0 || stress.xz != 0))
+      add(path + (stress.yz != 0 ? ".yz" : ".xz"), "in 2 dimensions there is no shear stress out of the plane: leave this out");
   }
 
   void materials_and_bodies()
@@ -235,15 +247,10 @@ class Rules {
       return add(path, fmt::format("one of region or shape is needed{}", list.empty() ? "" : ": initial.bodies does not name this body"));
     if (body.fills() && !listed)
       return;
-    const auto unused = [&](bool given, std::string_view key) {
+    body.for_each_key_of_filling([&](std::string_view key, bool given) {
       if (given)
         add(fmt::format("{}.{}", path, key), fmt::format("the particles of this body come from initial.from: leave {} out", key));
-    };
-    unused(!body.region.empty(), "region");
-    unused(body.shape.has_value(), "shape");
-    unused(body.particles_per_cell.has_value(), "particles_per_cell");
-    unused(!body.velocity.empty(), "velocity");
-    unused(body.saturated_density.has_value(), "saturated_density");
+    });
   }
 
   void water(const WaterSpec& water)

@@ -83,6 +83,12 @@ class StageRules {
       if (const std::string& body = changes.weaken[i].body; is_known(path, "body", body, bodies_))
         is_there(path, body, s);
     }
+    if (changes.water && s == 0)
+      add(at + ".water", "the first stage has the table of the block water of the scene: give it there");
+    else if (changes.water && !scene_.water)
+      add(at + ".water",
+          "there is no water in this scene: its block water says how heavy it is, which bodies are drained, and where its "
+          "table is at the start");
     const bool any_left = std::any_of(bodies_.begin(), bodies_.end(), [&](const std::string& body) { return presence(body).in(s); });
     const bool any_before =
         s == 0 || std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) { return presence(body).in(s - 1); });

@@ -101,39 +101,58 @@ Real beside_law(const Particles<D>& particles, std::size_t p) noexcept
   return (particles.viscous.empty() ? 0 : particles.viscous[p]) + (particles.pore.empty() ? 0 : particles.pore[p]);
 }
 
-}  // namespace
-
+/// What lies above each particle; nothing where none of them asks, or nothing has a weight.
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const Table> k0,
-                   const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+std::vector<Above> weight_above(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity,
+                                std::span<const StartStress> start, const CellOrder& order, const Particles<D>& particles)
 {
   const Real g = gravity.norm();
-  if (!(g > 0))
-    return;
+  if (!(g > 0) || std::all_of(start.begin(), start.end(), [](const StartStress& one) { return one.given.has_value(); }))
+    return {};
   const Vec<D> up = -gravity / g;
   std::vector<Real> density(static_cast<std::size_t>(mesh.n_cells()), 0.0);
   for (const Index row : order.row) {
     const auto p = static_cast<std::size_t>(row);
     density[static_cast<std::size_t>(particles.cell[p])] += particles.mass[p] / mesh.volume(particles.cell[p]);
   }
-  const std::vector<Above> above = look_up(mesh, share, ranks, density, up, particles);
+  return look_up(mesh, share, ranks, density, up, particles);
+}
 
+}  // namespace
+
+template <int D>
+void set_start_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const StartStress> start,
+                      const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+{
+  const Real g = gravity.norm();
+  const std::vector<Above> above = weight_above(mesh, share, ranks, gravity, start, order, particles);
   Vec3 up3 = Vec3::Zero();
-  up3.head<D>() = up;
+  if (g > 0)
+    up3.head<D>() = -gravity / g;
   const Mat3 along = up3 * up3.transpose();
-  for (std::size_t b = 0; b < bodies.size(); ++b)
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const auto& [k0, given] = start[b];
+    if (!given && !(g > 0))
+      continue;
     for (Index row = bodies[b].begin; row < bodies[b].end; ++row) {
       const auto p = static_cast<std::size_t>(row);
-      const Real u = particles.pore.empty() ? 0 : particles.pore[p], ratio = k0[b](above[p].depth);
-      Mat3 stress = (u - g * above[p].mass) * (ratio * Mat3::Identity() + (1 - ratio) * along);
+      const Real u = particles.pore.empty() ? 0 : particles.pore[p];
+      Mat3 stress;
+      if (given) {
+        stress = *given;
+      } else {
+        const Real ratio = k0(above[p].depth);
+        stress = (u - g * above[p].mass) * (ratio * Mat3::Identity() + (1 - ratio) * along);
+      }
       if (!prestress(materials[b], row - bodies[b].begin, stress))
         throw SceneErrors(
             bodies[b].where,
-            fmt::format("law \"{}\" of body \"{}\" cannot start from a K0 stress; leave initial_stress out and let gravity grow (ramp)",
+            fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let the loads grow (ramp)",
                         law_name(materials[b]), bodies[b].name));
       stress.diagonal().array() -= u;
       particles.stress.set(p, pack(stress));
     }
+  }
 }
 
 bool can_start_from_stress(const AnyBatch& material)
@@ -195,9 +214,9 @@ template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
 template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
 template StressFit fit_stress<2>(const Body&, const AnyBatch&, Real, bool, Particles<2>&);
 template StressFit fit_stress<3>(const Body&, const AnyBatch&, Real, bool, Particles<3>&);
-template void set_k0_stress<2>(const Mesh<2>&, const Share&, Exchange&, const Vec<2>&, std::span<const Table>, const CellOrder&,
-                               const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void set_k0_stress<3>(const Mesh<3>&, const Share&, Exchange&, const Vec<3>&, std::span<const Table>, const CellOrder&,
-                               const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void set_start_stress<2>(const Mesh<2>&, const Share&, Exchange&, const Vec<2>&, std::span<const StartStress>, const CellOrder&,
+                                  const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void set_start_stress<3>(const Mesh<3>&, const Share&, Exchange&, const Vec<3>&, std::span<const StartStress>, const CellOrder&,
+                                  const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

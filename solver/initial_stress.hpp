@@ -1,6 +1,7 @@
 #pragma once
 // Stress at the start: of a geostatic stage, and of bodies that come from another run.
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,13 +14,20 @@
 
 namespace talus {
 
-/// K0 state: the stress along gravity carries the weight of all mass above the particle; less the pore pressure, of bodies that have one,
-/// it is the effective stress that the law sees, and the one across gravity is k0 times as large: `k0` has a table for each body, by
-/// the depth [m] below the ground.  "Above" is followed cell by cell against gravity, so any surface and any layering is right.  Throws
-/// SceneErrors, with the place of the body, if its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
+/// What a body begins with: the stress itself, or how it follows from the weight above.
+struct StartStress {
+  Table k0{};                   ///< stress across gravity over the one along it, by the depth [m] below the ground
+  std::optional<Mat3> given{};  ///< instead: the stress that the law sees, tension positive [Pa]
+};
+
+/// Each body begins with the stress that `start` has for it.  K0 state: the stress along gravity carries the weight of all mass above the
+/// particle; less the pore pressure, of bodies that have one, it is the effective stress that the law sees, and the one across gravity is k0
+/// times as large; without gravity such bodies keep the stress that they have.  "Above" is followed cell by cell against gravity, so any surface
+/// and any layering is right.  To a stress that is given the pore pressure comes as well.  Throws SceneErrors, with the place of the body, if
+/// its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
 template <int D>
-void set_k0_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const Table> k0,
-                   const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
+void set_start_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const StartStress> start,
+                      const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
 
 bool can_start_from_stress(const AnyBatch& material);
 /// Names of the laws that can.

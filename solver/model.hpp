@@ -1,6 +1,7 @@
 #pragma once
 // Everything a run is made of, by value.
 #include "core/fields.hpp"
+#include "core/ramp.hpp"
 #include "solver/conduct_heat.hpp"
 #include "solver/followed_rows.hpp"
 #include "solver/halo.hpp"
@@ -40,18 +41,26 @@ struct StageState {
   Real begin = 0, ramp_time = 0;                          ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
   Real altitude = std::numeric_limits<Real>::infinity();  ///< least one of the cells that held particles when it began [m]
   Real pull = 0;                                          ///< largest acceleration by forces on particles then [m/s^2]
-  bool elastic = false;                                   ///< yielding suspended
-  bool seeks_rest = false;                                ///< ends at rest, or is damped
-  bool done = false;                                      ///< it has ended
-  Real ramp(Real time) const noexcept { return ramp_time > 0 ? std::clamp((time - begin) / ramp_time, Real{0}, Real{1}) : Real{1}; }
+  RampShape ramp_shape = RampShape::linear;
+  bool elastic = false;     ///< yielding suspended
+  bool seeks_rest = false;  ///< ends at rest, or is damped
+  bool done = false;        ///< it has ended
+  Real ramp(Real time) const noexcept { return ramp_time > 0 ? ramp_at(ramp_shape, (time - begin) / ramp_time) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{kept("number", &StageState::number),     kept("first_step", &StageState::first_step),
-                      kept("balanced", &StageState::balanced), kept("damping", &StageState::damping),
-                      kept("altitude", &StageState::altitude), kept("pull", &StageState::pull),
-                      kept("begin", &StageState::begin),       kept("ramp_time", &StageState::ramp_time),
-                      kept("elastic", &StageState::elastic),   kept("seeks_rest", &StageState::seeks_rest),
-                      kept("done", &StageState::done),         kept("first_residual", &StageState::first_residual)};
+    return std::tuple{kept("number", &StageState::number),
+                      kept("first_step", &StageState::first_step),
+                      kept("balanced", &StageState::balanced),
+                      kept("damping", &StageState::damping),
+                      kept("altitude", &StageState::altitude),
+                      kept("pull", &StageState::pull),
+                      kept("begin", &StageState::begin),
+                      kept("ramp_time", &StageState::ramp_time),
+                      kept("elastic", &StageState::elastic),
+                      kept("seeks_rest", &StageState::seeks_rest),
+                      kept("done", &StageState::done),
+                      kept("first_residual", &StageState::first_residual),
+                      kept("ramp_shape", &StageState::ramp_shape)};
   }
 };
 

@@ -15,10 +15,11 @@ struct Stage {
   Real duration{};           ///< [s]
   Real damping{};
   Real ramp{};  ///< [s]
+  RampShape ramp_shape = RampShape::linear;
   bool elastic = false;
-  std::optional<Real> residual{};  ///< geostatic: ends when the unbalanced force is below this share of the loads
-  std::vector<Table> k0{};         ///< start from a K0 stress: ratio by depth [m], of each body; empty: do not
-  std::vector<Index> k0_bodies{};  ///< that do, by their numbers; none: all
+  std::optional<Real> residual{};            ///< geostatic: ends when the unbalanced force is below this share of the loads
+  std::vector<StartStress> start_stress{};   ///< of each body; empty: they begin with the stress that they have
+  std::vector<Index> start_stress_bodies{};  ///< that begin with it, by their numbers; none: all
   bool reset_displacement = false;
   Where where;
 };
@@ -123,15 +124,16 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
              .damping = stage.damping,
              .begin = m.clock.time,
              .ramp_time = stage.ramp,
+             .ramp_shape = stage.ramp_shape,
              .elastic = stage.elastic,
              .seeks_rest = stage.residual || stage.damping > 0};
   m.walls.begin_stage(stage.residual.has_value(), m.clock.time);
-  // Under a K0 stress all of gravity acts, however it grows afterwards.
-  const Real time = m.clock.time, ramp = stage.k0.empty() ? m.stage.ramp(time) : 1;
+  // Under a stress of the start all of gravity acts, however it grows afterwards.
+  const Real time = m.clock.time, ramp = stage.start_stress.empty() ? m.stage.ramp(time) : 1;
   soak(m.mesh, {m.water, ramp * m.loads.gravity.table(time)}, m.bodies, m.particles);
-  if (!stage.k0.empty())
-    set_k0_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(time, ramp), stage.k0, m.order, only_bodies(stage.k0_bodies, m.bodies),
-                  m.materials, m.particles);
+  if (!stage.start_stress.empty())
+    set_start_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(time, ramp), std::span(stage.start_stress), m.order,
+                     only_bodies(stage.start_stress_bodies, m.bodies), m.materials, m.particles);
   m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m)};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
   ExactSums<Push<D>> total;
@@ -173,6 +175,46 @@ template <int D, Kernel<D> K, class Watch>
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, why));
 }
 
+/// What a stage that seeks rest asks of a state, and what the state has.
+struct RestConditions {
+  Real asked;       ///< of both
+  Real unbalanced;  ///< force over the loads
+  Real kinetic;     ///< energy [J]
+  Real work;        ///< of stress, gravity and loads in the stage [J]
+  bool ramp_over;
+  bool forces_balance() const noexcept { return unbalanced < asked; }
+  bool motion_has_ended() const noexcept { return kinetic <= asked * work; }
+  bool met() const noexcept { return ramp_over && forces_balance() && motion_has_ended(); }
+};
+
+template <int D, Kernel<D> K>
+RestConditions rest_conditions(const Model<D, K>& m, const Stage& stage)
+{
+  return {.asked = *stage.residual,
+          .unbalanced = m.residual,
+          .kinetic = totals(m).kinetic,
+          .work = std::abs(m.energy.internal + m.energy.gravity + m.energy.loads),
+          .ramp_over = m.clock.time >= m.stage.begin + stage.ramp};
+}
+
+/// Which of the conditions kept a stage from its end, `balanced` being the steps in a row at its end in which all were met.
+inline std::string why_not_at_rest(const RestConditions& state, int balanced, int wanted)
+{
+  const std::string force = fmt::format("unbalanced force {:.3g} of the loads", state.unbalanced);
+  const std::string motion = state.work > 0 ? fmt::format("kinetic energy {:.3g} of the work done", state.kinetic / state.work)
+                                            : fmt::format("kinetic energy {:.3g} J and no work done", state.kinetic);
+  if (state.met())
+    return fmt::format("{} and {} are below {:.3g}, but only in the last {} steps, asked are {} in a row", force, motion, state.asked,
+                       balanced, wanted);
+  if (!state.ramp_over)
+    return "the loads were still growing (ramp)";
+  if (state.forces_balance())
+    return fmt::format("{}, asked {:.3g} ({}: that is reached)", motion, state.asked, force);
+  if (state.motion_has_ended())
+    return fmt::format("{}, asked {:.3g} ({}: that is reached)", force, state.asked, motion);
+  return fmt::format("{} and {}, asked {:.3g} of both", force, motion, state.asked);
+}
+
 /// Runs the stage that has begun to its end.  `watch(model, moment)` is called before and after each step and at the end.
 template <int D, Kernel<D> K, class Watch>
 StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limits, Watch&& watch)
@@ -191,9 +233,9 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
     stop_if_unwell(m, m.clock.step > step);
     if (step == m.stage.first_step)
       m.stage.first_residual = m.residual;
-    const bool calm = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual &&
-                      totals(m).kinetic <= *stage.residual * std::abs(m.energy.internal + m.energy.gravity + m.energy.loads);
-    m.stage.balanced = calm ? m.stage.balanced + 1 : 0;
+    // Energies of all particles are added up only where the rest is as it should be.
+    const bool may_rest = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual;
+    m.stage.balanced = may_rest && rest_conditions(m, stage).met() ? m.stage.balanced + 1 : 0;
     watch(m, Moment::step_done);
   }
   const Watched before = m.watched;
@@ -204,10 +246,9 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
                            m.residual, m.energy,   now.kinetic, plastic_work(m), m.stage.first_residual};
   if (stage.residual && m.stage.balanced < steps_in_balance)
     give_up(m, before, watch,
-            fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: unbalanced force {:.3g} of the loads, asked {:.3g}; give it "
-                        "more duration or damping",
-                        stage.name, stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration, m.residual,
-                        *stage.residual));
+            fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: {}; give it more duration or damping", stage.name,
+                        stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration,
+                        why_not_at_rest(rest_conditions(m, stage), m.stage.balanced, steps_in_balance)));
   if (stage.residual) {
     m.energy.set_to_rest = now.kinetic;
     m.momentum.rest += Push<D>::of(-now.momentum, -now.angular);

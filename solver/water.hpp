@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// A table that stays where it is while bodies move through it.  Its elevation is known at the nodes and linear between them, like the mesh.
+/// A table that stays where it is during a stage, while bodies move through it.  Its elevation is known at the nodes and linear between them, like the mesh.
 struct Water {
   std::vector<Real> table;            ///< elevation [m] at each node; empty where there is no water
   std::vector<std::uint8_t> drained;  ///< of each body: whether its law sees effective stress
@@ -58,16 +58,19 @@ void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bo
       });
 }
 
-/// Leaves what one of several ranks holds.
-inline void restrict_to(const Share& share, Water& water)
+/// What one of several ranks holds of a table.
+inline std::vector<Real> part_of_table(const Share& share, const std::vector<Real>& table)
 {
-  if (!water.any())
-    return;
   std::vector<Real> held;
   held.reserve(share.node.size());
   for (const Index node : share.node)
-    held.push_back(water.table[static_cast<std::size_t>(node)]);
-  water.table = std::move(held);
+    held.push_back(table[static_cast<std::size_t>(node)]);
+  return held;
+}
+inline void restrict_to(const Share& share, Water& water)
+{
+  if (water.any())
+    water.table = part_of_table(share, water.table);
 }
 
 }  // namespace talus

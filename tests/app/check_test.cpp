@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
+#include "io/summary_json.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::check_test {
@@ -24,6 +27,34 @@ TEST_F(Check, SaysWhatARunWouldCostAndWritesNothing)
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path()))
     files += entry.path().extension() != ".txt" ? 1 : 0;
   EXPECT_EQ(files, 1u) << "the scene itself";
+}
+
+/// A stage that ends at rest is not counted at its full length, which is named.
+TEST_F(Check, CountsTheStepsThatAStageAtRestUsuallyTakes)
+{
+  const std::string rest = R"yaml(loads: [{type: gravity, acceleration: [0, -9.81]}]
+boundaries: [{type: roller, on: x_min}, {type: roller, on: x_max}, {type: roller, on: y_min}]
+stages: [{type: geostatic, duration: 100}]
+)yaml";
+  write("block.yaml", block_scene(rest));
+  const Outcome outcome = talus("check block.yaml");
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto number_after = [&](const std::string& words) {
+    const auto at = outcome.out.find(words);
+    return at == std::string::npos ? -1 : std::stol(outcome.out.substr(at + words.size()));
+  };
+  const long least = number_after("so about "), most = number_after(fmt::format("so about {} to ", least)),
+             bound = number_after("at most 100 s, ");
+  EXPECT_GT(least, 0) << outcome.out;
+  EXPECT_GT(most, least);
+  EXPECT_GT(bound, 5 * most);
+  const Outcome run = talus("run block.yaml --out out --quiet");
+  ASSERT_EQ(run.code, 0) << run.err;
+  const SummaryBack summary = read_summary(folder_ / "out/summary.json");
+  const NamedValue* const steps = find_number(summary.numbers, "stages[0].steps");
+  ASSERT_NE(steps, nullptr);
+  EXPECT_GE(steps->value, 0.9 * static_cast<Real>(least));
+  EXPECT_LE(steps->value, 1.1 * static_cast<Real>(most));
 }
 
 TEST_F(Check, NamesTheGroupThatWasMeant)

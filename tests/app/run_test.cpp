@@ -261,6 +261,7 @@ stages: [{type: geostatic, duration: 0.02}]
   const Outcome outcome = talus("run block.yaml --quiet");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_THAT(outcome.err, HasSubstr("stage \"geostatic\" (block.yaml:9:10) did not come to rest within 0.02 s"));
+  EXPECT_THAT(outcome.err, HasSubstr("asked 0.001"));
 }
 
 TEST_F(Run, TractionPushesItsOwnWay)

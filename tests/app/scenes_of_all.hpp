@@ -125,8 +125,10 @@ inline std::vector<SceneCase> scenes_of_all()
        {.law = all[5].parts.law,
         .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
-        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, damping: 0.7, residual: 2.0e-2, initial_stress: {k0: 0.43}}\n"
-                "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
+        .time =
+            "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, ramp_shape: smooth, damping: 0.7, residual: 2.0e-2, initial_stress: "
+            "{k0: 0.43}}\n"
+            "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
   all.push_back(
       {"shaking",
        {.law = all[5].parts.law,
@@ -145,8 +147,10 @@ inline std::vector<SceneCase> scenes_of_all()
                   "saturated_density: 2100}\n"
                   "  - {name: high, material: stuff, shape: {type: box, low: [1, 0], high: [2, 1]}, particles_per_cell: 3}\n",
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
-        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, residual: 5.0e-2, initial_stress: {from_friction: true}}\n"
-                "  - {type: run, duration: 0.03}\n"}});
+        .time = "stages:\n  - {type: geostatic, duration: 5, ramp: 0.05, residual: 5.0e-2, initial_stress: {from_friction: true, bodies: "
+                "[{body: high, "
+                "stress: {xx: -8.0e3, yy: -1.0e4, zz: -8.0e3, xy: 500}}]}}\n"
+                "  - {type: run, duration: 0.02, water: {table: {points: [[0, 0.3], [2, 0.7]]}}}\n  - {type: run, duration: 0.02}\n"}});
   all.push_back(
       {"stages_that_change",
        {.law = all[5].parts.law + "}, {name: other, density: 2500, law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, "

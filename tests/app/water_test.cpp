@@ -261,6 +261,51 @@ TEST_F(WaterRun, ThePressureIsThatOfThePlaceWhileABodyMoves)
   EXPECT_GT(submerged, 5u);
 }
 
+/// The table falls by 4 m and rises again: what the skeleton carries is the total stress of the same weight, less the new pore pressure.
+TEST_F(WaterRun, EachStageMayHaveItsOwnTable)
+{
+  const std::string lower = "water: {table: {depth: 7}}", higher = "water: {table: {elevation: 9}}";
+  const Column column{.stages = under_k0 + ", {type: geostatic, name: drawdown, duration: 3, residual: 2.0e-3, " + lower +
+                                "}, {type: run, name: rain, duration: 1.0e-4, " + higher + "}"};
+  run_well("column", column);
+  const auto pore = [](Real depth_of_table) {
+    return [=](Real depth) { return weight_of_water * std::max(depth - depth_of_table, Real{0}); };
+  };
+  // The last stage is too short for anything to move: effective stresses are those of the drawdown, with the pressure of the new table.
+  const auto after_drawdown = [&](Real depth) {
+    const Real effective = weight_above(depth) - pore(7)(depth), u = pore(1)(depth);
+    return std::array{-effective, Real{0}, u};
+  };
+  const Seen end = at_end("column");
+  const Difference apart = difference(end, 2, "effective_stress", after_drawdown);
+  EXPECT_LT(apart.along, 0.01) << "the weight stays, the water has left";
+  EXPECT_LT(apart.pore, 1e-6);
+  EXPECT_NEAR(number("column", "bodies[0].mass"), 3 * dry + 7 * wet, 1e-9 * 7 * wet) << "what was saturated stays so";
+  EXPECT_LT(number("column", "balances.energy.closure"), 1e-2);
+  const Outcome check = talus("check column.yaml");
+  EXPECT_THAT(check.out, HasSubstr("stage 1 \"drawdown\": the water table falls by up to 4 m\n"));
+  EXPECT_THAT(check.out, HasSubstr("stage 2 \"rain\": the water table rises by up to 6 m\n"));
+  EXPECT_THAT(read("column/summary.json"), HasSubstr("the water table falls by up to 4 m"));
+
+  write("lake.yaml", Column{.stages = under_k0 + ", {type: run, duration: 1, water: {table: {elevation: 12}}}"}.text());
+  const Outcome lake = talus("check lake.yaml");
+  EXPECT_EQ(lake.code, 2);
+  EXPECT_THAT(lake.err, HasSubstr("stages[1].water.table: the water table lies above the ground over 1 m of 1 m"));
+}
+
+/// What comes with a stage is saturated below the table of that stage.
+TEST_F(WaterRun, ABodyThatAppearsIsSaturatedBelowTheTableOfItsStage)
+{
+  const std::string halves =
+      "{name: clay, material: soil, shape: {type: box, low: [0, 0], high: [1, 6]}, particles_per_cell: 4, saturated_density: 2000}, "
+      "{name: fill, material: soil, shape: {type: box, low: [0, 6], high: [1, 10]}, particles_per_cell: 4, saturated_density: 2000}";
+  run_well("column", {.bodies = halves,
+                      .stages = "{type: run, duration: 1.0e-4}, {type: run, name: fill, duration: 1.0e-4, appear: [fill], water: {table: "
+                                "{elevation: 8}}}"});
+  EXPECT_NEAR(number("column", "bodies[0].mass"), 3 * dry + 3 * wet, 1e-9 * 7 * wet) << "3 m below its own ground at the start";
+  EXPECT_NEAR(number("column", "bodies[1].mass"), 2 * dry + 2 * wet, 1e-9 * 7 * wet);
+}
+
 TEST_F(WaterRun, AnotherRunHandsOnItsWater)
 {
   const std::string halves =

@@ -285,7 +285,8 @@ TEST(InitialStress, CarriesTheWeightAbove)
   soil.poisson_ratio = 0.3;
   add_body<2>(m, "soil", soil, 3, [](const Vec<2>&) { return true; });
   make_ready(m);
-  set_k0_stress<2>(m.mesh, m.share, *m.ranks, {0, -10}, std::vector{Table{{{0, 0.5}}}}, m.order, m.bodies, m.materials, m.particles);
+  set_start_stress<2>(m.mesh, m.share, *m.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}}, m.order, m.bodies, m.materials,
+                      m.particles);
   for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
     const Real weight = 2000 * 10 * (1 - m.particles.x[p][1]);
     EXPECT_NEAR(m.particles.stress[p][1], -weight, 1e-9 * 2e4);
