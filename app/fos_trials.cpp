@@ -23,9 +23,6 @@ namespace fs = std::filesystem;
 /// Rows of a trial's history and files of its particles.
 constexpr int rows_of_trial = 100, files_of_trial = 10;
 
-/// What stands of a body when it takes its particles from another run.
-constexpr std::array<std::string_view, 4> keys_of_filling{"region", "shape", "particles_per_cell", "velocity"};
-
 fs::path default_fos_folder(const fs::path& scene) { return default_results(scene).string() + "_fos"; }
 
 std::size_t stages_until_rest(const Scene& scene)
@@ -133,13 +130,13 @@ void tell_difference(const T& before, const T& after, const std::string& path, s
   }
 }
 
-/// Entries of a list of the scene as they are written, joined to a list again: those that are kept, each without some keys and with more.
+/// Entries of a list of the scene as they are written, joined to a list again: those that are kept, each with some of its keys and more.
 class Rewritten {
  public:
   Rewritten(const FosOptions& options, std::string list) : options_(options), list_(std::move(list)) {}
-  void keep(std::size_t i, std::span<const std::string_view> without = {}, const std::string& more = "")
+  void keep(std::size_t i, const KeyChoice& keys = {}, const std::string& more = "")
   {
-    std::string entry = written_in_scene(options_.scene, options_.set, fmt::format("{}[{}]", list_, i), without);
+    std::string entry = written_in_scene(options_.scene, options_.set, fmt::format("{}[{}]", list_, i), keys);
     if (!more.empty())
       entry.insert(entry.size() - 1, ", " + more);
     entries_.push_back(std::move(entry));
@@ -190,7 +187,7 @@ void keep_bodies(const FosOptions& options, Index last, FosPlan& plan)
     if (presence.from <= last)
       before.keep(b);
     if (presence.in(last))
-      then.keep(b, keys_of_filling);
+      then.keep(b, {.only = BodySpec::keys_without_filling});
   }
   if (!all)
     plan.at_rest.changes.push_back(before.change());
@@ -213,17 +210,36 @@ void keep_walls(const FosOptions& options, Index last, FosPlan& plan)
     if (during_of(walls[w]).empty())
       before.keep(w);
     else if (!names.empty())
-      before.keep(w, key, fmt::format("during: [{}]", fmt::join(names, ", ")));
+      before.keep(w, {.without = key}, fmt::format("during: [{}]", fmt::join(names, ", ")));
     if (acts_in(walls[w], name_of(plan.spec.stages[static_cast<std::size_t>(last)])))
-      then.keep(w, key);
+      then.keep(w, {.without = key});
   }
   plan.at_rest.changes.push_back(before.change());
   plan.of_state.push_back(then.change());
 }
 
-std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
+/// The water table of trials is that of the state at rest.
+void keep_table(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
 {
+  for (std::size_t i = n_stages; i-- > 0;)
+    if (changes_of(plan.spec.stages[i]).water)
+      return plan.of_state.push_back("water.table=" +
+                                     written_in_scene(options.scene, options.set, fmt::format("stages[{}].water.table", i)));
+}
+
+/// The scene itself has been read: what is wrong with it after these changes is no mistake of whoever wrote it or called the program, so it is
+/// told at the scene and not at a --set that nobody typed.
+std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
+try {
   return scene_digest(read_scene(plan.scene, changes));
+} catch (const SceneErrors& e) {
+  std::vector<Problem> problems;
+  for (const Problem& problem : e.problems()) {
+    Where where = plan.spec.where;
+    where.path = problem.where.path;
+    problems.push_back({where, "a run that talus fos makes of this scene is refused: " + problem.message, ""});
+  }
+  throw SceneErrors(std::move(problems));
 }
 
 }  // namespace
@@ -285,6 +301,7 @@ FosPlan plan_fos(const FosOptions& options)
   keep_stages(options, n_stages, plan);
   keep_bodies(options, last, plan);
   keep_walls(options, last, plan);
+  keep_table(options, n_stages, plan);
   plan.at_rest.changes.emplace_back("outputs.checkpoint.at_end=true");
   plan.at_rest.folder = plan.folder / "at_rest";
   plan.at_rest.scene_digest = digest_of_changed(plan, plan.at_rest.changes);
@@ -314,6 +331,7 @@ FosPlan plan_fos(const FosOptions& options)
   plan.moved = fmt::format("[{}]", fmt::join(moved, ", "));
   if (const std::string picture = written_in_scene(options.scene, options.set, "outputs.picture"); picture.starts_with('{'))
     plan.picture = ", picture: " + picture;
+  trial_of(plan, 1, 1);  // what keeps a trial from being run is said before the state at rest is sought
   return plan;
 }
 

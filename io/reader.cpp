@@ -286,18 +286,17 @@ Scene read_scene_text(const std::filesystem::path& file, const std::string& text
 }
 
 std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
-                             std::span<const std::string_view> without)
+                             const KeyChoice& keys)
 {
   const Document document = read_document(file, read_text(file), overrides);
   const Found found = find_nearest(document.root, path);
   if (!found.whole)
     return {};
   Node there = *found.node;
-  for (const std::string_view key : without)
-    if (const Node* const item = there.find(key)) {
-      const auto at = item - there.items.data();
-      there.keys.erase(there.keys.begin() + at);
-      there.items.erase(there.items.begin() + at);
+  for (auto i = std::ssize(there.keys) - 1; i >= 0; --i)
+    if (!keys.takes(there.keys[static_cast<std::size_t>(i)].text)) {
+      there.keys.erase(there.keys.begin() + i);
+      there.items.erase(there.items.begin() + i);
     }
   return in_one_line(there);
 }

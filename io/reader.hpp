@@ -1,5 +1,6 @@
 #pragma once
 // Reading a scene file, strictly: everything that is wrong is found at once, with file, line, column and key.
+#include <algorithm>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -20,9 +21,19 @@ Scene read_scene(const std::filesystem::path& file, std::span<const std::string>
 /// The same of a text that was in `file`.
 Scene read_scene_text(const std::filesystem::path& file, const std::string& text, std::span<const std::string> overrides = {});
 
-/// What stands at a path of keys, in one line as an override takes it; without some keys of that mapping.  Empty where nothing stands.
+/// Which keys of a mapping are taken.
+struct KeyChoice {
+  std::span<const std::string_view> only = {};     ///< none: all
+  std::span<const std::string_view> without = {};  ///< but these
+  bool takes(std::string_view key) const noexcept
+  {
+    const auto names = [&](std::span<const std::string_view> list) { return std::find(list.begin(), list.end(), key) != list.end(); };
+    return (only.empty() || names(only)) && !names(without);
+  }
+};
+/// What stands at a path of keys, in one line as an override takes it, with the chosen keys of that mapping.  Empty where nothing stands.
 std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
-                             std::span<const std::string_view> without = {});
+                             const KeyChoice& keys = {});
 
 /// The file of `talus drive`, read in the same way.
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});

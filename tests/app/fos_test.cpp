@@ -204,6 +204,25 @@ TEST_F(FosProgram, SaysWhatKeepsStrengthFromBeingDivided)
   EXPECT_FALSE(exists("out"));
 }
 
+/// All that a body can say of how it is filled, a water table that moves before the state at rest, and a wall for one stage only.
+TEST_F(FosProgram, TrialsKeepWhatABodyIsAndNotHowItIsFilled)
+{
+  std::string scene = bank_scene(
+      "water: {table: {elevation: 0.2}}\nstages: [{type: geostatic, duration: 20, residual: 1.0e-2, name: first, initial_stress: {k0: "
+      "0.6}}, "
+      "{type: geostatic, duration: 20, residual: 1.0e-2, name: second, water: {table: {elevation: 0.4}}}, {type: run, duration: 60, water: "
+      "{table: {elevation: 0.1}}}]\n");
+  scene.replace(scene.find("f_bar: true"), 11, "f_bar: true, saturated_density: 2100, velocity: [0, 0]");
+  scene.replace(scene.find("on: x_max"), 9, "where: x_max, during: [second]");
+  write("bank.yaml", scene);
+  const Outcome outcome = fos("--from 1 --to 4 --width 3 --jobs 2 --quick --duration 1");
+  EXPECT_TRUE(outcome.code == 0 || outcome.code == 1) << outcome.err;
+  const std::string scene_of_trial = read("out/trial_4/summary.json");
+  EXPECT_THAT(scene_of_trial, HasSubstr("\"status\": \"done\"")) << outcome.err;
+  EXPECT_THAT(scene_of_trial, HasSubstr("water.table={\\\"elevation\\\": 0.4}")) << "that of the state at rest";
+  EXPECT_THAT(scene_of_trial, HasSubstr("bodies=[{\\\"name\\\": bank, \\\"material\\\": clay, \\\"f_bar\\\": true}]"));
+}
+
 TEST_F(FosProgram, ATrialThatBreaksOffHasFailed)
 {
   std::string scene = bank_scene(at_rest);
