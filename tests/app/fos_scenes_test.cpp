@@ -40,7 +40,7 @@ TEST_P(FosOfScene, MakesTrials)
   EXPECT_THAT(read("out/trial_1/summary.json"), HasSubstr("\"status\": \"done\"")) << outcome.err;
   EXPECT_THAT(read("out/trial_2/summary.json"), HasSubstr("\"status\": \"done\"")) << outcome.err;
 }
-INSTANTIATE_TEST_SUITE_P(Examples, FosOfScene, testing::ValuesIn(scenes_at_rest()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Examples, FosOfScene, testing::ValuesIn(scenes_at_rest()), [](const auto& scene) { return scene.param; });
 
 }  // namespace
 
