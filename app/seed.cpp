@@ -8,6 +8,7 @@
 #include "app/expression.hpp"
 #include "app/laws_in_force.hpp"
 #include "app/setup.hpp"
+#include "app/shared_cells.hpp"
 #include "core/parallel.hpp"
 #include "io/memory.hpp"
 #include "mesh/locate.hpp"
@@ -393,36 +394,6 @@ class Seeder {
   std::vector<Taken> taken_;
 };
 
-/// Whether two bodies are there in the same stage.
-bool meet(const Scene& scene, const std::string& a, const std::string& b)
-{
-  const Presence one = presence_of(a, scene.stages), other = presence_of(b, scene.stages);
-  return one.from < other.until && other.from < one.until;
-}
-
-/// Cells that hold particles of two bodies at once: material there is counted twice, unless the shapes only touch.
-template <int D>
-void warn_of_shared_cells(const Scene& scene, const Seeds<D>& seeds, Index n_cells, Exchange& ranks, std::vector<std::string>& warnings)
-{
-  std::vector<Index> owner(static_cast<std::size_t>(n_cells), none), counted(owner);
-  for (std::size_t b = 0; b < seeds.bodies.size(); ++b) {
-    std::vector<std::int64_t> shared(seeds.bodies.size(), 0);
-    for (Index row = seeds.bodies[b].begin; row < seeds.bodies[b].end; ++row) {
-      const auto cell = static_cast<std::size_t>(seeds.particles.cell[static_cast<std::size_t>(row)]);
-      const Index body = static_cast<Index>(b), holds = owner[cell];
-      if (holds == none)
-        owner[cell] = body;
-      else if (holds != body && std::exchange(counted[cell], body) != body)
-        ++shared[static_cast<std::size_t>(holds)];
-    }
-    ranks.sum(shared);  // no cell is filled by two ranks
-    for (std::size_t other = 0; other < b; ++other)
-      if (shared[other] > 0 && meet(scene, seeds.bodies[other].name, seeds.bodies[b].name))
-        warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(seeds.bodies[b].where),
-                                       seeds.bodies[other].name, seeds.bodies[b].name, shared[other], shared[other] == 1 ? "" : "s"));
-  }
-}
-
 }  // namespace
 
 template <int D>
@@ -447,14 +418,9 @@ Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complain
       seeder.add(scene.bodies[b]);
   if (initial)
     seeder.settle(*initial, warnings);
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (!scene.bodies[i].region.empty() && scene.bodies[i].region == scene.bodies[j].region &&
-          meet(scene, scene.bodies[i].name, scene.bodies[j].name))
-        complaints.add(scene.bodies[i].where, "region",
-                       fmt::format("body \"{}\" fills the cell group \"{}\" already", scene.bodies[j].name, scene.bodies[i].region));
+  find_groups_filled_twice(scene, complaints);
   Seeds<D> seeds = seeder.take();
-  warn_of_shared_cells(scene, seeds, mesh.n_cells(), ranks, warnings);
+  warn_of_shared_cells(scene, seeds.bodies, seeds.particles.cell, mesh.n_cells(), ranks, warnings);
   return seeds;
 }
 

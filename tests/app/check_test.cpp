@@ -188,6 +188,29 @@ TEST_F(Check, SaysHowManyNodesOfASlipSurfaceAreTreatedAsCornersAndTheSceneRuns)
   EXPECT_THAT(read("r/summary.json"), testing::ContainsRegex("\"nodes_treated_as_corners\": [1-9]"));
 }
 
+TEST_F(Check, ManyBodiesAtTheSamePlaceAreSaidInFewLines)
+{
+  constexpr int n = 200;
+  const auto scene = [](const std::string& where) {
+    std::string text = block_scene("");
+    text.resize(text.find("  - {name: block"));
+    for (int b = 0; b < n; ++b)
+      text += fmt::format("  - {{name: b{}, material: rubber, {}, particles_per_cell: 1}}\n", b, where);
+    return text + "time: {end: 1}\n";
+  };
+  const auto lines = [](const std::string& text) { return std::count(text.begin(), text.end(), '\n'); };
+  write("boxes.yaml", scene("shape: {type: box, low: [0.5, 0], high: [1.5, 1]}"));
+  const Outcome boxes = talus("check boxes.yaml");
+  EXPECT_EQ(boxes.code, 0);
+  EXPECT_EQ(lines(boxes.err), 11);
+  EXPECT_THAT(boxes.err, HasSubstr("warning: 189 more pairs of bodies share cells at the start\n"));
+  write("groups.yaml", scene("region: all"));
+  const Outcome groups = talus("check groups.yaml");
+  EXPECT_EQ(groups.code, 2);
+  EXPECT_LT(lines(groups.err), 4 * n) << "one error for each body, not for each pair";
+  EXPECT_THAT(groups.err, HasSubstr("body \"b0\" fills the cell group \"all\" already"));
+}
+
 }  // namespace
 
 }  // namespace talus::check_test
