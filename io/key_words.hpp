@@ -7,10 +7,7 @@ namespace talus {
 
 /// The other word for a key; empty where there is none.  Readers of YAML 1.1 (PyYAML, Ruby's) take the key `on` for the switch true, and programs
 /// that read a scene with them and write it again leave `true` there: `where` comes through as it is.
-constexpr std::string_view other_word_for(std::string_view key) noexcept
-{
-  return key == "on" ? "where" : key == "where" ? "on" : "";
-}
+constexpr std::string_view other_word_for(std::string_view key) noexcept { return key == "on" ? "where" : key == "where" ? "on" : ""; }
 
 /// Whether such a reader has made this of the key `on`.
 constexpr bool was_on(std::string_view key) noexcept { return key == "true" || key == "True"; }
@@ -18,12 +15,14 @@ constexpr bool was_on(std::string_view key) noexcept { return key == "true" || k
 /// What is to be said of a key that no mapping has, because it belongs to something that Talus does not compute; empty of any other key.
 constexpr std::string_view not_computed(std::string_view key) noexcept
 {
-  constexpr std::array<std::string_view, 11> flow{"permeab",       "hydraulic",   "seepage",       "darcy", "consolidation", "biot", "porosity",
-                                                  "fluid_density", "water_bulk_", "storage_coeff", "infiltration"};
+  constexpr std::array<std::string_view, 11> flow{"permeab",  "hydraulic",     "seepage",     "darcy",         "consolidation", "biot",
+                                                  "porosity", "fluid_density", "water_bulk_", "storage_coeff", "infiltration"};
   for (const std::string_view word : flow)
     if (key.find(word) != key.npos)
-      return "Talus computes one phase: water in the pores is a hydrostatic pressure below a table (block water) that does not flow, so there is "
-             "no seepage and no consolidation; leave it out. For drained soil give water.table, of each stage where it changes; for soil that "
+      return "Talus computes one phase: water in the pores is a hydrostatic pressure below a table (block water) that does not flow, so "
+             "there is "
+             "no seepage and no consolidation; leave it out. For drained soil give water.table, of each stage where it changes; for soil "
+             "that "
              "is loaded faster than it drains give undrained strengths (water.undrained)";
   return "";
 }

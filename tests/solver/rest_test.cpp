@@ -15,13 +15,13 @@ TEST(Rest, NamesTheConditionThatFailed)
 {
   const RestConditions motion{.asked = 1e-3, .unbalanced = 2e-4, .kinetic = 0.3, .work = 10, .ramp_over = true};
   EXPECT_FALSE(motion.met());
-  EXPECT_THAT(why_not_at_rest(motion, 0, 20),
-              AllOf(StartsWith("kinetic energy 0.03 of the work done, asked 0.001"), HasSubstr("unbalanced force 0.0002 of the loads: that is reached")));
+  EXPECT_THAT(why_not_at_rest(motion, 0, 20), AllOf(StartsWith("kinetic energy 0.03 of the work done, asked 0.001"),
+                                                    HasSubstr("unbalanced force 0.0002 of the loads: that is reached")));
 
   const RestConditions force{.asked = 1e-3, .unbalanced = 0.2, .kinetic = 0.003, .work = 10, .ramp_over = true};
   EXPECT_FALSE(force.met());
-  EXPECT_THAT(why_not_at_rest(force, 0, 20),
-              AllOf(StartsWith("unbalanced force 0.2 of the loads, asked 0.001"), HasSubstr("kinetic energy 0.0003 of the work done: that is reached")));
+  EXPECT_THAT(why_not_at_rest(force, 0, 20), AllOf(StartsWith("unbalanced force 0.2 of the loads, asked 0.001"),
+                                                   HasSubstr("kinetic energy 0.0003 of the work done: that is reached")));
 
   const RestConditions both{.asked = 1e-3, .unbalanced = 0.2, .kinetic = 0.3, .work = 10, .ramp_over = true};
   EXPECT_FALSE(both.met());
