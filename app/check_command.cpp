@@ -11,6 +11,7 @@
 #include "app/trial.hpp"
 #include "app/upright.hpp"
 #include "app/water.hpp"
+#include "core/counted.hpp"
 #include "core/parallel.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
@@ -30,21 +31,19 @@ struct StepRange {
   std::int64_t least = 0, most = 0;
   StepRange& operator+=(const StepRange& other) noexcept
   {
-    least += other.least, most += other.most;
+    least = counted_sum(least, other.least), most = counted_sum(most, other.most);
     return *this;
   }
   Real middle() const noexcept { return static_cast<Real>(least + most) / 2; }
 };
 
-std::int64_t steps_of(Real time, Real dt) { return static_cast<std::int64_t>(std::ceil(time / dt)); }
+std::int64_t steps_of(Real time, Real dt) { return counted(std::ceil(time / dt)); }
 StepRange steps_of(const RestTime& time, Real dt) { return {steps_of(time.soonest, dt), steps_of(time.latest, dt)}; }
 
 /// "12" or "12 to 40", the numbers times a factor
 std::string in_words(const StepRange& range, Real factor = 1)
 {
-  const auto word = [&](std::int64_t n) {
-    return factor == 1 ? fmt::format("{}", n) : fmt::format("{:.3g}", static_cast<Real>(n) * factor);
-  };
+  const auto word = [&](std::int64_t n) { return factor == 1 ? count_in_words(n) : fmt::format("{:.3g}", static_cast<Real>(n) * factor); };
   return range.least == range.most ? word(range.least) : fmt::format("{} to {}", word(range.least), word(range.most));
 }
 
@@ -55,9 +54,9 @@ std::string describe_rest(const std::vector<Stage>& stages, Real passage, Real d
   for (std::size_t s = 0; s < stages.size(); ++s)
     if (const Stage& stage = stages[s]; stage.residual) {
       const RestTime time = time_to_rest(stage, passage);
-      text +=
-          fmt::format("  stage {} \"{}\" ends at rest, usually after {:.2g} to {:.2g} s, {} steps; at most {:.6g} s, {} steps\n", s,
-                      stage.name, time.soonest, time.latest, in_words(steps_of(time, dt)), stage.duration, steps_of(stage.duration, dt));
+      text += fmt::format("  stage {} \"{}\" ends at rest, usually after {:.2g} to {:.2g} s, {} steps; at most {:.6g} s, {} steps\n", s,
+                          stage.name, time.soonest, time.latest, in_words(steps_of(time, dt)), stage.duration,
+                          count_in_words(steps_of(stage.duration, dt)));
     }
   return text;
 }
@@ -70,7 +69,7 @@ std::string describe_disk_use(const FileSizes& one, const DiskUse& use)
   std::string text = fmt::format("  disk: at most {} before compression:", in_megabytes(use.bytes));
   const auto add = [&](std::int64_t number, const char* what, Real each) {
     if (number > 0)
-      text += fmt::format("{} {} {} of {}", text.ends_with(':') ? "" : ",", number, what, in_megabytes(each));
+      text += fmt::format("{} {} {} of {}", text.ends_with(':') ? "" : ",", count_in_words(number), what, in_megabytes(each));
   };
   add(use.particle_files, "particle files", one.particles);
   add(use.mesh_files, "mesh files", one.mesh);

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 
+#include "app/cli_checks.hpp"
 #include "app/commands.hpp"
 #include "app/completion.hpp"
 #include "app/templates.hpp"
@@ -154,13 +155,13 @@ class CommandLine {
     run->add_option("--out", run_.out, "folder for the results; default runs/<name of the scene>, or that of the run to go on with")
         ->type_name(folder_value);
     run->add_option("--threads", run_.threads, "threads to use; default what the scene says, or as many as pay for its particles")
-        ->check(CLI::Range(1, 1024));
+        ->check(number_within(1, 1024));
     run->add_option("--set", run_.set, set_help);
     run->add_option("--until", run_.until, "stop after so many steps with a checkpoint, to go on from or to look at")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_not_below_zero());
     run->add_option("--rebalance", run_.rebalance,
                     "several ranks: share the run out anew every so many steps; 0: never; default when it pays")
-        ->check(CLI::NonNegativeNumber);
+        ->check(number_not_below_zero());
     run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");
     run->add_flag("--strict", run_.strict, "balances that do not close are an error: exit code 1 (strict: true in a scene)");
@@ -184,8 +185,8 @@ class CommandLine {
         ->type_name("*.yaml *.msh *.geo *.step")
         ->required();
     mesh->add_option("--out", mesh_.out, "write the mesh to this .msh")->type_name("*.msh");
-    mesh->add_option("--size", mesh_.size, "edge length of the cells of a geometry [m]")->check(CLI::PositiveNumber);
-    mesh->add_option("--dimension", mesh_.dimension, "2 or 3; default that of the largest cells")->check(CLI::Range(2, 3));
+    mesh->add_option("--size", mesh_.size, "edge length of the cells of a geometry [m]")->check(number_above_zero());
+    mesh->add_option("--dimension", mesh_.dimension, "2 or 3; default that of the largest cells")->check(number_within(2, 3));
     mesh->add_option("--set", mesh_.set, set_help);
     mesh->callback([this] { show_mesh(mesh_); });
   }
@@ -202,11 +203,11 @@ class CommandLine {
     const auto of_test = [&](const char* name, auto& value, const char* help) { return drive->add_option(name, value, help)->needs(test); };
     of_test("--material", drive_.material, "material of the scene; may be left out where there is one");
     of_test("--pressure", drive_.pressure, "stress at the start, equal in all directions [Pa]; default 1e5, for the last two tests 0")
-        ->check(CLI::NonNegativeNumber);
-    of_test("--strain", drive_.strain, "axial or shear strain at the end; default 0.2, 0.2, 0.5, 0.05, 0.2")->check(CLI::PositiveNumber);
-    of_test("--rate", drive_.rate, "of this strain [1/s]; default 0.001")->check(CLI::PositiveNumber);
+        ->check(number_not_below_zero());
+    of_test("--strain", drive_.strain, "axial or shear strain at the end; default 0.2, 0.2, 0.5, 0.05, 0.2")->check(number_above_zero());
+    of_test("--rate", drive_.rate, "of this strain [1/s]; default 0.001")->check(number_above_zero());
     of_test("--plot", drive_.plot, "draw the curve and the closed forms into this .png");
-    of_test("--steps", drive_.steps, "default 500")->check(CLI::Range(1, most_steps));
+    of_test("--steps", drive_.steps, "default 500")->check(number_within(1, most_steps));
     drive->callback([this] { drive_law(drive_); });
   }
 
@@ -235,7 +236,7 @@ class CommandLine {
     CLI::Option* movie = command.add_option("--movie", options.movie, help);
     command.add_option("--fps", options.per_second, "pictures per second of the movie; default 10")
         ->needs(movie)
-        ->check(CLI::Range(0.1, 100.0));
+        ->check(number_within(0.1, 100.0));
     command.add_flag("--keep-frames", options.keep_frames, "leave the pictures of the movie as numbered files in --out")->needs(movie);
   }
 
@@ -267,8 +268,8 @@ class CommandLine {
                      "particle fields, such as plastic_strain,stress:xy; default that of the pictures, then all")
         ->delimiter(',');
     report->add_option("--frames", report_.frames, "so many, evenly spread; default as many as there is room for")
-        ->check(CLI::Range(1, most_steps));
-    report->add_option("--size", report_.size, "of the page at most [MB]; default 28")->check(CLI::PositiveNumber);
+        ->check(number_within(1, most_steps));
+    report->add_option("--size", report_.size, "of the page at most [MB]; default 28")->check(number_above_zero());
     report->add_option("--page", report_.page, "page to fill instead of the one that was built with the program");
     report->callback([this] { write_report(report_); });
   }
@@ -278,9 +279,9 @@ class CommandLine {
     constexpr int most_port = 65535;
     CLI::App* watch = app_.add_subcommand("watch", "follow a run in the terminal and in the browser until it ends");
     watch->add_option("folder", watch_.folder, "where a run leaves its results")->type_name(folder_value)->required();
-    watch->add_option("--interval", watch_.interval, "seconds between looks; default 2")->check(CLI::Range(0.1, 3600.0));
+    watch->add_option("--interval", watch_.interval, "seconds between looks; default 2")->check(number_within(0.1, 3600.0));
     watch->add_option("--port", watch_.port, "of the page, on this machine only; default any that is free")
-        ->check(CLI::Range(0, most_port));
+        ->check(number_within(0, most_port));
     watch->add_flag("!--no-serve", watch_.serve, "no page, only the terminal");
     watch->add_flag("--once", watch_.once, "look once, serve nothing, end");
     watch->add_option("--page", watch_.page, "page to fill instead of the one that was built with the program");
@@ -302,7 +303,7 @@ class CommandLine {
     diff->add_option("a", diff_.a, "results of a run")->type_name(folder_value)->required();
     diff->add_option("b", diff_.b, "results of another run")->type_name(folder_value)->required();
     const auto tolerance = [&](const char* name, Real& value, const char* help) {
-      return diff->add_option(name, value, help)->check(CLI::NonNegativeNumber);
+      return diff->add_option(name, value, help)->check(number_not_below_zero());
     };
     tolerance("--relative", diff_.relative, "allowed difference over the largest value of the field in both runs; default 0");
     tolerance("--absolute", diff_.absolute, "allowed difference, in the unit of each field, besides that; default 0");
@@ -317,11 +318,11 @@ class CommandLine {
     sweep->add_option("study", sweep_.study, "study (.yaml): scene, what varies, what is told")->type_name(scene_value)->required();
     sweep->add_option("--out", sweep_.out, "folder of cases and table; default runs/<name of the study>")->type_name(folder_value);
     CLI::Option* jobs =
-        sweep->add_option("--jobs", sweep_.jobs, "cases at a time; default as many as there are cores for")->check(CLI::Range(1, 1024));
+        sweep->add_option("--jobs", sweep_.jobs, "cases at a time; default as many as there are cores for")->check(number_within(1, 1024));
     sweep->add_option("--threads", sweep_.threads, "threads of each; default the cores over the cases at a time")
-        ->check(CLI::Range(1, 1024));
+        ->check(number_within(1, 1024));
     CLI::Option* only = sweep->add_option("--case", sweep_.only, "run this case alone, counted from 1: for the jobs of an array");
-    only->check(CLI::PositiveNumber)->excludes(jobs);
+    only->check(number_above_zero())->excludes(jobs);
     sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
     sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
     sweep->add_flag("!--no-pictures", sweep_.pictures, "draw nothing");
@@ -337,21 +338,22 @@ class CommandLine {
     fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic stage")->type_name(scene_value)->required();
     fos->add_option("--out", fos_.out, "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
     const auto number = [&](const char* name, auto& value, const char* help) {
-      return fos->add_option(name, value, help)->check(CLI::PositiveNumber);
+      return fos->add_option(name, value, help)->check(number_above_zero());
     };
     number("--from", fos_.range.from, "lowest factor that is tried first; default 0.5");
     number("--to", fos_.range.to, "highest factor that is tried first; default 3");
     number("--width", fos_.range.width, "how close holding and failing factors come; default 0.02");
     number("--duration", fos_.duration, "of a trial [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
-    fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(CLI::Range(0.0, 0.9));
+    fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(number_within(0.0, 0.9));
     number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
     number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
     fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
     fos->add_option("--share", fos_.mass_share, "displacement that this share of the mass does not exceed is looked at; default 0.99")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(number_within(0.0, 1.0));
     fos->add_option("--set", fos_.set, set_help);
-    fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(CLI::Range(1, 1024));
-    fos->add_option("--threads", fos_.threads, "threads of each; default the cores over the trials at a time")->check(CLI::Range(1, 1024));
+    fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(number_within(1, 1024));
+    fos->add_option("--threads", fos_.threads, "threads of each; default the cores over the trials at a time")
+        ->check(number_within(1, 1024));
     fos->add_option("--launcher", fos_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
     fos->add_flag("!--no-pictures", fos_.pictures, "draw nothing");
     fos->add_flag("--quick", fos_.quick, "each run coarse and short: only to see that they run");
@@ -369,8 +371,8 @@ class CommandLine {
       cases->required()->expected(1);
     suite->add_option("--level", options.level, "quick or full; default quick")->check(CLI::IsMember({"quick", "full"}));
     suite->add_option("--out", options.out, "folder for runs and report; default runs/" + name)->type_name(folder_value);
-    suite->add_option("--jobs", options.jobs, "runs at a time; default one a core")->check(CLI::Range(1, 1024));
-    suite->add_option("--threads", options.threads, "threads of each run; default 1")->check(CLI::Range(1, 1024));
+    suite->add_option("--jobs", options.jobs, "runs at a time; default one a core")->check(number_within(1, 1024));
+    suite->add_option("--threads", options.threads, "threads of each run; default 1")->check(number_within(1, 1024));
     suite->add_flag("--reuse", options.reuse, "do not repeat runs whose program and inputs are unchanged");
     if (verify) {
       suite->add_option("--kernel", options.kernel, "kernel of every run that does not choose one itself");
@@ -392,18 +394,18 @@ class CommandLine {
     list("--transfer", bench_.transfers, "transfer schemes");
     list("--law", bench_.laws, "constitutive laws");
     list("--precision", bench_.precisions, "double, single or both");
-    list("--dimension", bench_.dimensions, "2, 3 or both")->check(CLI::Range(2, 3));
-    list("--threads", bench_.threads, "numbers of threads")->check(CLI::Range(1, 1024));
-    list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(CLI::Range(1, 100));
+    list("--dimension", bench_.dimensions, "2, 3 or both")->check(number_within(2, 3));
+    list("--threads", bench_.threads, "numbers of threads")->check(number_within(1, 1024));
+    list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(number_within(1, 100));
     CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, precision, dimension: hours");
     CLI::Option* options =
         bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
     CLI::Option* mpi = bench->add_flag("--mpi", bench_.ranks, "one case on the ranks of mpirun: what each holds, sends and waits for");
     mpi->excludes(all)->excludes(options);
-    bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(CLI::Range(1000, most_particles));
-    bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(CLI::Range(1, most_steps));
-    bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(CLI::Range(1, 1000));
-    bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(CLI::Range(1, most_steps));
+    bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(number_within(1000, most_particles));
+    bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(number_within(1, most_steps));
+    bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(number_within(1, 1000));
+    bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(number_within(1, most_steps));
     bench->add_option("--json", bench_.json, "write all of it to this file");
     bench->add_option("--from", bench_.from, "measure nothing, show such a file")->excludes(mpi);
     bench->add_option("--compare", bench_.compare, "print times over those of such a file")->excludes(mpi);

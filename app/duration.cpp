@@ -5,18 +5,20 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/counted.hpp"
+
 namespace talus {
 
 std::string in_minutes(Real seconds)
 {
-  const auto s = static_cast<std::int64_t>(std::lround(seconds));
+  const auto s = counted(std::round(seconds));
   return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
 std::string duration_in_words(Real seconds)
 {
   constexpr std::int64_t minute = 60, hour = 3600, day = 24 * hour;
-  const auto whole = static_cast<std::int64_t>(std::round(seconds));
+  const auto whole = counted(std::round(seconds));
   if (seconds < 9.95)
     return fmt::format("{:.2g} s", seconds);
   if (whole < minute)

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "app/cli.hpp"
+#include "app/process.hpp"
 #include "app/threads.hpp"
 #include "core/error.hpp"
 #include "core/exchange.hpp"
@@ -18,17 +19,27 @@ constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3, run_stoppe
 int main(int argc, char** argv)
 {
   talus::let_waiting_threads_sleep(argv);
+  talus::prepare_process();
   std::optional<talus::Ranks> ranks;
   const auto fail = [&](int code, const char* what) {
-    if (ranks)
-      return ranks->end(code, what);
-    std::fflush(stdout);
-    fmt::print(stderr, "{}\n", what);
+    talus::leave_process();
+    if (ranks) {
+      ranks->end(code, what);
+    } else {
+      std::fflush(stdout);
+      std::fprintf(stderr, "%s\n", what);
+    }
+    if (code == environment_wrong)
+      talus::end_at_once(code);
     return code;
   };
   try {
     ranks.emplace();
-    return ranks->end(talus::cli(argc, argv));
+    const int code = talus::cli(argc, argv);
+    if (const std::string why = talus::unwritten_output(); code == 0 && !why.empty())
+      throw talus::EnvironmentError(why);
+    talus::leave_process();
+    return ranks->end(code);
   } catch (const talus::SceneErrors& e) {
     return fail(scene_wrong, e.what());
   } catch (const talus::Stopped& e) {

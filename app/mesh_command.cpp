@@ -7,6 +7,7 @@
 #include "io/gmsh_write.hpp"
 #include "io/reader.hpp"
 #include "io/terrain_mesh.hpp"
+#include "io/whole_file.hpp"
 #include "mesh/quality.hpp"
 
 namespace talus {
@@ -29,6 +30,8 @@ Asked asked(const MeshOptions& options)
     Scene scene = read_scene(options.file, options.set);
     return {scene.mesh, folder_of(scene), scene.dimension};
   }
+  if (const auto why = not_ordinary(options.file))
+    throw Error(fmt::format("mesh file \"{}\" {}", options.file.string(), *why));
   MeshSpec spec;
   spec.where.file = options.file.string();
   const std::string name = options.file.filename().string();

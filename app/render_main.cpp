@@ -1,6 +1,7 @@
 // talus-render: pictures and surfaces in a process of their own, because VTK ends the process when there is no display.
 #include <fmt/format.h>
 
+#include <csignal>
 #include <cstdio>
 #include <span>
 #include <sstream>
@@ -71,6 +72,7 @@ void draw_pictures(std::span<const std::string> words)
 int main(int argc, char** argv)
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too long is an error of the write that does not fit
   try {
     if (arguments.size() == 1 && arguments.front() == "--help") {
       fmt::print("{}", render::usage());

@@ -62,7 +62,7 @@ void for_each_cell_of(const Mesh<D>& mesh, Facet facet, const PlanGrid& grid, co
     low = low.cwiseMin(plan(corner[k])), high = high.cwiseMax(plan(corner[k]));
   }
   const auto first = [](Real at, Real begin, Real d, Index n) {
-    return std::clamp(static_cast<Index>(std::floor((at - begin) / d - 0.5)), Index{0}, n - 1);
+    return static_cast<Index>(std::clamp(std::floor((at - begin) / d - 0.5), Real{0}, static_cast<Real>(n - 1)));
   };
   const auto elevation = [&](const Vec3& x) { return axes.sign * x[axes.upright]; };
   const Vec<2> a = plan(corner[0]), ab = plan(corner[1]) - a, ac = D == 2 ? Vec<2>(0, 1) : Vec<2>(plan(corner[D - 1]) - a);
@@ -152,7 +152,8 @@ void Runout<D>::lay_out(const Frame<D>& frame)
   const auto fit = [&](Index axis, Real& begin, Real& d, Index& n) {
     const Real extent = frame.mesh.high()[axis] - frame.mesh.low()[axis];
     begin = frame.mesh.low()[axis];
-    n = std::max(Index{1}, static_cast<Index>(std::ceil(extent / cell - round_off)));
+    constexpr Real most = std::numeric_limits<Index>::max();  // for which there is no memory
+    n = static_cast<Index>(std::clamp(std::ceil(extent / cell - round_off), Real{1}, most));
     d = extent / n;
   };
   fit(axes_.plan[0], grid_.west, grid_.dx, grid_.columns);

@@ -6,6 +6,7 @@
 #include "app/guards.hpp"
 #include "app/history.hpp"
 #include "app/loads_of_scene.hpp"
+#include "app/process.hpp"
 #include "app/runout.hpp"
 #include "app/seed.hpp"
 #include "app/stages_of_scene.hpp"
@@ -43,7 +44,7 @@ void take_threads(std::optional<int> asked, const Scene& scene)
 {
   const Index wanted = asked.value_or(scene.threads);
   if (wanted > 0)
-    set_threads(wanted);
+    use_threads(wanted, asked ? "--threads" : "threads in " + scene.file);
   else if (!world().alone())
     set_threads(std::max(1, threads() / ranks_on_this_machine()));
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/library_call.hpp"
 #include "io/array_digest.hpp"
 #include "io/hdf5.hpp"
 #include "io/whole_file.hpp"
@@ -188,6 +189,7 @@ struct ArrayReader::Opened {
 
 ArrayReader::ArrayReader(const fs::path& file)
 {
+  const LibraryCall at_work("HDF5", "reading", file.native());
   keep_quiet();
   const std::string_view mark = "\x89HDF\r\n\x1a\n";
   std::string begin(mark.size(), '\0');
@@ -217,6 +219,7 @@ bool ArrayReader::has(const std::string& path) const { return opened_->kind(path
 
 std::vector<std::string> ArrayReader::names(const std::string& group) const
 {
+  const LibraryCall at_work("HDF5", "reading", opened_->name.native());
   const H5O_type_t kind = group.empty() ? H5O_TYPE_GROUP : opened_->kind(group);
   if (kind != H5O_TYPE_GROUP)
     refuse(opened_->name, group, kind == H5O_TYPE_UNKNOWN ? "is not there" : "is not a group");
@@ -239,6 +242,7 @@ std::vector<std::string> ArrayReader::names(const std::string& group) const
 template <class T>
 std::vector<T> ArrayReader::read(const std::string& path, int columns) const
 {
+  const LibraryCall at_work("HDF5", "reading", opened_->name.native());
   const Handle array = opened_->open(path);
   const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   std::vector<T> values(shape.rows * shape.columns);
@@ -249,6 +253,7 @@ std::vector<T> ArrayReader::read(const std::string& path, int columns) const
 template <class T>
 void ArrayReader::read_into(const std::string& path, std::span<T> to, int columns) const
 {
+  const LibraryCall at_work("HDF5", "reading", opened_->name.native());
   const Handle array = opened_->open(path);
   const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   if (shape.rows * shape.columns != to.size())
@@ -259,6 +264,7 @@ void ArrayReader::read_into(const std::string& path, std::span<T> to, int column
 template <class T>
 void ArrayReader::read_rows(const std::string& path, std::size_t first, std::span<T> to, int columns) const
 {
+  const LibraryCall at_work("HDF5", "reading", opened_->name.native());
   const Handle array = opened_->open(path);
   const Extents shape = opened_->check_array(array, type_id<T>(), static_cast<hsize_t>(columns), path);
   if (first > shape.rows || to.size() / shape.columns > shape.rows - first)
@@ -268,6 +274,7 @@ void ArrayReader::read_rows(const std::string& path, std::size_t first, std::spa
 
 std::size_t ArrayReader::rows(const std::string& path) const
 {
+  const LibraryCall at_work("HDF5", "reading", opened_->name.native());
   const Handle array = opened_->open(path);
   const Handle type = opened_->type_of(array, path);
   if (H5Tget_class(type.id()) == H5T_STRING)
@@ -279,6 +286,7 @@ std::string ArrayReader::unit(const std::string& path) const { return opened_->u
 
 std::string ArrayReader::text(const std::string& path) const
 {
+  const LibraryCall at_work("HDF5", "reading", opened_->name.native());
   const Handle array = opened_->open(path);
   const Handle type = opened_->type_of(array, path);
   const std::size_t size = H5Tget_size(type.id());

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/exchange.hpp"
+#include "core/library_call.hpp"
 #include "io/array_digest.hpp"
 #include "io/hdf5.hpp"
 #include "io/hdf5_disk.hpp"
@@ -199,6 +200,7 @@ void write_arrays(Exchange& ranks, const fs::path& file, std::span<const SharedA
   const auto of_rank = gather_rows<std::uint64_t>(ranks, mine);
   std::vector<std::uint64_t> places;
   const auto lay_out = [&](const fs::path& temporary) {
+    const LibraryCall at_work("HDF5", "writing", file.native());
     ArrayWriter writer(temporary);
     rest(writer);
     std::vector<std::size_t> read(of_rank.size(), 0);  // of each rank

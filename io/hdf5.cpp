@@ -23,7 +23,7 @@ std::string last_words()
     return 1;
   };
   H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, first, &words);
-  return words.empty() ? "no reason given" : words;
+  return words.empty() ? "HDF5 gives no reason, as where memory runs out" : words;
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& path, const std::string& what)

@@ -42,7 +42,7 @@ void spread(const PlanGrid& grid, const std::array<Real, 2>& place, Real side, s
 Real sampled(const PlanGrid& grid, const std::vector<Real>& values, const std::array<Real, 2>& place)
 {
   const Real x = (place[0] - grid.west) / grid.dx - 0.5, y = grid.rows > 1 ? (place[1] - grid.south) / grid.dy - 0.5 : 0;
-  const auto clamped = [](Real at, Index n) { return std::clamp(static_cast<Index>(std::lround(at)), Index{0}, n - 1); };
+  const auto clamped = [](Real at, Index n) { return static_cast<Index>(std::clamp(std::round(at), Real{0}, static_cast<Real>(n - 1))); };
   const Real nearest = values[grid.cell(clamped(x, grid.columns), clamped(y, grid.rows))];
   if (std::isnan(nearest))
     return nearest;

@@ -19,7 +19,7 @@ struct Between {
 };
 Between between(Real centres, Index count)
 {
-  const Index first = std::clamp(static_cast<Index>(std::floor(centres)), Index{0}, std::max(Index{0}, count - 2));
+  const auto first = static_cast<Index>(std::clamp(std::floor(centres), Real{0}, static_cast<Real>(std::max(Index{0}, count - 2))));
   return {first, std::min(first + 1, count - 1), count > 1 ? centres - static_cast<Real>(first) : 0};
 }
 

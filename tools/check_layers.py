@@ -37,14 +37,14 @@ THIRD_PARTY = [
     ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp", "tests/io/page_test.cpp"]),
     ("hdf5.h", ["io/hdf5*", "io/array_*.cpp"]),
     ("zlib.h", ["io/page_block.cpp", "tests/io/page_test.cpp"]),
-    ("CLI/*", ["app/cli.cpp"]),
+    ("CLI/*", ["app/cli.cpp", "app/cli_checks.hpp"]),
     ("muParser*", ["app/expression.cpp"]),
     ("gtest/*", ["tests/*"]),
     ("gmock/*", ["tests/*"]),
     ("benchmark/*", ["tests/speed/*"]),
     ("talus_version.hpp", ["core/version.cpp"]),
 ]
-SYSTEM = re.compile(r"[a-z0-9_]+|((sys|netinet)/)?(unistd|fcntl|file|wait|stat|types|resource|time|mman|ioctl|utsname|sysinfo|signal|termios|dlfcn|cxxabi|execinfo|sched|socket|poll|in)\.h")
+SYSTEM = re.compile(r"[a-z0-9_]+|((sys|netinet)/)?(unistd|fcntl|file|uio|wait|stat|types|resource|time|mman|ioctl|utsname|sysinfo|signal|termios|dlfcn|cxxabi|execinfo|sched|socket|poll|in)\.h")
 INCLUDE = re.compile(r'\s*#\s*include\s*([<"])([^>"]+)[>"]')
 OMP = re.compile(r'(#\s*pragma\s+omp\b|_Pragma\s*\(\s*"omp\b)(?P<rest>.*)')
 

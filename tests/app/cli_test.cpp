@@ -145,12 +145,79 @@ TEST_F(CommandLine, AMistypedCommandIsToldWhichWasMeant)
   EXPECT_EQ(outcome.err, "error: there is no command \"rnder\" — did you mean \"render\"?\n");
 }
 
-TEST_F(CommandLine, ARunThatCouldHaveGoneOnIsNotReplacedInSilence)
+/// What was printed and has not arrived is an error; nothing else of the command is.
+TEST_F(CommandLine, AFullStandardOutputIsSaid)
 {
-  write("block.yaml", block_scene("time: {end: 1}\n"));
-  ASSERT_EQ(talus("run block.yaml --quiet --until 3 --out out").code, 4);
-  EXPECT_THAT(talus("run block.yaml --quiet --until 3 --out out").err,
-              testing::HasSubstr("note: out held a run that was stopped and could have gone on by --resume: it is replaced\n"));
+  write("block.yaml", block_scene("time: {end: 0.01}\n"));
+  for (const std::string words :
+       {"info", "check block.yaml", "manual", "--version", "--help", "run block.yaml --out out", "completion bash"}) {
+    const int status =
+        std::system(("cd '" + folder_.path().string() + "' && '" TALUS_BINARY "' " + words + " >/dev/full 2>err.txt").c_str());
+    EXPECT_EQ(WEXITSTATUS(status), 3) << words;
+    EXPECT_THAT(read("err.txt"), testing::HasSubstr("error: cannot write to ")) << words;
+  }
+  EXPECT_THAT(read("out/summary.json"), testing::HasSubstr("\"status\": \"done\"")) << "the run itself went well";
+}
+
+TEST_F(CommandLine, ClosedStreamsTakeNoFileForTheirs)
+{
+  write("block.yaml", block_scene("time: {end: 0.01}\noutputs: {history: {every: 0.001}}\n"));
+  ASSERT_EQ(talus("run block.yaml --out open").code, 0);
+  const int status =
+      std::system(("cd '" + folder_.path().string() + "' && '" TALUS_BINARY "' run block.yaml --out closed <&- >&- 2>&-").c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+  EXPECT_EQ(read("closed/history.csv"), read("open/history.csv"));
+}
+
+TEST_F(CommandLine, NumbersThatAreNoneAreRefusedInShortWords)
+{
+  write("block.yaml", block_scene("time: {end: 0.01}\n"));
+  for (const auto& [words, why] : std::map<std::string, std::string>{
+           {"watch out --interval nan", "--interval: nan is no number that can be taken"},
+           {"watch out --interval 0", "--interval: 0 is not between 0.1 and 3600"},
+           {"run block.yaml --until 99999999999999999999", "--until: 99999999999999999999 is more than 1e18"},
+           {"run block.yaml --until -1", "--until: -1 is below 0"},
+           {"run block.yaml --until 1e999", "--until: 1e999 is no number that can be taken"},
+           {"report out --size -5", "--size: -5 is not above 0"},
+           {"run block.yaml --threads 0", "--threads: 0 is not between 1 and 1024"}}) {
+    const Outcome outcome = talus(words);
+    EXPECT_EQ(outcome.code, 2) << words;
+    EXPECT_THAT(outcome.err, testing::HasSubstr(why)) << words;
+    EXPECT_LT(outcome.err.size(), 250U) << words;
+  }
+  EXPECT_THAT(talus("mesh /dev/zero").err, testing::HasSubstr("\"/dev/zero\" is not an ordinary file"));
+}
+
+TEST_F(CommandLine, ThreadsAreBoundedByTheMachine)
+{
+  write("block.yaml", block_scene("time: {end: 0.002}\nthreads: 100000\n"));
+  const Outcome scene = talus("run block.yaml --quiet --out a");
+  EXPECT_EQ(scene.code, 0) << scene.err;
+  EXPECT_THAT(scene.err, testing::HasSubstr("warning: threads in block.yaml asks for 100000 threads, of which "));
+  const Outcome option = talus("run block.yaml --quiet --out b --threads 1024");
+  EXPECT_EQ(option.code, 0) << option.err;
+  EXPECT_THAT(option.err, testing::HasSubstr("warning: --threads asks for 1024 threads, of which "));
+  const Outcome environment = talus("check block.yaml", "OMP_NUM_THREADS=100000");
+  EXPECT_EQ(environment.code, 0) << environment.err;
+  EXPECT_THAT(environment.err, testing::HasSubstr("OMP_NUM_THREADS asks for 100000 threads"));
+}
+
+TEST_F(CommandLine, CountsThatNoIntegerHoldsAreMoreThanAnyoneWaitsFor)
+{
+  write("block.yaml", block_scene("time: {end: 1.0e+18}\noutputs: {history: {every: 1.0e-20}}\n"));
+  const Outcome outcome = talus("check block.yaml");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, testing::HasSubstr("so about more than 1e18 steps"));
+  EXPECT_THAT(outcome.out, testing::Not(testing::HasSubstr(" -")));
+}
+
+/// A limit that batch systems set.
+TEST_F(CommandLine, AFileThatGrowsTooLongIsAnErrorOfItsWrite)
+{
+  write("block.yaml", block_scene("time: {end: 0.01}\noutputs: {particles: {every: 0.001}}\n"));
+  const Outcome outcome = talus("run block.yaml --quiet --out out", "ulimit -f 4; ");
+  EXPECT_EQ(outcome.code, 3) << outcome.err;
+  EXPECT_THAT(outcome.err, testing::ContainsRegex("error: cannot write out/.*File too large"));
 }
 
 }  // namespace
