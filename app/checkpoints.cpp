@@ -10,6 +10,7 @@
 #include "app/slices.hpp"
 #include "app/sound_state.hpp"
 #include "io/kept.hpp"
+#include "io/manifest.hpp"
 #include "io/whole_file.hpp"
 
 namespace talus {
@@ -242,17 +243,22 @@ void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
   if (!frame.ranks->is_root())
     return;
   const auto all = checkpoints_in(folder_ / checkpoint_folder);
+  const auto manifest = Manifest::of(folder_);
   std::error_code stays;  // one too many is no reason to end a run
   for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
-    fs::remove(all[i], stays);
+    if (!manifest || manifest->proves((fs::path(checkpoint_folder) / all[i].filename()).string()))
+      fs::remove(all[i], stays);
 }
 
 std::vector<fs::path> set_aside_newer(const fs::path& folder, const fs::path& taken)
 {
   std::vector<fs::path> aside;
+  const auto manifest = Manifest::of(folder);
   for (const fs::path& file : checkpoints_in(folder / checkpoint_folder))
     if (is_newer(file, taken)) {
-      aside.push_back(fs::path(file) += ".aside");
+      aside.push_back(name_aside(file));
+      if (manifest && manifest->proves((fs::path(checkpoint_folder) / file.filename()).string()))
+        note_result(aside.back(), file);
       std::error_code stays;
       fs::rename(file, aside.back(), stays);
       if (stays)

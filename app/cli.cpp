@@ -165,6 +165,7 @@ class CommandLine {
     run->add_flag("--quick", run_.quick, "coarse and short: only to see that the scene runs")->needs(scene);
     run->add_flag("--quiet", run_.quiet, "no progress and no table");
     run->add_flag("--strict", run_.strict, "balances that do not close are an error: exit code 1 (strict: true in a scene)");
+    run->add_flag("--force", run_.force, "replace a run that was stopped, or has failed, and could go on from its checkpoints");
     run->add_flag("--dry-run", run_.dry, "write nothing: tell what the run would take in memory, files and time, from a few steps")
         ->needs(scene);
     run->callback([this] { run_.dry ? dry_run(run_) : run_scene(run_); });

@@ -30,6 +30,7 @@ struct RunOptions {
   bool quick = false, quiet = false;
   bool strict = false;  ///< as the scene's key of this name
   bool dry = false;     ///< only tell what the run would cost
+  bool force = false;   ///< replace a run that could go on
 };
 /// Runs a scene, or goes on with one, and leaves its results in a folder.  SceneErrors, RunError, EnvironmentError; Stopped by a signal or
 /// where it was to stop.

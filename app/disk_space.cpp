@@ -4,8 +4,11 @@
 
 #include "app/fields.hpp"
 #include "app/history.hpp"
+#include "app/new_results.hpp"
 #include "app/setup.hpp"
+#include "core/counted.hpp"
 #include "core/error.hpp"
+#include "core/say.hpp"
 
 namespace talus {
 
@@ -27,7 +30,7 @@ Real bytes_of_fields(const std::vector<std::string>& names, ColumnOf&& column_of
 }
 
 /// How often something is written, at the beginning and at the end as well.
-std::int64_t times(Real time, Real every) { return static_cast<std::int64_t>(time / every) + 2; }
+std::int64_t times(Real time, Real every) { return counted_sum(counted(time / every), 2); }
 
 std::string megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / 1e6); }
 
@@ -71,18 +74,27 @@ DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time)
 
 namespace {
 
-void compare_with_free_space(const std::filesystem::path& folder, const FileSizes& one, const OutputSpec& outputs, Real time_left)
+/// Bytes; where the system does not say how many, the largest number there is.
+Real free_space(std::filesystem::path folder)
 {
-  std::error_code unknown;  // then the space is the largest number there is
-  const auto free = static_cast<Real>(std::filesystem::space(folder, unknown).available);
+  std::error_code unknown;
+  for (folder = std::filesystem::absolute(folder, unknown); !std::filesystem::exists(folder, unknown) && folder.has_relative_path();)
+    folder = folder.parent_path();
+  return static_cast<Real>(std::filesystem::space(folder, unknown).available);
+}
+
+void compare_with_free_space(const std::filesystem::path& folder, const FileSizes& one, const OutputSpec& outputs, Real time_left,
+                             bool replaces)
+{
+  const Real free = free_space(folder) + (replaces ? static_cast<Real>(bytes_replaced(folder)) : 0);
   const Real least = one.particles + one.mesh + one.history_row + one.checkpoint;
   if (free < least)
     throw EnvironmentError(fmt::format("the disk of {} has {} left; one checkpoint and one file of each kind take about {}",
                                        folder.string(), megabytes(free), megabytes(least)));
   const Real all = disk_use(one, outputs, time_left).bytes;
   if (free < all)
-    fmt::print(stderr, "warning: the disk of {} has {} left; all outputs of the run may take about {}\n", folder.string(), megabytes(free),
-               megabytes(all));
+    say(stderr, "warning: the disk of {} has {} left; all outputs of the run may take about {}\n", folder.string(), megabytes(free),
+        megabytes(all));
 }
 
 }  // namespace
@@ -91,7 +103,8 @@ template <int D>
 void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame, const OutputSpec& outputs, Real time_left)
 {
   const FileSizes one = file_sizes(frame, outputs);
-  frame.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left); });
+  const bool begins = frame.clock.step == 0;  // then it takes the place of the results that are there, whose room counts as free
+  frame.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left, begins); });
 }
 
 template FileSizes file_sizes<2>(const Frame<2>&, const OutputSpec&);

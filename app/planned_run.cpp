@@ -138,7 +138,7 @@ void ChildRuns::start(std::size_t number, const fs::path& scene, const PlannedRu
   if (status.goes_on_from) {
     words.insert(words.end(), {"--resume", run.folder.string()});
   } else {
-    words.insert(words.end(), {scene.string(), "--out", run.folder.string()});
+    words.insert(words.end(), {scene.string(), "--out", run.folder.string(), "--force"});
     for (const std::string& change : run.changes)
       words.insert(words.end(), {"--set", change});
     if (quick_)

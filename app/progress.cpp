@@ -6,6 +6,9 @@
 #include <algorithm>
 
 #include "app/duration.hpp"
+#include "core/error.hpp"
+#include "core/say.hpp"
+#include "io/manifest.hpp"
 
 namespace talus {
 
@@ -15,6 +18,15 @@ constexpr std::chrono::milliseconds between_bars{200};
 constexpr std::chrono::seconds between_lines{5}, between_files{1};
 constexpr int bar_width = 30;
 
+/// Before it is written for the first time.  A file of the user stays, under another name.
+void make_way(const std::filesystem::path& file, const RunProgress& progress)
+try {
+  set_aside_unless_proved(file);
+  write_progress(file, progress);
+  note_result(file, file, Proof::begins);
+} catch (const EnvironmentError&) {  // such as a full disk: who has more to write will say so
+}
+
 }  // namespace
 
 Progress::Progress(bool quiet, std::filesystem::path file) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), file_(std::move(file))
@@ -23,7 +35,7 @@ Progress::Progress(bool quiet, std::filesystem::path file) : quiet_(quiet), term
 Progress::~Progress()
 {
   if (drawn_ && terminal_)
-    fmt::print(stderr, "\n");
+    say(stderr, "\n");
   std::error_code gone;
   if (written_at_)
     std::filesystem::remove(file_, gone);
@@ -42,6 +54,8 @@ void Progress::step(Real done, Real total, const Clock& clock, std::string_view 
   now_.elapsed = std::chrono::duration<Real>(now - start_).count();
   now_.particle_steps_per_second = now_.elapsed > 0 ? (particle_steps - particle_steps_before_) / now_.elapsed : 0;
   if (writes) {
+    if (!written_at_)
+      make_way(file_, now_);
     write_progress(file_, now_);
     written_at_ = now;
   }
@@ -59,8 +73,8 @@ void Progress::draw(bool last)
   const std::string numbers = fmt::format("{:3.0f} %  t = {:.5g} s  step {}  {:.3g} M particle-steps/s  {} left", 100 * share, now_.time,
                                           now_.step, now_.particle_steps_per_second / 1e6, left ? in_minutes(*left) : "?");
   if (!terminal_)
-    return fmt::print(stderr, "{}\n", numbers);
-  fmt::print(stderr, "\r[{}] {}\033[K", bar(share, bar_width), numbers);
+    return say(stderr, "{}\n", numbers);
+  say(stderr, "\r[{}] {}\033[K", bar(share, bar_width), numbers);
 }
 
 }  // namespace talus

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/disk_space.hpp"
 #include "app/fields.hpp"
 #include "app/results.hpp"
 #include "app/slices.hpp"
+#include "core/say.hpp"
+#include "io/manifest.hpp"
 
 namespace talus {
 
@@ -99,7 +100,6 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
 template <int D>
 void Recorder<D>::open(const Frame<D>& frame)
 {
-  check_disk_space(folder_, frame, outputs_, total(stage_list_));
   traffic_begin_ = frame.ranks->traffic();
   bytes_per_particle_ = talus::bytes_per_particle(frame);
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
@@ -143,7 +143,6 @@ void Recorder<D>::name_lists()
 template <int D>
 void Recorder<D>::go_on(const Frame<D>& frame)
 {
-  check_disk_space(folder_, frame, outputs_, total(stage_list_) - frame.clock.time);
   traffic_begin_ = frame.ranks->traffic(), step_begin_ = frame.clock.step;
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
@@ -181,9 +180,13 @@ std::vector<std::string> Recorder<D>::drop_later(const Frame<D>& frame)
     check_series(mesh_series_, mesh_files_ - elsewhere_.mesh_files, "mesh.pvd");
   if (!runout_.drop_later() && elsewhere_.time < 0)
     missing.push_back(fmt::format("{} lacks rows that had been written", (folder_ / "runout.csv").string()));
-  for (int n = particle_files_; fs::remove(particle_file(n)); ++n) {
+  const auto remove = [](const fs::path& file) {
+    set_aside_unless_proved(file);
+    return fs::remove(file);
+  };
+  for (int n = particle_files_; remove(particle_file(n)); ++n) {
   }
-  for (int n = mesh_files_; fs::remove(mesh_file(n)); ++n) {
+  for (int n = mesh_files_; remove(mesh_file(n)); ++n) {
   }
   return missing;
 }
@@ -264,16 +267,16 @@ void Recorder<D>::warn(const Frame<D>& frame) const
   if (!frame.ranks->is_root())
     return;
   const Watched &now = frame.watched, &before = last_.watched;
-  const auto say = [&](const std::string& what) {
-    fmt::print(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
+  const auto warning = [&](const std::string& what) {
+    say(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
   };
   if (const Index failed = frame.mass.failed_count - last_.mass.failed_count; failed > 0)
-    say(fmt::format("failed and deleted: {}{}", now.failure, failed > 1 ? fmt::format("; and {} more", failed - 1) : ""));
+    warning(fmt::format("failed and deleted: {}{}", now.failure, failed > 1 ? fmt::format("; and {} more", failed - 1) : ""));
   if (now.speeding > 0 && before.speeding == 0)
-    say(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, frame.guards.speed));
+    warning(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, frame.guards.speed));
   if (now.gaining > 0 && before.gaining == 0)
-    say(fmt::format("the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
-                    now.gain, frame.guards.gain));
+    warning(fmt::format("the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
+                        now.gain, frame.guards.gain));
 }
 
 template <int D>

@@ -7,9 +7,13 @@
 
 #include "app/checkpoints.hpp"
 #include "app/commands.hpp"
+#include "app/disk_space.hpp"
 #include "app/failed_accounts.hpp"
+#include "app/new_results.hpp"
 #include "app/quick.hpp"
 #include "app/results.hpp"
+#include "app/resumed_scene.hpp"
+#include "app/scene_copy.hpp"
 #include "app/shell_words.hpp"
 #include "app/signals.hpp"
 #include "app/summary.hpp"
@@ -17,9 +21,11 @@
 #include "app/traps.hpp"
 #include "core/exchange.hpp"
 #include "core/parallel.hpp"
+#include "core/say.hpp"
 #include "core/version.hpp"
 #include "io/gmsh_mesh.hpp"
 #include "io/gmsh_write.hpp"
+#include "io/manifest.hpp"
 #include "io/reader.hpp"
 #include "io/summary_json.hpp"
 #include "io/whole_file.hpp"
@@ -31,34 +37,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether a folder holds a run that was stopped, with a checkpoint.
-bool could_go_on(const fs::path& folder)
-try {
-  std::error_code unknown;
-  return fs::exists(folder / "summary.json", unknown) && fs::exists(folder / checkpoint_folder, unknown) &&
-         read_summary(folder / "summary.json").status == "stopped";
-} catch (const EnvironmentError&) {  // that is no summary
-  return false;
-}
-
-/// The scene as it was read, and what --set changed of it, in comments at its end.
-std::string with_changes(const Scene& scene)
-{
-  std::string text = scene.text;
-  if (!scene.overrides.empty())
-    text += "\n# Run with changes:\n";
-  for (const std::string& change : scene.overrides) {
-    text += "#   --set '";
-    for (const char c : change) {
-      text += c;
-      if (c == '\n' || c == '\r')
-        text += "#   ";  // a line of its own, and a comment too
-    }
-    text += "'\n";
-  }
-  return text;
-}
-
 std::vector<std::string> names_of(const std::vector<fs::path>& files)
 {
   std::vector<std::string> names;
@@ -67,28 +45,14 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files)
   return names;
 }
 
-/// SceneErrors: a change of how long stages take comes too late for them.
-void check_durations(const CheckpointList& from, const std::vector<Stage>& stages, const std::vector<std::string>& changes)
+/// How a run that does not go on in its folder treats what is there.
+Replacing replacing(const RunOptions& options) { return {options.force, options.resume ? std::nullopt : std::optional(options.scene)}; }
+
+/// Goes on in the folder of the run that it comes from.
+bool goes_on_in_place(const CheckpointList* from, const fs::path& folder)
 {
-  const StageState& now = from.stage();
-  std::vector<Problem> problems;
-  for (const std::string& change : changes) {
-    const bool of_time = change.starts_with("time.end="), of_stage = change.starts_with("stages[");
-    if (!of_time && !of_stage)
-      continue;
-    const auto number = of_time ? 0 : static_cast<Index>(std::strtol(change.c_str() + std::string_view("stages[").size(), nullptr, 10));
-    const Where where{"--set " + change, 0, 0, ""};
-    if (number < now.number || (number == now.number && now.done))
-      problems.push_back(
-          {where,
-           "this stage is over: what comes after it is a scene of its own, which can begin where this run ended (initial: {from: DIR})",
-           ""});
-    else if (number == now.number && change.find("residual=") == change.npos &&
-             now.begin + stages[static_cast<std::size_t>(number)].duration < from.clock().time)
-      problems.push_back({where, fmt::format("the run is at t = {:.6g} s already", from.clock().time), ""});
-  }
-  if (!problems.empty())
-    throw SceneErrors(std::move(problems));
+  std::error_code not_there;
+  return from != nullptr && from->folder() && fs::equivalent(folder, *from->folder(), not_there);
 }
 
 /// One run in its folder, from mesh to summary.
@@ -148,6 +112,7 @@ class Run {
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
     audience.ready = [&](const Frame<D>& frame) {
       summary_.nodes_as_corners = world().sum(frame.nodes_as_corners);
+      check_disk_space(folder_, frame, scene_.outputs, time_left(frame));
       world().together([&] { prepare(frame); });
       began_ = true;  // for the other ranks too
       whole_.reset();
@@ -187,7 +152,8 @@ class Run {
       throw EnvironmentError(failed("not enough memory"));
     }
     if (!options_.quiet && world().is_root())
-      fmt::print("{}results in {}; as one page for the browser: talus report {}\n", table(recorder), folder_.string(), shell_word(folder_));
+      say(stdout, "{}results in {}; as one page for the browser: talus report {}\n", table(recorder), folder_.string(),
+          shell_word(folder_));
     world().together([&] { tell_failed_accounts(); });
   }
 
@@ -201,7 +167,7 @@ class Run {
     if (!failed_accounts_.empty() && strict())
       throw RunError(strict_message());
     for (const std::string& what : failed_accounts_)
-      fmt::print(stderr, "warning: {}\n", what);
+      say(stderr, "warning: {}\n", what);
   }
   std::string strict_message() const { return fmt::format("{} (strict); the results are complete", fmt::join(failed_accounts_, "; ")); }
 
@@ -256,16 +222,11 @@ class Run {
         here.push_back(fmt::format("{} {}", what, now.*part));
       }
     if (!maker.empty() && world().is_root())
-      fmt::print(stderr, "warning: the checkpoint was made by {}; this program is {}: results may differ in the last digits\n",
-                 fmt::join(maker, ", "), fmt::join(here, ", "));
+      say(stderr, "warning: the checkpoint was made by {}; this program is {}: results may differ in the last digits\n",
+          fmt::join(maker, ", "), fmt::join(here, ", "));
   }
 
-  /// Goes on in the folder of the run that it comes from.
-  bool in_place() const
-  {
-    std::error_code not_there;
-    return from_ && from_->folder() && fs::equivalent(folder_, *from_->folder(), not_there);
-  }
+  bool in_place() const { return goes_on_in_place(from_, folder_); }
 
   /// EnvironmentError, SceneErrors: what the run comes from would be gone with the results in its folder.
   void check_sources(const Setup<D>& setup)
@@ -286,47 +247,70 @@ class Run {
       throw SceneErrors(scene_.initial->where, refusal(*initial_));
   }
 
+  /// Of all stages [s], at most.
+  Real time_left(const Frame<D>& frame) const
+  {
+    Real time = from_ ? 0 - frame.clock.time : 0;
+    for (const Stage& stage : stages_)
+      time += stage.duration;
+    return std::max(time, 0.0);
+  }
+
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".
   void prepare(const Frame<D>& frame)
   {
+    if (from_)
+      edits_ = find_edits(from_->identity().scene_file, from_->folder(), from_->identity().scene_text, from_->identity().set);
     if (in_place()) {
       lock_ = FolderLock(folder_);
       remove_leftovers(folder_);
+      adopt_results(folder_);
+      began_ = true;
+      write_first_files(folder_, frame);
+      update_scene_copy(folder_, scene_);
     } else {
-      if (could_go_on(folder_))
-        fmt::print(stderr, "note: {} held a run that was stopped and could have gone on by --resume: it is replaced\n", folder_.string());
-      lock_ = prepare_results(folder_);
+      NewResults fresh(folder_, replacing(options_));
+      write_first_files(fresh.staging(), frame);
+      if (!fresh.keeps_scene())
+        write_whole(fresh.staging() / scene_copy_file, with_changes(scene_.text, scene_.overrides));
+      lock_ = fresh.commit();
+      began_ = true;
     }
-    began_ = true;
-    write_summary(folder_ / "summary.json", summary_);
-    write_whole(folder_ / "scene.yaml", with_changes(scene_));
+    for (const std::string& warning : summary_.warnings)
+      say(stderr, "warning: {}\n", warning);
+    if (!options_.quiet)
+      say(stdout, "{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {}{} thread{}\n", scene_.title, n_particles_, n_cells_,
+          n_nodes_, scene_.kernel, summary_.transfer, world().alone() ? "" : fmt::format("{} ranks with ", world().size()), threads(),
+          threads() == 1 ? "" : "s");
+    if (!options_.quiet && summary_.origin)
+      say(stdout, "{}", describe(*summary_.origin));
+    for (std::size_t n = 0; n < notes_.size() && !options_.quiet; ++n)
+      say(stdout, "  {}\n", notes_[n]);
+    std::fflush(stdout);
+  }
+
+  /// Summary, mesh and state at the start; a mesh that is there is that of the run, or what the user has made of it.
+  void write_first_files(const fs::path& place, const Frame<D>& frame) const
+  {
+    write_summary(place / "summary.json", summary_);
     const Mesh<D>& mesh = whole_ ? *whole_ : frame.mesh;
-    write_msh(folder_ / "mesh.msh", mesh);
-    write_mesh<D>(folder_ / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
-    if (const fs::path copy = folder_ / initial_file; initial_ && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial_))
+    if (!fs::exists(place / "mesh.msh"))
+      write_msh(place / "mesh.msh", mesh);
+    if (!fs::exists(place / "mesh.vtu"))
+      write_mesh<D>(place / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
+    if (const fs::path copy = place / initial_file; initial_ && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial_))
       write_whole(copy, [&](const fs::path& temporary) {
         std::error_code trouble;
         fs::copy_file(*initial_, temporary, trouble);
         if (trouble)
           throw EnvironmentError(fmt::format("{} cannot be copied to {}: {}", initial_->string(), copy.string(), trouble.message()));
       });
-    for (const std::string& warning : summary_.warnings)
-      fmt::print(stderr, "warning: {}\n", warning);
-    if (!options_.quiet)
-      fmt::print("{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {}{} thread{}\n", scene_.title, n_particles_, n_cells_,
-                 n_nodes_, scene_.kernel, summary_.transfer, world().alone() ? "" : fmt::format("{} ranks with ", world().size()),
-                 threads(), threads() == 1 ? "" : "s");
-    if (!options_.quiet && summary_.origin)
-      fmt::print("{}", describe(*summary_.origin));
-    for (std::size_t n = 0; n < notes_.size() && !options_.quiet; ++n)
-      fmt::print("  {}\n", notes_[n]);
-    std::fflush(stdout);
   }
 
   void go_on(const Frame<D>& frame, const fs::path& taken, Recorder<D>& recorder)
   {
     resumed_after_ = frame.clock.step;
-    std::vector<std::string> news;
+    std::vector<std::string> news = edits_;
     if (in_place()) {
       std::vector<fs::path> aside;
       world().together([&] { aside = set_aside_newer(folder_, taken); });
@@ -339,11 +323,11 @@ class Run {
       recorder.begin_again(frame);
     }
     for (const std::string& what : news)  // of the root alone
-      fmt::print(stderr, "warning: {}\n", what);
+      say(stderr, "warning: {}\n", what);
     summary_.warnings.insert(summary_.warnings.end(), news.begin(), news.end());
     if (!options_.quiet && world().is_root())
-      fmt::print("{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
-                 frame.clock.step, frame.clock.time);
+      say(stdout, "{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
+          frame.clock.step, frame.clock.time);
   }
 
   /// What a stage has changed; returns it as lines for the summary.
@@ -358,10 +342,10 @@ class Run {
     if (!world().is_root())
       return lines;
     for (const std::string& what : news.warnings)
-      fmt::print(stderr, "warning: {}{}\n", when, what);
+      say(stderr, "warning: {}{}\n", when, what);
     for (const std::string& line : lines)
       if (!options_.quiet)
-        fmt::print("{}\n", line);
+        say(stdout, "{}\n", line);
     std::fflush(stdout);
     return lines;
   }
@@ -379,7 +363,7 @@ class Run {
     const auto stayed = [this](const std::string& why) {
       summary_.warnings.push_back("the ranks cannot share the run out anew, and go on as they are: " + why);
       if (world().is_root())
-        fmt::print(stderr, "warning: {}\n", summary_.warnings.back());
+        say(stderr, "warning: {}\n", summary_.warnings.back());
     };
     return {options_.rebalance, whole_mesh, mesh_seconds_, [this](const SharesMoved& by) { note(by); }, stayed};
   }
@@ -390,7 +374,7 @@ class Run {
     rebalancing_ += by.seconds;
     if (options_.quiet || !world().is_root())
       return;
-    fmt::print(
+    say(stdout,
         "step {}, t = {:.6g} s: shared out anew in {:.2g} s, the busiest rank has {:.3g} times the mean of the work, before {:.3g}\n",
         by.clock.step, by.clock.time, by.seconds, by.after, by.before);
     std::fflush(stdout);
@@ -418,6 +402,9 @@ class Run {
     summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
     if (summary.origin)
       summary.files.emplace_back(initial_file);
+    for (const char* const table : {"history.csv", "runout.csv"})  // which grow no more
+      if (fs::exists(folder_ / table))
+        note_result(folder_ / table, folder_ / table);
     write_summary(folder_ / "summary.json", summary);
   }
 
@@ -435,41 +422,13 @@ class Run {
   std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
   std::vector<Stage> stages_;
   std::vector<std::string> notes_;  // of the set-up
+  std::vector<std::string> edits_;  // of the scene of a run that goes on; on the root
   RunSummary summary_;              // as it begins
   std::vector<std::string> failed_accounts_;
   std::optional<fs::path> initial_;  // what bodies begin with
   bool began_ = false;               // the folder is this run's
   FolderLock lock_;
 };
-
-}  // namespace
-
-namespace {
-
-/// Of a run that goes on, with what is changed on the way.  SceneErrors: that cannot be changed any more.
-Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes)
-{
-  const auto is_free = [](std::string_view change) {
-    static constexpr std::array<std::string_view, 5> whole{"time.", "watch.", "outputs.checkpoint.", "on_exit=", "strict="};
-    const auto begins = [&](std::string_view key) { return change.starts_with(key); };
-    // What else a stage says it has said when it began.
-    const bool of_stage = begins("stages[") && (change.find("].duration=") != change.npos || change.find("].residual=") != change.npos);
-    return of_stage || std::any_of(whole.begin(), whole.end(), begins);
-  };
-  std::vector<Problem> problems;
-  for (const std::string& change : changes)
-    if (!is_free(change))
-      problems.push_back(
-          {Where{"--set " + change, 0, 0, ""},
-           "a run that goes on can change only what stands in time, watch and outputs.checkpoint, duration and residual of stages, "
-           "on_exit and strict",
-           ""});
-  if (!problems.empty())
-    throw SceneErrors(std::move(problems));
-  std::vector<std::string> set = run.set;
-  set.insert(set.end(), changes.begin(), changes.end());
-  return read_scene_text(run.scene_file, run.scene_text, set);
-}
 
 }  // namespace
 
@@ -494,6 +453,8 @@ void run_scene(const RunOptions& options)
     coarsen(scene);
   const fs::path folder = options.out ? *options.out : from ? *from->folder() : default_results(options.scene);
   const CheckpointList* const resumed = from ? &*from : nullptr;
+  if (!goes_on_in_place(resumed, folder))
+    world().together([&] { check_replaceable(folder, replacing(options)); });  // and again when all is there: a mesh may take long
   if (scene.dimension == 2)
     Run<2>(std::move(scene), folder, quick, options, resumed)();
   else

@@ -14,6 +14,7 @@
 #include <stdexcept>
 
 #include "core/error.hpp"
+#include "io/manifest.hpp"
 #include "io/whole_file.hpp"
 
 namespace talus {
@@ -122,6 +123,7 @@ HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns, std::str
     : path_(std::move(file)), columns_(std::move(columns))
 {
   write_whole(path_, header(columns_).append(rows));
+  note_result(path_, path_, Proof::grows);
   file_.reset(std::fopen(path_.c_str(), "ae"));
   if (!file_)
     throw EnvironmentError(fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "core/exchange.hpp"
+#include "io/manifest.hpp"
 
 namespace talus {
 
@@ -84,6 +85,8 @@ void make_folder_of(const fs::path& file)
 /// What is on the disk already becomes the file.
 void put_in_place(Temporary& temporary, const fs::path& file)
 {
+  set_aside_unless_proved(file);
+  note_result(file, temporary.path());  // before it is there: a run that is killed leaves no file that is not in the list
   if (::rename(temporary.path().c_str(), file.c_str()) != 0)
     fail(file, "write", errno);
   temporary.keep();

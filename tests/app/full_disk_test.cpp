@@ -142,12 +142,30 @@ TEST_F(Disk, FillsUpAtEveryFileNightly)
 TEST_F(Disk, WithoutRoomForOneOfEachIsRefusedBeforeTheFirstStep)
 {
   EXPECT_EQ(shell("mount -t tmpfs -o size=128k none disk\n\"$talus\" run scene.yaml --out disk/run --quiet 2>said.txt\ncode=$?\n"
-                  "cp -r disk/run full\nexit $code"),
+                  "ls -A disk >left.txt\nexit $code"),
             3);
   EXPECT_THAT(read("said.txt"), HasSubstr("error: the disk of disk/run has "));
   EXPECT_THAT(read("said.txt"), HasSubstr("one checkpoint and one file of each kind take about "));
-  EXPECT_TRUE(files_in(folder_ / "full", ".vtp").empty());
-  EXPECT_THAT(read("full/summary.json"), HasSubstr("\"status\": \"failed\""));
+  EXPECT_EQ(read("left.txt"), "") << "nothing is begun";
+}
+
+/// Whether there is room is known, and the first files of the new run are written, before anything of the earlier one goes.
+TEST_F(Disk, ThatIsTooFullForARunKeepsTheResultsOfTheRunBefore)
+{
+  run_whole();
+  for (const int left : {0, 4, 8, 16}) {
+    EXPECT_EQ(shell(fmt::format(
+                  "mount -t tmpfs -o size=4m none disk\n\"$talus\" run scene.yaml --out disk/run --quiet --threads 1 || exit 90\n"
+                  "cp -a disk/run before; mkdir disk/run/mine; cp scene.yaml disk/run/mine/\n"
+                  "free=$(df -k --output=avail disk | tail -1); fallocate -l $((free-{}))k disk/fill || exit 91\n"
+                  "\"$talus\" run scene.yaml --out disk/run --quiet --threads 1 --set outputs.checkpoint.keep=3 2>said.txt; code=$?\n"
+                  "cmp scene.yaml disk/run/mine/scene.yaml || exit 92; rm -r disk/run/mine\n"
+                  "diff -r before disk/run >differ.txt || exit 93\nrm -r before\nexit $code",
+                  left)),
+              3)
+        << left << read("shell.txt");
+    EXPECT_THAT(read("said.txt"), HasSubstr("error: cannot ")) << left;
+  }
 }
 
 /// Something happens to the folder of a run while the run stands still in the midst of it.

@@ -69,7 +69,7 @@ TEST_F(Hostile, ResultsAreNotPutWhereAnotherRunRemovesThem)
 {
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
   for (const std::string inside : {"out/checkpoints/again", "out/pictures/a/b", "out/../out/pictures"})
-    expect_refused("run scene.yaml --quiet --out " + inside, 3, "which is removed when the run there is repeated: choose another folder");
+    expect_refused("run scene.yaml --quiet --out " + inside, 3, "where another run has its own files: choose another folder");
   EXPECT_EQ(talus("run scene.yaml --quiet --out checkpoints/mine").code, 0) << "no run has this folder";
 }
 
