@@ -368,8 +368,8 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
     find_faults(state.particles, state.bodies, state.materials, faults);
     refuse_if_any(faults);
     recall(arrays, "recorder", recorder);
-    if (!state.walls.fits() || !recorder.fits(state.walls.walls().size(), limits.particles))
-      throw EnvironmentError("the walls or points of the checkpoint do not fit the scene");
+    if (!state.walls.fits() || !recorder.fits(state.walls.walls().size(), state.bodies.size(), limits.particles))
+      throw EnvironmentError("the walls, bodies or points of the checkpoint do not fit the scene");
   };
   const auto [from, reasons] = newest([&](const fs::path& file) {
     // Each rank looks at its slice; what one of them finds wrong is wrong for all.

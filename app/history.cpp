@@ -125,6 +125,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(columns_of(wall, D));
   for (const MovedSpec& moved_spec : spec.moved)
     add(columns_of(moved_spec));
+  for (const std::string& body : spec.bodies)
+    add(body_columns(body, D));
   return all;
 }
 
@@ -134,6 +136,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
   start.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
   state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
   state_.angular.assign(start.walls.walls().size(), Vec3::Zero());
+  state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
     state_.followed.push_back(nearest_particle(point, start.bodies, start.particles, *start.ranks));
 }
@@ -146,7 +149,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
 }
 
 template <int D>
-void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts)
+void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts, const BodyForces<D>& forces)
 {
   const Totals<D> sums = totals(frame);
   const Clock& clock = frame.clock;
@@ -177,8 +180,32 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   }
   for (const MovedSpec& spec : spec_.moved)
     row.push_back(moved(spec, frame.bodies, frame.particles, *frame.ranks));
+  for (std::size_t k = 0; k < spec_.bodies.size(); ++k)
+    add_body(frame, forces, k, elapsed, row);
   frame.ranks->together([&] { file_->append(row); });
   state_.time = clock.time;
+}
+
+template <int D>
+void HistoryWriter<D>::add_body(const Frame<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
+{
+  const auto named = std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const Body& body) { return body.name == spec_.bodies[k]; });
+  const auto b = static_cast<std::size_t>(named - frame.bodies.begin());
+  const BodySums<D>& sums = forces.sums()[b];
+  const BodyImpulse<D>&before = state_.given[k], &now = forces.impulses()[b];
+  ExactSums<Real> plastic;
+  add_plastic_work(frame.materials[b], frame.order, static_cast<Index>(b), frame.particles.volume0, plastic);
+  frame.ranks->sum(plastic);
+  row.push_back(sums.mass);
+  put<D>(sums.momentum, row);
+  row.insert(row.end(), {sums.kinetic, plastic.value()});
+  Vec<D> force = Vec<D>::Zero();
+  if (now.unknown != before.unknown)
+    force = Vec<D>::Constant(not_there);
+  else if (elapsed > 0)
+    force = (now.given - before.given) / elapsed;
+  put<D>(force, row);
+  state_.given[k] = now;
 }
 
 /// Its mean push since the row before, where the line of that push crosses the wall, and on how much of the wall there is mass now.

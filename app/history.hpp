@@ -1,6 +1,7 @@
 #pragma once
 // history.csv: balances, reactions, followed points, fronts and how far the mass has moved at each output time.
 #include "app/accounts.hpp"
+#include "app/body_forces.hpp"
 #include "io/csv.hpp"
 #include "io/scene.hpp"
 
@@ -30,11 +31,12 @@ struct HistoryState {
   std::vector<std::int64_t> followed;  ///< id of the particle of each point
   std::vector<Vec<D>> impulse;         ///< of each wall at the row before [N s]
   std::vector<Vec3> angular;           ///< its moment about the origin [N m s]
+  std::vector<BodyImpulse<D>> given;   ///< to each body of the history, at the row before
   Real time = 0;                       ///< of the row before [s]
   static constexpr auto fields()
   {
     return std::tuple{kept("followed", &HistoryState::followed), kept("impulse", &HistoryState::impulse),
-                      kept("angular", &HistoryState::angular), kept("time", &HistoryState::time)};
+                      kept("angular", &HistoryState::angular), kept("given", &HistoryState::given), kept("time", &HistoryState::time)};
   }
 };
 
@@ -49,12 +51,14 @@ class HistoryWriter {
   const HistoryState<D>& state() const noexcept { return state_; }
   /// Points of this body follow the particle that is nearest now.
   void follow_anew(const std::string& body, const Frame<D>& now);
-  void append(const Frame<D>& frame, const Accounts<D>& accounts);
+  void append(const Frame<D>& frame, const Accounts<D>& accounts, const BodyForces<D>& forces);
   void flush() const { file_->flush(); }                          ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
 
  private:
+  /// Of a body: its sums, and the mean force on it; no force where that is not known of a step.
+  void add_body(const Frame<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
   void add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
   static void add_point(const Frame<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
 

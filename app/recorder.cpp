@@ -88,6 +88,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       made_by_(std::move(made_by)),
       outputs_(outputs),
       stage_list_(stages),
+      body_forces_(outputs.history && !outputs.history->bodies.empty()),
       progress_(quiet || !world().is_root(), world().is_root() ? folder_ / progress_file : fs::path()),
       particle_times_(every(outputs.particles)),
       mesh_times_(every(outputs.mesh)),
@@ -201,12 +202,15 @@ void Recorder<D>::begin_again(const Frame<D>& frame)
 }
 
 template <int D>
-bool Recorder<D>::fits(std::size_t walls, Index particles) const
+bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, Index particles) const
 {
+  if (!body_forces_.fits(bodies))
+    return false;
   if (!outputs_.history)
     return true;
   const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may not be there any more
   return history_state_.impulse.size() == walls && history_state_.angular.size() == walls &&
+         history_state_.given.size() == outputs_.history->bodies.size() &&
          history_state_.followed.size() == outputs_.history->points.size() && std::ranges::all_of(history_state_.followed, known);
 }
 
@@ -224,6 +228,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   if (moment == Moment::step_begins || moment == Moment::given_up)
     return;
   accounts_.see(frame, moment);
+  body_forces_.see(frame, moment);
   const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
   if (first)
     open(frame);
@@ -293,7 +298,7 @@ void Recorder<D>::write(const Frame<D>& frame, bool last)
   if (mesh)
     write_mesh_file(frame);
   if (history) {
-    history_->append(frame, accounts_);
+    history_->append(frame, accounts_, body_forces_);
     history_state_ = history_->state();
     history_time_ = time;
   }

@@ -2,6 +2,7 @@
 // Watches a run: files at their times, accounts, progress, and what the summary needs when the run is over or has failed.
 #include <filesystem>
 
+#include "app/body_forces.hpp"
 #include "app/history.hpp"
 #include "app/progress.hpp"
 #include "app/runout.hpp"
@@ -52,8 +53,8 @@ class Recorder {
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
   /// the frame is dropped.  Says in words what should be there and is not, on the root.
   std::vector<std::string> resume(const Frame<D>& frame);
-  /// Whether fields() that were taken over may be those of a run with so many walls, and particles at the start.
-  bool fits(std::size_t walls, Index particles) const;
+  /// Whether fields() that were taken over may be those of a run with so many walls and bodies, and particles at the start.
+  bool fits(std::size_t walls, std::size_t bodies, Index particles) const;
   /// Goes on from such a state with files of its own, in another folder.
   void begin_again(const Frame<D>& frame);
   /// What has been written is on the disk when it returns.
@@ -76,6 +77,7 @@ class Recorder {
   static constexpr auto fields()
   {
     return std::tuple{kept("accounts", &Recorder::accounts_),
+                      kept("body_forces", &Recorder::body_forces_),
                       kept("particle_times", &Recorder::particle_times_),
                       kept("mesh_times", &Recorder::mesh_times_),
                       kept("history_times", &Recorder::history_times_),
@@ -119,6 +121,7 @@ class Recorder {
   const OutputSpec& outputs_;
   const std::vector<Stage>& stage_list_;
   Accounts<D> accounts_;
+  BodyForces<D> body_forces_;
   Progress progress_;
   Schedule particle_times_, mesh_times_, history_times_;
   std::optional<HistoryWriter<D>> history_;

@@ -67,6 +67,16 @@ std::vector<CsvColumn> columns_of(const WallSpec& wall, int dimension)
 
 std::vector<CsvColumn> columns_of(const MovedSpec& moved) { return {{moved.name, "m"}}; }
 
+std::vector<CsvColumn> body_columns(const std::string& body, int dimension)
+{
+  std::vector<CsvColumn> all{{"mass_" + body, "kg"}};
+  add_vector(all, fmt::format("momentum_{}_", body), dimension, "kg m/s");
+  all.push_back({"kinetic_" + body, "J"});
+  all.push_back({"plastic_" + body, "J"});
+  add_vector(all, fmt::format("force_{}_", body), dimension, "N");
+  return all;
+}
+
 std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries)
 {
   std::vector<std::string> names;

@@ -16,6 +16,8 @@ std::vector<CsvColumn> columns_of(const FrontSpec& front);
 /// Of what bodies do to a wall.
 std::vector<CsvColumn> columns_of(const WallSpec& wall, int dimension);
 std::vector<CsvColumn> columns_of(const MovedSpec& moved);
+/// Of a body: mass, momentum, kinetic energy, plastic work, and the mean force of walls and other bodies on it since the row before.
+std::vector<CsvColumn> body_columns(const std::string& body, int dimension);
 
 /// Walls are called by the group that they are on; the second on a group is `<group>_2`, and so on.
 std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries);

@@ -101,17 +101,22 @@ struct HistoryOutputSpec {
   std::vector<FrontSpec> fronts;
   std::vector<WallSpec> walls;
   std::vector<MovedSpec> moved;
+  std::vector<std::string> bodies;
   Where where;
   static constexpr auto fields()
   {
-    return std::tuple{required("every", &HistoryOutputSpec::every, positive, "s",
-                               "time between rows; energies, momenta, mass, residual and reactions are always there"),
-                      optional_list("points", &HistoryOutputSpec::points,
-                                    "material points whose position, displacement, velocity and stress are written"),
-                      optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass"),
-                      optional_list("walls", &HistoryOutputSpec::walls,
-                                    "walls whose push, shear, area in touch, pressure and point of attack are written"),
-                      optional_list("moved", &HistoryOutputSpec::moved, "how far the mass has moved")};
+    return std::tuple{
+        required("every", &HistoryOutputSpec::every, positive, "s",
+                 "time between rows; energies, momenta, mass, residual and reactions are always there"),
+        optional_list("points", &HistoryOutputSpec::points,
+                      "material points whose position, displacement, velocity and stress are written"),
+        optional_list("fronts", &HistoryOutputSpec::fronts, "extents of the mass"),
+        optional_list("walls", &HistoryOutputSpec::walls,
+                      "walls whose push, shear, area in touch, pressure and point of attack are written"),
+        optional_list("moved", &HistoryOutputSpec::moved, "how far the mass has moved"),
+        optional("bodies", &HistoryOutputSpec::bodies, any, "-",
+                 "bodies whose mass, momentum, kinetic energy, plastic work and the force of walls and other bodies on them are "
+                 "written")};
   }
 };
 

@@ -384,6 +384,7 @@ class Rules {
     }
     for (std::size_t i = 0; i < history.moved.size(); ++i)
       known_word(fmt::format("outputs.history.moved[{}].body", i), "body", history.moved[i].body, bodies);
+    known_fields("outputs.history.bodies", history.bodies, bodies, "body");
     if (scene_.dimension == 2 || scene_.dimension == 3)
       different_columns(history);
   }
@@ -420,6 +421,10 @@ class Rules {
     for (std::size_t i = 0; i < history.moved.size(); ++i)
       if (const MovedSpec& moved = history.moved[i]; is_first(history.moved, i))
         note(fmt::format("outputs.history.moved[{}]", i), "name", moved.name, columns_of(moved));
+    for (std::size_t i = 0; i < history.bodies.size(); ++i)
+      if (std::find(history.bodies.begin(), history.bodies.begin() + static_cast<std::ptrdiff_t>(i), history.bodies[i]) ==
+          history.bodies.begin() + static_cast<std::ptrdiff_t>(i))
+        note("outputs.history", fmt::format("bodies[{}]", i), history.bodies[i], body_columns(history.bodies[i], scene_.dimension));
   }
 
   /// Of its name; others are found by different_names().

@@ -166,7 +166,8 @@ inline std::vector<SceneCase> scenes_of_all()
         .time = "time: {max_step: 1.4e-3}\nstages:\n  - {type: run, name: one, duration: 0.014}\n"
                 "  - {type: run, name: two, duration: 0.0098, appear: [fill], change: [{body: low, material: other}]}\n"
                 "  - {type: run, name: three, duration: 0.014, damping: 0.2, vanish: [stone], weaken: [{factor: 1.5}]}\n",
-        .outputs = ", points: [{name: top, at: [0.5, 1.6], body: fill}], fronts: [{name: toe, direction: +x}]"}});
+        .outputs =
+            ", points: [{name: top, at: [0.5, 1.6], body: fill}], fronts: [{name: toe, direction: +x}], bodies: [fill, low, stone]"}});
   SceneParts in_3d{.dimension = solid,
                    .law = all[5].parts.law,
                    .bodies =
@@ -175,7 +176,7 @@ inline std::vector<SceneCase> scenes_of_all()
                        "[2, -2, 1]}\n",
                    .boundaries = "boundaries: [{type: friction, on: y_min, coefficient: 0.3}, {type: roller, on: z_max}]\n",
                    .loads = "loads: [{type: gravity, acceleration: [0, -9.81, 0]}]\n",
-                   .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}]"};
+                   .outputs = ", points: [{name: top, at: [1, 1, 1]}], fronts: [{name: toe, direction: +x}], bodies: [low]"};
   all.push_back({"solid", in_3d});
   SceneParts runs_out = in_3d;
   runs_out.outputs +=
