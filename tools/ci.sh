@@ -9,7 +9,7 @@ python=/usr/bin/python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
 all_stages=(setup "${lint_stages[@]}" release docs site verify tutorials fuzz test)
-other_stages=(dev asan traps valgrind coverage aarch64 bench)
+other_stages=(dev asan traps valgrind coverage aarch64 mutants bench)
 
 # A warning of a compiler is an error here, and nowhere else: what a user types must not fail by one that only his compiler knows.
 export TALUS_WERROR=ON
@@ -118,6 +118,9 @@ stage_coverage() { make coverage JOBS="$jobs"; }
 
 # Core, mesh, kernels and laws for another architecture, their tests under an emulator.
 stage_aarch64() { tools/cross_aarch64.sh; }
+
+# A sample of changes of single operators, signs and numbers, of which the tests have to notice nine out of ten.  Hours.
+stage_mutants() { "$python" tools/mutate.py; }
 
 stage_bench() { make bench JOBS="$jobs"; }
 

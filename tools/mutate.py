@@ -28,6 +28,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NOTES = ROOT / "tools" / "mutants.txt"
+INTERRUPTED = 130  # exit code of a ninja that was
 ASKED = 0.9  # share of the changes that the tests have to notice
 
 
@@ -204,7 +205,10 @@ class Trial:
 
     def build(self, target):
         wanted = [target] if target != "talus_app_tests" else ["talus", target]
-        return self.run(["ninja", "-C", str(self.folder), f"-j{self.jobs}", *wanted], None) == 0
+        code = self.run(["ninja", "-C", str(self.folder), f"-j{self.jobs}", *wanted], None)
+        if code < 0 or code == INTERRUPTED:
+            sys.exit(f"the build was ended from outside (exit code {code}): nothing is known of the change at hand")
+        return code == 0
 
     def test(self, target, chosen):
         limit = 60 + 10 * self.usual[target, chosen] if (target, chosen) in self.usual else 3600

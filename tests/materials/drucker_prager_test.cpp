@@ -210,6 +210,47 @@ TEST(DruckerPragerSoftening, ShearStressFallsLinearlyToResidualWhateverTheSteps)
     }
 }
 
+TEST(DruckerPragerSoftening, AStepThatPassesTheEndOfSofteningByLittleEndsAtResidual)
+{
+  DruckerPrager law = soil(ConeMatch::outer, 0, 10e3);
+  law.residual_cohesion = 4e3;
+  law.softening_strain = 0.05 / testing::stiffening;
+  const auto c = law.constants();
+  const Real left = root3 * *law.softening_strain, fall = (c.peak.k - c.residual.k) / left;  // of tau per plastic shear
+  for (const Real part : {0.5, 0.99, 0.999, 1.001, 1.005, 1.01}) {
+    Point<DruckerPrager> point{.law = law};
+    Mat3 H = Mat3::Zero();
+    const Real plastic = part * left;  // if softening went on for ever
+    H(0, 1) = (c.peak.k - fall * plastic) / c.shear + plastic;
+    point.strain(H);
+    EXPECT_NEAR(point.stress(0, 1), std::max(c.peak.k - fall * plastic, c.residual.k), machine * c.peak.k) << part;
+    EXPECT_NEAR(point.state.plastic_strain, (H(0, 1) - point.stress(0, 1) / c.shear) / root3, machine * *law.softening_strain) << part;
+  }
+}
+
+TEST(DruckerPragerSoftening, TheConeShrinksInProportionToThePlasticStrain)
+{
+  DruckerPrager law = soil(ConeMatch::plane_strain, 35, 5e3, 10);
+  law.residual_friction_angle = 25, law.residual_cohesion = 1e3, law.softening_strain = 0.05 / testing::stiffening;
+  const Cone peak = law.cone_of(35, 5e3), residual = law.cone_of(25, 1e3);
+  Point<DruckerPrager> point{.law = law};
+  point.prestress(-1e5 * Mat3::Identity());
+  Mat3 H = Mat3::Zero();
+  H(0, 1) = 1e-3 / testing::stiffening;
+  int on_the_way = 0;
+  for (int n = 0; n < 200; ++n) {
+    point.strain(H);
+    if (point.state.plastic_strain == 0)
+      continue;
+    const Real share = std::min(point.state.plastic_strain / *law.softening_strain, Real{1});
+    const Real q = peak.q + share * (residual.q - peak.q), k = peak.k + share * (residual.k - peak.k);
+    EXPECT_NEAR(tau_of(point.stress), k - q * point.stress.trace() / 3, 10 * machine * 1e5) << n;
+    on_the_way += share < 1 ? 1 : 0;
+  }
+  EXPECT_GT(on_the_way, 20);
+  EXPECT_GT(point.state.plastic_strain, *law.softening_strain);
+}
+
 TEST(DruckerPragerSoftening, FrictionAndDilationSatisfyTheSoftenedConeAtTheEnd)
 {
   DruckerPrager law = soil(ConeMatch::plane_strain, 35, 5e3, 10);

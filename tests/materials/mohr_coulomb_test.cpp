@@ -412,6 +412,30 @@ TEST(MohrCoulombSoftening, ShearStressFallsLinearlyToResidualWhateverTheSteps)
     }
 }
 
+TEST(MohrCoulombSoftening, TheStrengthFallsInProportionToThePlasticStrain)
+{
+  const MohrCoulomb law = softening(soil(35, 5e3, 10), 25, 1e3, 0.05 / stiffening);
+  const Real peak = std::sin(radians(35)), residual = std::sin(radians(25));
+  const Real peak_cohesive = 5e3 * std::cos(radians(35)), residual_cohesive = 1e3 * std::cos(radians(25));
+  Point<MohrCoulomb> point{.law = law};
+  point.prestress(-p0 * Mat3::Identity());
+  Mat3 H = Mat3::Zero();
+  H(0, 1) = 1e-3 / stiffening;
+  int on_the_way = 0;
+  for (int n = 0; n < 200; ++n) {
+    point.strain(H);
+    if (point.state.plastic_strain == 0)
+      continue;
+    const Vec3 s = principal(point.stress);
+    const Real share = std::min(point.state.plastic_strain / *law.softening_strain, Real{1});
+    const Real sine = peak + share * (residual - peak), cohesive = peak_cohesive + share * (residual_cohesive - peak_cohesive);
+    EXPECT_NEAR(0.5 * (s[0] - s[2]), cohesive - 0.5 * (s[0] + s[2]) * sine, 10 * machine * p0) << n;
+    on_the_way += share < 1 ? 1 : 0;
+  }
+  EXPECT_GT(on_the_way, 20);
+  EXPECT_GT(point.state.plastic_strain, *law.softening_strain);
+}
+
 TEST(MohrCoulombSoftening, FrictionAndDilationSatisfyTheSoftenedPlanesAtTheEnd)
 {
   const MohrCoulomb law = softening(soil(35, 5e3, 10), 25, 0, 0.05 / stiffening);

@@ -100,6 +100,32 @@ TEST(Slaves, AreNodesWhoseCellsCancel)
   EXPECT_FALSE(nodes.active[5]);
 }
 
+TEST(Slaves, BeginJustBelowTheirShareOfTheLightestParticleAndOfWhatCellsBring)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
+  Nodes<2> nodes;
+  nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+  nodes.motion.resize(nodes.sum.size());
+  nodes.active.resize(nodes.sum.size());
+  nodes.least_share = 1e-8;
+  nodes.least_share_of_gross = 0.3;
+  for (auto& sum : nodes.sum)
+    sum.mass = sum.gross = sum.lightest = 1;
+  const auto set = [&](std::size_t node, Real mass, Real gross) {
+    nodes.sum[node].mass = mass;
+    nodes.sum[node].gross = static_cast<float>(gross);
+  };
+  set(5, 0.29, 1), set(6, 0.31, 1);
+  set(9, 0.99e-8, 0.99e-8), set(10, 1.01e-8, 1.01e-8);
+  Slaves<2> slaves;
+  slaves.lump(mesh, all_nodes(mesh), nodes);
+  EXPECT_FALSE(nodes.active[5]);
+  EXPECT_TRUE(nodes.active[6]);
+  EXPECT_FALSE(nodes.active[9]);
+  EXPECT_TRUE(nodes.active[10]);
+  EXPECT_EQ(slaves.size(), 2);
+}
+
 TEST(Slaves, LendANodeWithoutMassTheMotionAroundIt)
 {
   Model<3, Linear<3>> m(unit_box<3>(2, 0));
