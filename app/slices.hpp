@@ -51,7 +51,8 @@ void on_slices(const Frame<D>& frame, F&& f)
              .timings = frame.timings,
              .residual = frame.residual,
              .crossing = frame.crossing,
-             .migrated = frame.migrated},
+             .migrated = frame.migrated,
+             .nodes_as_corners = frame.nodes_as_corners},
     slice.whole_bodies, slice.rows);
 }
 
