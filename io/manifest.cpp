@@ -105,12 +105,12 @@ bool only_numbers(const fs::path& file, std::uint64_t at)
 constexpr std::uint64_t bytes_of_beginning = 12;
 
 /// A folder of results, and the name of a file relative to it.
-struct Place {
+struct PlaceInFolder {
   fs::path folder;
   std::string name;
 };
 
-std::optional<Place> place_of(const fs::path& file)
+std::optional<PlaceInFolder> place_of(const fs::path& file)
 {
   std::error_code unknown;
   const fs::path whole = fs::absolute(file, unknown).lexically_normal();
@@ -119,9 +119,9 @@ std::optional<Place> place_of(const fs::path& file)
   if (unknown || name.find('\n') != name.npos)
     return std::nullopt;
   if (is_result(name) && fs::exists(list_in(folder), unknown))
-    return Place{folder, name};
+    return PlaceInFolder{folder, name};
   if (is_result(within) && fs::exists(list_in(folder.parent_path()), unknown))
-    return Place{folder.parent_path(), within};
+    return PlaceInFolder{folder.parent_path(), within};
   return std::nullopt;
 }
 
