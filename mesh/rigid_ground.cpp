@@ -14,7 +14,7 @@ using FacetNodes = std::array<Index, D>;
 bool is_bottom_of_layer(std::string_view name) { return name.starts_with("layer:") && name.ends_with(":bottom"); }
 
 template <int D>
-FacetNodes<D> sorted(FacetNodes<D> facet)
+FacetNodes<D> ascending(FacetNodes<D> facet)
 {
   std::sort(facet.begin(), facet.end());
   return facet;
@@ -26,7 +26,7 @@ std::vector<Edge> rim_of(const std::vector<FacetNodes<3>>& facets)
   std::vector<Edge> sides, rim;
   for (const FacetNodes<3>& facet : facets)
     for (std::size_t a = 0; a < 3; ++a)
-      sides.push_back(sorted<2>({facet[a], facet[(a + 1) % 3]}));
+      sides.push_back(ascending<2>({facet[a], facet[(a + 1) % 3]}));
   std::sort(sides.begin(), sides.end());
   for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
     for (end = i + 1; end < sides.size() && sides[end] == sides[i];)
@@ -37,7 +37,7 @@ std::vector<Edge> rim_of(const std::vector<FacetNodes<3>>& facets)
   return rim;
 }
 
-void sort_once(std::vector<Edge>& edges)
+void keep_each_once(std::vector<Edge>& edges)
 {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -45,7 +45,7 @@ void sort_once(std::vector<Edge>& edges)
 
 /// Keeps the nodes that are used, under new numbers.
 template <int D>
-void renumber(const std::vector<Vec<D>>& nodes, RigidGround& ground)
+void keep_used_nodes(const std::vector<Vec<D>>& nodes, RigidGround& ground)
 {
   std::vector<Index> number(nodes.size(), none);
   const auto take = [&](Index& n) {
@@ -75,7 +75,7 @@ std::optional<RigidGround> rigid_ground_of(const MeshData<D>& data)
   for (const auto& [name, facets] : data.facet_sets)
     if (name == "base" || name.starts_with("obstacle:"))
       for (const FacetNodes<D>& facet : facets)
-        rigid.insert(sorted<D>(facet));
+        rigid.insert(ascending<D>(facet));
   if (rigid.empty())
     return std::nullopt;
   RigidGround ground;
@@ -86,16 +86,16 @@ std::optional<RigidGround> rigid_ground_of(const MeshData<D>& data)
         ground.layers.insert(ground.layers.end(), rim.begin(), rim.end());
       } else {
         for (const FacetNodes<D>& facet : facets)
-          if (!rigid.contains(sorted<D>(facet)))
-            ground.layers.push_back(sorted<D>(facet));
+          if (!rigid.contains(ascending<D>(facet)))
+            ground.layers.push_back(ascending<D>(facet));
       }
     }
-  sort_once(ground.layers);
+  keep_each_once(ground.layers);
   if constexpr (D == 3)
     ground.triangles.assign(rigid.begin(), rigid.end());
   else
     ground.lines.assign(rigid.begin(), rigid.end());
-  renumber<D>(data.nodes, ground);
+  keep_used_nodes<D>(data.nodes, ground);
   return ground;
 }
 
