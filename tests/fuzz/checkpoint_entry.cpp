@@ -141,7 +141,8 @@ struct SmallRun {
             .timings = timings,
             .residual = residual,
             .crossing = crossing,
-            .migrated = 0};
+            .migrated = 0,
+            .nodes_as_corners = 0};
   }
   State<2> state()
   {

@@ -86,7 +86,15 @@ void fuzz_particles(std::string_view bytes)
     edges_of(mesh.dimension, mesh.nodes, mesh.corners);
   });
   RunSurvey survey;
-  look_over(run.folder(), {Vec3::UnitY(), 2, {}, "velocity"}, survey);
+  look_over(run.folder(),
+            {.up = Vec3::UnitY(),
+             .bodies = 2,
+             .fields = {},
+             .of_picture = "velocity",
+             .rule = {.moved = 0, .mass_share = 0.99},
+             .runs_out = {},
+             .mass = {}},
+            survey);
 }
 
 void fuzz_series(std::string_view bytes)

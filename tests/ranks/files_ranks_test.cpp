@@ -149,7 +149,7 @@ struct RankOfRun {
   Frame<2> frame() const
   {
     return {mesh,       share, mine.particles, mine.bodies, mine.materials, order,   &ranks, nodes,   walls,    loads,    clock, stage,
-            "the only", 0,     energy,         mass,        momentum,       watched, guards, timings, residual, crossing, 0};
+            "the only", 0,     energy,         mass,        momentum,       watched, guards, timings, residual, crossing, 0,     0};
   }
   State<2> state()
   {

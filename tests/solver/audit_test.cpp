@@ -1,6 +1,9 @@
 // The energy audit: what walls, remap and loads do is booked where it belongs, so that balances of sound runs close.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <span>
+
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::testing::audit_test {
@@ -85,7 +88,8 @@ TEST(StepLength, IsBoundedByLoadsOnlyWhereCellsWeighMoreThanTheirStiffness)
     Block m = with_defaults(8);
     add_body<2>(m, "block", rubber(modulus, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 2 && x[1] < 2; });
     if (on_particles)
-      m.loads.of_place.push_back({[=](const Vec<2>&, Real) { return Vec<2>(0, -gravity); }});
+      m.loads.of_place.push_back(
+          {[=](std::span<const Vec<2>>, Real, std::span<Vec<2>> accelerations) { std::ranges::fill(accelerations, Vec<2>(0, -gravity)); }});
     else
       m.loads.gravity.acceleration = Vec<2>(0, -gravity);
     make_ready(m);
