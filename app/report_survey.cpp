@@ -144,7 +144,7 @@ void begin(const StoredParticles& particles, const SurveyTask& task, RunSurvey& 
   survey.masses = masses_of(particles, task);
 }
 
-/// Fields have the components that they had at first, velocities three, bodies one.
+/// Fields have the components that they had at first; velocities and displacements three, bodies and volumes one.
 void require_components(const StoredParticles& particles, const fs::path& file, const RunSurvey& survey)
 {
   const auto require = [&](std::string_view name, int components) {
@@ -155,7 +155,9 @@ void require_components(const StoredParticles& particles, const fs::path& file, 
   for (std::size_t f = 0; f < survey.fields.size(); ++f)
     require(survey.fields[f].name, survey.components[f]);
   require("velocity", 3);
+  require("displacement", 3);
   require("body", 1);
+  require("volume", 1);
 }
 
 FrameSurvey survey_of(Real time, const fs::path& file, const SurveyTask& task, RunSurvey& survey)
