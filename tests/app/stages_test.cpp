@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <regex>
 
 #include "io/vtk.hpp"
 #include "tests/app/program.hpp"
@@ -22,7 +23,9 @@ class Stages : public Program {
     write("scene.yaml", scene);
     const Outcome outcome = talus("run scene.yaml --out out --threads 1");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(outcome.err.find("warning"), outcome.err.npos) << outcome.err;
+    // Cells here are so large that particles and nodes lose much between them, and the run says so.
+    const std::string other = std::regex_replace(outcome.err, std::regex("warning: [^\n]*\\(transfer_loss\\)[^\n]*\n"), "");
+    EXPECT_EQ(other.find("warning"), other.npos) << other;
   }
   /// Columns of the last row of each stage.
   std::vector<Real> at_ends_of_stages(std::string_view column) const
