@@ -116,7 +116,8 @@ std::vector<Real> masses_of(const StoredParticles& particles, const SurveyTask& 
     return std::vector<Real>(particles.ids.size(), 1);
   std::vector<Real> masses = volume->values;
   const StoredField* body = stored_field(particles, "body");
-  if (body == nullptr || task.mass.empty())
+  const bool known = !task.mass.empty() && std::all_of(task.mass.begin(), task.mass.end(), [](Real mass) { return mass > 0; });
+  if (body == nullptr || !known)
     return masses;
   std::vector<Real> whole(task.mass.size(), 0);
   const auto number = [&](std::size_t p) {

@@ -29,6 +29,13 @@ std::vector<std::string> texts_behind(const SummaryJson& json, const char* key)
   return found != json.end() ? found->get<std::vector<std::string>>() : std::vector<std::string>();
 }
 
+/// Zero where there is no number.
+Real number_behind(const SummaryJson& object, const char* key)
+{
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<Real>() : 0;
+}
+
 /// Zero where there is none.
 std::int64_t count_behind(const SummaryJson& json, const char* key)
 {
@@ -84,8 +91,8 @@ SummaryBack read_summary(const std::filesystem::path& file)
     back.overrides = texts_behind(json.at("scene"), "set");
     back.warnings = texts_behind(json, "warnings");
     for (const SummaryJson& body : json.value("bodies", SummaryJson::array()))
-      back.bodies.push_back(
-          {text_behind(body, "name"), text_behind(body, "material"), text_behind(body, "law"), count_behind(body, "particles"), 0});
+      back.bodies.push_back({text_behind(body, "name"), text_behind(body, "material"), text_behind(body, "law"),
+                             count_behind(body, "particles"), number_behind(body, "mass [kg]")});
     back.text = text;
     for (const SummaryJson& stage : json.at("stages"))
       back.quick = back.quick || text_behind(stage, "result") == "quick";
