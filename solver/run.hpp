@@ -182,19 +182,23 @@ struct RestConditions {
   Real kinetic;     ///< energy [J]
   Real work;        ///< of stress, gravity and loads in the stage [J]
   bool ramp_over;
+  Real round_off = 0;  ///< energy that means nothing [J]: where all was in balance from the beginning, the work is of that kind too
   bool forces_balance() const noexcept { return unbalanced < asked; }
-  bool motion_has_ended() const noexcept { return kinetic <= asked * work; }
+  bool motion_has_ended() const noexcept { return kinetic <= std::max(asked * work, round_off); }
   bool met() const noexcept { return ramp_over && forces_balance() && motion_has_ended(); }
 };
 
 template <int D, Kernel<D> K>
 RestConditions rest_conditions(const Model<D, K>& m, const Stage& stage)
 {
+  // Of the energy at the speed of 1e-6 of that of waves: a speed of 1e-12, which no stage that has worked at anything comes to.
+  constexpr Real round_off = 1e-12;
   return {.asked = *stage.residual,
           .unbalanced = m.residual,
           .kinetic = totals(m).kinetic,
           .work = std::abs(m.energy.internal + m.energy.gravity + m.energy.loads),
-          .ramp_over = m.clock.time >= m.stage.begin + stage.ramp};
+          .ramp_over = m.clock.time >= m.stage.begin + stage.ramp,
+          .round_off = round_off * m.guards.least_energy};
 }
 
 /// Which of the conditions kept a stage from its end, `balanced` being the steps in a row at its end in which all were met.

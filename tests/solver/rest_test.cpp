@@ -45,6 +45,8 @@ TEST(Rest, NothingThatMovesWithoutWorkIsAtRest)
   const RestConditions moves{.asked = 1e-3, .unbalanced = 0, .kinetic = 2, .work = 0, .ramp_over = true};
   EXPECT_FALSE(moves.met());
   EXPECT_THAT(why_not_at_rest(moves, 0, 20), HasSubstr("kinetic energy 2 J and no work done"));
+  const RestConditions trembles{.asked = 1e-3, .unbalanced = 1e-16, .kinetic = 1e-30, .work = 1e-29, .ramp_over = true, .round_off = 1e-20};
+  EXPECT_TRUE(trembles.met()) << "what was in balance from the beginning";
 }
 
 }  // namespace
