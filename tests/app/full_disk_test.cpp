@@ -141,7 +141,7 @@ TEST_F(Disk, FillsUpAtEveryFileNightly)
 
 TEST_F(Disk, WithoutRoomForOneOfEachIsRefusedBeforeTheFirstStep)
 {
-  EXPECT_EQ(shell("mount -t tmpfs -o size=128k none disk\n\"$talus\" run scene.yaml --out disk/run --quiet 2>said.txt\ncode=$?\n"
+  EXPECT_EQ(shell("mount -t tmpfs -o size=96k none disk\n\"$talus\" run scene.yaml --out disk/run --quiet 2>said.txt\ncode=$?\n"
                   "ls -A disk >left.txt\nexit $code"),
             3);
   EXPECT_THAT(read("said.txt"), HasSubstr("error: the disk of disk/run has "));
