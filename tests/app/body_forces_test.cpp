@@ -31,15 +31,15 @@ Real largest(std::span<const Real> values)
   return most;
 }
 
-/// More than three cells are between the disks; they meet.
+/// Nearly six cells are between the disks, more than two particles of `projected` reach over; they meet.
 const std::string two_disks = R"yaml(title: Disks
 dimension: 2
 mesh: {grid: {low: [0, 0], high: [1, 1], cells: [16, 16]}}
 time: {end: 0.6}
 materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e4, poisson_ratio: 0.3}]
 bodies:
-  - {name: left, material: rubber, shape: {type: sphere, centre: [0.25, 0.5], radius: 0.15}, particles_per_cell: 4, velocity: [0.4, 0]}
-  - {name: right, material: rubber, shape: {type: sphere, centre: [0.75, 0.55], radius: 0.15}, particles_per_cell: 4, velocity: [-0.4, 0]}
+  - {name: left, material: rubber, shape: {type: sphere, centre: [0.2, 0.5], radius: 0.12}, particles_per_cell: 4, velocity: [0.4, 0]}
+  - {name: right, material: rubber, shape: {type: sphere, centre: [0.8, 0.55], radius: 0.12}, particles_per_cell: 4, velocity: [-0.4, 0]}
 outputs: {history: {every: 0.02, bodies: [left, right]}}
 )yaml";
 
