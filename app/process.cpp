@@ -95,7 +95,7 @@ void prepare_process()
   struct sigaction action {};
   action.sa_handler = at_fault;
   action.sa_flags = SA_ONSTACK | static_cast<int>(SA_RESETHAND);
-  for (const int number : {SIGSEGV, SIGBUS})
+  for (const int number : {SIGSEGV, SIGBUS, SIGABRT})
     ::sigaction(number, &action, nullptr);
 #endif
   if (threads() > most_threads())
