@@ -221,9 +221,9 @@ TEST_F(Report, ASmallPageHasFewerFramesOrASampleAndSaysSo)
 {
   write("two.yaml", two_bodies);
   ASSERT_EQ(talus("run two.yaml --quiet --out out --set outputs.particles.every=0.002 --set bodies[0].particles_per_cell=12").code, 0);
-  const Outcome outcome = report("out --out small.html --frames 3 --fields velocity:x --size 0.0262");
+  const Outcome outcome = report("out --out small.html --frames 3 --fields velocity:x --size 0.0235");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_LT(std::filesystem::file_size(folder_ / "small.html"), 26'200u);
+  EXPECT_LT(std::filesystem::file_size(folder_ / "small.html"), 23'500u);
   EXPECT_THAT(outcome.out, ContainsRegex("frames: 3 of [0-9]+ are shown"));
   EXPECT_THAT(outcome.out, ContainsRegex("particles: [0-9]+ of 408 are shown, a fair sample"));
   const std::string told_of_page = told("small.html'");

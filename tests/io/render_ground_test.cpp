@@ -50,7 +50,7 @@ TEST(Render, ParticlesAtRestHaveNoWhiteHoles)
       }
   write_particles(folder / "one.vtp", 0, x, id, std::vector<Column>{velocity});
   series.append(0, folder / "one.vtp");
-  const Pixels loose = drawn(folder, {"--radius", "0.2"}), filled = drawn(folder, {"--radius", "0.6"});
+  const Pixels loose = drawn(folder, {"--radius", "0.2"}), filled = drawn(folder, {"--radius", "0.75"});
   const auto inside = [](const Pixels& picture) {
     int white = 0;
     for (int y = 80; y < 160; ++y)
@@ -59,7 +59,7 @@ TEST(Render, ParticlesAtRestHaveNoWhiteHoles)
     return white;
   };
   EXPECT_GT(inside(loose), 3000) << "wide gaps stay";
-  EXPECT_EQ(inside(filled), 0) << "0.99 m from the middle of a gap to the next particle";
+  EXPECT_EQ(inside(filled), 0) << "1.22 m from the middle of a gap to the next particle";
 }
 
 /// A mesh of terrain whose rigid base falls along x, with particles on it.
@@ -87,7 +87,7 @@ TEST(Render, GroundOfTerrainIsDrawnCutAndLeftOutOnDemand)
 {
   const ScratchFolder folder;
   const Variable none("DISPLAY", std::nullopt);
-  write_run(folder.path());
+  write_run(folder.path(), 2);
   const auto stone = [](const Pixel& p) { return !p.is_coloured() && p.largest() < 250 && p.r >= p.g && p.g >= p.b && p.r > p.b + 2; };
   const std::vector<std::string> above{"--view", "0", "-1", "2", "--frames", "first"};
   const auto count = [&](const std::vector<std::string>& more) {
@@ -97,7 +97,6 @@ TEST(Render, GroundOfTerrainIsDrawnCutAndLeftOutOnDemand)
   };
   EXPECT_EQ(count({}), 0) << "no mesh of terrain";
   write_valley(folder.path());
-  write_run(folder.path(), 2);
   const auto whole = count({});
   EXPECT_GT(whole, 3000);
   const auto cut = count({"--clip", "x", "12"});
