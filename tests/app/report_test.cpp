@@ -257,6 +257,8 @@ TEST_F(Report, RunsWithoutHistoryWithoutParticlesAndFailedOnesHavePagesToo)
   const Outcome damaged = report("failed");
   ASSERT_EQ(damaged.code, 0) << damaged.err;
   EXPECT_THAT(damaged.out, HasSubstr("the frame at t = 0 s is left out: cannot read failed/particles_0000.vtp: it is damaged"));
+  EXPECT_EQ(talus("run block.yaml --quiet --out failed --set watch.speed=10").code, 3) << "a damaged file is not one that the run wrote";
+  std::filesystem::remove(folder_ / "failed/particles_0000.vtp");
   ASSERT_EQ(talus("run block.yaml --quiet --out failed --set watch.speed=10").code, 0);
   EXPECT_FALSE(exists("failed/report.html")) << "the page of the run before";
 }
