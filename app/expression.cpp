@@ -199,8 +199,9 @@ Real evaluate(const std::string& formula, std::span<const NamedNumber> names)
 
 std::vector<std::string> functions_of_formulas()
 {
+  const mu::Parser parser;  // holds what is asked for
   std::vector<std::string> names;
-  for (const auto& [name, function] : mu::Parser().GetFunDef())
+  for (const auto& [name, function] : parser.GetFunDef())
     names.push_back(name);
   return names;
 }

@@ -299,9 +299,11 @@ TEST_F(WaterRun, ABodyThatAppearsIsSaturatedBelowTheTableOfItsStage)
   const std::string halves =
       "{name: clay, material: soil, shape: {type: box, low: [0, 0], high: [1, 6]}, particles_per_cell: 4, saturated_density: 2000}, "
       "{name: fill, material: soil, shape: {type: box, low: [0, 6], high: [1, 10]}, particles_per_cell: 4, saturated_density: 2000}";
-  run_well("column", {.bodies = halves,
-                      .stages = "{type: run, duration: 1.0e-4}, {type: run, name: fill, duration: 1.0e-4, appear: [fill], water: {table: "
-                                "{elevation: 8}}}"});
+  const Outcome outcome =
+      run("column", {.bodies = halves,
+                     .stages = "{type: run, duration: 1.0e-4}, {type: run, name: fill, duration: 1.0e-4, appear: [fill], water: {table: "
+                               "{elevation: 8}}}"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NEAR(number("column", "bodies[0].mass"), 3 * dry + 3 * wet, 1e-9 * 7 * wet) << "3 m below its own ground at the start";
   EXPECT_NEAR(number("column", "bodies[1].mass"), 2 * dry + 2 * wet, 1e-9 * 7 * wet);
 }
