@@ -93,6 +93,45 @@ TEST(Scene, ReadsInlineGeometry)
   EXPECT_FALSE(mesh.grid.has_value());
 }
 
+TEST(Scene, ReadsShapesThatArePutTogetherAndNamesOfSides)
+{
+  const MeshSpec mesh = scene("shapes.yaml").mesh;
+  ASSERT_EQ(mesh.regions.size(), 5U);
+  const auto& rock = std::get<Polygon>(mesh.regions[0].shape);
+  ASSERT_EQ(rock.holes.size(), 1U);
+  EXPECT_THAT(rock.holes[0], ElementsAre(ElementsAre(2, 2), ElementsAre(4, 2), ElementsAre(3, 4)));
+  EXPECT_THAT(rock.sides, ElementsAre("base", "right", "top", "left"));
+  EXPECT_EQ(std::get<Ring>(mesh.regions[1].shape).inner_radius, 2);
+  const auto& cut = std::get<Difference>(mesh.regions[2].shape);
+  EXPECT_EQ(std::get<Sphere>(cut.without.at(0)).radius, 2);
+  EXPECT_EQ(std::get<Union>(mesh.regions[3].shape).of.size(), 2U);
+  EXPECT_EQ(std::get<Intersection>(mesh.regions[4].shape).of.size(), 2U);
+  EXPECT_THAT(mesh.groups.at(0).facing, ElementsAre(0, 1));
+  EXPECT_EQ(mesh.groups.at(0).angle, 10);
+  EXPECT_FALSE(mesh.groups.at(0).within.has_value());
+}
+
+TEST(Scene, WrongShapesAreRefused)
+{
+  const auto problems_of = [](const Polygon& polygon) {
+    std::vector<std::string> problems;
+    polygon.check(problems);
+    return problems;
+  };
+  const std::vector<std::vector<Real>> square{{0, 0}, {4, 0}, {4, 4}, {0, 4}};
+  EXPECT_THAT(problems_of({square, {}, {{{1, 1}, {2, 1}, {1, 2}}}, {}}), ElementsAre());
+  EXPECT_THAT(problems_of({square, {}, {{{1, 1}, {5, 1}, {1, 2}}}, {}}), ElementsAre("holes[0] does not lie inside the polygon"));
+  EXPECT_THAT(problems_of({square, {}, {{{1, 1}, {2, 1}}}, {}}), ElementsAre("holes[0]: a polygon needs at least 3 points, not 2"));
+  EXPECT_THAT(problems_of({square, {}, {{{1, 1}, {3, 1}, {1, 3}}, {{1.2, 1.2}, {1.4, 1.2}, {1.2, 1.4}}}, {}}),
+              ElementsAre("holes[0] and holes[1] overlap or touch"));
+  EXPECT_THAT(problems_of({square, {}, {}, {"a", "b"}}), ElementsAre("sides needs a name for each of the 4 sides, not 2"));
+  EXPECT_THAT(problems_of({square, {}, {}, {"a", "boundary", "c", "d"}}),
+              ElementsAre("\"boundary\" cannot be the name of a side: boundary and hole_i are groups of their own"));
+  std::vector<std::string> problems;
+  Ring{{0, 0}, 2, 1}.check(problems);
+  EXPECT_THAT(problems, ElementsAre("inner_radius must be smaller than radius: 2 and 1"));
+}
+
 TEST(Scene, ReadsAGrid)
 {
   const GridSpec grid = scene("solid.yaml").mesh.grid.value();
@@ -351,7 +390,7 @@ struct Keys {
 TEST(Scene, ExamplesUseEveryKeyThereIs)
 {
   std::string text;
-  for (const std::string name : {"plane.yaml", "solid.yaml", "smallest.yaml", "terrain.yaml", "section.yaml"})
+  for (const std::string name : {"plane.yaml", "solid.yaml", "smallest.yaml", "terrain.yaml", "section.yaml", "shapes.yaml"})
     text += scene(name).text;
   Keys keys;
   keys.of(std::type_identity<Scene>{});
