@@ -14,7 +14,7 @@ template <int D>
 Real passage_time(const Setup<D>& setup, const Vec<D>& up);
 
 /// Local damping takes the share exp(-2 alpha) of every swing [Cundall 1987]; the slowest swing of ground on a rigid base takes four passages.  Both
-/// ends are that time until the residual is left of the whole, times what was measured of the scenes of Talus (docs/speed.md).
+/// ends are that time until the residual is left of the whole, times what was measured.
 RestTime time_to_rest(const Stage& stage, Real passage);
 
 extern template Real passage_time<2>(const Setup<2>&, const Vec<2>&);
