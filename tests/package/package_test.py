@@ -128,7 +128,8 @@ class Package(unittest.TestCase):
         self.assertIn("licence:", run(self.program, "info", **self.clean).stdout)
         scene = self.root / "usr/share/talus/scenes/column_collapse/scene.yaml"  # whose mesh gmsh makes
         ran = run(self.program, "run", scene, "--quick", "--quiet", "--out", "column", **self.clean)
-        self.assertEqual((ran.returncode, ran.stderr), (0, ""))
+        self.assertEqual(ran.returncode, 0, ran.stderr)
+        self.assertEqual([line for line in ran.stderr.splitlines() if not line.startswith("warning: ")], [])  # a coarse run may have those
         read = run("/usr/bin/python3", "-B", "-c", "import talus; run = talus.Run('column'); print(run.status, len(run.particles[-1]['id']) > 0)",
                    env={**self.clean["env"], "PYTHONPATH": str(self.root / "usr/lib/python3/dist-packages")}, cwd=self.folder)
         self.assertEqual((read.stdout, read.stderr), ("done True\n", ""))
