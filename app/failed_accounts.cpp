@@ -15,13 +15,19 @@ Real term(const EnergyAudit& energy, std::string_view name)
   return found == energy.terms.end() ? 0 : found->value;
 }
 
+Real largest_term(const EnergyAudit& energy)
+{
+  Real largest = 0;
+  for (const char* name : {"gravity_work", "load_work", "wall_work", "kinetic_start", "kinetic", "strain", "plastic", "friction"})
+    largest = std::max(largest, std::abs(term(energy, name)));
+  return largest;
+}
+
 /// Plastic work that is small beside the energy that was at work decides nothing.
 std::string transfer_loss(const EnergyAudit& energy)
 {
   constexpr Real matters = 0.01;  // of the largest term
-  Real largest = 0;
-  for (const char* name : {"gravity_work", "load_work", "wall_work", "kinetic_start", "strain", "plastic", "friction"})
-    largest = std::max(largest, std::abs(term(energy, name)));
+  const Real largest = largest_term(energy);
   const Real lost = term(energy, "transfer_loss"), plastic = term(energy, "plastic");
   if (!(plastic > matters * largest) || !(lost > most_transfer_loss * plastic))
     return {};
@@ -34,7 +40,7 @@ std::string transfer_loss(const EnergyAudit& energy)
 
 }  // namespace
 
-std::vector<std::string> failed_accounts(const RunSummary& summary)
+std::vector<std::string> failed_accounts(const RunSummary& summary, Real least_energy)
 {
   std::vector<std::string> failed;
   const auto judge = [&](std::string_view what, const auto& audit) {
@@ -45,10 +51,11 @@ std::vector<std::string> failed_accounts(const RunSummary& summary)
   judge("mass", summary.mass);
   judge("momentum", summary.momentum);
   judge("angular momentum", summary.angular_momentum);
+  if (!summary.energy || largest_term(*summary.energy) < least_energy)
+    return failed;
   judge("energy", summary.energy);
-  if (summary.energy)
-    if (const std::string what = transfer_loss(*summary.energy); !what.empty())
-      failed.push_back(what);
+  if (const std::string what = transfer_loss(*summary.energy); !what.empty())
+    failed.push_back(what);
   return failed;
 }
 

@@ -83,6 +83,7 @@ class Run {
     const RunIdentity identity = identity_of(mesh_digest, setup);
     if (from_)
       compare(from_->identity(), identity);
+    least_energy_ = setup.guards.least_energy * least_energy_factor;
     summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
 
     n_particles_ = setup.n_particles, n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
@@ -394,7 +395,7 @@ class Run {
     summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
     complete(recorder, quick_, summary);
     if (status == RunStatus::done)
-      failed_accounts_ = failed_accounts(summary);
+      failed_accounts_ = failed_accounts(summary, least_energy_);
     summary.warnings.insert(summary.warnings.begin(), failed_accounts_.begin(), failed_accounts_.end());
     if (!failed_accounts_.empty() && strict())
       summary.status = RunStatus::failed, summary.message = strict_message();
@@ -425,6 +426,7 @@ class Run {
   std::vector<std::string> edits_;  // of the scene of a run that goes on; on the root
   RunSummary summary_;              // as it begins
   std::vector<std::string> failed_accounts_;
+  Real least_energy_ = 0;            // of a balance that is judged [J]
   std::optional<fs::path> initial_;  // what bodies begin with
   bool began_ = false;               // the folder is this run's
   FolderLock lock_;
