@@ -161,8 +161,8 @@ struct GeostaticSpec : StageChanges {
             required("duration", &GeostaticSpec::duration, positive, "s", "the stage fails if the residual is not reached by then"),
             optional("ramp", &GeostaticSpec::ramp, non_negative, "s", "gravity and loads grow over this time"),
             optional_choice("ramp_shape", &GeostaticSpec::ramp_shape,
-                            "how they grow: linear, or smooth, beginning and ending with the rate zero, so that nothing is pushed "
-                            "beyond where it comes to rest; for a ground that yields take smooth"),
+                            "how they grow: linear, or smooth, beginning and ending with the rate zero, which leaves less swing where the "
+                            "ramp takes one and a half periods or more"),
             optional("damping", &GeostaticSpec::damping, from_to_below(0, 1), "-",
                      "local damping: share of the nodal force that opposes the motion"),
             optional("residual", &GeostaticSpec::residual, positive, "-",
