@@ -29,7 +29,7 @@ namespace {
 constexpr int environment_wrong = 3;
 volatile std::sig_atomic_t leaving = 0;
 
-void say(std::string_view text) noexcept { [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size()); }
+void write_error(std::string_view text) noexcept { [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size()); }
 
 /// That this process may use.
 int processors() noexcept { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
@@ -37,9 +37,9 @@ int processors() noexcept { return static_cast<int>(std::max(1U, std::thread::ha
 /// The program ends here, in a library of others.
 [[noreturn]] void end_in_library() noexcept
 {
-  say("error: the program was ended by a library (");
-  say(library_at_work().empty() ? std::string_view("none that it called by itself") : library_at_work());
-  say("), as some do where memory runs out; what is written so far is whole\n");
+  write_error("error: the program was ended by a library (");
+  write_error(library_at_work().empty() ? std::string_view("none that it called by itself") : library_at_work());
+  write_error("), as some do where memory runs out; what is written so far is whole\n");
   ::_exit(environment_wrong);
 }
 
@@ -49,9 +49,9 @@ extern "C" [[maybe_unused]] void at_fault(int number)
     end_in_library();
   std::array<char, 8> digits{};
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
-  say("error: a fault, signal ");
-  say({digits.data(), static_cast<std::size_t>(end - digits.data())});
-  say(": a mistake in the program, or in a library that found no memory; what is written so far is whole\n");
+  write_error("error: a fault, signal ");
+  write_error({digits.data(), static_cast<std::size_t>(end - digits.data())});
+  write_error(": a mistake in the program, or in a library that found no memory; what is written so far is whole\n");
   std::signal(number, SIG_DFL);
   std::raise(number);
 }
@@ -68,7 +68,7 @@ extern "C" void at_exit(int, void*)
     try {
       std::rethrow_exception(error);
     } catch (const std::bad_alloc&) {
-      say("error: not enough memory\n");
+      write_error("error: not enough memory\n");
       ::_exit(environment_wrong);
     } catch (...) {  // NOLINT(bugprone-empty-catch): the program ends as it would have
     }
