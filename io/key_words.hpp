@@ -17,8 +17,12 @@ constexpr std::string_view not_computed(std::string_view key) noexcept
 {
   constexpr std::array<std::string_view, 11> flow{"permeab",  "hydraulic",     "seepage",     "darcy",         "consolidation", "biot",
                                                   "porosity", "fluid_density", "water_bulk_", "storage_coeff", "infiltration"};
+  const auto has = [&](std::string_view word) {  // at the beginning of a word: preconsolidation is a property of a skeleton
+    const std::size_t at = key.find(word);
+    return at != key.npos && (at == 0 || key[at - 1] == '_');
+  };
   for (const std::string_view word : flow)
-    if (key.find(word) != key.npos)
+    if (has(word))
       return "Talus computes one phase: water in the pores is a hydrostatic pressure below a table (block water) that does not flow, so "
              "there is "
              "no seepage and no consolidation; leave it out. For drained soil give water.table, of each stage where it changes; for soil "

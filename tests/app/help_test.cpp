@@ -83,7 +83,7 @@ TEST_F(DryRun, MeasuresEachStageAndHonoursQuick)
   const Outcome whole = talus("run block.yaml --dry-run"), quick = talus("run block.yaml --dry-run --quick");
   ASSERT_EQ(whole.code, 0) << whole.err;
   ASSERT_EQ(quick.code, 0) << quick.err;
-  EXPECT_THAT(whole.out, AllOf(HasSubstr("stage geostatic: at most "), HasSubstr("stage run: about ")));
+  EXPECT_THAT(whole.out, AllOf(HasSubstr("; at most 5 s, "), HasSubstr("stage geostatic: about "), HasSubstr("stage run: about ")));
   const auto steps = [](const Outcome& outcome) {
     return std::stoi(outcome.out.substr(outcome.out.find("so about ") + std::string_view("so about ").size()));
   };

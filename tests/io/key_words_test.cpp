@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
+
 #include <variant>
 
 #include "io/manual.hpp"
@@ -20,7 +22,7 @@ using testing::Not;
 /// With every struct that has a key `on`, which is `word` here.
 std::string scene_text(const std::string& word)
 {
-  std::string text =
+  const std::string text =
       "title: Walls\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [1, 1], cells: [4, 4]}}\ntime: {end: 1}\n"
       "materials: [{name: rubber, law: hencky, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\n"
       "bodies: [{name: block, material: rubber, region: all}]\n"
@@ -28,9 +30,7 @@ std::string scene_text(const std::string& word)
       "boundaries: [{type: fixed, on: g1}, {type: roller, on: g2}, {type: velocity, on: g3, velocity: [0, 1]}, {type: friction, on: g4, "
       "coefficient: 0.1}, {type: compliant_base, on: g5, density: 2000, s_wave: 100, p_wave: 200}, {type: free_field, on: g6}]\n"
       "outputs: {history: {every: 1, walls: [{on: g1}]}}\n";
-  for (auto at = text.find("on: "); at != text.npos; at = text.find("on: ", at + word.size()))
-    text.replace(at, 2, word);
-  return text;
+  return std::regex_replace(text, std::regex("\\bon: "), word + ": ");
 }
 
 std::vector<std::string> groups_of(const Scene& scene)
