@@ -108,13 +108,11 @@ MassSurvey survey_of(const Looked& looked, const Pairs& common, const RunSurvey&
   return mass;
 }
 
-/// Volumes of the first frame times the density of their bodies, where that is known.
+/// Volumes of the first frame, or even shares where the files have none, times the density of their bodies, where that is known.
 std::vector<Real> masses_of(const StoredParticles& particles, const SurveyTask& task)
 {
   const StoredField* volume = stored_field(particles, "volume");
-  if (volume == nullptr)
-    return std::vector<Real>(particles.ids.size(), 1);
-  std::vector<Real> masses = volume->values;
+  std::vector<Real> masses = volume != nullptr ? volume->values : std::vector<Real>(particles.ids.size(), 1);
   const StoredField* body = stored_field(particles, "body");
   const bool known = !task.mass.empty() && std::all_of(task.mass.begin(), task.mass.end(), [](Real mass) { return mass > 0; });
   if (body == nullptr || !known)
