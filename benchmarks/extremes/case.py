@@ -69,10 +69,10 @@ def unrest(run):
 
 
 def free_fall(run):
-    """Error of the velocity of a falling body over its velocity at the end [-]."""
+    """Error of the velocity of a falling body, which is that of half a step before the time of its row, over its velocity at the end [-]."""
     history = run.history
-    speed = -history["momentum_y"] / history["mass"]
-    return float(np.max(np.abs(speed - 9.81 * history["time"])) / speed[-1])
+    speed, fallen = -history["momentum_y"] / history["mass"], np.maximum(history["time"] - history["dt"] / 2, 0)
+    return float(np.max(np.abs(speed - 9.81 * fallen)) / speed[-1])
 
 
 def layer_error(run):

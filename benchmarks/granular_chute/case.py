@@ -156,7 +156,8 @@ def judge_wall(name, run, free, data):
     angle, gravity, mass = np.radians(own["angle [deg]"]), data["gravity [m/s^2]"], history["mass"][0]
     along, across = gravity * np.sin(angle), gravity * np.cos(angle)
     force, late = -history["reaction_x_max_x"], history["time"] > history["time"][-1] - 0.2
-    impulse = np.cumsum((history["reaction_y_min_x"] - force) * np.diff(history["time"], prepend=0)) + mass * along * history["time"]
+    acted = np.maximum(history["time"] - history["dt"] / 2, 0)  # [s]; momenta are those of half a step before the time of their row
+    impulse = np.cumsum((history["reaction_y_min_x"] - force) * np.diff(history["time"], prepend=0)) + mass * along * acted
     x, depth = depths(run.last_frame(), own["depth [m]"] / 4)
     height, density = float(depth[x < own["wall x [m]"]][-1]), mass / float(np.sum(run.frames[0]["volume"]))
     pressures = earth_pressure(np.radians(own["friction angle [deg]"]), np.arctan(own["base friction"]))
