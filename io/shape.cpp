@@ -104,10 +104,10 @@ bool holds(const Cylinder& cylinder, std::span<const Real> x)
   return share >= 0 && share <= 1 && distance <= cylinder.radius;
 }
 
-enum class Place : std::uint8_t { inside, on_a_side, outside };
+enum class WhereInPolygon : std::uint8_t { inside, on_a_side, outside };
 
 /// Counts the sides crossed by a ray to the right; corners belong to the side above them.
-Place place_in(const std::vector<std::vector<Real>>& corners, const Point& p)
+WhereInPolygon place_in(const std::vector<std::vector<Real>>& corners, const Point& p)
 {
   bool inside = false;
   const std::size_t n = corners.size();
@@ -115,11 +115,11 @@ Place place_in(const std::vector<std::vector<Real>>& corners, const Point& p)
     const Point a = point(corners[i]), b = point(corners[(i + 1) % n]);
     const Real side = turn(a, b, p);
     if (side == 0 && between_ends(a, b, p))
-      return Place::on_a_side;
+      return WhereInPolygon::on_a_side;
     if ((a[1] <= p[1]) != (b[1] <= p[1]) && (side > 0) == (b[1] > a[1]))
       inside = !inside;
   }
-  return inside ? Place::inside : Place::outside;
+  return inside ? WhereInPolygon::inside : WhereInPolygon::outside;
 }
 
 bool holds(const Polygon& polygon, std::span<const Real> x)
@@ -127,8 +127,9 @@ bool holds(const Polygon& polygon, std::span<const Real> x)
   if (x.size() == 3 && (x[2] < polygon.extrude[0] || x[2] > polygon.extrude[1]))
     return false;
   const Point p{x[0], x[1]};
-  return place_in(polygon.points, p) != Place::outside &&
-         std::none_of(polygon.holes.begin(), polygon.holes.end(), [&](const auto& hole) { return place_in(hole, p) == Place::inside; });
+  return place_in(polygon.points, p) != WhereInPolygon::outside &&
+         std::none_of(polygon.holes.begin(), polygon.holes.end(),
+                      [&](const auto& hole) { return place_in(hole, p) == WhereInPolygon::inside; });
 }
 
 bool holds(const Ring& ring, std::span<const Real> x)
@@ -202,11 +203,11 @@ void check_holes(const Polygon& polygon, std::vector<std::string>& problems)
     const auto& hole = polygon.holes[h];
     if (!check_ring(fmt::format("holes[{}]", h), hole, problems))
       return;
-    if (rings_meet(hole, polygon.points) || place_in(polygon.points, point(hole.front())) != Place::inside)
+    if (rings_meet(hole, polygon.points) || place_in(polygon.points, point(hole.front())) != WhereInPolygon::inside)
       return problems.push_back(fmt::format("holes[{}] does not lie inside the polygon", h));
     for (std::size_t other = 0; other < h; ++other)
-      if (rings_meet(hole, polygon.holes[other]) || place_in(polygon.holes[other], point(hole.front())) == Place::inside ||
-          place_in(hole, point(polygon.holes[other].front())) == Place::inside)
+      if (rings_meet(hole, polygon.holes[other]) || place_in(polygon.holes[other], point(hole.front())) == WhereInPolygon::inside ||
+          place_in(hole, point(polygon.holes[other].front())) == WhereInPolygon::inside)
         return problems.push_back(fmt::format("holes[{}] and holes[{}] overlap or touch", other, h));
   }
 }
