@@ -29,7 +29,10 @@ namespace {
 constexpr int environment_wrong = 3;
 volatile std::sig_atomic_t leaving = 0;
 
-void write_error(std::string_view text) noexcept { [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size()); }
+void write_error(std::string_view text) noexcept
+{
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
+}
 
 /// That this process may use.
 int processors() noexcept { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }

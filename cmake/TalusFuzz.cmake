@@ -12,7 +12,7 @@ talus_library(fuzz_io FOLDER io
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5 ZLIB::ZLIB)
 talus_library(fuzz_solver FOLDER solver ONLY cell_order deal loads soil_column walls LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
-              ONLY accounts checkpoints differences disk_space duration expression fields history new_results progress reach recorder report_fields report_survey results runout shell_words signals slices sound_state traps watch_drawing
+              ONLY accounts body_forces checkpoints differences disk_space duration expression fields history new_results progress reach recorder report_fields report_survey results runout shell_words signals slices sound_state traps watch_drawing
               LINKS talus_fuzz_io talus_fuzz_solver
               PRIVATE muparser::muparser)
 
