@@ -4,7 +4,7 @@ SHELL       := /bin/bash
 MAKEFLAGS   += --no-print-directory
 JOBS        ?= $(shell nproc)
 MINUTES     ?= 60
-BUILD       ?= build/dev
+BUILD       ?= build/release
 LEVEL       ?=
 TALUS_WERROR ?= OFF
 SCENE       ?= scenes/slope_failure_3d/scene.yaml
@@ -16,21 +16,21 @@ RUN         ?= runs/$(notdir $(patsubst %/,%,$(dir $(SCENE))))
 help:  ## this list
 	@sed -n 's/^\([a-z]*\):[^#]*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 18
 	@echo "  variables: JOBS=$(JOBS)  SCENE=$(SCENE)  RUN=$(RUN)  MINUTES=$(MINUTES)"
-	@echo "  of test:   BUILD=$(BUILD)  LEVEL=a processor to compile for, such as x86-64-v3 (now: $(or $(LEVEL),the one at hand))"
+	@echo "  of build and test: BUILD=$(BUILD)  LEVEL=a processor to compile for, such as x86-64-v3 (now: $(or $(LEVEL),the one at hand))"
 
 # Each target asks for the packages of its own groups (tools/debian-packages.txt). What is typed here never fails by a warning of a compiler:
 # they are errors only where TALUS_WERROR=ON says so, as CI does.
 packages     = tools/install_packages.sh
-strictness   = -D TALUS_WERROR=$(TALUS_WERROR)
+configure    = cmake --preset release -B $(BUILD) -D TALUS_LEVEL=$(LEVEL) -D TALUS_WERROR=$(TALUS_WERROR) -Wno-dev >/dev/null
 
 setup:  ## install every Debian package that a developer needs and that is missing (tools/debian-packages.txt)
 	@$(packages)
 
 build:  ## compile build/talus and build/talus-render, at full speed
 	@$(packages) build
-	@cmake --preset release $(strictness) -Wno-dev >/dev/null
-	@cmake --build build/release --target programs -j $(JOBS)
-	@for program in talus talus-render; do if [ -e build/release/$$program ]; then ln -sfn release/$$program build/$$program; fi; done
+	@$(configure)
+	@cmake --build $(BUILD) --target programs -j $(JOBS)
+	@for program in talus talus-render; do if [ -e $(BUILD)/$$program ]; then ln -sfnr $(BUILD)/$$program build/$$program; fi; done
 
 portable:  ## compile build/portable/talus, which runs on any x86-64 processor and uses what it has (two builds)
 	@$(packages) build
@@ -49,9 +49,9 @@ run: build  ## build, run SCENE into RUN, draw its pictures, make its page
 	build/talus report $(RUN)
 	@echo; echo "Results in $(RUN):"; find $(RUN) \( -name '*.png' -o -name 'summary.json' -o -name 'report.html' \) | sort | sed 's/^/  /'
 
-test:  ## compile with asserts, run every test but the nightly ones
+test:  ## compile what `make build` does and the tests, run every test but the nightly ones
 	@$(packages) build draw scripts test
-	@cmake --preset dev -B $(BUILD) -D TALUS_LEVEL=$(LEVEL) $(strictness) -Wno-dev >/dev/null
+	@$(configure)
 	@cmake --build $(BUILD) -j $(JOBS)
 	@ctest --test-dir $(BUILD) --output-on-failure --no-tests=error --label-exclude nightly -j $(JOBS)
 
@@ -72,9 +72,9 @@ format:  ## rewrite the sources as .clang-format says
 
 bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus bench)
 	@$(packages) test
-	@cmake --preset release $(strictness) -Wno-dev >/dev/null
-	@cmake --build build/release --target talus_speed -j $(JOBS)
-	@build/release/talus_speed
+	@$(configure)
+	@cmake --build $(BUILD) --target talus_speed -j $(JOBS)
+	@$(BUILD)/talus_speed
 	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
 
 scaling: build  ## what sharing a run over ranks costs: measure, fit, write docs/scaling.md (some minutes)

@@ -8,8 +8,8 @@ python=/usr/bin/python3
 [ -x "$python" ] || python=python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
-all_stages=(setup "${lint_stages[@]}" release docs site verify tutorials fuzz test)
-other_stages=(dev asan traps valgrind coverage aarch64 mutants bench)
+all_stages=(setup "${lint_stages[@]}" build docs site verify tutorials test)
+other_stages=(dev fuzz asan traps valgrind coverage aarch64 mutants bench)
 
 # A warning of a compiler is an error here, and nowhere else: what a user types must not fail by one that only his compiler knows.
 export TALUS_WERROR=ON
@@ -48,16 +48,21 @@ stage_tidy() {
       2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
 
-# For this machine's processor; stage `test` compiles for another one.
+# With asserts, ours and those of Eigen and the standard library.
 stage_dev() {
   cmake --preset dev -D TALUS_WERROR=$TALUS_WERROR -Wno-dev >/dev/null
   cmake --build build/dev -j "$jobs"
+  ctest --preset dev -j "$jobs"
 }
 
-stage_release() { make build TALUS_WERROR=OFF JOBS="$jobs"; }
+# What a newcomer types, in a folder that no other use touches, and for another processor than this machine's: what is said of code depends
+# on the instructions that it is compiled to. Stage `test` goes on there.
+newcomer="BUILD=build/newcomer LEVEL=x86-64-v3"
+# shellcheck disable=SC2086 # some words
+stage_build() { make build $newcomer JOBS="$jobs"; }
 
-# The program of `make build`, of which the next stages are.
-talus=build/talus
+# The program of stage `build`, of which the next stages are.
+talus=build/newcomer/talus
 
 # The scene reference is written by the program: it must be the one in the tree.  Links lead somewhere, scenes shown pass `check`.
 stage_docs() {
@@ -80,12 +85,11 @@ stage_site() { "$python" -m mkdocs build --quiet --config-file tools/site/mkdocs
 # Every command of docs/tutorials: what they write is there, what they print is what the page shows.
 stage_tutorials() { "$python" tools/run_tutorials.py "$talus"; }
 
-# A minute of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers.
+# A minute of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers. Nightly; stage `test` replays the inputs found.
 stage_fuzz() { tools/fuzz.sh quick; }
 
-# What a newcomer types, in a folder that no other stage has touched, and for another processor than this machine's: what is said of code depends
-# on the instructions that it is compiled to.
-stage_test() { make test BUILD=build/newcomer LEVEL=x86-64-v3 TALUS_WERROR=OFF JOBS="$jobs"; }
+# shellcheck disable=SC2086
+stage_test() { make test $newcomer JOBS="$jobs"; }
 
 # All tests but the nightly ones, and every scene, with address and undefined-behaviour sanitizers.
 stage_asan() {

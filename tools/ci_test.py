@@ -31,15 +31,17 @@ class Ci(unittest.TestCase):
             self.assertIn("-D TALUS_WERROR=ON", commands(target, TALUS_WERROR="ON"))
         self.assertRegex((ROOT / "tools/ci.sh").read_text(encoding="utf-8"), r"(?m)^export TALUS_WERROR=ON$")
 
-    def test_the_last_stage_of_ci_is_make_test_for_another_processor_in_a_folder_of_its_own(self):
+    def test_ci_types_make_build_and_make_test_for_another_processor_in_a_folder_of_its_own(self):
         script = (ROOT / "tools/ci.sh").read_text(encoding="utf-8")
-        self.assertRegex(script, r'(?m)^all_stages=\(.*\brelease\b.* test\)$')
-        typed = re.search(r'(?m)^stage_test\(\) \{ make (.*) JOBS="\$jobs"; \}$', script)
-        self.assertIsNotNone(typed)
-        there, here = commands(*typed.group(1).split()), commands("test")
-        self.assertRegex(there, r"cmake --preset dev -B build/newcomer -D TALUS_LEVEL=x86-64-v\d ")
-        self.assertIn("cmake --preset dev -B build/dev -D TALUS_LEVEL= ", here)
-        self.assertEqual(there.replace("build/newcomer", "build/dev").replace("TALUS_LEVEL=x86-64-v3", "TALUS_LEVEL="), here)
+        self.assertRegex(script, r'(?m)^all_stages=\(.*\bbuild\b.* test\)$')
+        for stage, target in ("build", "build"), ("test", "test"):
+            self.assertRegex(script, rf'(?m)^stage_{stage}\(\) \{{ make {target} \$newcomer JOBS="\$jobs"; \}}$')
+        words = re.search(r'(?m)^newcomer="(.*)"$', script).group(1).split()
+        for target in "build", "test":
+            there, here = commands(target, *words), commands(target)
+            self.assertRegex(there, r"cmake --preset release -B build/newcomer -D TALUS_LEVEL=x86-64-v\d ")
+            self.assertIn("cmake --preset release -B build/release -D TALUS_LEVEL= ", here)
+            self.assertEqual(there.replace("build/newcomer", "build/release").replace("TALUS_LEVEL=x86-64-v3", "TALUS_LEVEL="), here)
 
     def test_targets_ask_for_their_packages_only(self):
         self.assertRegex(commands("build"), r"(?m)^tools/install_packages.sh build$")

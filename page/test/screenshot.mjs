@@ -1,4 +1,4 @@
-// A picture of a report. Usage: TALUS_PAGE_MODULES=build/dev/page/node_modules node page/test/screenshot.mjs REPORT[#view] OUT.png [width height light|dark]
+// A picture of a report. Usage: TALUS_PAGE_MODULES=build/release/page/node_modules node page/test/screenshot.mjs REPORT[#view] OUT.png [width height light|dark]
 import {launch, open} from './browser.mjs';
 
 const [report, out, width = '1600', height = '1000', scheme = 'light'] = process.argv.slice(2);
