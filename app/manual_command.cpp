@@ -12,7 +12,7 @@ void print_manual(bool schema, const std::vector<std::string>& words)
     return fmt::print("{}", schema ? scene_schema() : scene_manual());
   std::string text;
   for (const std::string& word : words)
-    text += (text.empty() ? "" : "\n") + manual_of(word);
+    text.append(text.empty() ? "" : "\n").append(manual_of(word));
   fmt::print("{}", text);
 }
 

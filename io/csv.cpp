@@ -27,7 +27,7 @@ std::string header(std::span<const CsvColumn> columns)
 {
   std::string line;
   for (const CsvColumn& column : columns)
-    line += (line.empty() ? "" : ",") + csv_cell(csv_heading(column));
+    line.append(line.empty() ? "" : ",").append(csv_cell(csv_heading(column)));
   return line + '\n';
 }
 
