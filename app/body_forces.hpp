@@ -42,10 +42,10 @@ template <int D>
 class BodyForces {
  public:
   explicit BodyForces(bool wanted) noexcept : wanted_(wanted) {}
-  /// Told of every moment of a run.  Every rank has to.
+  /// Called at every event of a run, on every rank.
   void see(const Frame<D>& frame, Moment moment);
 
-  /// Of each body, at the moment that was seen last.
+  /// Of each body, at the last event.
   const std::vector<BodySums<D>>& sums() const noexcept { return sums_; }
   const std::vector<BodyImpulse<D>>& impulses() const noexcept { return impulses_; }
   /// Whether fields() that were taken over may be those of a run with so many bodies.

@@ -13,7 +13,7 @@
 
 namespace talus {
 
-/// f(number) tells what is wrong with a number, or nothing.  What is no number at all is left to whoever reads it.
+/// f(number) tells what is wrong with a number, or nothing.  What is no number at all is left to the reader of the option.
 template <class F>
 CLI::Validator checked_number(F&& wrong_with, const std::string& description)
 {

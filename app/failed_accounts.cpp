@@ -23,7 +23,7 @@ Real largest_term(const EnergyAudit& energy)
   return largest;
 }
 
-/// Plastic work that is small beside the energy that was at work decides nothing.
+/// Plastic work that is small beside the largest term of the energy is not judged.
 std::string transfer_loss(const EnergyAudit& energy)
 {
   constexpr Real matters = 0.01;  // of the largest term

@@ -227,8 +227,8 @@ void keep_table(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
                                      written_in_scene(options.scene, options.set, fmt::format("stages[{}].water.table", i)));
 }
 
-/// The scene itself has been read: what is wrong with it after these changes is no mistake of whoever wrote it or called the program, so it is
-/// told at the scene and not at a --set that nobody typed.
+/// The scene itself has been read: what is wrong with it after these changes is no mistake in the scene or on the command line, so the
+/// error names the scene and not a --set that was not typed.
 std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
 try {
   return scene_digest(read_scene(plan.scene, changes));

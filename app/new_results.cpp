@@ -57,7 +57,7 @@ std::optional<fs::path> could_go_on(const fs::path& folder)
   try {
     if (read_summary(folder / summary_file).status == "done")
       return std::nullopt;
-  } catch (const EnvironmentError&) {  // nobody knows how it ended
+  } catch (const EnvironmentError&) {  // how it ended is unknown
   }
   return newest;
 }

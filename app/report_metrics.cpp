@@ -108,7 +108,7 @@ class MassMetrics {
          fmt::format("outermost particle at t = {:.6g} s; at t = {:.6g} s {:.6g} m", end(), begin(), from));
     tell("advance along " + way.word, way.advance(from, to), "m", "how far the outermost particle is beyond the one at the first output");
   }
-  /// What the run has found itself is told as it is, so that page, summary and runout.csv have one number.
+  /// Numbers that the run has written are taken as they are, so that page, summary and runout.csv have one number.
   void add_way(const MovedMass& moved)
   {
     Real height = moved.height, length = moved.length;

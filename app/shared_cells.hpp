@@ -12,7 +12,7 @@
 namespace talus {
 
 /// Cells that hold particles of two bodies at once: material there is counted twice, unless the shapes only touch.  A line for each pair, of ten at
-/// most and then their number: a list of thousands is read by nobody.  cell: of each particle; every rank has to ask.
+/// most and then their number: a list of thousands is of no use.  cell: of each particle; every rank has to ask.
 void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, std::span<const Index> cell, Index n_cells, Exchange& ranks,
                           std::vector<std::string>& warnings);
 

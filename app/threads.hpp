@@ -1,5 +1,5 @@
 #pragma once
-// How many threads a run takes where nobody says so, and how threads wait for one another.
+// How many threads a run takes where no number is given, and how threads wait for one another.
 #include <optional>
 
 #include "core/types.hpp"
@@ -8,7 +8,7 @@ namespace talus {
 
 struct Scene;
 
-/// A thread more pays for every so many particles.  Measured: docs/speed.md.
+/// Particles for each thread from which one more makes the run faster.  Measured: docs/speed.md.
 inline constexpr Index particles_of_a_thread = 3000;
 
 /// Threads for so many particles: at least 1, at most `available`.

@@ -1,5 +1,5 @@
 #pragma once
-// Counts of what nobody will ever do as often, such as the steps of 1e18 seconds: a floating-point number that is turned into an integer too small
+// Counts too large to be reached, such as the steps of 1e18 seconds: a floating-point number that is turned into an integer too small
 // for it is undefined behaviour, and shows as a negative count.
 #include <fmt/format.h>
 

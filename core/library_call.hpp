@@ -1,5 +1,5 @@
 #pragma once
-// What a library of others is doing, for the last words of a program that ends inside of it: some end by a fault where memory runs out.
+// What a library of others is doing, for the error message of a program that ends inside of it: some end by a fault where memory runs out.
 #include <string_view>
 
 namespace talus {
@@ -14,7 +14,7 @@ class LibraryCall {
   LibraryCall& operator=(const LibraryCall&) = delete;
 };
 
-/// "HDF5, writing out/checkpoints/step_000000100.h5"; nothing outside of all libraries.  A handler of signals may ask.
+/// "HDF5, writing out/checkpoints/step_000000100.h5"; nothing outside of all libraries.  Safe in a handler of signals.
 std::string_view library_at_work() noexcept;
 
 }  // namespace talus

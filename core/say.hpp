@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// As fmt::print(), but what cannot be written is lost: the error stays with the stream, for whoever looks at it in the end.
+/// As fmt::print(), but what cannot be written is lost: the error flag of the stream stays set, for a check at the end.
 template <class... Args>
 void say(std::FILE* to, fmt::format_string<Args...> format, Args&&... args)
 {

@@ -1,4 +1,4 @@
-// One thread, and sockets that never wait: who is slow keeps nobody else waiting.
+// One thread, and sockets that never wait: a slow client does not block the others.
 #include "io/http_server.hpp"
 
 #include <fcntl.h>
@@ -74,7 +74,7 @@ Reply refusal(int status, std::string_view words, const std::string& why, bool h
   return reply(status, words, "text/plain", std::make_shared<const std::string>(why + '\n'), head_only, more);
 }
 
-/// Somebody who has come.
+/// One client.
 struct Connection {
   enum class State : std::uint8_t { asks, takes, leaves };
 
@@ -99,7 +99,7 @@ struct Connection {
       if (got == 0)
         return false;
       if (state != State::asks)
-        continue;  // nobody wants it
+        continue;  // the client does not take it
       request.append(block.data(), static_cast<std::size_t>(got));
       if (is_complete())
         return true;
@@ -284,7 +284,7 @@ struct HttpServer::Inside {
       }
       std::size_t i = 2;
       for (auto one = connections.begin(); one != connections.end(); ++i) {
-        // What has come while an answer was made is looked at before anybody is dropped for being late.
+        // What has come while an answer was made is read before a client is dropped for being late.
         const bool stays = asked[i].revents == 0 && Clock::now() < one->until ? true : serve(*one);
         one = stays ? std::next(one) : connections.erase(one);
       }

@@ -15,7 +15,7 @@ struct HttpAnswer {
 /// Answers GET and HEAD on 127.0.0.1, on a thread of its own, while it lives, one request for each connection.  Requests under another name than
 /// 127.0.0.1 or localhost are refused: a page from elsewhere may have had its own name point here.
 ///
-/// Nobody keeps it from answering others: a request that is not complete after 2 s is dropped, an answer that is not taken after 30 s too, and
+/// No client can block the others: a request that is not complete after 2 s is dropped, an answer that is not taken after 30 s too, and
 /// where there are more than 32 connections, or 16 from one address, the oldest of them makes room.
 class HttpServer {
  public:

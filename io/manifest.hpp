@@ -1,6 +1,6 @@
 #pragma once
-// The list of the files that Talus wrote into a folder of results, by which they are told from files of the user.  Whoever repeats a run
-// replaces only what the list proves; whoever draws or goes on puts what it does not prove aside.
+// The list of the files that Talus wrote into a folder of results, which tells them from files of the user.  A run that is repeated
+// replaces only the files in the list; pictures and runs that go on rename other files.
 #include <cstdint>
 #include <filesystem>
 #include <map>

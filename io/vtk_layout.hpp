@@ -1,5 +1,5 @@
 #pragma once
-// What write_particles() and write_mesh() have written, taken apart without VTK's parsers, which believe what they read: every count, size and
+// What write_particles() and write_mesh() have written, taken apart without VTK's parsers, which check little of what they read: every count, size and
 // place in the head is compared with the bytes that are there before anything is allocated or unpacked.
 #include <cstdint>
 #include <filesystem>

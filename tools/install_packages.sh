@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages of tools/debian-packages.txt that are missing: tools/install_packages.sh [GROUP ...], by default all groups that a
-# developer needs. Exit 2: there is no such group. Exit 3: somebody else has to install them; the text says what.
+# developer needs. Exit 2: there is no such group. Exit 3: an administrator has to install them; the text says which.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

@@ -49,7 +49,7 @@ GROUPS = {
                         "solver/nodes.hpp", "solver/transfer.hpp", "solver/slaves.*"),
                        (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
     "walls": Group(("solver/walls.*", "solver/loads.*"), (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
-    "ledgers": Group(("solver/ledger.hpp", "solver/tally.hpp", "solver/sums.hpp", "app/accounts.*"),
+    "balances": Group(("solver/ledger.hpp", "solver/tally.hpp", "solver/sums.hpp", "app/accounts.*"),
                      (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
 }
 

@@ -1,4 +1,4 @@
-// A call of the system that fails, at any place of a run: it ends with words, what is written is whole, and it goes on to the same bits.
+// A call of the system that fails, at any place of a run: it ends with a message, every file is whole, and the resumed run is bitwise identical.
 #include <gmock/gmock.h>
 
 #include "tests/app/program.hpp"

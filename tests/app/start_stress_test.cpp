@@ -63,7 +63,7 @@ TEST_F(StartStress, AUniformBlockUnderMatchingTractionsStaysAtRestToRoundOff)
   }
 }
 
-/// The other way round: how far a stress is from balance is told.
+/// The other way round: the run says how far a stress is from balance.
 TEST_F(StartStress, WhatDoesNotMatchIsReportedAndMoves)
 {
   write("block.yaml", block("projected", "{xx: -3.0e5, yy: -1.0e5, zz: -1.0e5, xy: 0.5e5}"));

@@ -1,4 +1,4 @@
-// The files of a run as others read them: they may come from somebody else.
+// The files of a run as others read them: they may be damaged or forged.
 #include <algorithm>
 
 #include "app/duration.hpp"

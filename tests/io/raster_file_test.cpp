@@ -184,7 +184,7 @@ TEST(RasterFile, TurnedRasterIsRefusedWithTheCommandThatTurnsIt)
               testing::AllOf(HasSubstr("turned by 36.87 degrees"), HasSubstr("gdalwarp")));
 }
 
-/// A server on this machine that writes down who asks for what, and answers with nothing.
+/// A server on this machine that records the requests and sends nothing back.
 class Ears {
  public:
   Ears()

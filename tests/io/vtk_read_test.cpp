@@ -113,7 +113,7 @@ TEST(VtkRead, WordsAndLengthsThatAreWrongAreErrors)
   EXPECT_THAT(spoilt("_" + blocks, "_" + blocks + std::string(8, '\0')), HasSubstr("b.vtp: it is damaged"));
 }
 
-/// Every number and some words of the head, one at a time, replaced by what crashed VTK's own readers or kept them busy without end.
+/// Every number and some words of the head, one at a time, replaced by values that crashed VTK's own readers or made them loop without end.
 TEST(VtkRead, NothingInADamagedHeadIsBelieved)
 {
   const ScratchFolder folder;

@@ -1,4 +1,4 @@
-// The energy audit: what walls, remap and loads do is booked where it belongs, so that balances of sound runs close.
+// The energy audit: the work of walls, remap and loads is in its own term, so that balances of sound runs close.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a stage says that did not come to rest: the condition that kept it from its end.
+// The message of a stage that did not come to rest: the condition that was not met.
 #include <gmock/gmock.h>
 
 #include "solver/run.hpp"
