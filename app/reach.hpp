@@ -19,13 +19,17 @@ ReachRule reach_rule(const std::optional<RunoutSpec>& spec, Real cell);
 
 /// From the crown to the front.
 struct Reach {
-  Vec3 crown;           ///< the highest place at the start [m]
+  Vec3 crown;           ///< the highest place at the start; of level ground the place furthest from what lies there now [m]
   Vec3 front;           ///< where the particle is that is furthest from there on the level, but for the rest of the mass [m]
   Real height, length;  ///< from one to the other, down and on the level [m]
 };
 
-/// Of particles by where they were, where they are and their mass [any unit]; of equal ones the first counts.  `mass_share` of the mass lies no
-/// further than the front: 1 is the outermost particle.  Nothing without particles.
+/// Of particles by where they were, where they are and their mass [any unit].  `mass_share` of the mass lies no further than the front: 1 is the
+/// outermost particle.  Nothing without particles.
+///
+/// Places that differ by no more than the rounding of single precision, in which files of particles are written, count as equal, so that a run
+/// and what is read from its files have one crown and one front: of equally high places the crown is the one furthest on the level from the
+/// centre of mass now, of equally far ones the front is the lowest; and of those the first.
 std::optional<Reach> reach_of(std::span<const Vec3> then, std::span<const Vec3> now, std::span<const Real> mass, const Vec3& up,
                               Real mass_share);
 

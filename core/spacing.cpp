@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 
 #include "core/parallel.hpp"
@@ -14,14 +15,15 @@ namespace {
 
 constexpr std::size_t sample = 250;  // points asked for their neighbours: each looks at all others, which takes no tree for so few
 
-constexpr Real widest_hole = 1.8;         // radius of a void over that of the disks
+constexpr Real widest_hole = 2.2;         // radius of a disk that fits into a void over that of the disks drawn
 constexpr Real fineness = 6;              // places of the grid over a radius
+constexpr Real coarsest = 0.5;            // distance of places over the radius
 constexpr std::size_t most_places = 4e7;  // of the grid: coarser where it would have more
 
-/// How far each place of a grid is from the nearest point.
+/// How far each place of a grid is from the nearest point; no places where they would be too coarse to tell holes.
 struct NearestPoints {
-  Real low_x, low_y, step;
-  std::size_t columns, rows;
+  Real low_x{}, low_y{}, step{};
+  std::size_t columns{}, rows{};
   std::vector<float> distance;  ///< infinite where none is near [m]
   std::vector<Index> nearest;
 };
@@ -43,6 +45,8 @@ NearestPoints nearest_points(std::span<const Real> positions, Real radius)
                      static_cast<std::size_t>(height / step) + 1,
                      {},
                      {}};
+  if (!(step <= radius * coarsest))
+    return {};
   grid.distance.assign(grid.columns * grid.rows, std::numeric_limits<float>::infinity());
   grid.nearest.assign(grid.distance.size(), none);
   const auto first = [&](Real at) { return static_cast<std::size_t>(std::ceil((at - reach) / step)); };
@@ -60,25 +64,45 @@ NearestPoints nearest_points(std::span<const Real> positions, Real radius)
   return grid;
 }
 
-/// Places further than `covered` from any point that are joined to `place` by such places; they are marked as seen.
-std::vector<std::size_t> open_around(std::size_t place, const NearestPoints& grid, Real covered, std::vector<bool>& seen)
+/// Places of one row from the first to the last that are further than so much from any point.
+struct Run {
+  std::ptrdiff_t first, last;
+};
+
+std::vector<std::vector<Run>> empty_runs(const NearestPoints& grid, Real far)
 {
-  std::vector<std::size_t> found{place};
-  seen[place] = true;
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const std::size_t i = found[k] % grid.columns, j = found[k] / grid.columns;
-    const auto visit = [&](bool there, std::size_t other) {
-      if (there && !seen[other] && grid.distance[other] > covered) {
-        seen[other] = true;
-        found.push_back(other);
-      }
-    };
-    visit(i > 0, found[k] - 1);
-    visit(i + 1 < grid.columns, found[k] + 1);
-    visit(j > 0, found[k] - grid.columns);
-    visit(j + 1 < grid.rows, found[k] + grid.columns);
+  std::vector<std::vector<Run>> rows(grid.rows);
+  for (std::size_t j = 0; j < grid.rows; ++j)
+    for (std::size_t i = 0; i < grid.columns; ++i) {
+      if (!(grid.distance[j * grid.columns + i] > far))
+        continue;
+      const auto place = static_cast<std::ptrdiff_t>(i);
+      if (rows[j].empty() || rows[j].back().last + 1 < place)
+        rows[j].push_back({place, place});
+      rows[j].back().last = place;
+    }
+  return rows;
+}
+
+/// For each place of row `row`, whether it is no further than `reach` from the middle of an empty disk.
+std::vector<bool> open_places(const NearestPoints& grid, const std::vector<std::vector<Run>>& empty, std::size_t row, Real reach)
+{
+  const auto columns = static_cast<std::ptrdiff_t>(grid.columns), rows = static_cast<std::ptrdiff_t>(grid.rows);
+  const auto reached = static_cast<std::ptrdiff_t>(reach / grid.step), here = static_cast<std::ptrdiff_t>(row);
+  std::vector<int> begun(grid.columns + 1, 0);  // disks that begin at a place less those that ended before
+  for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, here - reached); j <= std::min(rows - 1, here + reached); ++j) {
+    const Real away = static_cast<Real>(j - here) * grid.step;
+    const auto half = static_cast<std::ptrdiff_t>(std::sqrt(std::max(Real{0}, reach * reach - away * away)) / grid.step);
+    for (const Run& run : empty[static_cast<std::size_t>(j)]) {
+      ++begun[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, run.first - half))];
+      --begun[static_cast<std::size_t>(std::min(columns, run.last + half + 1))];
+    }
   }
-  return found;
+  std::vector<bool> open(grid.columns);
+  int disks = 0;
+  for (std::size_t i = 0; i < grid.columns; ++i)
+    open[i] = (disks += begun[i]) > 0;
+  return open;
 }
 
 }  // namespace
@@ -89,18 +113,19 @@ std::vector<Real> closing_radii(std::span<const Real> positions, Real radius)
   if (radii.empty())
     return radii;
   const NearestPoints grid = nearest_points(positions, radius);
-  const Real covered = radius - grid.step / 2;  // a smaller hole could lie between places
-  std::vector<bool> seen(grid.distance.size());
-  for (std::size_t place = 0; place < seen.size(); ++place) {
-    if (seen[place] || !(grid.distance[place] > covered))
-      continue;
-    const auto hole = open_around(place, grid, covered, seen);  // the first one is all that is outside: the grid is wider than the points
-    if (std::any_of(hole.begin(), hole.end(), [&](std::size_t at) { return grid.nearest[at] == none; }))
-      continue;
-    for (const std::size_t at : hole) {
-      Real& mine = radii[static_cast<std::size_t>(grid.nearest[at])];
-      mine = std::max(mine, static_cast<Real>(grid.distance[at]) + grid.step);  // places lie half a diagonal of a square apart at most
-    }
+  if (grid.distance.empty())
+    return radii;  // so many disks across that none of them can be seen
+  const Real reach = widest_hole * radius;
+  const Real covered = radius - grid.step / 2;               // a smaller hole could lie between places
+  const Real between = grid.step * std::numbers::sqrt2 / 2;  // from a place to the furthest point that is nearer to no other place
+  const auto empty = empty_runs(grid, reach);
+  for (std::size_t j = 0; j < grid.rows; ++j) {
+    const std::vector<bool> open = open_places(grid, empty, j, reach);
+    for (std::size_t i = 0; i < grid.columns; ++i)
+      if (const std::size_t place = j * grid.columns + i; !open[i] && grid.distance[place] > covered) {
+        Real& mine = radii[static_cast<std::size_t>(grid.nearest[place])];
+        mine = std::max(mine, static_cast<Real>(grid.distance[place]) + between);
+      }
   }
   return radii;
 }

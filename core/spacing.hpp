@@ -17,8 +17,10 @@ inline Real drawn_radius(std::span<const Real> positions, int dimension)
   return (dimension == 2 ? 0.85 : 0.8) * spacing_of(positions, dimension);
 }
 
-/// Radius of each point [m], `radius` or larger, with which disks in the plane z = 0 leave no hole that other disks enclose.  Holes wider than
-/// 1.8 times the radius are voids and stay open; so does what is open to the outside.  `positions`: 3 numbers a point.
+/// Radius of each point [m], `radius` or larger, with which disks in the plane z = 0 leave no hole between neighbours.  A place is in a hole, and
+/// is covered by the disk of the nearest point, unless a disk of 2.2 times the radius that has no point inside reaches it: that is a void, or the
+/// outside (the closing of mathematical morphology).  It does not matter whether a narrow gap joins the hole to the outside.
+/// `positions`: 3 numbers a point.
 std::vector<Real> closing_radii(std::span<const Real> positions, Real radius);
 
 }  // namespace talus

@@ -29,6 +29,29 @@ TEST(Reach, GoesFromTheHighestPlaceToTheFurthest)
   EXPECT_FALSE(reach_of({}, {}, {}, Vec3::UnitZ(), 1));
 }
 
+TEST(Reach, DoesNotDependOnTheRoundingOfPlacesThatAreEqual)
+{
+  std::vector<Vec3> then, now;  // a block whose top is level and whose front is upright, and a light chip ahead
+  for (int i = 0; i < 10; ++i)
+    for (int j = 0; j < 10; ++j)
+      then.emplace_back(0.1 * i, 0, 3 + 0.1 * j);
+  then.emplace_back(1.5, 0, 3.9);
+  for (const Vec3& x : then)
+    now.push_back(x + (x[0] < 1.2 ? Vec3(2, 0, -1) : Vec3(3, 0, -1)));
+  std::vector<Real> mass(100, 1);
+  mass.push_back(0.5);
+  for (const int seed : {0, 1, 2, 3}) {
+    std::vector<Vec3> blurred = then;
+    for (std::size_t p = 0; p < blurred.size(); ++p)  // as a displacement of single precision brings it
+      blurred[p] += seed * 1e-7 * Vec3(std::sin(seed + 3.0 * static_cast<Real>(p)), 0, std::cos(seed + 2.0 * static_cast<Real>(p)));
+    const auto reach = reach_of(blurred, now, mass, Vec3::UnitZ(), 0.99);
+    ASSERT_TRUE(reach);
+    EXPECT_NEAR(reach->length, 2.9, 1e-5) << "from the rear edge of the top to the front of the block";
+    EXPECT_NEAR(reach->height, 1.9, 1e-5) << "down to the foot of the front";
+    EXPECT_NEAR(reach->crown[0], 0, 1e-5);
+  }
+}
+
 TEST(Reach, ASpeedOfTheBulkLeavesOutTheFastestPartOfTheMass)
 {
   const std::vector<Real> speed{1, 12, 3, 2}, mass{50, 0.5, 1, 48.5};

@@ -37,6 +37,31 @@ TEST(ClosingRadii, HolesBetweenNeighboursAreClosed)
   EXPECT_LT(*std::max_element(radii.begin(), radii.end()), 0.708 + 0.6 / 6);
 }
 
+TEST(ClosingRadii, HolesThatANarrowGapJoinsToTheOutsideAreClosed)
+{
+  std::vector<Real> points;  // clumps of four, 2 apart; those of neighbours are 1.4 apart at least
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j)
+      for (const auto& [dx, dy] : {std::pair{0.3, 0.0}, {0.0, 0.3}, {-0.3, 0.0}, {0.0, -0.3}})
+        points.insert(points.end(), {2.0 * i + dx, 2.0 * j + dy, 0});
+  for (const Real radius : {0.6, 0.69, 0.705, 0.75}) {  // gaps of 0.2 and 0.02, and disks that overlap by less than a place of the grid
+    const std::vector<Real> radii = closing_radii(points, radius);
+    for (Real x = 0; x <= 10; x += 0.0371)
+      for (Real y = 0; y <= 10; y += 0.0371)
+        ASSERT_TRUE(is_covered(x, y, points, radii)) << x << " " << y << " at a radius of " << radius;
+    EXPECT_LT(*std::max_element(radii.begin(), radii.end()), 1.23 + radius / 6) << "the middle of a gap is 1.22 from the next point";
+  }
+  EXPECT_EQ(closing_radii(points, 0.5), std::vector<Real>(points.size() / 3, 0.5)) << "2.2 times this does not reach the middle";
+}
+
+TEST(ClosingRadii, TwoDisksThatOverlapAreNoHole)
+{
+  for (const Real apart : {1.5, 1.9, 1.99, 2.1, 3.5})
+    for (const Real angle : {0.0, 0.3, 0.7854, 1.2})
+      EXPECT_EQ(closing_radii(std::vector<Real>{0, 0, 0, apart * std::cos(angle), apart * std::sin(angle), 0}, 1), std::vector<Real>(2, 1))
+          << apart << " apart, at an angle of " << angle;
+}
+
 TEST(ClosingRadii, DisksThatTouchStayAsTheyAreAndVoidsStayOpen)
 {
   const std::vector<Real> dense = lattice(8, 1);
