@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/error.hpp"
 #include "core/parallel.hpp"
@@ -58,16 +59,16 @@ std::vector<Real> coordinate(const std::vector<Real>& places, std::size_t axis)
   return values;
 }
 
-constexpr Real largest_growth = 1.25;
-
-/// The page draws all particles equally large: in 2-D so large that the first frame has no holes, unless it is loose there.
-Real page_radius(std::span<const Real> places, int dimension)
+/// By how many hundredths of the radius each disc is larger, so that no hole is left between neighbours; empty where none is.
+std::vector<std::uint8_t> growth_of(std::span<const Real> places, Real radius)
 {
-  const Real radius = drawn_radius(places, dimension);
-  if (dimension != 2)
-    return radius;
   const std::vector<Real> radii = closing_radii(places, radius);
-  return std::min(*std::max_element(radii.begin(), radii.end()), largest_growth * radius);
+  if (std::all_of(radii.begin(), radii.end(), [&](Real one) { return one <= radius; }))
+    return {};
+  std::vector<std::uint8_t> growth;
+  for (const Real one : radii)
+    growth.push_back(static_cast<std::uint8_t>(std::clamp<Real>(std::ceil(100 * (one / radius - 1)), 0, 255)));
+  return growth;
 }
 
 /// Puts frames into a page one after the other.  What does not change from one to the next is there once.
@@ -94,15 +95,20 @@ class FrameWriter {
       const ValueRange range = of_place ? ValueRange{all.low[axis], all.high[axis]} : ranges_[k - dimension_];
       blocks[k] = packed(quantised(values, range.low, range.high));
     });
-    PageFrame frame{
-        known.time, static_cast<std::int64_t>(shown.ids.size()), {all.low, all.high, {}}, add_ids(shown.ids), add_body(shown.body), {}};
+    if (radius_ == 0 && !shown.ids.empty())
+      radius_ = drawn_radius(shown.places, static_cast<int>(dimension_));
+    PageFrame frame{known.time,
+                    static_cast<std::int64_t>(shown.ids.size()),
+                    {all.low, all.high, {}},
+                    add_ids(shown.ids),
+                    add_body(shown.body),
+                    add_growth(shown.places),
+                    {}};
     for (std::size_t d = 0; d < dimension_; ++d)
       frame.x.axes.push_back(page_.add(std::move(blocks[d])));
     for (std::size_t f = 0; f < plan_.fields; ++f)
       frame.fields.push_back(shown.fields[f].empty() && !shown.ids.empty() ? std::nullopt
                                                                            : std::optional(page_.add(std::move(blocks[dimension_ + f]))));
-    if (radius_ == 0 && !shown.ids.empty())
-      radius_ = page_radius(shown.places, static_cast<int>(dimension_));
     return frame;
   }
   Real radius() const noexcept { return radius_; }
@@ -126,6 +132,11 @@ class FrameWriter {
       last_body_ = body;
     }
     return body_block_;
+  }
+  std::optional<BlockId> add_growth(const std::vector<Real>& places)
+  {
+    const auto growth = dimension_ == 2 ? growth_of(places, radius_) : std::vector<std::uint8_t>();
+    return growth.empty() ? std::nullopt : std::optional(page_.add(packed(growth)));
   }
 
   const RunSurvey& survey_;
@@ -152,7 +163,7 @@ ParticleCost measure(const RunSurvey& survey, const ParticleWishes& wishes, cons
   PagePlan all_fields = plan;
   all_fields.fields = survey.fields.size();
   constexpr Real of_block = 200, of_frame = 300;  // B: what describes it
-  const auto blocks = static_cast<Real>(survey.fields.size()) + wishes.dimension;
+  const auto blocks = static_cast<Real>(survey.fields.size()) + wishes.dimension + (wishes.dimension == 2 ? 1 : 0);
   ParticleCost cost{0, 0, std::vector<Real>(survey.fields.size()), of_frame + of_block * blocks};
   const auto frames = evenly_spread(std::min<std::size_t>(3, plan.frames.size()), plan.frames.size());
   for (const std::size_t f : frames) {
@@ -164,6 +175,7 @@ ParticleCost measure(const RunSurvey& survey, const ParticleWishes& wishes, cons
     cost.once = std::max(cost.once, bytes(frame.ids) + (frame.body ? bytes(*frame.body) : 0));
     for (const BlockId axis : frame.x.axes)
       cost.place += share * bytes(axis);
+    cost.place += frame.growth ? share * bytes(*frame.growth) : 0;
     for (std::size_t k = 0; k < frame.fields.size(); ++k)
       cost.fields[k] += frame.fields[k] ? share * bytes(*frame.fields[k]) : 0;
   }

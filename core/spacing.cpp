@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t sample = 250;  // points asked for their neighbours: each looks at all others, which takes no tree for so few
 
 constexpr Real widest_hole = 2.2;         // radius of a disk that fits into a void over that of the disks drawn
-constexpr Real fineness = 6;              // places of the grid over a radius
+constexpr Real fineness = 8;              // places of the grid over a radius
 constexpr Real coarsest = 0.5;            // distance of places over the radius
 constexpr std::size_t most_places = 4e7;  // of the grid: coarser where it would have more
 
@@ -53,14 +53,19 @@ NearestPoints nearest_points(std::span<const Real> positions, Real radius)
   const auto last = [&](Real at) { return static_cast<std::size_t>((at + reach) / step); };
   for (std::size_t p = 0; p < positions.size() / 3; ++p) {
     const Real x = positions[3 * p] - grid.low_x, y = positions[3 * p + 1] - grid.low_y;
-    for (std::size_t j = first(y); j <= std::min(last(y), grid.rows - 1); ++j)
+    for (std::size_t j = first(y); j <= std::min(last(y), grid.rows - 1); ++j) {
+      const Real across = static_cast<Real>(j) * step - y;
       for (std::size_t i = first(x); i <= std::min(last(x), grid.columns - 1); ++i) {
-        const auto away = static_cast<float>(std::hypot(static_cast<Real>(i) * step - x, static_cast<Real>(j) * step - y));
+        const Real along = static_cast<Real>(i) * step - x;
+        const auto square = static_cast<float>(along * along + across * across);
         const std::size_t place = j * grid.columns + i;
-        if (away < grid.distance[place])
-          grid.distance[place] = away, grid.nearest[place] = static_cast<Index>(p);
+        if (square < grid.distance[place])
+          grid.distance[place] = square, grid.nearest[place] = static_cast<Index>(p);
       }
+    }
   }
+  for (float& distance : grid.distance)
+    distance = std::sqrt(distance);
   return grid;
 }
 
@@ -116,8 +121,8 @@ std::vector<Real> closing_radii(std::span<const Real> positions, Real radius)
   if (grid.distance.empty())
     return radii;  // so many disks across that none of them can be seen
   const Real reach = widest_hole * radius;
-  const Real covered = radius - grid.step / 2;               // a smaller hole could lie between places
   const Real between = grid.step * std::numbers::sqrt2 / 2;  // from a place to the furthest point that is nearer to no other place
+  const Real covered = radius - between;
   const auto empty = empty_runs(grid, reach);
   for (std::size_t j = 0; j < grid.rows; ++j) {
     const std::vector<bool> open = open_places(grid, empty, j, reach);

@@ -41,6 +41,7 @@ struct PageFrame {
   PagePlaces x;
   BlockId ids = 0;
   std::optional<BlockId> body;                 ///< nothing where there is one body
+  std::optional<BlockId> growth;               ///< by how many hundredths each is drawn larger than the radius; nothing where none is
   std::vector<std::optional<BlockId>> fields;  ///< one for each field; nothing where this frame does not have it
 };
 

@@ -90,6 +90,7 @@ class PageWriter {
     add(frame.x, object);
     object["id"] = block(frame.ids);
     object["body"] = block(frame.body);
+    object["growth"] = block(frame.growth);
     object["fields"] = PageJson::array();
     for (const std::optional<BlockId>& field : frame.fields)
       object["fields"].push_back(block(field));

@@ -13,7 +13,7 @@ docs() {
   render slope_failure_2d --field stress:xy --map coolwarm --window 20 10 70 40 --out docs/images/pictures_window.png
   render slope_failure_2d --outline start --out docs/images/pictures_outline.png
   [ -f runs/landslide_maps/summary.json ] || build/talus run scenes/landslide/scene.yaml --out runs/landslide_maps --set \
-    'outputs.runout.sections=[{name: path, along: [[512064, 5180320], [512500, 5180310], [512640, 5180200], [512710, 5180150]]}]'
+    'outputs.runout.sections=[{name: path, along: [[512070, 5180320], [512500, 5180310], [512640, 5180200], [512710, 5180150]]}]'
   build/talus map runs/landslide_maps --only sections
   build/talus map runs/landslide_maps --only thickness_max --size 900x580
   cp runs/landslide_maps/pictures/section_path.png docs/images/runout_section.png

@@ -36,15 +36,15 @@ function make_cache() {
   };
 }
 
-/** Positions and bodies of a frame, four whole numbers a particle: x, y, z in [low, high] of the frame, body. */
-function join_places([x, y, z, body], {count, low, high}) {
+/** Positions of a frame, four whole numbers a particle: x, y, z in [low, high] of the frame, body + 256 * hundredths by which it is drawn larger. */
+function join_places([x, y, z, body, growth], {count, low, high}) {
   const steps = [x, y, z].map((numbers, axis) => numbers && as_steps(numbers, low[axis], high[axis]));
   const places = new Uint16Array(4 * count);
   for (let p = 0; p < count; ++p) {
     places[4 * p] = steps[0][p];
     places[4 * p + 1] = steps[1][p];
     places[4 * p + 2] = steps[2] ? steps[2][p] : 0;
-    places[4 * p + 3] = body ? body[p] : 0;
+    places[4 * p + 3] = (body ? body[p] : 0) + 256 * (growth ? growth[p] : 0);
   }
   return places;
 }
@@ -61,8 +61,9 @@ export function make_frames(particles, blocks) {
   /** Uint16Array, 4 a particle */
   const places = (f) =>
     cached(`places ${f}`, async () => {
-      const {x, y, z, body} = frames[f];
-      return join_places(await Promise.all([blocks.numbers(x), blocks.numbers(y), optional(z), optional(body)]), frames[f]);
+      const {x, y, z, body, growth} = frames[f];
+      const numbers = [blocks.numbers(x), blocks.numbers(y), optional(z), optional(body), optional(growth)];
+      return join_places(await Promise.all(numbers), frames[f]);
     });
   /** Uint16Array in [low, high] of the field over all frames, or null where the frame does not have the field */
   const steps = (f, field) =>
@@ -75,6 +76,9 @@ export function make_frames(particles, blocks) {
 
   return {places, steps, ids};
 }
+
+/** Number of the body of particle p of a frame. */
+export const body_of = (places, p) => places[4 * p + 3] & 255;
 
 /** Where particle p of a frame is [m]. */
 export function place_of(places, p, {low, high}) {

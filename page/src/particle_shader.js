@@ -2,7 +2,7 @@
 import * as THREE from 'three';
 
 const VERTEX = `
-  in vec4 place;          // x, y, z of the frame's box in 65535ths, body
+  in vec4 place;          // x, y, z of the frame's box, body + 256 * hundredths by which it is larger than the radius; in 65535ths
   in vec2 values;         // of the field that colours and of the one that limits, in 65535ths of their ranges
   uniform vec3 low, extent;             // of the frame's box [m], from the origin of the view
   uniform float radius, pixels;         // m; height of the picture
@@ -27,10 +27,11 @@ const VERTEX = `
     vec4 eye = modelViewMatrix * vec4(x, 1.0);
     gl_Position = projectionMatrix * eye;
     eye_z = eye.z;
-    size = radius * pixels * projectionMatrix[1][1] / gl_Position.w;
+    float both = floor(place.w * 65535.0 + 0.5), growth = floor(both / 256.0), body = both - 256.0 * growth;
+    size = radius * (1.0 + 0.01 * growth) * pixels * projectionMatrix[1][1] / gl_Position.w;
     gl_PointSize = max(size, 1.5);
 
-    float t = by_body ? (floor(place.w * 65535.0 + 0.5) + 0.5) / 256.0
+    float t = by_body ? (body + 0.5) / 256.0
                       : (0.5 + 255.0 * clamp((values.x * whole - range.x) / (range.y - range.x), 0.0, 1.0)) / 256.0;
     colour = !by_body && values.x == 1.0 ? vec3(0.6) : texture(map, vec2(t, 0.5)).rgb;
   }`;

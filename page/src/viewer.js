@@ -1,6 +1,6 @@
 // Particles in time: what is chosen (state) and decoded (frames) goes into the picture (scene3d), and words about it stand around it.
 import {make_view} from './scene3d.js';
-import {make_frames, place_of} from './frames.js';
+import {body_of, make_frames, place_of} from './frames.js';
 import {colour_range, field_index, field_value, frame_index, limit_of, section_of, share_of, shown_test} from './shown.js';
 import {make_legend} from './legend.js';
 import {make_gauge} from './gauge.js';
@@ -198,7 +198,7 @@ export function start_viewer(run, state, blocks) {
     const values = await Promise.all(particles.fields.map((_, field) => frames.steps(index, field)));
     if (now?.index !== index || state.get().particle !== id) return;
     const place = place_of(places, p, frame);
-    const body = particles.bodies[places[4 * p + 3]];
+    const body = particles.bodies[body_of(places, p)];
     view.set_mark(place);
     picked.replaceChildren(
       close,

@@ -69,6 +69,7 @@ def told(page):
         yield "frames", [round(frame["time"], 6) for frame in particles["frames"]]
         yield "ids", [len(page.block(frame["id"])) for frame in particles["frames"]]
         yield "radius", particles["radius"]
+        yield "growth", [max(page.block(frame["growth"])) if frame["growth"] else 0 for frame in particles["frames"]]
     yield "mesh", mesh and (f"{mesh['count']} nodes, {len(page.block(mesh['outline'])) // 2} outline, "
                             f"{len(page.block(mesh['cells'])) // 2 if mesh['cells'] else 0} edges")
     if ground := run["ground"]:
