@@ -27,9 +27,9 @@ scenes=("$@")
 [ ${#scenes[@]} -gt 0 ] || mapfile -t scenes < <(find scenes -mindepth 1 -maxdepth 1 -type d -printf '%f\n' | sort)
 for name in "${scenes[@]}"; do
   build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
-  frame=last
-  [ "$name" = cantilever ] && frame=14  # t = 0.7 s, its lowest point; at the end it is back up
-  render "$name" --frames "$frame" --out "scenes/$name/picture.png"
+  frame=last range=last
+  [ "$name" = cantilever ] && frame=14 range=whole  # t = 0.7 s, its lowest point; at the end it is back up
+  render "$name" --frames "$frame" --range "$range" --out "scenes/$name/picture.png"
   if [ "$name" = slope_failure_3d ]; then cp "scenes/$name/picture.png" docs/images/slope_failure_3d.png; fi
 done
 if [ $# -eq 0 ]; then tools/run_tutorials.py build/talus --pictures; fi
