@@ -14,6 +14,7 @@
 #include "core/error.hpp"
 #include "core/say.hpp"
 #include "io/array_digest.hpp"
+#include "io/file_descriptor.hpp"
 #include "io/result_files.hpp"
 #include "io/whole_file.hpp"
 
@@ -24,23 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path list_in(const fs::path& folder) { return folder / own_folder / "files.txt"; }
-
-class Handle {
- public:
-  Handle(const fs::path& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Handle()
-  {
-    if (number_ >= 0)
-      ::close(number_);
-  }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  bool is_open() const noexcept { return number_ >= 0; }
-  int number() const noexcept { return number_; }
-
- private:
-  int number_;
-};
 
 struct Looks {
   std::uint64_t bytes;
@@ -57,7 +41,7 @@ std::optional<Looks> looks_of(const fs::path& file)
 }
 
 /// Bytes from `at` on; false if there are not as many.
-bool read_at(const Handle& file, std::uint64_t at, std::span<std::byte> bytes)
+bool read_at(const FileDescriptor& file, std::uint64_t at, std::span<std::byte> bytes)
 {
   while (!bytes.empty()) {
     const ssize_t got = ::pread(file.number(), bytes.data(), bytes.size(), static_cast<off_t>(at));
@@ -76,7 +60,7 @@ bool read_at(const Handle& file, std::uint64_t at, std::span<std::byte> bytes)
 std::optional<std::uint64_t> digest_of_file(const fs::path& file, std::uint64_t bytes)
 {
   constexpr std::uint64_t piece = 65536, most_pieces = 1024;
-  const Handle opened(file, O_RDONLY | O_NOFOLLOW);
+  const FileDescriptor opened(file, O_RDONLY | O_NOFOLLOW);
   if (!opened.is_open())
     return std::nullopt;
   Digest digest(0, bytes);
@@ -145,7 +129,7 @@ std::string line_of(Proof proof, std::uint64_t digest, std::uint64_t bytes, std:
 void append_line(const fs::path& list, const std::string& line, const fs::path& file)
 {
   const auto fail = [&] { throw EnvironmentError(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno))); };
-  const Handle opened(list, O_RDWR | O_APPEND);
+  const FileDescriptor opened(list, O_RDWR | O_APPEND);
   if (!opened.is_open())
     fail();
   // A line that was cut short, on a full disk, must not take this one with it.

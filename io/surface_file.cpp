@@ -185,12 +185,12 @@ bool FileReader::is_plausible(const Raster& raster)
       low = std::min(low, value);
       high = std::max(high, value);
     }
-  constexpr Real highest = 9000, deepest = -11500;  // m: of the Earth
+  constexpr Real highest = 9000, lowest = -11500;  // m: of the Earth
   if (!(low <= high))
     complain("no cell has a value");
   else if (low == 0 && high == 0)
     complain("all elevations are zero, as if the raster had been exported without them; for a level surface write elevation: 0");
-  else if (high > highest || low < deepest)
+  else if (high > highest || low < lowest)
     complain(
         fmt::format("elevations from {:g} m to {:g} m are not those of any ground: other units, or a value for none that the file does not "
                     "declare (gdal_edit.py -a_nodata VALUE {})",

@@ -11,6 +11,7 @@
 
 #include "core/error.hpp"
 #include "core/exchange.hpp"
+#include "io/file_descriptor.hpp"
 #include "io/manifest.hpp"
 
 namespace talus {
@@ -24,26 +25,9 @@ namespace fs = std::filesystem;
   throw EnvironmentError(fmt::format("cannot {} {}: {}", verb, file.string(), std::strerror(code)));
 }
 
-class Descriptor {
- public:
-  Descriptor(const fs::path& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
-  ~Descriptor()
-  {
-    if (is_open())
-      ::close(number_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  bool is_open() const noexcept { return number_ >= 0; }
-  int number() const noexcept { return number_; }
-
- private:
-  int number_;
-};
-
 void sync(const fs::path& path, int flags, const fs::path& file)
 {
-  const Descriptor opened(path, flags);
+  const FileDescriptor opened(path, flags);
   // Some network file systems know no fsync of a folder and answer EINVAL; the rename has happened all the same.
   if (!opened.is_open() || (::fsync(opened.number()) != 0 && errno != EINVAL))
     fail(file, "write", errno);
@@ -124,13 +108,13 @@ class Shared {
 
  private:
   const fs::path& file_;
-  Descriptor opened_;
+  FileDescriptor opened_;
   int failure_ = 0;
 };
 
 void write_text(const fs::path& path, std::string_view text, const fs::path& file)
 {
-  const Descriptor opened(path, O_WRONLY | O_CREAT | O_TRUNC);
+  const FileDescriptor opened(path, O_WRONLY | O_CREAT | O_TRUNC);
   if (!opened.is_open())
     fail(file, "write", errno);
   while (!text.empty()) {
@@ -204,7 +188,7 @@ std::string read_whole(const fs::path& file)
 {
   if (std::error_code unknown; fs::is_other(fs::status(file, unknown)))
     throw EnvironmentError(fmt::format("cannot read {}: it is not an ordinary file", file.string()));
-  const Descriptor opened(file, O_RDONLY);
+  const FileDescriptor opened(file, O_RDONLY);
   if (!opened.is_open())
     fail(file, "read", errno);
   std::string text;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "mesh/single_items.hpp"
+
 namespace talus {
 
 namespace {
@@ -16,21 +18,6 @@ void sort_once(std::vector<Edge>& edges)
 {
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-}
-
-/// What stands in the sorted list once: a facet of one cell alone lies on the boundary.
-template <class Item>
-std::vector<Item> single(std::vector<Item> facets)
-{
-  std::sort(facets.begin(), facets.end());
-  std::vector<Item> alone;
-  for (std::size_t i = 0, end = 0; i < facets.size(); i = end) {
-    for (end = i + 1; end < facets.size() && facets[end] == facets[i];)
-      ++end;
-    if (end == i + 1)
-      alone.push_back(facets[i]);
-  }
-  return alone;
 }
 
 Vec3 point(std::span<const Real> nodes, Index n) { return Eigen::Map<const Vec3>(nodes.data() + 3 * static_cast<std::size_t>(n)); }
@@ -63,7 +50,7 @@ MeshEdges edges_of_triangles(std::span<const Index> corners)
   for (std::size_t c = 0; c + 2 < corners.size(); c += 3)
     for (std::size_t a = 0; a < 3; ++a)
       edges.all.push_back(edge(corners[c + a], corners[c + (a + 1) % 3]));
-  edges.outline = single(edges.all);
+  edges.outline = single_items(edges.all);  // sides of one cell alone
   sort_once(edges.all);
   return edges;
 }
@@ -77,7 +64,7 @@ MeshEdges edges_of_tetrahedra(std::span<const Real> nodes, std::span<const Index
       std::sort(facet.begin(), facet.end());
       facets.push_back(facet);
     }
-  facets = single(std::move(facets));
+  facets = single_items(std::move(facets));
   std::vector<std::pair<Edge, std::size_t>> sides;  // with their facet
   for (std::size_t f = 0; f < facets.size(); ++f)
     for (const Edge& side : {Edge{facets[f][0], facets[f][1]}, Edge{facets[f][1], facets[f][2]}, Edge{facets[f][0], facets[f][2]}})

@@ -4,6 +4,8 @@
 #include <set>
 #include <string_view>
 
+#include "mesh/single_items.hpp"
+
 namespace talus {
 
 namespace {
@@ -23,18 +25,11 @@ FacetNodes<D> ascending(FacetNodes<D> facet)
 /// Sides that belong to one of the facets alone.
 std::vector<Edge> rim_of(const std::vector<FacetNodes<3>>& facets)
 {
-  std::vector<Edge> sides, rim;
+  std::vector<Edge> sides;
   for (const FacetNodes<3>& facet : facets)
     for (std::size_t a = 0; a < 3; ++a)
       sides.push_back(ascending<2>({facet[a], facet[(a + 1) % 3]}));
-  std::sort(sides.begin(), sides.end());
-  for (std::size_t i = 0, end = 0; i < sides.size(); i = end) {
-    for (end = i + 1; end < sides.size() && sides[end] == sides[i];)
-      ++end;
-    if (end == i + 1)
-      rim.push_back(sides[i]);
-  }
-  return rim;
+  return single_items(std::move(sides));
 }
 
 void keep_each_once(std::vector<Edge>& edges)

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "tests/io/mesh_measures.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus::gmsh_mesh_test {
@@ -31,27 +32,6 @@ MeshSpec regions(Real size, std::vector<RegionSpec> list)
   return spec;
 }
 
-template <int D>
-Real volume(const Mesh<D>& mesh, const std::string& name)
-{
-  const auto cells = mesh.cell_set(name);
-  Real sum = 0;
-  for (const Index c : cells.value())
-    sum += mesh.volume(c);
-  return sum;
-}
-
-template <int D>
-std::string complaint(const MeshSpec& spec, const std::filesystem::path& directory = ".")
-{
-  try {
-    load_mesh<D>(spec, directory);
-  } catch (const SceneErrors& errors) {
-    return errors.what();
-  }
-  return "no complaint";
-}
-
 constexpr Real round_off = 1e-12;  // relative, of sums over some thousand cells
 
 TEST(GmshMesh, LeavesTheNumberOfThreadsAlone)
@@ -68,11 +48,11 @@ TEST(GmshMesh, PlaneRegionsHaveTheirAreas)
   const Mesh<2> mesh = load_mesh<2>(regions(0.1, {region("box", Box{{0, 0}, {2, 1}}), region("disk", Sphere{{4, 0}, 1}),
                                                   region("wedge", Polygon{{{0, 1}, {2, 1}, {0, 2}}, {}})}),
                                     ".");
-  EXPECT_NEAR(volume(mesh, "box"), 2, 2 * round_off);
-  EXPECT_NEAR(volume(mesh, "wedge"), 1, round_off);
+  EXPECT_NEAR(volume_of(mesh, "box"), 2, 2 * round_off);
+  EXPECT_NEAR(volume_of(mesh, "wedge"), 1, round_off);
   // A chord of length h cuts h^3 / (12 r) off a disk: of the area pi a share of h^2 / 6 in all.
-  EXPECT_LT(volume(mesh, "disk"), std::numbers::pi);
-  EXPECT_NEAR(volume(mesh, "disk"), std::numbers::pi, std::numbers::pi * 0.1 * 0.1 / 6 * 1.1);
+  EXPECT_LT(volume_of(mesh, "disk"), std::numbers::pi);
+  EXPECT_NEAR(volume_of(mesh, "disk"), std::numbers::pi, std::numbers::pi * 0.1 * 0.1 / 6 * 1.1);
 }
 
 TEST(GmshMesh, SolidRegionsHaveTheirVolumes)
@@ -82,21 +62,21 @@ TEST(GmshMesh, SolidRegionsHaveTheirVolumes)
       regions(h, {region("box", Box{{0, 0, 0}, {1, 1, 1}}), region("ball", Sphere{{3, 0, 0}, 1}),
                   region("pipe", Cylinder{{0, 0, 2}, {0, 1, 2}, 0.5}), region("prism", Polygon{{{0, 3}, {1, 3}, {0, 4}}, {1, 2}})}),
       ".");
-  EXPECT_NEAR(volume(mesh, "box"), 1, round_off);
-  EXPECT_NEAR(volume(mesh, "prism"), 0.5, round_off);
+  EXPECT_NEAR(volume_of(mesh, "box"), 1, round_off);
+  EXPECT_NEAR(volume_of(mesh, "prism"), 0.5, round_off);
   // Flat faces with edges h leave out about a share of h^2 / (2 r^2) of a ball, chords h^2 / (6 r^2) of a cylinder.
   const Real ball = 4 * std::numbers::pi / 3, pipe = std::numbers::pi / 4;
-  EXPECT_LT(volume(mesh, "ball"), ball);
-  EXPECT_NEAR(volume(mesh, "ball"), ball, ball * h * h / 2);
-  EXPECT_LT(volume(mesh, "pipe"), pipe);
-  EXPECT_NEAR(volume(mesh, "pipe"), pipe, pipe * h * h / (6 * 0.25) * 1.1);
+  EXPECT_LT(volume_of(mesh, "ball"), ball);
+  EXPECT_NEAR(volume_of(mesh, "ball"), ball, ball * h * h / 2);
+  EXPECT_LT(volume_of(mesh, "pipe"), pipe);
+  EXPECT_NEAR(volume_of(mesh, "pipe"), pipe, pipe * h * h / (6 * 0.25) * 1.1);
 }
 
 TEST(GmshMesh, RegionsThatTouchShareTheirFacesAndTheLaterGivesWay)
 {
   const Mesh<2> mesh = load_mesh<2>(regions(0.25, {region("soil", Box{{0, 0}, {2, 1}}), region("air", Box{{0, 0}, {2, 3}})}), ".");
-  EXPECT_NEAR(volume(mesh, "soil"), 2, 2 * round_off);
-  EXPECT_NEAR(volume(mesh, "air"), 4, 4 * round_off);
+  EXPECT_NEAR(volume_of(mesh, "soil"), 2, 2 * round_off);
+  EXPECT_NEAR(volume_of(mesh, "air"), 4, 4 * round_off);
   std::vector<std::uint8_t> in_soil(static_cast<std::size_t>(mesh.n_cells()), 0);
   const auto soil = mesh.cell_set("soil");
   for (const Index c : *soil)
@@ -298,7 +278,7 @@ TEST(GmshMesh, WrongRegionsAreRefusedAtTheirPlace)
 TEST(GmshMesh, SidesOfAPolygonMayLieInOneLine)
 {
   const Polygon notched{{{0, 0}, {1, 0}, {1.5, 1}, {2, 0}, {3, 0}, {3, 2}, {0, 2}}, {}};
-  EXPECT_NEAR(volume(load_mesh<2>(regions(0.5, {region("r", notched)}), "."), "r"), 3 * 2 - 0.5, round_off);
+  EXPECT_NEAR(volume_of(load_mesh<2>(regions(0.5, {region("r", notched)}), "."), "r"), 3 * 2 - 0.5, round_off);
   const Polygon folded{{{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 0}, {0.5, 0}, {0.5, 1}}, {}};
   EXPECT_THAT(complaint<2>(regions(0.5, {region("r", folded)})), HasSubstr("crosses itself"));
 }
@@ -323,7 +303,7 @@ class GmshGeometry : public ::testing::Test {
 TEST_F(GmshGeometry, GeoIsMeshedWithItsGroups)
 {
   const Mesh<2> mesh = load_mesh<2>(geo(square_), folder_.path());
-  EXPECT_NEAR(volume(mesh, "soil"), 1, round_off);
+  EXPECT_NEAR(volume_of(mesh, "soil"), 1, round_off);
   EXPECT_EQ(mesh.facet_set("floor").value().size(), 5U);
   EXPECT_EQ(mesh.facet_set("floor"), mesh.facet_set("y_min"));
 }
@@ -383,8 +363,8 @@ TEST_F(GmshGeometry, SolidsOfAStepFileInMillimetresShareFacesInMetres)
   spec.size = 0.5;
   const Mesh<3> mesh = load_mesh<3>(spec, folder_.path());
   EXPECT_THAT(mesh.cell_set_names(), UnorderedElementsAre("part_1", "part_2"));
-  EXPECT_NEAR(volume(mesh, "part_1"), 1, round_off);
-  EXPECT_NEAR(volume(mesh, "part_2"), 1, round_off);
+  EXPECT_NEAR(volume_of(mesh, "part_1"), 1, round_off);
+  EXPECT_NEAR(volume_of(mesh, "part_2"), 1, round_off);
   EXPECT_NEAR(mesh.high()[0], 2, 2 * round_off);
   const auto hull = mesh.facet_set("boundary");
   Real area = 0;

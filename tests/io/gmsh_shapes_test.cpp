@@ -6,7 +6,7 @@
 #include <fstream>
 #include <numbers>
 
-#include "io/gmsh_mesh.hpp"
+#include "tests/io/mesh_measures.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus::gmsh_shapes_test {
@@ -21,37 +21,6 @@ MeshSpec region(Real size, Shape shape)
   spec.size = size;
   spec.regions = {{"rock", std::move(shape), Where{"scene.yaml", 5, 9, "mesh.regions[0]"}}};
   return spec;
-}
-
-template <int D>
-Real volume(const Mesh<D>& mesh)
-{
-  const auto cells = mesh.cell_set("rock");
-  Real sum = 0;
-  for (const Index c : cells.value())
-    sum += mesh.volume(c);
-  return sum;
-}
-
-template <int D>
-Real area(const Mesh<D>& mesh, const std::string& name)
-{
-  const auto facets = mesh.facet_set(name);
-  Real sum = 0;
-  for (const Facet f : facets.value())
-    sum += mesh.area_vector(f).norm();
-  return sum;
-}
-
-template <int D>
-std::string complaint(const MeshSpec& spec, const std::filesystem::path& folder = ".")
-{
-  try {
-    load_mesh<D>(spec, folder);
-  } catch (const SceneErrors& errors) {
-    return errors.what();
-  }
-  return "no complaint";
 }
 
 /// Every particle of a mesh must lie in the shape that was meshed: the mesher and the test of points mean the same.
@@ -73,13 +42,13 @@ const Polygon tunnel{{{0, 0}, {6, 0}, {4, 4}, {0, 4}}, {}, {{{1, 1}, {3, 1}, {3,
 TEST(GmshShapes, PolygonWithAHoleAndNamedSides)
 {
   const Mesh<2> mesh = load_mesh<2>(region(0.5, tunnel), ".");
-  EXPECT_NEAR(volume(mesh), 20 - 2, round_off * 20);
+  EXPECT_NEAR(volume_of(mesh, "rock"), 20 - 2, round_off * 20);
   expect_cells_in_shape(mesh, tunnel);
-  EXPECT_NEAR(area(mesh, "rock:base"), 6, round_off * 6);
-  EXPECT_NEAR(area(mesh, "rock:slope"), std::hypot(2, 4), round_off * 6);
-  EXPECT_NEAR(area(mesh, "rock:top"), 4, round_off * 6);
-  EXPECT_NEAR(area(mesh, "rock:back"), 4, round_off * 6);
-  EXPECT_NEAR(area(mesh, "rock:hole_1"), 6, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:base"), 6, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:slope"), std::hypot(2, 4), round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:top"), 4, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:back"), 4, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:hole_1"), 6, round_off * 6);
 }
 
 TEST(GmshShapes, ExtrudedPolygonHasItsHoleAndItsSides)
@@ -87,10 +56,10 @@ TEST(GmshShapes, ExtrudedPolygonHasItsHoleAndItsSides)
   Polygon solid = tunnel;
   solid.extrude = {-1, 1};
   const Mesh<3> mesh = load_mesh<3>(region(1, solid), ".");
-  EXPECT_NEAR(volume(mesh), 2 * 18, round_off * 36);
+  EXPECT_NEAR(volume_of(mesh, "rock"), 2 * 18, round_off * 36);
   expect_cells_in_shape(mesh, solid);
-  EXPECT_NEAR(area(mesh, "rock:slope"), 2 * std::hypot(2, 4), round_off * 12);
-  EXPECT_NEAR(area(mesh, "rock:hole_1"), 2 * 6, round_off * 12);
+  EXPECT_NEAR(area_of(mesh, "rock:slope"), 2 * std::hypot(2, 4), round_off * 12);
+  EXPECT_NEAR(area_of(mesh, "rock:hole_1"), 2 * 6, round_off * 12);
 }
 
 TEST(GmshShapes, SidesOfOneNameAreOneAndSidesBetweenRegionsCount)
@@ -99,8 +68,8 @@ TEST(GmshShapes, SidesOfOneNameAreOneAndSidesBetweenRegionsCount)
   MeshSpec spec = region(0.5, lower);
   spec.regions.push_back({"soil", Box{{0, 1}, {4, 2}}, Where{}});
   const Mesh<2> mesh = load_mesh<2>(spec, ".");
-  EXPECT_NEAR(area(mesh, "rock:rim"), 6, round_off * 6);
-  EXPECT_NEAR(area(mesh, "rock:joint"), 4, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:rim"), 6, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "rock:joint"), 4, round_off * 6);
   const auto joint = mesh.facet_set("rock:joint");
   for (const Facet f : joint.value())
     EXPECT_FALSE(mesh.on_boundary(f));
@@ -120,17 +89,17 @@ TEST(GmshShapes, RingIsHollowAndItsInsideIsAGroup)
   const Ring ring{{1, 2}, 0.5, 2};
   const Mesh<2> mesh = load_mesh<2>(region(0.2, ring), ".");
   const Real exact = std::numbers::pi * (4 - 0.25);
-  EXPECT_NEAR(volume(mesh), exact, 0.01 * exact);  // chords
-  EXPECT_NEAR(area(mesh, "rock:inner"), std::numbers::pi, 0.03 * std::numbers::pi);
-  EXPECT_GT(area(mesh, "rock:boundary"), 0.98 * std::numbers::pi * 5);
+  EXPECT_NEAR(volume_of(mesh, "rock"), exact, 0.01 * exact);  // chords
+  EXPECT_NEAR(area_of(mesh, "rock:inner"), std::numbers::pi, 0.03 * std::numbers::pi);
+  EXPECT_GT(area_of(mesh, "rock:boundary"), 0.98 * std::numbers::pi * 5);
 }
 
 TEST(GmshShapes, RingIn3DIsAHollowBall)
 {
   const Mesh<3> mesh = load_mesh<3>(region(0.4, Ring{{0, 0, 0}, 0.5, 1.5}), ".");
   const Real exact = 4.0 / 3 * std::numbers::pi * (std::pow(1.5, 3) - std::pow(0.5, 3));
-  EXPECT_NEAR(volume(mesh), exact, 0.08 * exact);
-  EXPECT_NEAR(area(mesh, "rock:inner"), std::numbers::pi, 0.15 * std::numbers::pi);
+  EXPECT_NEAR(volume_of(mesh, "rock"), exact, 0.08 * exact);
+  EXPECT_NEAR(area_of(mesh, "rock:inner"), std::numbers::pi, 0.15 * std::numbers::pi);
 }
 
 TEST(GmshShapes, DifferenceUnionAndIntersection)
@@ -138,15 +107,15 @@ TEST(GmshShapes, DifferenceUnionAndIntersection)
   const Box block{{0, 0}, {4, 2}};
   const Difference cut{block, {Box{{1, 1}, {2, 3}}, Polygon{{{2, -1}, {5, -1}, {5, 2}}, {}}}};
   const Mesh<2> less = load_mesh<2>(region(0.4, cut), ".");
-  EXPECT_NEAR(volume(less), 8 - 1 - 0.5, round_off * 8);
+  EXPECT_NEAR(volume_of(less, "rock"), 8 - 1 - 0.5, round_off * 8);
   expect_cells_in_shape(less, cut);
   const Union both{{block, Box{{3, 1}, {5, 4}}}};
   const Mesh<2> more = load_mesh<2>(region(0.4, both), ".");
-  EXPECT_NEAR(volume(more), 8 + 6 - 1, round_off * 13);
+  EXPECT_NEAR(volume_of(more, "rock"), 8 + 6 - 1, round_off * 13);
   expect_cells_in_shape(more, both);
   const Intersection common{{block, Box{{3, 1}, {5, 4}}, Sphere{{3.5, 1.5}, 5}}};
   const Mesh<2> part = load_mesh<2>(region(0.4, common), ".");
-  EXPECT_NEAR(volume(part), 1, round_off);
+  EXPECT_NEAR(volume_of(part, "rock"), 1, round_off);
   expect_cells_in_shape(part, common);
 }
 
@@ -154,7 +123,7 @@ TEST(GmshShapes, AShaftIn3DIsACylinderLessAnother)
 {
   const Difference shaft{Box{{-2, -2, 0}, {2, 2, 3}}, {Cylinder{{0, 0, 1}, {0, 0, 4}, 1}}};
   const Mesh<3> mesh = load_mesh<3>(region(0.7, shaft), ".");
-  EXPECT_NEAR(volume(mesh), 48 - 2 * std::numbers::pi, 0.5);
+  EXPECT_NEAR(volume_of(mesh, "rock"), 48 - 2 * std::numbers::pi, 0.5);
 }
 
 TEST(GmshShapes, NothingLeftIsRefusedAtTheRegion)
@@ -174,9 +143,9 @@ TEST(GmshShapes, GroupsFaceADirection)
                  {"slope", "rock:boundary", {}, where, {2, 1}, 5},
                  {"floor of the tunnel", "rock:hole_1", {}, where, {0, 1}, 1}};
   const Mesh<2> mesh = load_mesh<2>(spec, ".");
-  EXPECT_NEAR(area(mesh, "up"), 4 + 2, round_off * 6) << "the top, and the floor of the hole: the normal points out of the rock";
-  EXPECT_NEAR(area(mesh, "slope"), std::hypot(2, 4), round_off * 6);
-  EXPECT_NEAR(area(mesh, "floor of the tunnel"), 2, round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "up"), 4 + 2, round_off * 6) << "the top, and the floor of the hole: the normal points out of the rock";
+  EXPECT_NEAR(area_of(mesh, "slope"), std::hypot(2, 4), round_off * 6);
+  EXPECT_NEAR(area_of(mesh, "floor of the tunnel"), 2, round_off * 6);
   spec.groups = {{"none", "rock:slope", {}, where, {0, -1}, 30}};
   EXPECT_THAT(complaint<2>(spec),
               HasSubstr("scene.yaml:9:5: error: mesh.groups[0]: group \"none\": no facet of \"rock:slope\" faces (0, -1) up to 30 deg"));

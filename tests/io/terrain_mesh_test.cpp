@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "io/gmsh_mesh.hpp"
 #include "io/reader.hpp"
+#include "tests/io/mesh_measures.hpp"
 
 namespace talus::terrain_mesh_test {
 namespace {
@@ -38,34 +38,13 @@ Mesh<D> mesh_of(const std::string& block)
 }
 
 template <int D>
-std::string complaint(const std::string& block)
+std::string complaint_of(const std::string& block)
 {
   try {
-    mesh_of<D>(block);
-  } catch (const SceneErrors& errors) {
+    return complaint<D>(scene(D, block).mesh);
+  } catch (const SceneErrors& errors) {  // of the reader
     return errors.what();
   }
-  return "no complaint";
-}
-
-template <int D>
-Real volume(const Mesh<D>& mesh, const std::string& name)
-{
-  const auto cells = mesh.cell_set(name);
-  Real sum = 0;
-  for (const Index c : cells.value())
-    sum += mesh.volume(c);
-  return sum;
-}
-
-template <int D>
-Real area(const Mesh<D>& mesh, const std::string& name)
-{
-  const auto facets = mesh.facet_set(name);
-  Real sum = 0;
-  for (const Facet f : facets.value())
-    sum += mesh.area_vector(f).norm();
-  return sum;
 }
 
 const std::string slope = R"(
@@ -82,15 +61,15 @@ TEST(TerrainMesh, LayersHoldWhatLiesBetweenLinesThroughPoints)
       - {name: rock, bottom: {elevation: 0}, size: 1}
     air: {height: 3}
 )");
-  EXPECT_NEAR(volume(mesh, "layer:soil"), 30 * 2, 1e-10);
-  EXPECT_NEAR(volume(mesh, "layer:rock"), 8 * 8 + 6 * 6 + 16 * 4, 1e-10);
-  EXPECT_NEAR(volume(mesh, "air"), 30 * 3, 1e-10);
-  EXPECT_NEAR(area(mesh, "base"), 30, 1e-10);
+  EXPECT_NEAR(volume_of(mesh, "layer:soil"), 30 * 2, 1e-10);
+  EXPECT_NEAR(volume_of(mesh, "layer:rock"), 8 * 8 + 6 * 6 + 16 * 4, 1e-10);
+  EXPECT_NEAR(volume_of(mesh, "air"), 30 * 3, 1e-10);
+  EXPECT_NEAR(area_of(mesh, "base"), 30, 1e-10);
   const Real ground = 8 + std::hypot(6, 4) + 16;
-  EXPECT_NEAR(area(mesh, "terrain"), ground, 1e-10);
-  EXPECT_NEAR(area(mesh, "top"), ground, 1e-10);
-  EXPECT_NEAR(area(mesh, "layer:soil:bottom"), ground, 1e-10);
-  EXPECT_NEAR(area(mesh, "sides"), 13 + 9, 1e-10);
+  EXPECT_NEAR(area_of(mesh, "terrain"), ground, 1e-10);
+  EXPECT_NEAR(area_of(mesh, "top"), ground, 1e-10);
+  EXPECT_NEAR(area_of(mesh, "layer:soil:bottom"), ground, 1e-10);
+  EXPECT_NEAR(area_of(mesh, "sides"), 13 + 9, 1e-10);
   EXPECT_FALSE(mesh.map());  // x is x
   EXPECT_THAT(mesh.notes(), IsEmpty());
 }
@@ -100,7 +79,7 @@ TEST(TerrainMesh, WithoutLayersTheGroundIsTheBottomOfTheAir)
   const Mesh<2> mesh = mesh_of<2>(slope + "    air: {height: 3}\n");
   EXPECT_THAT(mesh.cell_set_names(), ElementsAre("air"));
   EXPECT_EQ(mesh.facet_set("base"), mesh.facet_set("terrain"));
-  EXPECT_NEAR(area(mesh, "base"), 8 + std::hypot(6, 4) + 16, 1e-10);
+  EXPECT_NEAR(area_of(mesh, "base"), 8 + std::hypot(6, 4) + 16, 1e-10);
 }
 
 /// A plane that falls by half along x, and a slip surface that is a tenth of a metre above it but for a wedge.
@@ -119,8 +98,8 @@ TEST(TerrainMesh, LiesOnTheMap)
   ASSERT_TRUE(mesh.map());
   EXPECT_EQ(mesh.map()->crs, "EPSG:32633");
   EXPECT_THAT(mesh.map()->to_map(3, 4), ElementsAre(512003, 5180004));
-  EXPECT_NEAR(volume(mesh, "layer:rock"), 60 * 30 * 25, 1e-6);
-  EXPECT_NEAR(area(mesh, "terrain"), 30 * std::hypot(60, 30), 1e-6);
+  EXPECT_NEAR(volume_of(mesh, "layer:rock"), 60 * 30 * 25, 1e-6);
+  EXPECT_NEAR(area_of(mesh, "terrain"), 30 * std::hypot(60, 30), 1e-6);
   EXPECT_FALSE(mesh.facet_set("top"));
   EXPECT_THAT(terrain_in_words(mesh, "  "), HasSubstr("  on the map from (512000, 5180000) to (512060, 5180030), EPSG:32633"));
   EXPECT_THAT(terrain_in_words(mesh, ""), HasSubstr("layer:rock: 4.5e+04 m3"));
@@ -138,7 +117,7 @@ TEST(TerrainMesh, ASectionGoesAlongALineOfTheMap)
   const Mesh<2> mesh = load_mesh<2>(asked.mesh, ".");
   const Real length = std::hypot(40, 25);
   EXPECT_NEAR(mesh.high()[0], length, 1e-9);
-  EXPECT_NEAR(volume(mesh, "layer:rock"), 5 * length, 1e-9);
+  EXPECT_NEAR(volume_of(mesh, "layer:rock"), 5 * length, 1e-9);
   EXPECT_NEAR(mesh.high()[1], 35, 1e-9);
   ASSERT_TRUE(mesh.map());
   const auto end = mesh.map()->to_map(length);
@@ -168,13 +147,13 @@ TEST(TerrainMesh, ObstaclesAreLeftOut)
     obstacles: [{name: dam, outline: [[512040.5, 5180004.25], [512044.75, 5180021.5]], height: 3}]
 )";
   const Mesh<3> mesh = mesh_of<3>(hill + dam);
-  EXPECT_NEAR(volume(mesh, "air"), (60 * 30 * 6) - 4.25 * 17.25 * 3, 1e-6);
+  EXPECT_NEAR(volume_of(mesh, "air"), (60 * 30 * 6) - 4.25 * 17.25 * 3, 1e-6);
   const Real slant = std::hypot(1, 0.5);
-  EXPECT_NEAR(area(mesh, "obstacle:dam"), 4.25 * 17.25 * slant + 3 * 2 * (4.25 + 17.25), 1e-6);
-  EXPECT_NEAR(area(mesh, "base"), (60 * 30 - 4.25 * 17.25) * slant, 1e-6);
+  EXPECT_NEAR(area_of(mesh, "obstacle:dam"), 4.25 * 17.25 * slant + 3 * 2 * (4.25 + 17.25), 1e-6);
+  EXPECT_NEAR(area_of(mesh, "base"), (60 * 30 - 4.25 * 17.25) * slant, 1e-6);
   const Mesh<2> line = mesh_of<2>(slope + "    air: {height: 3}\n    obstacles: [{name: wall, outline: [[20.1], [20.9]], height: 1.3}]\n");
-  EXPECT_NEAR(volume(line, "air"), 30 * 3 - 0.8 * 1.3, 1e-10);
-  EXPECT_NEAR(area(line, "obstacle:wall"), 0.8 + 2 * 1.3, 1e-10);
+  EXPECT_NEAR(volume_of(line, "air"), 30 * 3 - 0.8 * 1.3, 1e-10);
+  EXPECT_NEAR(area_of(line, "obstacle:wall"), 0.8 + 2 * 1.3, 1e-10);
 }
 
 TEST(TerrainMesh, OutlinesMayBeFarLargerThanWhatIsMeshed)
@@ -184,13 +163,13 @@ TEST(TerrainMesh, OutlinesMayBeFarLargerThanWhatIsMeshed)
   };
   // A country, of which the domain is a small part: the same as without an outline.
   const Mesh<3> all = mesh_within("[[-1.0e+6, 4.0e+6], [2.0e+6, 6.0e+6]]");
-  EXPECT_NEAR(volume(all, "layer:fill"), 60 * 30 * 3, 1e-6);
+  EXPECT_NEAR(volume_of(all, "layer:fill"), 60 * 30 * 3, 1e-6);
   EXPECT_EQ(all.n_cells(), mesh_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}}]\n    air: {height: 4}\n").n_cells());
   // Its border crosses the domain from (512020, 5180000) to (512040, 5180030).
   const Mesh<3> half = mesh_within("[[512020, 5180000], [1.0e+6, 5.0e+6], [1.0e+6, 6.0e+6], [512040, 5180030]]");
-  EXPECT_NEAR(volume(half, "layer:fill"), 30 * 30 * 3, 1e-6);
+  EXPECT_NEAR(volume_of(half, "layer:fill"), 30 * 30 * 3, 1e-6);
   EXPECT_LT(half.n_cells(), 2 * all.n_cells());
-  EXPECT_THAT(complaint<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: [[520000, 5180000], [600000, 5280000]]}]\n"),
+  EXPECT_THAT(complaint_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: [[520000, 5180000], [600000, 5280000]]}]\n"),
               HasSubstr("layer \"fill\" has no part within what is meshed"));
 }
 
@@ -201,9 +180,9 @@ TEST(TerrainMesh, OutsideOfItsAreaALayerIsTheNextOne)
       - {name: fill, bottom: {depth: 3}, within: [[512010, 5180010], [512030, 5180010], [512020, 5180020]]}
       - {name: rock, bottom: {elevation: 0}}
 )");
-  EXPECT_NEAR(volume(mesh, "layer:fill"), 100 * 3, 1e-6);
-  EXPECT_NEAR(volume(mesh, "layer:rock"), 60 * 30 * 25 - 300, 1e-6);
-  EXPECT_NEAR(area(mesh, "layer:fill:bottom"), 100 * std::hypot(1, 0.5), 1e-6);
+  EXPECT_NEAR(volume_of(mesh, "layer:fill"), 100 * 3, 1e-6);
+  EXPECT_NEAR(volume_of(mesh, "layer:rock"), 60 * 30 * 25 - 300, 1e-6);
+  EXPECT_NEAR(area_of(mesh, "layer:fill:bottom"), 100 * std::hypot(1, 0.5), 1e-6);
 }
 
 TEST(TerrainMesh, OutlinesOfManyCornersDoNotMakeSmallCells)
@@ -218,7 +197,7 @@ TEST(TerrainMesh, OutlinesOfManyCornersDoNotMakeSmallCells)
   const Mesh<3> mesh =
       mesh_of<3>(hill + "    layers: [{name: fill, bottom: {depth: 3}, within: [" + corners + "]}]\n    air: {height: 4}\n");
   EXPECT_LT(mesh.n_cells(), 1.5 * 7 * (60 * 30 * 4) / (2 * 2 * 2));
-  EXPECT_NEAR(volume(mesh, "layer:fill"), 3 * std::numbers::pi * 64, 0.03 * 3 * std::numbers::pi * 64);
+  EXPECT_NEAR(volume_of(mesh, "layer:fill"), 3 * std::numbers::pi * 64, 0.03 * 3 * std::numbers::pi * 64);
 }
 
 TEST(TerrainMesh, CellsAreFinerAlongALine)
@@ -264,7 +243,7 @@ TEST(TerrainMesh, TellsWhatItMends)
 
 TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
 {
-  const std::string all = complaint<3>(hill + R"(
+  const std::string all = complaint_of<3>(hill + R"(
     layers:
       - {name: slide, bottom: {elevation: 41}}
       - {name: fill, bottom: {elevation: 0}, within: [[512100, 5180010], [512130, 5180010], [512120, 5180020]]}
@@ -273,7 +252,7 @@ TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
   EXPECT_THAT(all, HasSubstr("layer \"slide\" has no thickness anywhere"));
   EXPECT_THAT(all, HasSubstr("its bottom is above the ground (by 31 m at most) over 1800 m2"));
   EXPECT_THAT(all, HasSubstr("layer \"fill\" has no part within what is meshed, 512000 to 512060 east, 5180000 to 5180030 north"));
-  const std::string bad_outlines = complaint<3>(hill + R"(
+  const std::string bad_outlines = complaint_of<3>(hill + R"(
     air: {height: 5}
     obstacles:
       - {name: bow, outline: [[512010, 5180010], [512020, 5180020], [512020, 5180010], [512010, 5180020]], height: 3}
@@ -281,19 +260,19 @@ TEST(TerrainMesh, SaysAtOnceWhatCannotBe)
 )");
   EXPECT_THAT(bad_outlines, HasSubstr("outline crosses itself at (512015, 5180015)"));
   EXPECT_THAT(bad_outlines, HasSubstr("the two corners of outline span no rectangle"));
-  const std::string far = complaint<3>(hill + R"(
+  const std::string far = complaint_of<3>(hill + R"(
     air: {height: 5}
     obstacles: [{name: dam, outline: [[512100, 5180010], [512110, 5180020]], height: 3}]
 )");
   EXPECT_THAT(far, HasSubstr("obstacle \"dam\" lies outside what is meshed"));
-  EXPECT_THAT(complaint<2>(slope + "    domain: [[-5], [20]]\n    air: {height: 1}\n"),
+  EXPECT_THAT(complaint_of<2>(slope + "    domain: [[-5], [20]]\n    air: {height: 1}\n"),
               HasSubstr("the ground is not known at 10 of 51 places"));
-  EXPECT_THAT(complaint<2>(slope + "    domain_file: area.geojson\n    air: {height: 1}\n"), HasSubstr("domain_file is for the map"));
+  EXPECT_THAT(complaint_of<2>(slope + "    domain_file: area.geojson\n    air: {height: 1}\n"), HasSubstr("domain_file is for the map"));
 }
 
 TEST(TerrainMesh, ObstaclesBeyondTheLineOfReachAreRefused)
 {
-  EXPECT_THAT(complaint<2>(slope + R"(
+  EXPECT_THAT(complaint_of<2>(slope + R"(
     layers: [{name: slide, bottom: {points: [[0, 10], [5, 10], [6, 9], [8, 9.4], [8.5, 9.66666667], [30, 6]]}}]
     air: {height: 3, reach: 30}
     obstacles: [{name: wall, outline: [[20.1], [20.9]], height: 1.3}]

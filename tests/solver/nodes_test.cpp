@@ -8,15 +8,23 @@
 namespace talus::testing::nodes_test {
 namespace {
 
-TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
+/// Room for the sums of a mesh, all of them zero.
+Nodes<2> nodes_of(const Mesh<2>& mesh)
 {
-  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
   Nodes<2> nodes;
   const auto n = static_cast<std::size_t>(mesh.n_nodes());
   nodes.sum.resize(n);
   nodes.motion.resize(n);
   nodes.active.resize(n);
   nodes.least_share = 1e-8;
+  return nodes;
+}
+
+TEST(Slaves, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
+{
+  const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
+  Nodes<2> nodes = nodes_of(mesh);
+  const std::size_t n = nodes.sum.size();
   NodeSum<2> before;
   for (std::size_t i = 0; i < n; ++i) {
     nodes.sum[i].mass = i % 4 == 0 ? (i % 8 == 0 ? 1e-9 : -1e-3) : 1;  // tiny and negative ones among the others
@@ -80,11 +88,7 @@ TEST(Slaves, LeaveALoneParticleItsVelocityAcrossAVertex)
 TEST(Slaves, AreNodesWhoseCellsCancel)
 {
   const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
-  Nodes<2> nodes;
-  nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
-  nodes.motion.resize(nodes.sum.size());
-  nodes.active.resize(nodes.sum.size());
-  nodes.least_share = 1e-8;
+  Nodes<2> nodes = nodes_of(mesh);
   nodes.least_share_of_gross = 0.3;
   NodeSum<2> gets, loses;
   gets.mass = gets.gross = 1;
@@ -103,11 +107,7 @@ TEST(Slaves, AreNodesWhoseCellsCancel)
 TEST(Slaves, BeginJustBelowTheirShareOfTheLightestParticleAndOfWhatCellsBring)
 {
   const Mesh<2> mesh(box<2>({0, 0}, {1, 1}, {3, 3}));
-  Nodes<2> nodes;
-  nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
-  nodes.motion.resize(nodes.sum.size());
-  nodes.active.resize(nodes.sum.size());
-  nodes.least_share = 1e-8;
+  Nodes<2> nodes = nodes_of(mesh);
   nodes.least_share_of_gross = 0.3;
   for (auto& sum : nodes.sum)
     sum.mass = sum.gross = sum.lightest = 1;
