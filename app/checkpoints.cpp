@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t format = 6;
+constexpr std::int64_t written_format = 6;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
@@ -223,7 +223,7 @@ void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
     for (std::size_t b = 0; b < bodies.size(); ++b)
       share_history(history_of(b), slice.materials[b], rows_of_body(bodies[b], slice.bodies[b], rows), arrays);
     write_arrays(*frame.ranks, file, arrays, [&](ArrayWriter& rest) {
-      keep(rest, "format", format);
+      keep(rest, "format", written_format);
       keep(rest, "run", identity_);
       for_each_part(slice, [&](const std::string& name, const auto& part) {
         using Part = std::decay_t<decltype(part)>;
@@ -303,9 +303,9 @@ CheckpointList::CheckpointList(const fs::path& at)
       std::int64_t written_in = 0;
       recall(arrays, "format", written_in);
       recall(arrays, "run/version", identity_.version);
-      if (written_in != format)
+      if (written_in != written_format)
         throw EnvironmentError(fmt::format("{} was written by version {} in format {}; this program knows format {}", file.string(),
-                                           identity_.version, written_in, format));
+                                           identity_.version, written_in, written_format));
       recall(arrays, "run", identity_);
       recall(arrays, "clock", clock_);
       recall(arrays, "stage", stage_);

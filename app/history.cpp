@@ -9,7 +9,7 @@ namespace talus {
 
 namespace {
 
-constexpr Real not_there = std::numeric_limits<Real>::quiet_NaN();
+constexpr Real empty_entry = std::numeric_limits<Real>::quiet_NaN();
 
 /// f(row) for the particles of one body, or of all.
 template <class F>
@@ -30,7 +30,7 @@ Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Exchange& rank
     for (const Vec<2>& one : of_rank)
       all.emplace_back(one[0], one[1]);
   if (all.empty())
-    return not_there;
+    return empty_entry;
   std::sort(all.begin(), all.end());
   const Real total = std::accumulate(all.begin(), all.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
   std::size_t i = 0;
@@ -60,7 +60,7 @@ Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, con
 {
   const Real through = force.dot(normal);
   if (through == 0)
-    return Vec<D>::Constant(not_there);
+    return Vec<D>::Constant(empty_entry);
   Vec3 push = Vec3::Zero();
   push.template head<D>() = force;
   const Vec3 cross(push[1] * moment[2] - push[2] * moment[1], push[2] * moment[0] - push[0] * moment[2],
@@ -157,7 +157,7 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
   put<D>(sums.momentum, row);
   for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
     row.push_back(sums.angular[d]);
-  put<D>(sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(not_there)), row);
+  put<D>(sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry)), row);
   const EnergyNow e = accounts.energy(frame);
   row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
                          e.defect, frame.residual});
@@ -201,7 +201,7 @@ void HistoryWriter<D>::add_body(const Frame<D>& frame, const BodyForces<D>& forc
   row.insert(row.end(), {sums.kinetic, plastic.value()});
   Vec<D> force = Vec<D>::Zero();
   if (now.unknown != before.unknown)
-    force = Vec<D>::Constant(not_there);
+    force = Vec<D>::Constant(empty_entry);
   else if (elapsed > 0)
     force = (now.given - before.given) / elapsed;
   put<D>(force, row);
@@ -228,9 +228,9 @@ void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Rea
   const Real area = touched.area.norm();
   const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // on the wall
   if (!(area > 0) || force.norm() == 0) {
-    const Real none_or_unknown = force.norm() == 0 ? 0 : not_there;  // what has just left it has pushed, in a direction that is gone
-    row.insert(row.end(), {none_or_unknown, none_or_unknown, area, area > 0 ? 0 : not_there});
-    row.insert(row.end(), D, not_there);
+    const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // what has just left it has pushed, in a direction that is gone
+    row.insert(row.end(), {none_or_unknown, none_or_unknown, area, area > 0 ? 0 : empty_entry});
+    row.insert(row.end(), D, empty_entry);
     return;
   }
   const Vec<D> normal = touched.area / area;
@@ -260,7 +260,7 @@ void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_s
     const Sym3 stress = frame.particles.stress[p];
     here.insert(here.end(), stress.begin(), stress.end());
   }
-  std::vector<Real> point(3 * D + 6, not_there);
+  std::vector<Real> point(3 * D + 6, empty_entry);
   for (const std::vector<Real>& of_rank : gather_rows<Real>(*frame.ranks, here))
     if (!of_rank.empty())
       point = of_rank;

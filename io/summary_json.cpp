@@ -14,7 +14,7 @@ namespace {
 
 using SummaryJson = nlohmann::ordered_json;
 
-constexpr int deepest = 32;  // values within values: what is read of a file goes as deep as its values are nested
+constexpr int most_levels = 32;  // values within values: what is read of a file goes as deep as its values are nested
 
 /// The text behind a key, if there is one.
 std::string text_behind(const SummaryJson& json, const char* key)
@@ -75,9 +75,9 @@ SummaryBack read_summary(const std::filesystem::path& file)
   const std::string text = read_whole(file);
   try {
     const SummaryJson json = SummaryJson::parse(text, [&](int depth, SummaryJson::parse_event_t, const SummaryJson&) {
-      if (depth > deepest)
+      if (depth > most_levels)
         throw EnvironmentError(
-            fmt::format("{} is not the summary of a run: its values are nested more than {} deep", file.string(), deepest));
+            fmt::format("{} is not the summary of a run: its values are nested more than {} deep", file.string(), most_levels));
       return true;
     });
     SummaryBack back;

@@ -11,7 +11,7 @@ lint_stages=(format layers text spelling shell cppcheck tidy)
 all_stages=(setup "${lint_stages[@]}" build docs site verify tutorials test)
 other_stages=(dev fuzz asan traps valgrind coverage aarch64 mutants bench)
 
-# A warning of a compiler is an error here, and nowhere else: what a user types must not fail by one that only his compiler knows.
+# A warning of a compiler is an error here, and nowhere else: what a user types must not fail by a warning of a compiler that we do not have.
 export TALUS_WERROR=ON
 
 cxx_files() { git ls-files -- '*.hpp' '*.cpp'; }
@@ -38,13 +38,14 @@ stage_cppcheck() {
 
 # All sources of a folder in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
-# where gcc keeps it, after everything of clang's.  The largest folders come last in the list and first in turn.
+# where gcc keeps it, after everything of clang's.  Every warning of clang as a compiler is an error too; -Wsign-conversion is not part of gcc's
+# -Wconversion, so it is off.  The largest folders come last in the list and first in turn.
 stage_tidy() {
   cmake --preset lint -Wno-dev >/dev/null
   cmake --build build/lint --target talus_version_header >/dev/null
   sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/lint/compile_commands.json | grep -vE '/tests/|talus_([a-z]+_tests|speed)\.dir' \
     | tac | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
-      --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option \
+      --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-sign-conversion \
       2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
 
@@ -85,7 +86,8 @@ stage_site() { "$python" -m mkdocs build --quiet --config-file tools/site/mkdocs
 # Every command of docs/tutorials: what they write is there, what they print is what the page shows.
 stage_tutorials() { "$python" tools/run_tutorials.py "$talus"; }
 
-# A minute of libFuzzer, besides what it takes to compile the readers with clang and its sanitizers. Nightly; stage `test` replays the inputs found.
+# 10 s of libFuzzer for each entry, besides what it takes to compile the readers with clang and its sanitizers; warnings of clang are errors here too.
+# Nightly; stage `test` replays the inputs found.
 stage_fuzz() { tools/fuzz.sh quick; }
 
 # shellcheck disable=SC2086
