@@ -32,16 +32,14 @@ std::string describe_least(const Model<D, K>& m, const Chosen& here)
 }
 
 /// Kinetic and strain energy and what the laws dissipated, of deleted particles too, beyond all that was there or was put in, over the
-/// largest of the terms.
+/// largest of the terms. Those of the stages before count there: in a body that is at rest under its stress all terms of a stage are as
+/// small as what the last step leaves open.
 template <int D, Kernel<D> K>
 Real energy_gain(const Model<D, K>& m, Real kinetic)
 {
   const EnergyLedger& e = m.energy;
   const Real put_in = e.gravity + e.loads + e.walls + e.arrival + e.friction + e.damping;
-  Real largest = m.guards.least_energy;
-  for (const Real term :
-       {e.kinetic_start, kinetic, e.internal, e.gravity, e.loads, e.walls, e.friction, e.waves, e.damping, e.carried_away})
-    largest = std::max(largest, std::abs(term));
+  const Real largest = std::max(m.guards.least_energy, e.largest_term(kinetic));
   return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - put_in) / largest : 0;
 }
 

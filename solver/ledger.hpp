@@ -22,6 +22,7 @@ struct EnergyLedger {
   Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
   Real carried_away{};                    ///< kinetic energy of the particles that were deleted
   Real plastic_deleted{};                 ///< plastic work that they had behind them
+  Real largest_before{};                  ///< largest term of the stages before
   static constexpr auto fields()
   {
     return std::tuple{kept("gravity", &EnergyLedger::gravity),
@@ -38,7 +39,17 @@ struct EnergyLedger {
                       kept("plastic_start", &EnergyLedger::plastic_start),
                       kept("set_to_rest", &EnergyLedger::set_to_rest),
                       kept("carried_away", &EnergyLedger::carried_away),
-                      kept("plastic_deleted", &EnergyLedger::plastic_deleted)};
+                      kept("plastic_deleted", &EnergyLedger::plastic_deleted),
+                      kept("largest_before", &EnergyLedger::largest_before)};
+  }
+
+  /// Largest of the terms, of this stage and of those before: what errors are measured by [J].
+  Real largest_term(Real kinetic_now) const noexcept
+  {
+    Real largest = largest_before;
+    for (const Real term : {kinetic_start, kinetic_now, internal, gravity, loads, walls, friction, waves, damping, carried_away})
+      largest = std::max(largest, std::abs(term));
+    return largest;
   }
 
   /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles, deleted ones included, did not get.  What

@@ -134,7 +134,8 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
   if (!stage.start_stress.empty())
     set_start_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(time, ramp), std::span(stage.start_stress), m.order,
                      only_bodies(stage.start_stress_bodies, m.bodies), m.materials, m.particles);
-  m.energy = {.kinetic_start = totals(m).kinetic, .plastic_start = plastic_work(m)};
+  const Real kinetic = totals(m).kinetic;
+  m.energy = {.kinetic_start = kinetic, .plastic_start = plastic_work(m), .largest_before = m.energy.largest_term(kinetic)};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
   ExactSums<Push<D>> total;
   apply(m.loads, time, m.stage.ramp(time), m.followed, m.order, m.particles, total);
