@@ -1,5 +1,8 @@
 #pragma once
 // Where energy, momentum and mass went: every term is computed by itself, so that the balance proves something.
+#include <algorithm>
+#include <cmath>
+
 #include "core/exact_sum.hpp"
 #include "core/fields.hpp"
 #include "core/particles.hpp"
