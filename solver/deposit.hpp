@@ -116,7 +116,7 @@ void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Parti
       Real* const to_force = sums.force[i];
       for (int a = 0; a < n; a += pack_size) {
         const Pack w = load(share + a);
-        Pack momentum = v, force = shift;
+        Pack momentum = v, force = shift;  // NOLINT(clang-diagnostic-uninitialized): read with forces alone
         for (int j = 0; j < D; ++j) {
           const Pack y_j = load(y[j] + a);
           if constexpr (forces)

@@ -39,13 +39,13 @@ stage_cppcheck() {
 # All sources of a folder in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
 # where gcc keeps it, after everything of clang's.  Every warning of clang as a compiler is an error too; -Wsign-conversion is not part of gcc's
-# -Wconversion, so it is off.  The largest folders come last in the list and first in turn.
+# -Wconversion, and sources that are read together shadow each other's names: these two are off.  The largest folders come last in the list and first in turn.
 stage_tidy() {
   cmake --preset lint -Wno-dev >/dev/null
   cmake --build build/lint --target talus_version_header >/dev/null
   sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/lint/compile_commands.json | grep -vE '/tests/|talus_([a-z]+_tests|speed)\.dir' \
     | tac | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
-      --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-sign-conversion \
+      --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-sign-conversion --extra-arg=-Wno-shadow \
       2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
 
