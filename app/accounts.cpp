@@ -36,7 +36,13 @@ Real MomentumNow<D>::linear_defect() const noexcept
 template <int D>
 Real MomentumNow<D>::angular_defect() const noexcept
 {
-  return share((end.angular - start.angular - given.angular).norm(), start.turn + given.turn);
+  return share(forces.norm(), start.turn + given.turn);
+}
+
+template <int D>
+Real MomentumNow<D>::angular_loss() const noexcept
+{
+  return share(lost.norm(), start.turn + given.turn);
 }
 
 template <int D>
@@ -67,13 +73,13 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
     kinetic_end_ = totals(frame).kinetic + taken_out_;
     plastic_end_ = plastic_work(frame);
   }
-  stage_ = frame.energy;
+  stage_ = frame.energy.at_velocities();
 }
 
 template <int D>
 EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
 {
-  const EnergyLedger& e = frame.energy;
+  const EnergyLedger e = frame.energy.at_velocities();
   EnergyNow now;
   now.kinetic_start = kinetic_begin_;
   now.kinetic = totals(frame).kinetic;
@@ -96,9 +102,12 @@ template <int D>
 MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
 {
   const MomentumLedger<D>& given = frame.momentum;
-  MomentumNow<D> now{start_, momentum_of(frame), given.loads + given.damping + given.rest + given.changes + -1 * frame.mass.carried_away};
+  Push<D> in_steps = given.loads + given.damping;
   for (const Wall<D>& wall : frame.walls.walls())
-    now.given += Push<D>::of(wall.impulse, wall.angular);
+    in_steps += Push<D>::of(wall.impulse, wall.angular);
+  MomentumNow<D> now{start_, momentum_of(frame), in_steps + given.rest + given.changes + -1 * frame.mass.carried_away};
+  now.forces = given.on_nodes - in_steps.angular;
+  now.lost = now.start.angular + now.given.angular + now.forces - now.end.angular;
   return now;
 }
 

@@ -43,16 +43,21 @@ inline Real share(Real part, Real whole) noexcept { return whole > 0 ? std::abs(
 /// Momentum and its moment about the origin since the start of the run [kg m/s], [kg m^2/s].
 template <int D>
 struct MomentumNow {
-  Push<D> start, end, given;  ///< given: by loads, walls, damping, and taken by what left; their moduli added up
+  Push<D> start, end, given;   ///< given: by loads, walls, damping, and taken by what left; their moduli added up
+  Vec3 forces = Vec3::Zero();  ///< moment of internal forces on the nodes, of which a body knows none [N m s]
+  Vec3 lost = Vec3::Zero();    ///< moment of momentum that particles and nodes lost between them [kg m^2/s]
   static constexpr auto fields()
   {
-    return std::tuple{kept("start", &MomentumNow::start), kept("end", &MomentumNow::end), kept("given", &MomentumNow::given)};
+    return std::tuple{kept("start", &MomentumNow::start), kept("end", &MomentumNow::end), kept("given", &MomentumNow::given),
+                      kept("forces", &MomentumNow::forces), kept("lost", &MomentumNow::lost)};
   }
 
   /// What cannot be explained, over all momentum there was and was given.
   Real linear_defect() const noexcept;
-  /// The affine parts of the particles' velocities do not count, so transfers keep it only roughly.
+  /// Moment of internal forces, which should be none, over all moment there was and was given.
   Real angular_defect() const noexcept;
+  /// What particles and nodes lost between them, over the same.
+  Real angular_loss() const noexcept;
 };
 
 /// Told of every moment of a run.

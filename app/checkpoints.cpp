@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
-constexpr std::int64_t written_format = 6;
+constexpr std::int64_t written_format = 7;
 constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }

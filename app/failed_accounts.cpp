@@ -51,6 +51,11 @@ std::vector<std::string> failed_accounts(const RunSummary& summary, Real least_e
   judge("mass", summary.mass);
   judge("momentum", summary.momentum);
   judge("angular momentum", summary.angular_momentum);
+  if (summary.angular_momentum && summary.angular_momentum->transfer_share > most_angular_loss)
+    failed.push_back(
+        fmt::format("particles and nodes lost {:.3g} of the angular momentum between them (transfer_loss), more than {:.2g}: bodies "
+                    "turn as the mesh allows; compare with cells half as large",
+                    summary.angular_momentum->transfer_share, most_angular_loss));
   if (!summary.energy || largest_term(*summary.energy) < least_energy)
     return failed;
   judge("energy", summary.energy);

@@ -144,10 +144,9 @@ MomentumAudit audit(const MomentumNow<D>& now)
 template <int D>
 MomentumAudit angular_audit(const MomentumNow<D>& now)
 {
-  return {turning<D>(now.start.angular),
-          turning<D>(now.end.angular),
-          turning<D>(now.given.angular),
-          {now.angular_defect(), roughly, "moments of these"}};
+  return {turning<D>(now.start.angular), turning<D>(now.end.angular),
+          turning<D>(now.given.angular), {now.angular_defect(), roughly, "moments of these"},
+          turning<D>(now.lost),          now.angular_loss()};
 }
 
 std::string in_words(std::string_view what, const Closure& closure)
@@ -296,7 +295,8 @@ std::string table(const Recorder<D>& recorder)
     text += fmt::format(", of which {:.6g} kg ({} particles) left the mesh or failed", last.mass.deleted, last.mass.deleted_count);
   return text + fmt::format("\naudit: {}; {}; {}; {}\n", in_words("mass", audit(last.mass, last.mass_there).closure),
                             in_words("momentum", audit(last.momentum).closure),
-                            in_words("angular momentum", angular_audit(last.momentum).closure),
+                            in_words("angular momentum", angular_audit(last.momentum).closure) +
+                                fmt::format(" (transfer loses {:.2g})", last.momentum.angular_loss()),
                             in_words("energy", closure_of(last.energy)));
 }
 

@@ -100,7 +100,12 @@ Json closed(Json object, const Closure& closure)
 
 Json balance(const MomentumAudit& audit, const std::string& unit)
 {
-  return closed({{"start " + unit, audit.start}, {"end " + unit, audit.end}, {"impulse " + unit, audit.impulse}}, audit.closure);
+  Json object = closed({{"start " + unit, audit.start}, {"end " + unit, audit.end}, {"impulse " + unit, audit.impulse}}, audit.closure);
+  if (!audit.transfer_loss.empty()) {
+    object["transfer_loss " + unit] = audit.transfer_loss;
+    object["transfer_loss_share"] = audit.transfer_share;
+  }
+  return object;
 }
 
 Json balances(const RunSummary& s)

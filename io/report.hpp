@@ -60,6 +60,8 @@ struct EnergyAudit {
 struct MomentumAudit {
   std::vector<Real> start, end, impulse;  ///< kg m/s or kg m^2/s, a number per component; impulse of everything outside the bodies
   Closure closure;
+  std::vector<Real> transfer_loss = {};  ///< of the moment: what particles and nodes lost between them [kg m^2/s]
+  Real transfer_share{};                 ///< its modulus over the scale of the closure
 };
 
 struct MassAudit {

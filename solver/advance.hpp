@@ -277,6 +277,7 @@ void close_books(Model<D, K>& m)
   m.mass.held_most = std::max(m.mass.held_most, -extremes[2]);
   m.momentum.loads += Push<D>::of(kick * work.mass * gravity, kick * moment<D>(work.first_moment, gravity)) + kick * tractions;
   m.momentum.damping += work.damped;
+  m.momentum.on_nodes += work.turned + beyond.turned;
   m.energy.gravity += work.gravity;
   m.energy.damping += work.damping;
   m.energy.walls += walls.moved + beyond.moved;
@@ -287,6 +288,8 @@ void close_books(Model<D, K>& m)
   m.energy.remap += t.remap.value();
   m.energy.loads += t.work_on_mesh.value() + t.work_on_particles.value();
   m.energy.internal += t.internal.value();
+  m.energy.internal_ahead = t.internal.value() / 2;
+  m.energy.loads_ahead = t.work_on_particles.value() / 2;
   m.timings.particle_steps += t.particles.value();
   m.residual = unbalanced(t.balance.value(), tractions.size);
   m.crossing = extremes[0];

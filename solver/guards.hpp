@@ -37,7 +37,7 @@ std::string describe_least(const Model<D, K>& m, const Chosen& here)
 template <int D, Kernel<D> K>
 Real energy_gain(const Model<D, K>& m, Real kinetic)
 {
-  const EnergyLedger& e = m.energy;
+  const EnergyLedger e = m.energy.at_velocities();
   const Real put_in = e.gravity + e.loads + e.walls + e.arrival + e.friction + e.damping;
   const Real largest = std::max(m.guards.least_energy, e.largest_term(kinetic));
   return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - put_in) / largest : 0;

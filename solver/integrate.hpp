@@ -12,11 +12,12 @@ struct NodeWork {
   Real kinetic_before{}, kinetic_after{}, gravity{}, damping{};
   Real mass{};                           ///< [kg]
   Vec<D> first_moment = Vec<D>::Zero();  ///< of mass [kg m]
+  Vec3 turned = Vec3::Zero();            ///< change of the moment of momentum about the origin [kg m^2/s]
   Push<D> damped;
   NodeWork& operator+=(const NodeWork& other) noexcept
   {
     kinetic_before += other.kinetic_before, kinetic_after += other.kinetic_after, gravity += other.gravity, damping += other.damping;
-    mass += other.mass, first_moment += other.first_moment, damped += other.damped;
+    mass += other.mass, first_moment += other.first_moment, turned += other.turned, damped += other.damped;
     return *this;
   }
 };
@@ -85,6 +86,7 @@ NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, 
   work.kinetic_after = 0.5 * sum.mass * v.squaredNorm();
   work.mass = sum.mass;
   work.first_moment = sum.mass * mesh.node(n);
+  work.turned = moment<D>(mesh.node(n), sum.mass * v - sum.momentum);
   work.gravity = nodes.kick * sum.mass * nodes.gravity.dot(v_mid);
   if (damping > 0 && !nodes.bound[i]) {
     const Vec<D> brake = nodes.kick * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);

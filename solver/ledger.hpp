@@ -2,6 +2,7 @@
 // Where energy, momentum and mass went: every term is computed by itself, so that the balance proves something.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/exact_sum.hpp"
 #include "core/fields.hpp"
@@ -26,6 +27,7 @@ struct EnergyLedger {
   Real carried_away{};                    ///< kinetic energy of the particles that were deleted
   Real plastic_deleted{};                 ///< plastic work that they had behind them
   Real largest_before{};                  ///< largest term of the stages before
+  Real internal_ahead{}, loads_ahead{};   ///< of `internal`, and of `loads` on particles: done after the time of the velocities
   static constexpr auto fields()
   {
     return std::tuple{kept("gravity", &EnergyLedger::gravity),
@@ -43,7 +45,19 @@ struct EnergyLedger {
                       kept("set_to_rest", &EnergyLedger::set_to_rest),
                       kept("carried_away", &EnergyLedger::carried_away),
                       kept("plastic_deleted", &EnergyLedger::plastic_deleted),
-                      kept("largest_before", &EnergyLedger::largest_before)};
+                      kept("largest_before", &EnergyLedger::largest_before),
+                      kept("internal_ahead", &EnergyLedger::internal_ahead),
+                      kept("loads_ahead", &EnergyLedger::loads_ahead)};
+  }
+
+  /// With what was done up to the time of the velocities, by which kinetic energies and all other works are counted: that of stress and
+  /// places is half a step later.
+  EnergyLedger at_velocities() const noexcept
+  {
+    EnergyLedger then = *this;
+    then.internal -= std::exchange(then.internal_ahead, 0);
+    then.loads -= std::exchange(then.loads_ahead, 0);
+    return then;
   }
 
   /// Largest of the terms, of this stage and of those before: what errors are measured by [J].
@@ -58,7 +72,7 @@ struct EnergyLedger {
   /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles, deleted ones included, did not get.  What
   /// the remap takes out again nodes have gained in vain: strain, which is taken from remapped velocities, has not given it.
   Real transfer(Real kinetic_now) const noexcept { return nodes - remap - (kinetic_now - kinetic_start + carried_away); }
-  /// All work done on the bodies, minus what became of it: zero if everything is accounted for.
+  /// All work done on the bodies, minus what became of it: zero if everything is accounted for, at_velocities().
   Real defect(Real kinetic_now) const noexcept
   {
     return gravity + loads + walls + friction + damping - internal - transfer(kinetic_now) - carried_away - (kinetic_now - kinetic_start);
@@ -105,12 +119,13 @@ template <int D>
 struct MomentumLedger {
   Push<D> loads;  ///< gravity, tractions, forces of place
   Push<D> damping;
-  Push<D> rest;     ///< of the motion that is taken out at the end of stages that seek rest
-  Push<D> changes;  ///< of what stages place and take away: bodies, and mass where a density changes
+  Push<D> rest;                  ///< of the motion that is taken out at the end of stages that seek rest
+  Push<D> changes;               ///< of what stages place and take away: bodies, and mass where a density changes
+  Vec3 on_nodes = Vec3::Zero();  ///< moment of momentum that nodes, and what hangs on them, got within the steps [kg m^2/s]
   static constexpr auto fields()
   {
     return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping), kept("rest", &MomentumLedger::rest),
-                      kept("changes", &MomentumLedger::changes)};
+                      kept("changes", &MomentumLedger::changes), kept("on_nodes", &MomentumLedger::on_nodes)};
   }
 };
 

@@ -135,7 +135,11 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
     set_start_stress(m.mesh, m.share, *m.ranks, m.loads.gravity(time, ramp), std::span(stage.start_stress), m.order,
                      only_bodies(stage.start_stress_bodies, m.bodies), m.materials, m.particles);
   const Real kinetic = totals(m).kinetic;
-  m.energy = {.kinetic_start = kinetic, .plastic_start = plastic_work(m), .largest_before = m.energy.largest_term(kinetic)};
+  m.energy = {.loads = m.energy.loads_ahead,
+              .internal = m.energy.internal_ahead,
+              .kinetic_start = kinetic,
+              .plastic_start = plastic_work(m),
+              .largest_before = m.energy.largest_term(kinetic)};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
   ExactSums<Push<D>> total;
   apply(m.loads, time, m.stage.ramp(time), m.followed, m.order, m.particles, total);
@@ -247,8 +251,16 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   if (const auto why = fault(m, Look::at_end_of_stage))
     give_up(m, before, watch, *why);
   const Totals<D> now = totals(m);
-  const StageResult result{stage.name, stage.kind, begin,       m.clock.time,    m.clock.step - m.stage.first_step,
-                           m.residual, m.energy,   now.kinetic, plastic_work(m), m.stage.first_residual};
+  const StageResult result{stage.name,
+                           stage.kind,
+                           begin,
+                           m.clock.time,
+                           m.clock.step - m.stage.first_step,
+                           m.residual,
+                           m.energy.at_velocities(),
+                           now.kinetic,
+                           plastic_work(m),
+                           m.stage.first_residual};
   if (stage.residual && m.stage.balanced < steps_in_balance)
     give_up(m, before, watch,
             fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: {}; give it more duration or damping", stage.name,

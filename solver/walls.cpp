@@ -362,7 +362,7 @@ void Walls<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v,
   const Real friction = mass * rubbed.dot(v_mid), all = mass * (v - v_free).dot(v_mid), moved = mass * (v - v_free).dot(moves(rule, kick));
   change = v - v_old;
   if (rule.counted)
-    work.add({friction, moved, all - friction - moved, 0});
+    work.add({friction, moved, all - friction - moved, 0, mass * moment<D>(rule.place, v - v_free)});
 }
 
 template <int D>
@@ -378,8 +378,9 @@ void Walls<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<WallWork>& wor
     const auto n = static_cast<std::size_t>(dashpot.node);
     if (!shaking_.begun || !dashpot.counted || !nodes.active[n])
       continue;
-    pushed_[static_cast<std::size_t>(dashpot.parts.front().wall)].add({dashpot.impulse, moment<D>(dashpot.place, dashpot.impulse)});
-    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change), 0, dashpot.brought});
+    const Vec3 turned = moment<D>(dashpot.place, dashpot.impulse);
+    pushed_[static_cast<std::size_t>(dashpot.parts.front().wall)].add({dashpot.impulse, turned});
+    work.add({0, dashpot.impulse.dot(nodes.motion[n].v - 0.5 * nodes.motion[n].change), 0, dashpot.brought, turned});
   }
 }
 
@@ -441,13 +442,6 @@ template <int D>
 Vec<D> Walls<D>::held(Index node, Real time, const Vec<D>& v) const
 {
   return binds(node) ? constrained(rule_of(node), time, v) : v;
-}
-
-template <int D>
-void Walls<D>::reset_impulses() noexcept
-{
-  for (Wall<D>& wall : walls_)
-    wall.impulse.setZero(), wall.angular.setZero();
 }
 
 template <int D>

@@ -44,7 +44,7 @@ struct Wall {
   SoilColumn<D> column;          ///< the ground beside a free field
   Index foot = none;             ///< the wall below that
   Where where;
-  Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the last reset [N s]
+  Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the start of the run [N s]
   Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
   static constexpr auto fields() { return std::tuple{kept("impulse", &Wall::impulse), kept("angular", &Wall::angular)}; }
 };
@@ -63,12 +63,13 @@ struct Shaking {
   }
 };
 
-/// What walls did to the energy of the bodies in a step [J].
+/// What walls did to the energy of the bodies in a step [J], and to their moment of momentum.
 struct WallWork {
   Real friction{};  ///< of tangential impulses of friction walls, <= 0
   Real moved{};     ///< of all other impulses with the velocity that the wall has itself, and of dashpots
   Real arrival{};   ///< what these take beyond it, from mass that does not move as the wall does: numerical, as the mesh makes it so
   Real waves{};     ///< energy that waves brought to dashpots, whether it stays or leaves again, >= 0
+  Vec3 turned = Vec3::Zero();  ///< moment of all impulses about the origin [N m s]
 };
 
 /// All conditions of a scene, sorted out per node.  Where several meet in a node: `fixed` wins over `velocity` (the earlier one of two),
@@ -118,7 +119,6 @@ class Walls {
   Vec<D> held(Index node, Real time, const Vec<D>& v) const;
 
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
-  void reset_impulses() noexcept;
   /// What is kept of the walls becomes that of the same walls in another model of the scene.
   void go_on_from(const Walls& earlier)
   {

@@ -118,8 +118,11 @@ function momentum_table(title, balance, its_unit) {
     [
       ['at the start', of('start')],
       ['impulse from outside', of('impulse')],
+      ['lost between particles and nodes', of('transfer_loss')],
       ['at the end', of('end')],
-    ].map(([words, values]) => [words, ...values.map((v) => number(v))]),
+    ]
+      .filter(([, values]) => values.length)
+      .map(([words, values]) => [words, ...values.map((v) => number(v))]),
   );
 }
 

@@ -20,6 +20,7 @@ RunSummary sound(Real plastic, Real transfer)
   summary.mass.emplace().closure = {0, 1e-9, "mass at the start"};
   summary.momentum.emplace().closure = {1e-15, 1e-9, "momenta"};
   summary.angular_momentum.emplace().closure = {0.01, 0.05, "moments"};
+  summary.angular_momentum->transfer_share = 0.09;
   summary.energy = EnergyAudit{{{"gravity_work", 100}, {"plastic", plastic}, {"transfer_loss", transfer}}, {0.02, 0.05, "largest term"}};
   return summary;
 }
@@ -33,6 +34,13 @@ TEST(FailedAccounts, ALossBeyondATenthOfThePlasticWorkIsOne)
               ElementsAre(HasSubstr("lost 50 J between them (transfer_loss), 1.25 of the plastic work")));
   EXPECT_THAT(failed_accounts(sound(0.5, 50), 0), IsEmpty()) << "plastic work that is next to nothing decides nothing";
   EXPECT_THAT(failed_accounts(sound(0, 50), 0), IsEmpty());
+}
+
+TEST(FailedAccounts, ALossOfAngularMomentumBeyondATenthIsOne)
+{
+  RunSummary summary = sound(80, 5);
+  summary.angular_momentum->transfer_share = 0.11;
+  EXPECT_THAT(failed_accounts(summary, 0), ElementsAre(HasSubstr("lost 0.11 of the angular momentum between them")));
 }
 
 TEST(FailedAccounts, EveryBalanceThatDoesNotCloseIsOne)

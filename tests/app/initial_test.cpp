@@ -74,7 +74,7 @@ class Initial : public Program {
   {
     const Outcome outcome = run(name, bank, words);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(without_accounts(outcome.err), "");
+    EXPECT_EQ(without_losses(outcome.err), "");
   }
   Row first_row(const std::string& name) const { return row_of(history(name), 0); }
   Row last_row(const std::string& name) const
@@ -545,7 +545,7 @@ TEST_F(Initial, SuchARunGoesOnWithTheSameBitsWithoutTheOther)
     fs::remove(kept[i]);
   const Outcome outcome = talus("run --quiet --resume second");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(without_accounts(outcome.err), "");
+  EXPECT_EQ(without_losses(outcome.err), "");
   for (const auto& entry : fs::directory_iterator(folder_ / "whole"))
     if (const fs::path name = entry.path().filename(); entry.is_regular_file() && name != "summary.json") {
       EXPECT_TRUE(read_whole(entry.path()) == read_whole(folder_ / "second" / name)) << name;

@@ -21,7 +21,7 @@ class Restart : public Program, public testing::WithParamInterface<SceneCase> {
   {
     const Outcome outcome = talus("run --quiet " + words);
     ASSERT_EQ(outcome.code, 0) << words << "\n" << outcome.err;
-    EXPECT_EQ(without_accounts(outcome.err), "");
+    EXPECT_EQ(without_losses(outcome.err), "");
   }
   /// As if the run had been killed before it could write a later one.
   void forget_checkpoints_after(const fs::path& checkpoint) const
@@ -292,7 +292,7 @@ TEST_F(Checkpoint, WithoutAnyParticleLeftIsAsGoodAsAnyOther)
   fs::remove(kept.back());
   const Outcome outcome = talus("run --quiet --resume again");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(without_accounts(outcome.err), "");
+  EXPECT_EQ(without_losses(outcome.err), "");
   expect_same_results(folder_ / "whole", folder_ / "again");
 }
 

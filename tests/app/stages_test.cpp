@@ -24,7 +24,7 @@ class Stages : public Program {
     const Outcome outcome = talus("run scene.yaml --out out --threads 1");
     ASSERT_EQ(outcome.code, 0) << outcome.err;
     // Cells here are so large that particles and nodes lose much between them, and the run says so.
-    const std::string other = without_accounts(outcome.err);
+    const std::string other = without_losses(outcome.err);
     EXPECT_EQ(other.find("warning"), other.npos) << other;
   }
   /// Columns of the last row of each stage.

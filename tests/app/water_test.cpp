@@ -77,7 +77,7 @@ class WaterRun : public Program {
   {
     const Outcome outcome = run(name, column);
     ASSERT_EQ(outcome.code, 0) << outcome.err;
-    EXPECT_EQ(without_accounts(outcome.err), "");
+    EXPECT_EQ(without_losses(outcome.err), "");
   }
   Seen at_begin(const std::string& name) const { return {read_particles(read_pvd(folder_ / (name + "/particles.pvd")).front().second)}; }
   Seen at_end(const std::string& name) const { return {read_particles(read_pvd(folder_ / (name + "/particles.pvd")).back().second)}; }
