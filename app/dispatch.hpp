@@ -69,6 +69,7 @@ Model<D, K> build(const Scene& scene, Part<D> part, Setup<D> setup)
   m.exits = std::move(setup.exits);
   m.guards = setup.guards;
   m.clock.lag = setup.lag;
+  m.energy.largest_before = setup.largest_before;
   make_ready(m, setup.laws);
   return std::move(m);
 }

@@ -128,6 +128,7 @@ class Seeder {
     }
     seeds_.origin = initial.origin;
     seeds_.lag = initial.there.clock.lag;
+    seeds_.largest_before = initial.there.energy.largest_term(0);
     if (ranks_.alone())
       return;
     for (Index& cell : seeds_.particles.cell)

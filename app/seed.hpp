@@ -14,7 +14,8 @@ struct Seeds {
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
   std::optional<OriginSummary> origin;
-  Real lag = 0;  ///< by how much the velocities of another run are behind its time, Clock::lag [s]
+  Real lag = 0;             ///< by how much the velocities of another run are behind its time, Clock::lag [s]
+  Real largest_before = 0;  ///< largest term of the energy of that run [J]
 };
 
 /// Cells [begin, end) that this rank fills: an even share of the blocks along the curve.

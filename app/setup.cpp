@@ -146,6 +146,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   setup.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
   setup.lag = seeds.lag;
+  setup.largest_before = seeds.largest_before;
   const Filled<D> has_particles(mesh, setup.particles, setup.bodies, ranks, [](const std::string&) { return true; });
   const Filled<D> at_start(mesh, setup.particles, setup.bodies, ranks,
                            [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });

@@ -29,6 +29,7 @@ struct Setup {
   std::vector<std::string> notes;       ///< worth knowing before a run, such as how strong a record is
   std::optional<OriginSummary> origin;  ///< of bodies that come from another run
   Real lag = 0;                         ///< by how much their velocities are behind its time, Clock::lag [s]
+  Real largest_before = 0;              ///< largest term of the energy of that run [J]
   std::uint64_t from_files = 0;         ///< digest of what files beside scene and mesh tell the steps: records, the water table
 };
 

@@ -79,7 +79,7 @@ TEST_F(Watch, AllBalancesAreToldAndClose)
   const Outcome outcome = talus("run block.yaml --out out");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, ContainsRegex("audit: mass closes to [0-9.e-]+; momentum closes to [0-9.]+e-1[0-9]; angular momentum closes to "
-                                         "[0-9.e-]+; energy closes to [0-9.e-]+\n"));
+                                         "[0-9.e-]+ \\(transfer loses [0-9.e-]+\\); energy closes to [0-9.e-]+\n"));
   const std::string text = summary("out"), closes = "\"closes\": true";
   int closed = 0;
   for (auto at = text.find(closes); at != std::string::npos; at = text.find(closes, at + 1))

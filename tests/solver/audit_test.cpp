@@ -93,6 +93,28 @@ TEST(EnergyAudit, AMovingWallDoesItsImpulseTimesItsVelocity)
   EXPECT_LT(std::abs(m.energy.at_velocities().defect(kinetic)), 0.03 * largest_term(m, kinetic));
 }
 
+/// A stage has a ledger of its own, and goes on where the one before has left off: with the half step that stress is ahead of the velocities, and
+/// with the size of what went before, by which gains are measured.
+TEST(EnergyAudit, AStageGoesOnWhereTheOneBeforeLeftOff)
+{
+  Block m = with_defaults(4);
+  add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 1 && x[0] < 3 && x[1] < 2; });
+  close_off(m, "y_min", WallKind::friction, 0.4);
+  m.loads.gravity.acceleration = Vec<2>(0, -9.81);
+  make_ready(m);
+  run_until(m, 0.1);
+  const EnergyLedger before = m.energy;
+  const Real kinetic = totals(m).kinetic, largest = before.largest_term(kinetic);
+  EXPECT_GT(largest, 100);
+  EXPECT_NE(before.internal_ahead, 0);
+  begin_stage(m, test_stage(1), 1);
+  EXPECT_EQ(m.energy.largest_before, largest);
+  EXPECT_EQ(m.energy.internal, before.internal_ahead);
+  EXPECT_EQ(m.energy.gravity, 0);
+  EXPECT_EQ(m.energy.kinetic_start, kinetic);
+  EXPECT_EQ(m.energy.largest_term(kinetic), largest);
+}
+
 /// The step at the start of soft bodies under strong loads is bounded by these too; a usual one is that of the waves.
 TEST(StepLength, IsBoundedByLoadsOnlyWhereCellsWeighMoreThanTheirStiffness)
 {
