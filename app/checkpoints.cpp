@@ -391,6 +391,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
       check_count(arrays, "bodies", kept.bodies.size(), "bodies");
       recall(arrays, "clock", kept.clock);
       recall(arrays, "stage", kept.stage);
+      recall(arrays, "energy", kept.energy);
       take_laws_of(kept.stage, kept.laws, kept.materials);
       recall_slice(arrays, 0, 1, kept.bodies, kept.materials, kept.particles);
       std::vector<std::string> faults;

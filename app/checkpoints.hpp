@@ -79,6 +79,7 @@ struct KeptBodies {
   std::vector<AnyBatch> materials;
   Clock clock;
   StageState stage;
+  EnergyLedger energy;
   std::vector<std::vector<AnyBatch>> laws;  ///< of each stage, to be there already
 };
 
