@@ -108,6 +108,8 @@ MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
   for (const Wall<D>& wall : frame.walls.walls())
     in_steps += Push<D>::of(wall.impulse, wall.angular);
   MomentumNow<D> now{start_, momentum_of(frame), in_steps + given.rest + given.changes + -1 * frame.mass.carried_away};
+  if (frame.particles.precision() == Precision::single)
+    now.most_linear_defect = 1e-5;
   now.forces = given.on_nodes - in_steps.angular;
   now.lost = now.start.angular + now.given.angular + now.forces - now.end.angular;
   return now;

@@ -50,12 +50,14 @@ struct MomentumNow {
   Vec3 lost = Vec3::Zero();    ///< moment of momentum that particles and nodes lost between them [kg m^2/s]
   static constexpr auto fields()
   {
-    return std::tuple{kept("start", &MomentumNow::start), kept("end", &MomentumNow::end), kept("given", &MomentumNow::given),
-                      kept("forces", &MomentumNow::forces), kept("lost", &MomentumNow::lost)};
+    return std::tuple{kept("start", &MomentumNow::start), kept("end", &MomentumNow::end),
+                      kept("given", &MomentumNow::given), kept("forces", &MomentumNow::forces),
+                      kept("lost", &MomentumNow::lost),   kept("most_linear_defect", &MomentumNow::most_linear_defect)};
   }
 
-  /// What cannot be explained, over all momentum there was and was given.
+  /// What cannot be explained, over all momentum there was and was given: round-off, of the precision in which particles are kept.
   Real linear_defect() const noexcept;
+  Real most_linear_defect = 1e-9;
   /// Moment of internal forces, which should be none, over all moment there was and was given.
   Real angular_defect() const noexcept;
   /// What particles and nodes lost between them, over the same.

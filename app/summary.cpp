@@ -140,7 +140,7 @@ MomentumAudit audit(const MomentumNow<D>& now)
   return {numbers(now.start.linear),
           numbers(now.end.linear),
           numbers(now.given.linear),
-          {now.linear_defect(), exactly, "momenta at the start and impulses"}};
+          {now.linear_defect(), now.most_linear_defect, "momenta at the start and impulses"}};
 }
 template <int D>
 MomentumAudit angular_audit(const MomentumNow<D>& now)
