@@ -36,7 +36,7 @@ stage_cppcheck() {
     --suppressions-list=tools/cppcheck-suppressions.txt -I . "${folders[@]}"
 }
 
-# All sources of a folder in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
+# All sources of a folder in one (preset lint): most of the time goes into the headers they share and what several instantiate. A name that two of them have in an anonymous
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
 # where gcc keeps it, after everything of clang's.  Every warning of clang as a compiler is an error too; -Wsign-conversion is not part of gcc's
 # -Wconversion, and sources that are read together shadow each other's names: these two are off.  The largest folders come last in the list and first in turn.
