@@ -9,7 +9,7 @@ python=/usr/bin/python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
 all_stages=(setup "${lint_stages[@]}" build docs site verify tutorials test)
-other_stages=(dev fuzz asan traps valgrind coverage aarch64 mutants bench)
+other_stages=(tidy_all dev fuzz asan traps valgrind coverage aarch64 mutants bench)
 
 # A warning of a compiler is an error here, and nowhere else: what a user types must not fail by a warning of a compiler that we do not have.
 export TALUS_WERROR=ON
@@ -40,14 +40,21 @@ stage_cppcheck() {
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
 # where gcc keeps it, after everything of clang's.  Every warning of clang as a compiler is an error too; -Wsign-conversion is not part of gcc's
 # -Wconversion, and sources that are read together shadow each other's names: these two are off.  The largest folders come last in the list and first in turn.
-stage_tidy() {
+run_tidy() { # options of clang-tidy
   cmake --preset lint -Wno-dev >/dev/null
   cmake --build build/lint --target talus_version_header >/dev/null
   sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/lint/compile_commands.json | grep -vE '/tests/|talus_([a-z]+_tests|speed)\.dir' \
-    | tac | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
+    | tac | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' "$@" \
       --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-sign-conversion --extra-arg=-Wno-shadow \
       2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
+
+# Of the checks of .clang-tidy without those that take long and seldom have something to look at here; these are left to the night, `tidy_all`.
+stage_tidy() {
+  run_tidy --checks=-bugprone-undelegated-constructor,-bugprone-suspicious-string-compare,-bugprone-infinite-loop,-modernize-use-nullptr,-bugprone-assert-side-effect,-bugprone-unused-raii,-bugprone-not-null-terminated-result
+}
+
+stage_tidy_all() { run_tidy; }
 
 # With asserts, ours and those of Eigen and the standard library.
 stage_dev() {
