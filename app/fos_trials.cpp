@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/laws_in_force.hpp"
 #include "app/results.hpp"
 #include "app/setup.hpp"
 #include "app/summary.hpp"
@@ -38,11 +39,6 @@ Index material_number(const Scene& scene, const std::string& name)
 {
   const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const MaterialSpec& m) { return m.name == name; });
   return static_cast<Index>(found - scene.materials.begin());
-}
-
-bool has_strength(const MaterialSpec& material)
-{
-  return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
 }
 
 /// Bodies whose strength is divided, with their materials: of those that are there in the stage `last`.

@@ -58,13 +58,17 @@ Real weakened_by(const Scene& scene, const BodySpec& body, Index stage)
   return factor;
 }
 
+bool has_strength(const MaterialSpec& material)
+{
+  return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
+}
+
 bool is_renewed(const Scene& scene, const BodySpec& body, Index stage)
 {
   if (stage == 0 || !presence_of(body.name, scene.stages).in(stage - 1))
     return false;
   const MaterialSpec &before = *material_of(scene, body, stage - 1), &after = *material_of(scene, body, stage);
-  const bool has_strength = std::visit([]<class L>(const L&) { return HasStrength<L>; }, after.law);
-  return &before != &after || (has_strength && weakened_by(scene, body, stage) != weakened_by(scene, body, stage - 1));
+  return &before != &after || (has_strength(after) && weakened_by(scene, body, stage) != weakened_by(scene, body, stage - 1));
 }
 
 AnyBatch law_in_force(const Scene& scene, const BodySpec& body, Index stage)

@@ -10,6 +10,9 @@ namespace talus {
 /// The material of a body in a stage; nullptr: there is none of that name, which the reader has said.
 const MaterialSpec* material_of(const Scene& scene, const BodySpec& body, Index stage);
 
+/// Whether the law of a material has a strength that can be divided.
+bool has_strength(const MaterialSpec& material);
+
 /// By how much the strength of that material is divided then; 1: not at all.
 Real weakened_by(const Scene& scene, const BodySpec& body, Index stage);
 

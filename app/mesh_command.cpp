@@ -17,13 +17,13 @@ namespace {
 namespace fs = std::filesystem;
 
 /// What is known of the mesh before it is made.
-struct Asked {
+struct Wanted {
   MeshSpec spec;
   fs::path folder;
   std::optional<int> dimension;
 };
 
-Asked asked(const MeshOptions& options)
+Wanted wanted_by(const MeshOptions& options)
 {
   const auto kind = options.file.extension();
   if (kind == ".yaml" || kind == ".yml") {
@@ -71,7 +71,7 @@ void show(const Mesh<D>& mesh, const MeshOptions& options)
 
 void show_mesh(const MeshOptions& options)
 {
-  const Asked wanted = asked(options);
+  const Wanted wanted = wanted_by(options);
   const auto show_in = [&]<int D>(std::integral_constant<int, D>) { show(load_mesh<D>(wanted.spec, wanted.folder), options); };
   constexpr std::integral_constant<int, 2> plane;
   constexpr std::integral_constant<int, 3> space;

@@ -7,7 +7,6 @@
 #include "app/walls_of_scene.hpp"
 #include "app/water.hpp"
 #include "io/history_columns.hpp"
-#include "materials/strength.hpp"
 
 namespace talus {
 
@@ -42,12 +41,6 @@ std::vector<Index> numbers_of(const std::vector<std::string>& names, const std::
     if (std::find(names.begin(), names.end(), bodies[b].name) != names.end())
       numbers.push_back(static_cast<Index>(b));
   return numbers;
-}
-
-/// Whether a law has strength, as far as its scene is concerned.
-bool has_strength(const MaterialSpec& material)
-{
-  return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
 }
 
 /// In words what becomes of the law of a body in a stage; empty if it stays what it is.

@@ -92,9 +92,10 @@ def arguments():
     options.add_argument("--release", action="store_true", help="for developers: store the values as those of the release (release.json of each case)")
     options.add_argument("--regression", action="store_true", help="status 1 only where something is worse than in the last release: a run failed, or a number that passed then or is new")
     options.add_argument("--judged", action="store_true", help="for developers: leave out cases of which nothing passed in the release, so that nothing can become worse")
+    options.add_argument("--but", nargs="+", metavar="case", default=[], help="for developers: leave out these cases")
     options.add_argument("--digits", type=int, default=regression.DIGITS, help="for developers: a number has changed since the release where one of so many digits has")
     given = options.parse_args()
-    if unknown := [case for case in given.cases if case not in CASES]:
+    if unknown := [case for case in given.cases + given.but if case not in CASES]:
         options.error(f"no case {', '.join(unknown)}; there are: {', '.join(CASES)}")
     if given.release and (given.kernel or given.transfer or given.precision or given.level != "quick"):
         options.error("--release stores values of the quick level without --kernel, --transfer and --precision")
@@ -107,6 +108,12 @@ def judged():
     """The cases of which a number passed in the release."""
     results = json.loads((SUITE / "results.json").read_text(encoding="utf-8"))["results"]
     return [case for case in CASES if any(record["case"] == case and record["pass"] for record in results)]
+
+
+def chosen(given):
+    """The cases that the command line asks for."""
+    cases = given.cases or (judged() if given.judged else CASES)
+    return [case for case in cases if case not in given.but]
 
 
 def failed(case, metric, words):
@@ -181,7 +188,7 @@ def main():
     lab = tools.Lab(given.program, given.runs, given.out / "report/images", given.level, given.reuse, given.threads, given.jobs,
                     {tools.OVERRIDES[key]: word for key, word in overrides.items()})
     start = time.monotonic()
-    document = conduct(lab, given.cases or (judged() if given.judged else CASES), overrides, given.digits)
+    document = conduct(lab, chosen(given), overrides, given.digits)
     (given.out / "verify.json").write_text(json.dumps(document, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     pages.write(document, given.out / "report")
     if given.release:

@@ -55,12 +55,13 @@ function(talus_rank_tests)
   target_compile_options(talus_ranks_tests PRIVATE ${TALUS_TEST_OPTIONS})
   target_compile_definitions(talus_ranks_tests PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   talus_use_pch(talus_ranks_tests talus_tests_pch)
-  # Open MPI refuses root, which is who runs the tests in a container, and more ranks than cores, unless told.
+  # Open MPI refuses root, which is who runs the tests in a container, and more ranks than cores, unless told.  Ranks that wait leave the core to
+  # others: unless told they do so only where there are more ranks than cores.
   foreach(ranks 1 2 3 4)
     add_test(NAME ranks.${ranks} COMMAND ${MPIEXEC_EXECUTABLE} ${MPIEXEC_NUMPROC_FLAG} ${ranks} --oversubscribe --bind-to none
                                          $<TARGET_FILE:talus_ranks_tests>)
     set_tests_properties(ranks.${ranks} PROPERTIES LABELS ranks TIMEOUT 300 PROCESSORS 2
-      ENVIRONMENT "OMP_WAIT_POLICY=passive;OMP_NUM_THREADS=1;OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1")
+      ENVIRONMENT "OMP_WAIT_POLICY=passive;OMP_NUM_THREADS=1;OMPI_ALLOW_RUN_AS_ROOT=1;OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1;OMPI_MCA_mpi_yield_when_idle=1")
   endforeach()
 endfunction()
 

@@ -56,6 +56,12 @@ const Row head{"key", "type", "unit", "range", "default", "meaning"};
 
 std::string code(std::string_view text) { return fmt::format("`{}`", text); }
 
+/// Not of each kind of field anew: there are some hundred.
+Row row_of(std::string_view key, std::string type, std::string_view unit, std::string range, std::string fallback, std::string_view meaning)
+{
+  return {code(key), std::move(type), std::string(unit), std::move(range), std::move(fallback), std::string(meaning)};
+}
+
 std::string in_words(std::span<const std::string_view> all)
 {
   std::vector<std::string> quoted;
@@ -190,49 +196,47 @@ class Manual {
   template <class T, class Value>
   Row row(const Parameter<T, Value>& field, const std::type_identity_t<T>& defaults, const std::string& prefix)
   {
-    return {code(field.key),
-            type(std::type_identity<Value>{}, prefix + std::string(field.key)),
-            HasFields<Value> ? "" : std::string(field.unit),
-            to_string(field.range) == "any" ? "" : to_string(field.range),
-            need(field.need, default_of(defaults.*field.member, field.range)),
-            meaning_of(field)};
+    return row_of(field.key, type(std::type_identity<Value>{}, path_of(prefix, field.key)), HasFields<Value> ? "" : field.unit,
+                  range_of(field.range), need(field.need, default_of(defaults.*field.member, field.range)),
+                  meaning_of(field.key, field.meaning));
   }
   template <class T, class Value>
   Row row(const Choice<T, Value>& field, const std::type_identity_t<T>& defaults, const std::string&)
   {
-    return {code(field.key),           "word", "-", in_words(words(Value{})), need(field.need, default_of(defaults.*field.member, any)),
-            std::string(field.meaning)};
+    return row_of(field.key, "word", "-", in_words(words(Value{})), need(field.need, default_of(defaults.*field.member, any)),
+                  field.meaning);
   }
   template <class T, class Value>
   Row row(const Group<T, Value>& field, const std::type_identity_t<T>&, const std::string& prefix)
   {
-    return {code(field.key),           type(std::type_identity<Value>{}, prefix + std::string(field.key)), "", "", "required",
-            std::string(field.meaning)};
+    return row_of(field.key, type(std::type_identity<Value>{}, path_of(prefix, field.key)), "", "", "required", field.meaning);
   }
   template <class T, class Value>
   Row row(const Group<T, std::optional<Value>>& field, const std::type_identity_t<T>&, const std::string& prefix)
   {
-    return {code(field.key),           type(std::type_identity<Value>{}, prefix + std::string(field.key)), "", "", "none",
-            std::string(field.meaning)};
+    return row_of(field.key, type(std::type_identity<Value>{}, path_of(prefix, field.key)), "", "", "none", field.meaning);
   }
   template <class T, class Item>
   Row row(const List<T, Item>& field, const std::type_identity_t<T>&, const std::string& prefix)
   {
-    return {code(field.key),           "list of " + link<Item>(prefix + std::string(field.key)), "", "", need(field.need, "none"),
-            std::string(field.meaning)};
+    return row_of(field.key, "list of " + link<Item>(path_of(prefix, field.key)), "", "", need(field.need, "none"), field.meaning);
   }
   template <class T, class... Law>
   Row row(const Alternative<T, std::variant<Law...>>& field, const std::type_identity_t<T>&, const std::string&)
   {
-    return {code(field.key),           "word", "-", in_words(std::array<std::string_view, sizeof...(Law)>{Law::name...}), "required",
-            std::string(field.meaning)};
+    return row_of(field.key, "word", "-", in_words(std::array<std::string_view, sizeof...(Law)>{Law::name...}), "required", field.meaning);
   }
 
-  template <class Field>
-  static std::string meaning_of(const Field& field)
+  static std::string meaning_of(std::string_view key, std::string_view meaning)
   {
-    const std::string_view other = other_word_for(field.key);
-    return std::string(field.meaning) + (other.empty() ? "" : fmt::format("; \"{}\" is another word for this key", other));
+    const std::string_view other = other_word_for(key);
+    return std::string(meaning) + (other.empty() ? "" : fmt::format("; \"{}\" is another word for this key", other));
+  }
+  static std::string path_of(const std::string& prefix, std::string_view key) { return prefix + std::string(key); }
+  static std::string range_of(const Range& range)
+  {
+    const std::string text = to_string(range);
+    return text == "any" ? "" : text;
   }
   static std::string need(Need needed, const std::string& fallback) { return needed == Need::required ? "required" : fallback; }
   std::string type(std::type_identity<Real>, const std::string&) { return "number"; }

@@ -13,7 +13,7 @@ namespace talus {
 namespace {
 
 constexpr std::string_view between_values = " \t,;";
-constexpr std::size_t most_problems = 20;  // a file of another kind has one in every line
+constexpr std::size_t most_problems_of_record = 20;  // a file of another kind has one in every line
 
 /// The values of a line, as they stand there.
 std::vector<std::string_view> values_in(std::string_view line)
@@ -63,7 +63,7 @@ Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
     ++number;
     const auto complain = [&](std::string_view at, const std::string& what) {
       const int column = at.empty() ? 1 : static_cast<int>(at.data() - line.data()) + 1;
-      if (problems.size() < most_problems)
+      if (problems.size() < most_problems_of_record)
         problems.push_back({{file.string(), number, column, ""}, what, shown_line(line)});
     };
     const auto values = values_in(line);

@@ -2,10 +2,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -67,31 +69,44 @@ constexpr std::string_view summary_of()
     return "";
 }
 
-/// The mapping `base` with the key that names a struct, which decides what other keys there are.  Editors offer, and complain of, those of the
-/// struct that is named, and before it is named only those of `base`.
-template <class... T>
-Json one_of(const Json& base, std::string_view key, std::string_view meaning, std::type_identity<std::variant<T...>>)
+/// A struct that a key can name.  What is known of all structs and keys alike is plain data, so that the code that writes it is compiled once.
+struct Struct {
+  std::string_view name;
+  std::string_view summary;
+  void (*add_keys)(Json& schema);
+};
+
+/// The mapping `base` with the key `name` that names one of `structs`, which decides what other keys there are.  Editors offer, and complain
+/// of, those of the struct that is named, and before it is named only those of `base`.
+Json one_of(const Json& base, const std::string& name, std::string_view meaning, std::span<const Struct> structs)
 {
-  const std::string name(key);
   Json schema = base;
   schema.erase("additionalProperties");
-  Json& word = schema["properties"][name] = {{"description", meaning}, {"enum", {T::name...}}};
-  if ((!summary_of<T>().empty() && ...))
-    word["markdownEnumDescriptions"] = {summary_of<T>()...};
-  schema["required"].push_back(name);
-  schema["allOf"] = Json::array();
-  const auto add = [&]<class Chosen>(std::type_identity<Chosen>) {
-    constexpr std::string_view summary = summary_of<Chosen>();
+  Json names = Json::array(), summaries = Json::array(), all = Json::array();
+  for (const Struct& each : structs) {
+    names.push_back(each.name);
+    if (!each.summary.empty())
+      summaries.push_back(each.summary);
     Json chosen = base;
-    chosen["title"] = Chosen::name;  // what editors call a whole entry of this kind
-    chosen["properties"][name] = {{"const", Chosen::name}, {"description", summary.empty() ? meaning : summary}};
+    chosen["title"] = each.name;  // what editors call a whole entry of this kind
+    chosen["properties"][name] = {{"const", each.name}, {"description", each.summary.empty() ? meaning : each.summary}};
     chosen["required"].push_back(name);
-    add_keys<Chosen>(chosen);
-    Json is_chosen{{"properties", {{name, {{"const", Chosen::name}}}}}, {"required", {name}}};
-    schema["allOf"].push_back({{"if", std::move(is_chosen)}, {"then", std::move(chosen)}});
-  };
-  (add(std::type_identity<T>{}), ...);
+    each.add_keys(chosen);
+    Json is_chosen{{"properties", {{name, {{"const", each.name}}}}}, {"required", {name}}};
+    all.push_back({{"if", std::move(is_chosen)}, {"then", std::move(chosen)}});
+  }
+  Json& word = schema["properties"][name] = {{"description", meaning}, {"enum", std::move(names)}};
+  if (summaries.size() == structs.size())
+    word["markdownEnumDescriptions"] = std::move(summaries);
+  schema["required"].push_back(name);
+  schema["allOf"] = std::move(all);
   return schema;
+}
+
+template <class... T>
+constexpr std::array<Struct, sizeof...(T)> structs_of(std::type_identity<std::variant<T...>>)
+{
+  return {{{T::name, summary_of<T>(), add_keys<T>}...}};
 }
 
 template <class T>
@@ -120,7 +135,7 @@ Json schema_of(const Range& range)
   } else if constexpr (requires(const T& value) { value.has_value(); }) {
     return schema_of<typename T::value_type>(range);
   } else if constexpr (IsVariant<T>) {
-    return one_of(empty_mapping(), "type", "what it is: decides the other keys", std::type_identity<T>{});
+    return one_of(empty_mapping(), "type", "what it is: decides the other keys", structs_of(std::type_identity<T>{}));
   } else {
     return mapping_of<T>();
   }
@@ -148,74 +163,94 @@ Json default_value(const T& value, const Range& range)
     return {};
 }
 
-/// The schema of a key, and whether it must be there.
-struct KeySchema {
+/// What a field list says of a key, and the schema of what it holds.
+struct Key {
+  std::string_view name;
+  std::string_view meaning;
+  std::string_view unit;
+  Range range;
+  Need need;
+  bool is_mapping;
+  std::string fallback;  ///< the default as the manual has it
+  Json inserted;         ///< the default as an editor would insert it
   Json schema;
-  bool needed;
 };
 
 /// With what the manual says of it: "mass density at rest [kg/m^3] (required; range > 0)".
-template <class Value>
-KeySchema described(const Value& fallback, std::string_view meaning, std::string_view unit, const Range& range, Need need)
+void describe(Key& key)
 {
-  const bool needed = need == Need::required;
-  Json schema = schema_of<Value>(range);
+  const bool needed = key.need == Need::required;
   std::vector<std::string> facts;
   if (needed)
     facts.emplace_back("required");
-  if (const std::string allowed = to_string(range); allowed != "any")
+  if (const std::string allowed = to_string(key.range); allowed != "any")
     facts.push_back("range " + allowed);
-  if constexpr (!HasFields<Value>)
-    if (const std::string value = default_of(fallback, range); !needed && value != "none")
-      facts.push_back("default " + value);
-  const bool has_unit = !unit.empty() && unit != "-" && !HasFields<Value>;
-  const std::string text = fmt::format("{}{}", meaning, has_unit ? fmt::format(" [{}]", unit) : "");
+  if (!key.is_mapping && !needed && key.fallback != "none")
+    facts.push_back("default " + key.fallback);
+  const bool has_unit = !key.unit.empty() && key.unit != "-" && !key.is_mapping;
+  const std::string text = fmt::format("{}{}", key.meaning, has_unit ? fmt::format(" [{}]", key.unit) : "");
   const std::string all_facts = fmt::format("{}", fmt::join(facts, "; "));
-  schema["description"] = facts.empty() ? text : fmt::format("{} ({})", text, all_facts);
-  schema["markdownDescription"] = facts.empty() ? text : fmt::format("{}\n\n*{}*", text, all_facts);
-  if (const Json value = default_value(fallback, range); !needed && !value.is_null())
-    schema["default"] = value;
-  return {std::move(schema), needed};
+  key.schema["description"] = facts.empty() ? text : fmt::format("{} ({})", text, all_facts);
+  key.schema["markdownDescription"] = facts.empty() ? text : fmt::format("{}\n\n*{}*", text, all_facts);
+  if (!needed && !key.inserted.is_null())
+    key.schema["default"] = key.inserted;
+}
+
+void insert(Key key, Json& schema)
+{
+  describe(key);
+  const std::string_view other = other_word_for(key.name);
+  if (!other.empty())
+    schema["properties"][std::string(other)] = key.schema;
+  schema["properties"][std::string(key.name)] = std::move(key.schema);
+  if (key.need == Need::required && other.empty())
+    schema["required"].push_back(key.name);
+  else if (key.need == Need::required)
+    schema["oneOf"] = {{{"required", {key.name}}}, {{"required", {other}}}};
+}
+
+template <class Field, class Value>
+void add_key_of(const Field& field, const Value& fallback, std::string_view unit, const Range& range, Need need, Json& schema)
+{
+  std::string default_text;
+  if constexpr (!HasFields<Value>)
+    default_text = default_of(fallback, range);
+  insert({.name = field.key,
+          .meaning = field.meaning,
+          .unit = unit,
+          .range = range,
+          .need = need,
+          .is_mapping = HasFields<Value>,
+          .fallback = std::move(default_text),
+          .inserted = default_value(fallback, range),
+          .schema = schema_of<Value>(range)},
+         schema);
 }
 
 template <class T, class Value>
-KeySchema key_of(const Parameter<T, Value>& field)
+void add_key(Json& schema, const Parameter<T, Value>& field)
 {
-  return described(T{}.*field.member, field.meaning, field.unit, field.range, field.need);
+  add_key_of(field, T{}.*field.member, field.unit, field.range, field.need, schema);
 }
 template <class T, class Value>
-KeySchema key_of(const Choice<T, Value>& field)
+void add_key(Json& schema, const Choice<T, Value>& field)
 {
-  return described(T{}.*field.member, field.meaning, "", any, field.need);
+  add_key_of(field, T{}.*field.member, "", any, field.need, schema);
 }
 template <class T, class Value>
-KeySchema key_of(const Group<T, Value>& field)
+void add_key(Json& schema, const Group<T, Value>& field)
 {
-  return described(Value{}, field.meaning, "", any, is_optional<Value> ? Need::optional : Need::required);
+  add_key_of(field, Value{}, "", any, is_optional<Value> ? Need::optional : Need::required, schema);
 }
 template <class T, class Item>
-KeySchema key_of(const List<T, Item>& field)
+void add_key(Json& schema, const List<T, Item>& field)
 {
-  return described(std::vector<Item>{}, field.meaning, "", any, field.need);
-}
-
-template <class Field>
-void add_key(Json& schema, const Field& field)
-{
-  auto [key, needed] = key_of(field);
-  const std::string_view other = other_word_for(field.key);
-  if (!other.empty())
-    schema["properties"][std::string(other)] = key;
-  schema["properties"][std::string(field.key)] = std::move(key);
-  if (needed && other.empty())
-    schema["required"].push_back(field.key);
-  else if (needed)
-    schema["oneOf"] = {{{"required", {field.key}}}, {{"required", {other}}}};
+  add_key_of(field, std::vector<Item>{}, "", any, field.need, schema);
 }
 template <class T, class Value>
 void add_key(Json& schema, const Alternative<T, Value>& field)
 {
-  schema = one_of(schema, field.key, field.meaning, std::type_identity<Value>{});
+  schema = one_of(schema, std::string(field.key), field.meaning, structs_of(std::type_identity<Value>{}));
 }
 
 /// Alternatives come last in a field list: they multiply what was there before.

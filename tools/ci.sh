@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The checks of a change: tools/ci.sh <stage>... runs them one by one, `all` what .ci/run wants, `lint` those that build nothing.
+# The checks of a change: tools/ci.sh <stage>... runs them one by one, `all` what .ci/run wants, some beside each other; `lint` those that build nothing.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -9,7 +9,7 @@ python=/usr/bin/python3
 folders=(core mesh kernels materials solver io app)
 lint_stages=(format layers text spelling shell cppcheck tidy)
 all_stages=(setup "${lint_stages[@]}" build docs site verify tutorials test)
-other_stages=(dev fuzz asan traps valgrind coverage aarch64 mutants bench)
+other_stages=(tidy_all dev fuzz asan traps valgrind coverage aarch64 mutants bench)
 
 # A warning of a compiler is an error here, and nowhere else: what a user types must not fail by a warning of a compiler that we do not have.
 export TALUS_WERROR=ON
@@ -36,18 +36,25 @@ stage_cppcheck() {
     --suppressions-list=tools/cppcheck-suppressions.txt -I . "${folders[@]}"
 }
 
-# All sources of a folder in one (preset lint): most of the time goes into the headers they share. A name that two of them have in an anonymous
+# All sources of a folder in one (preset lint): most of the time goes into the headers they share and what several instantiate. A name that two of them have in an anonymous
 # namespace clashes there and nowhere else; rename one. Without the precompiled header: that is gcc's own format. omp.h is looked for
 # where gcc keeps it, after everything of clang's.  Every warning of clang as a compiler is an error too; -Wsign-conversion is not part of gcc's
 # -Wconversion, and sources that are read together shadow each other's names: these two are off.  The largest folders come last in the list and first in turn.
-stage_tidy() {
+run_tidy() { # options of clang-tidy
   cmake --preset lint -Wno-dev >/dev/null
   cmake --build build/lint --target talus_version_header >/dev/null
   sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' build/lint/compile_commands.json | grep -vE '/tests/|talus_([a-z]+_tests|speed)\.dir' \
-    | tac | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' \
+    | tac | xargs -r -n 1 -P "$jobs" clang-tidy -p build/lint --quiet --warnings-as-errors='*' "$@" \
       --extra-arg="-idirafter$(g++ -print-file-name=include)" --extra-arg=-Wno-unknown-warning-option --extra-arg=-Wno-sign-conversion --extra-arg=-Wno-shadow \
       2> >(grep -vE '(warnings?|errors?) generated' >&2)
 }
+
+# Of the checks of .clang-tidy without those that take long and seldom have something to look at here; these are left to the night, `tidy_all`.
+stage_tidy() {
+  run_tidy --checks=-bugprone-undelegated-constructor,-bugprone-suspicious-string-compare,-bugprone-infinite-loop,-modernize-use-nullptr,-bugprone-assert-side-effect,-bugprone-unused-raii,-bugprone-not-null-terminated-result
+}
+
+stage_tidy_all() { run_tidy; }
 
 # With asserts, ours and those of Eigen and the standard library.
 stage_dev() {
@@ -76,8 +83,12 @@ stage_docs() {
 
 # The benchmarks, quick level. Ends badly where a run fails or a judged number does that passed in the release; a change is named from the second
 # digit on, since compilers and processors round otherwise. Cases of which nothing passed then can get no worse, and are left to `make verify`.
+# Five more, a third of the processor time, are left to the nightly stage `traps`, which runs all: other cases judge the same parts of the code, the
+# orders of convergence (manufactured_solution, vibrating_bar), soil that slides (slope_failure_2d, column_collapse, sliding_block) and soil that fails
+# (strip_footing, factor_of_safety).
+nightly_cases=(generalized_vortex slope_failure_3d cohesive_collapse granular_chute infinite_slope)
 stage_verify() {
-  tools/verify.sh --program "$PWD/$talus" --level quick --judged --digits 2 --jobs "$jobs" --regression --out build/verify
+  tools/verify.sh --program "$PWD/$talus" --level quick --judged --but "${nightly_cases[@]}" --digits 2 --jobs "$jobs" --regression --out build/verify
 }
 
 # The documentation as a site: build/site/index.html.  A warning, a broken link and a page that the navigation lacks are errors.
@@ -138,6 +149,72 @@ run_stage() {
   echo "<== $1: $((SECONDS - start)) s"
 }
 
+# Stages one by one. The last one has the last word: after `test` nothing may follow the lines of ctest.
+run_stages() {
+  local name last=${*: -1}
+  for name in "${@:1:$#-1}"; do
+    run_stage "$name"
+  done
+  [ -z "$times" ] || echo "seconds: ${times%, }"
+  echo "==> $last"
+  "stage_$last"
+}
+
+# What `all` does beside each other: jobs, each of them this script with some stages, in a session of its own so that it can be ended as a whole.
+# A job says in `$ended` how it has ended: bash's own `wait -n` overlooks those that end while nobody waits.
+declare -A sessions=() begun=()
+times=""
+begin() { # name of the job, stages
+  local name=$1
+  shift
+  mkdir -p build
+  # shellcheck disable=SC2016 # of the shell inside
+  setsid bash -c 'status=0; "$@" || status=$?; echo "$0 $status" >&3' "$name" tools/ci.sh "$@" >"build/ci_$name.log" 2>&1 &
+  sessions[$name]=$! begun[$name]=$SECONDS
+}
+
+end_all() {
+  local name
+  for name in "${!sessions[@]}"; do
+    kill -- "-${sessions[$name]}" 2>/dev/null || true
+  done
+}
+
+# Until the job has ended, and with it those that end before. What a job says is told as a whole at its end. If one ends badly, all do.
+await() { # name of the job
+  local name status
+  while [ -n "${sessions[$1]-}" ]; do
+    read -r name status <&3
+    unset "sessions[$name]"
+    cat "build/ci_$name.log"
+    times+="$name $((SECONDS - begun[$name])) s, "
+    echo "<== $name: $((SECONDS - begun[$name])) s"
+    [ "$status" -eq 0 ] || exit "$status"
+  done
+}
+
+# The lints and what is told in the documentation run beside what compiles and what computes long: there are cores to spare at the end of each.
+run_all() {
+  local pipe
+  pipe=$(mktemp -u)
+  mkfifo "$pipe"
+  exec 3<>"$pipe"
+  rm "$pipe"
+  trap end_all EXIT
+  trap 'exit 130' INT TERM
+  run_stage setup
+  JOBS=1 begin lint lint
+  begin build build
+  await build
+  begin pages docs site tutorials
+  begin verify verify
+  await verify
+  await pages
+  await lint
+  exec 3>&-
+  run_stages test
+}
+
 stages=()
 for name in "$@"; do
   case $name in
@@ -154,14 +231,8 @@ if [ ${#stages[@]} -eq 0 ]; then
   echo "usage: tools/ci.sh <stage>...   all, lint, ${all_stages[*]}, ${other_stages[*]}" >&2
   exit 2
 fi
-
-times=""
-last=${stages[-1]}
-unset 'stages[-1]'
-for name in "${stages[@]}"; do
-  run_stage "$name"
-done
-[ -z "$times" ] || echo "seconds: ${times%, }"
-# The last stage has the last word: after `test` nothing may follow the lines of ctest.
-echo "==> $last"
-"stage_$last"
+if [ "$*" = all ]; then
+  run_all
+else
+  run_stages "${stages[@]}"
+fi

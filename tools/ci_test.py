@@ -43,6 +43,14 @@ class Ci(unittest.TestCase):
             self.assertIn("cmake --preset release -B build/release -D TALUS_LEVEL= ", here)
             self.assertEqual(there.replace("build/newcomer", "build/release").replace("TALUS_LEVEL=x86-64-v3", "TALUS_LEVEL="), here)
 
+    def test_cases_left_to_the_night_are_not_those_of_the_readme(self):
+        cases = re.search(r"(?m)^nightly_cases=\((.*)\)$", (ROOT / "tools/ci.sh").read_text(encoding="utf-8")).group(1).split()
+        rows = set(re.findall(r"(?m)^\| \[.*?\]\(benchmarks/(\w+)/README.md\)", (ROOT / "README.md").read_text(encoding="utf-8")))
+        self.assertGreater(len(rows), 8)
+        self.assertFalse(rows & set(cases))
+        for case in cases:
+            self.assertTrue((ROOT / "benchmarks" / case / "case.py").exists(), case)
+
     def test_targets_ask_for_their_packages_only(self):
         self.assertRegex(commands("build"), r"(?m)^tools/install_packages.sh build$")
         self.assertRegex(commands("site"), r"(?m)^tools/install_packages.sh docs$")

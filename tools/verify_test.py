@@ -137,6 +137,11 @@ class Runs(unittest.TestCase):
         self.assertIn("vibrating_bar", judged)
         self.assertNotIn("cook_membrane", judged, "it only reports")
 
+    def test_cases_that_are_named_are_left_out(self):
+        given = argparse.Namespace(cases=[], judged=False, but=["shock", "patch_test"])
+        self.assertEqual(set(verify.CASES) - set(verify.chosen(given)), {"shock", "patch_test"})
+        self.assertNotIn("cook_membrane", verify.chosen(argparse.Namespace(**{**vars(given), "judged": True})))
+
     def test_two_results_of_one_name_are_an_error(self):
         def evaluate(own):
             run = own.run(self.SCENE, "n", {})

@@ -111,9 +111,7 @@ TEST_F(Bench, OnRanksTellsWhatEachHoldsAndSends)
   const Outcome alone = talus("bench --mpi --particles 20000 --repeats 1 --steps 2 --warm-up 1 --json alone.json");
   ASSERT_EQ(alone.code, 0) << alone.err;
   EXPECT_THAT(alone.out, testing::AllOf(HasSubstr("on 1 rank\n"), HasSubstr("imbalance 1.000"), HasSubstr("particle-steps per second")));
-  const Outcome three =
-      talus("bench --mpi --particles 20000 --repeats 2 --steps 2 --warm-up 1 --json three.json",
-            "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 '" TALUS_MPIEXEC "' -n 3 --oversubscribe --bind-to none");
+  const Outcome three = talus("bench --mpi --particles 20000 --repeats 2 --steps 2 --warm-up 1 --json three.json", launcher_of(3));
   ASSERT_EQ(three.code, 0) << three.err;
   EXPECT_THAT(three.out, HasSubstr("on 3 ranks\n"));
   EXPECT_THAT(three.out, testing::ContainsRegex("imbalance 1\\.[01]")) << "each particle is one rank's";

@@ -233,8 +233,7 @@ TEST_F(OwnFiles, NoRankReplacesThem)
 {
   run_to_its_end();
   write("out/particles_0009.vtp", "mine");
-  const std::string ranks =
-      "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 '" TALUS_MPIEXEC "' -n 2 --oversubscribe --bind-to none";
+  const std::string ranks = launcher_of(2);
   const Outcome refused = talus("run --quiet --threads 1 scene.yaml --out out", ranks);
   EXPECT_EQ(refused.code, 3);
   EXPECT_THAT(refused.err, HasSubstr("out holds particles_0009.vtp, which no run wrote"));

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <string>
 
 #include "io/csv.hpp"
 #include "io/whole_file.hpp"
@@ -18,6 +19,14 @@ struct Outcome {
   int code;
   std::string out, err;
 };
+
+/// What starts the program on so many ranks.  Open MPI refuses root and more ranks than cores, unless told.  Ranks that wait leave the core to
+/// others: on as many cores as ranks they would not, unless told, and two ranks beside another test take ten times as long.
+inline std::string launcher_of(int ranks)
+{
+  return "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1 '" TALUS_MPIEXEC "' -n " +
+         std::to_string(ranks) + " --oversubscribe --bind-to none";
+}
 
 class Program : public testing::Test {
  protected:

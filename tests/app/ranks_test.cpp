@@ -20,11 +20,7 @@ using testing::HasSubstr;
 
 class OnRanks : public Program {
  protected:
-  Outcome talus_on(int ranks, const std::string& words) const
-  {
-    const std::string launcher = "'" TALUS_MPIEXEC "' -n " + std::to_string(ranks) + " --oversubscribe --bind-to none";
-    return talus(words, "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 " + launcher);
-  }
+  Outcome talus_on(int ranks, const std::string& words) const { return talus(words, launcher_of(ranks)); }
   void run_on(int ranks, const std::string& words, int code = 0) const
   {
     const Outcome outcome = ranks == 1 ? talus(words) : talus_on(ranks, words);
@@ -103,6 +99,7 @@ SceneParts thrown()
       "  - {name: gate, material: stuff, shape: {type: box, low: [3.5, 0], high: [3.8, 1]}, particles_per_cell: 3}\n";
   parts.boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_max}, {type: roller, on: y_max}]\n";
   parts.time = "time: {end: 0.08}\n";
+  parts.steps_of_a_checkpoint = 25;  // of 230
   return parts;
 }
 
@@ -214,10 +211,8 @@ TEST_F(OnRanks, LargeFilesAreWrittenByAllOfThem)
       "  - {name: high, material: stuff, shape: {type: box, low: [0, 0.5], high: [2, 0.9]}, particles_per_cell: 3, velocity: [0, -2]}\n";
   parts.time = "time: {end: 1.0e-3}\n";
   parts.outputs = "";
-  std::string text = parts.text();
-  const std::string rare = "checkpoint: {steps: 4,";
-  text.replace(text.find(rare), rare.size(), "checkpoint: {steps: 1000000,");
-  write("scene.yaml", text);
+  parts.steps_of_a_checkpoint = 1000000;
+  write("scene.yaml", parts.text());
   run_on(1, "run scene.yaml --quiet --threads 2 --out alone");
   run_on(3, "run scene.yaml --quiet --threads 1 --out three --until 2", stopped);
   run_on(2, "run --resume three --quiet --threads 1");

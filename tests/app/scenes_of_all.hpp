@@ -18,6 +18,7 @@ struct SceneParts {
   std::string time = "time: {end: 0.042, max_step: 1.4e-3}\n";
   std::string loads = "loads: [{type: gravity, acceleration: [0, -9.81]}]\n";
   std::string outputs = "";
+  int steps_of_a_checkpoint = 4;
 
   std::string text() const
   {
@@ -28,7 +29,8 @@ struct SceneParts {
         "-4]}\n";
     return "title: Restart\n" + dimension + more + "materials: [{name: stuff, density: 2000, " + law + "}]\n" +
            (bodies.empty() ? usual : bodies) + loads + boundaries + time +
-           "outputs:\n  checkpoint: {steps: 4, keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
+           "outputs:\n  checkpoint: {steps: " + std::to_string(steps_of_a_checkpoint) +
+           ", keep: 1000}\n  particles: {every: 0.013}\n  mesh: {every: 0.02}\n  history: {every: 0.007" +
            (outputs.empty()
                 ? ", points: [{name: top, at: [1, 1]}], fronts: [{name: toe, direction: +x}], moved: [{name: slid, mass_share: 0.9}]"
                 : outputs) +
