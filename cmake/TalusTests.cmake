@@ -21,7 +21,7 @@ function(talus_tests name)
   target_compile_definitions(${target} PRIVATE TALUS_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   # A test may see the third-party headers that the folder under test sees, as tools/check_layers.py allows.
   set(seen $<TARGET_PROPERTY:talus_${arg_LIBRARY},INCLUDE_DIRECTORIES>)
-  target_include_directories(${target} SYSTEM PRIVATE $<FILTER:${seen},EXCLUDE,^${PROJECT_SOURCE_DIR}>)
+  target_include_directories(${target} SYSTEM PRIVATE "$<FILTER:${seen},EXCLUDE,^${PROJECT_SOURCE_DIR}$|^${PROJECT_BINARY_DIR}/>")
   talus_use_pch(${target} talus_tests_pch)
   talus_in_batches(${target} 6)
   if(name STREQUAL app)

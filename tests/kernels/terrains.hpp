@@ -32,7 +32,12 @@ inline Terrain random_terrain(std::uint64_t seed)
            std::clamp(across * steepness, Real{0}, height);
   };
   const auto kind = static_cast<int>(between(0, 3));
-  const Vec<2> centre(between(40, 80), between(35, 65)), half(between(20, 45), between(15, 40));
+  // The numbers are drawn one after the other: compilers differ in which argument of a call they work out first.
+  const auto pair = [&](Real x_low, Real x_high, Real y_low, Real y_high) {
+    const Real y = between(y_low, y_high), x = between(x_low, x_high);
+    return Vec<2>(x, y);
+  };
+  const Vec<2> centre = pair(40, 80, 35, 65), half = pair(20, 45, 15, 40);
   const Real depth = between(4, 25), dip = between(0.2, 1.0);
   const auto ground = terrain.ground;
   if (kind == 0)
