@@ -167,25 +167,25 @@ def judge(number, tests, tree, first):
     return "survived", ""
 
 
-def put_together(tree, numbered, targets):
-    """Writes and builds the tree with all the changes {path: {number: Mutant}} that can be compiled; returns the numbers of the others."""
-    libraries = [library for library in LIBRARIES if LIBRARIES.index(library) <= max(LIBRARIES.index(t.removesuffix("_tests")) for t in targets)]
-    left_out = set()
-    stage = "checked"
+def put_together(tree, numbered, targets, left_out):
+    """Writes and builds the tree with all the changes {path: {number: Mutant}} that can be compiled; returns the numbers of the others, of
+    which some may be known."""
+    most = max(LIBRARIES.index(t.removesuffix("_tests")) for t in targets)
+    stage = "compiled" if left_out else "checked"
     while True:
         changed, together = {}, {}
-        for path, of_file in numbered.items():
-            inside = {n: m for n, m in of_file.items() if n not in left_out}
-            if inside:
-                changed[path], groups = schema((ROOT / path).read_text(), inside, HEADER_NAME)
+        inside = {path: {n: m for n, m in of_file.items() if n not in left_out} for path, of_file in numbered.items()}
+        for path, of_file in inside.items():
+            if of_file:
+                changed[path], groups = schema((ROOT / path).read_text(), of_file, HEADER_NAME)
                 together |= groups
         tree.fill(changed)
         tree.configure()
-        said = tree.complaints(libraries) if stage == "checked" else tree.compile(targets)
-        guilty = culprits(said, {p: {n: m for n, m in f.items() if n not in left_out} for p, f in numbered.items()}, together, tree.folder)
+        said = tree.complaints(LIBRARIES[:most + 1]) if stage == "checked" else tree.compile(targets)
+        guilty = culprits(said, inside, together, tree.folder)
         if guilty:
             left_out |= guilty
-            print(f"{len(guilty)} of the changes do not compile, {sum(map(len, numbered.values())) - len(left_out)} are left", flush=True)
+            print(f"{len(guilty)} of the changes do not compile, {sum(map(len, inside.values())) - len(guilty)} are left", flush=True)
         elif stage == "checked":
             stage = "compiled"
         elif said:
@@ -193,6 +193,22 @@ def put_together(tree, numbered, targets):
             sys.exit(f"does not compile, and by none of the changes: see {tree.folder / 'said.log'}")
         else:
             return left_out
+
+
+def plan_for(chosen, everything, file):
+    """({path: {number: Mutant}}, numbers known not to compile) for the names chosen: the plan of the tree that is there, if it has all of
+    them, so that nothing need be compiled again but tests that changed."""
+    plan = json.loads(file.read_text()) if file.exists() else {"number": {}, "left_out": []}
+    if not (chosen <= plan["number"].keys() <= everything.keys()):
+        plan = {"number": {key: n for n, key in enumerate(sorted(chosen), start=1)}, "left_out": []}
+    numbered = collections.defaultdict(dict)
+    for key, number in plan["number"].items():
+        numbered[everything[key].path][number] = everything[key]
+    return numbered, set(plan["left_out"])
+
+
+def keep_plan(numbered, left_out, file):
+    file.write_text(json.dumps({"number": {m.key: n for of_file in numbered.values() for n, m in of_file.items()}, "left_out": sorted(left_out)}))
 
 
 def read_results(file):
@@ -248,18 +264,22 @@ def missed(results, notes):
 def try_all(names, options):
     """Samples of the groups, all of them in one tree."""
     known = {key for key, row in read_results(options.results).items() if row["verdict"] != "survived"}
-    numbered, group_of = collections.defaultdict(dict), {}
-    for name in names:
-        everything = [m for m in mutants_of_group(ROOT, GROUPS[name].sources) if not options.only or options.only in m.key]
-        for m in sample(name, everything, options.sample, options.seed):
-            if m.key not in known:
-                group_of[len(group_of) + 1] = name
-                numbered[m.path][len(group_of)] = m
-    if not group_of:
+    everything, group_of, chosen = {}, {}, set()
+    for name, group in GROUPS.items():
+        of_group = mutants_of_group(ROOT, group.sources)
+        everything |= {m.key: m for m in of_group}
+        group_of |= {m.key: name for m in of_group}
+        if name in names:
+            considered = [m for m in of_group if not options.only or options.only in m.key]
+            chosen |= {m.key for m in sample(name, considered, options.sample, options.seed)} - known
+    if not chosen:
         return
-    tests = {name: tuple(t for t in GROUPS[name].tests if options.program or t[0] != "talus_app_tests") for name in set(group_of.values())}
+    tests = {name: tuple(t for t in GROUPS[name].tests if options.program or t[0] != "talus_app_tests") for name in {group_of[key] for key in chosen}}
     tree = Tree((options.results.parent / "tree").resolve(), options.jobs)
-    left_out = put_together(tree, numbered, sorted({target for of in tests.values() for target, _ in of}))
+    plan = options.results.parent / "plan.json"
+    numbered, left_out = plan_for(chosen, everything, plan)
+    left_out = put_together(tree, numbered, sorted({target for of in tests.values() for target, _ in of}), left_out)
+    keep_plan(numbered, left_out, plan)
     for of in tests.values():
         tree.measure(of)
     print("seconds of the tests with nothing changed:", ", ".join(f"{t} {s:.0f}" for (t, _), s in tree.usual.items()), flush=True)
@@ -267,7 +287,7 @@ def try_all(names, options):
     writing = threading.Lock()
 
     def tried(number, m):
-        name = group_of[number]
+        name = group_of[m.key]
         verdict, by = ("does not compile", "") if number in left_out else judge(number, tests[name], tree, first[m.path])
         row = {"group": name, "key": m.key, "verdict": verdict, "by": by, **dataclasses.asdict(m)}
         with writing, open(options.results, "a") as file:
@@ -275,7 +295,7 @@ def try_all(names, options):
             print(f"{verdict:16} {m.path}:{m.line}: {m.change}    {m.text}    {by}", flush=True)
 
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for done in [pool.submit(tried, n, m) for of_file in numbered.values() for n, m in of_file.items()]:
+        for done in [pool.submit(tried, n, m) for of_file in numbered.values() for n, m in of_file.items() if m.key in chosen]:
             done.result()
 
 
