@@ -137,8 +137,9 @@ class Tree:
                 if child.poll() is None:
                     os.killpg(child.pid, signal.SIGKILL)
             log.seek(0)
-            begun = re.findall(r"^\[ RUN      \] (\S+)", log.read(), re.MULTILINE)
-        return code == 0, begun[-1] if begun else target
+            said = log.read()
+        failed = re.findall(r"^\[  FAILED  \] ([^\s,]+)", said, re.MULTILINE)[:1] or re.findall(r"^\[ RUN      \] (\S+)", said, re.MULTILINE)[-1:]
+        return code == 0, failed[0] if failed else target
 
     def measure(self, tests):
         """The tests as they are have to pass."""
