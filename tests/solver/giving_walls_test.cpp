@@ -199,6 +199,33 @@ TEST(GivingWalls, AFacetAboveTheGroundBesideStaysFree)
   expect_near(middle.v, {2 / (2 + 0.25 * 0.5 * 2 * 5), 0});  // half of one facet
 }
 
+/// In a corner that is not square: whichever was added first, the floor keeps its own normal when the side lets go.
+TEST(GivingWalls, AnInclinedFloorHoldsAloneOnceTheSideBesideItLetsGo)
+{
+  MeshData<2> data = box<2>(Vec<2>::Zero(), {2, 2}, {2, 2});
+  for (Vec<2>& x : data.nodes)
+    if (x[1] == 0)
+      x[1] = -0.5 * x[0];
+  const Mesh<2> mesh(std::move(data));
+  Index corner = 0;
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.node(n)[0] > 1.5 && mesh.node(n)[1] < -0.5)
+      corner = n;
+  Wall<2> side = wall(WallKind::free_field, "side");
+  side.column.level = {-1, 2};
+  side.column.layer = {{rock, 1}};
+  const Vec<2> v(3, 4), normal = Vec<2>(-0.5, -1).normalized();
+  for (const bool side_first : {false, true}) {
+    Walls<2> walls;
+    for (const bool now_side : {side_first, !side_first})
+      walls.add(now_side ? side : wall(WallKind::roller, "floor"), mesh, *mesh.facet_set(now_side ? "x_max" : "y_min"));
+    walls.settle();
+    expect_near(walls.held(corner, 0, v), {0, 0});
+    walls.begin_stage(false, 0);
+    expect_near(walls.held(corner, 0, v), v - v.dot(normal) * normal);
+  }
+}
+
 TEST(GivingWalls, RecordsBeginWithTheShaking)
 {
   Ground ground;
