@@ -72,6 +72,7 @@ class Tree:
     def __init__(self, folder, jobs):
         self.folder, self.build, self.jobs = folder, folder / "build", jobs
         self.usual = {}  # seconds of the tests when nothing is changed
+        self.sound = set()  # what compiles: a change that is taken out does not alter that
         self.environment = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMP_NUM_THREADS": "1"}
 
     def fill(self, changed):
@@ -99,19 +100,25 @@ class Tree:
                            stdout=subprocess.DEVNULL)
 
     def complaints(self, libraries):
-        """What the compiler says of the sources of these libraries without making code of them."""
+        """What the compiler says of the sources of these libraries without making code of them; of those that were sound before, nothing."""
         subprocess.run(["ninja", "-C", str(self.build), "talus_pch", "talus_version_header"], check=False,
                        stdout=subprocess.DEVNULL)
         entries = json.loads((self.build / "compile_commands.json").read_text())
         commands = []
         for e in entries:
-            if any(f"CMakeFiles/{library}.dir/" in e["command"] for library in libraries):
+            if e["command"] not in self.sound and any(f"CMakeFiles/{library}.dir/" in e["command"] for library in libraries):
                 words = shlex.split(e["command"])
                 at = words.index("-o")
-                commands.append([*words[:at], *words[at + 2:], "-fsyntax-only", "-fmax-errors=500"])
+                commands.append((e["command"], [*words[:at], *words[at + 2:], "-fsyntax-only", "-fmax-errors=500"]))
+
+        def said_of(command):
+            done = subprocess.run(command[1], cwd=self.build, check=False, capture_output=True, text=True)
+            if done.returncode == 0:
+                self.sound.add(command[0])
+            return done.stderr
+
         with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
-            said = pool.map(lambda c: subprocess.run(c, cwd=self.build, check=False, capture_output=True, text=True).stderr, commands)
-            return "\n".join(said)
+            return "\n".join(pool.map(said_of, commands))
 
     def compile(self, targets):
         """What the compiler says; nothing: it is all there."""
