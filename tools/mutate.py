@@ -1,33 +1,44 @@
 #!/usr/bin/python3
 """Mutation testing: changes one operator, sign or number of the sources at a time and runs the tests of the folder.
 
-A change that no test notices (a survivor) shows what the tests do not look at.  The sources are changed in a tree of their own, never in
-the one at hand: `--tree` names a clone with a finished build (preset dev, TALUS_UNITY=OFF), by default build/mutants/tree, which is made.
+A change that no test notices (a survivor) shows what the tests do not look at.  All changes of a sample are compiled at once into a copy of
+the sources, build/mutants/tree, and chosen there by the environment: TALUS_MUTANT=17 (tools/schemata.py).
 
-    tools/mutate.py                          # a sample of every group: hours
+    tools/mutate.py                          # a sample of every group
     tools/mutate.py laws walls --sample 40   # 40 changes of each of two groups
     tools/mutate.py laws --list              # what could be changed, nothing is built
     tools/mutate.py --report                 # the table of what was found so far
 
-Results are kept in build/mutants/results.jsonl, a line for each change; what stands there is not tried again.  The sample of a group
+Results are kept in build/mutants/results.jsonl, a line for each change; what was caught is not tried again.  The sample of a group
 depends on --seed and the sources of that group alone, and a larger sample begins with the smaller one.
 """
 import argparse
 import collections
+import concurrent.futures
 import dataclasses
 import json
 import os
 import pathlib
-import random
 import re
 import resource
+import shlex
 import signal
 import subprocess
 import sys
+import tempfile
+import threading
 import time
+
+from mutants import mutants_of_group, sample
+from schemata import HEADER, culprits, schema
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 NOTES = ROOT / "tools" / "mutants.txt"
+HEADER_NAME = "build/talus_mutants.hpp"
+# Quick to compile; without asserts, since it is the tests that are tested.  A value cannot stand in for what a reference is made to.
+OPTIONS = ("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG", "-DCMAKE_CXX_FLAGS=-Werror=return-local-addr",
+           "-DTALUS_UNITY=ON", "-DTALUS_QUICK_TESTS=ON")
+LIBRARIES = ("talus_materials", "talus_kernels", "talus_solver", "talus_app")  # a header is seen by its own and those after it
 INTERRUPTED = 130  # exit code of a ninja that was
 ASKED = 0.9  # share of the changes that the tests have to notice
 
@@ -54,184 +65,158 @@ GROUPS = {
 }
 
 
-@dataclasses.dataclass(frozen=True)
-class Mutant:
-    """Bytes [begin, end) of a file replaced by others."""
-    path: str
-    begin: int
-    end: int
-    old: str
-    new: str
-    line: int   # from 1
-    text: str   # of the line, as it was
-    place: int = 1  # among equal changes of equal lines of the file
-
-    @property
-    def key(self):
-        """What it is called from one version of the sources to the next: no number of a line."""
-        return f"{self.path}: {self.text} : {self.change}" + (f" #{self.place}" if self.place > 1 else "")
-
-    @property
-    def change(self):
-        return f"{self.old.strip()} -> {self.new.strip() or 'nothing'}"
-
-    def apply(self, source):
-        return source[:self.begin] + self.new + source[self.end:]
-
-
-def code_only(source):
-    """The source with comments, texts, characters and preprocessor lines blanked out, every other character in its place."""
-    pattern = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<![0-9a-fA-F])\'(?:\\.|[^\'\\\n])*\'|^[ \t]*#[^\n]*', re.DOTALL | re.MULTILINE)
-    return pattern.sub(lambda m: re.sub(r"[^\n]", " ", m.group()), source)
-
-
-# The formatter puts blanks around operators of two operands and nowhere else, so that `a < b` is a comparison and `array<T>` is none.
-OPERATORS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=",
-             "<": ">=", "<=": ">", ">": "<=", ">=": "<", "==": "!=", "!=": "==", "&&": "||", "||": "&&"}
-TWO_OPERANDS = re.compile(r"(?<=[\w)\]}] )(?:[-+*/]=?|[<>]=?|[=!]=|&&|\|\|)(?=\s)")
-LEADING_OPERATOR = re.compile(r"(?<=\n)(?P<blank>[ ]+)(?P<operator>[-+*/]|&&|\|\|)(?= )")
-MINUS = re.compile(r"(?:(?<=[(,={?:<>*/+] )|(?<=[({\[])|(?<=return ))-(?=[\w(])")
-NOT = re.compile(r"!(?=[\w(])")
-MIN_MAX = re.compile(r"\b(?:min|max)(?=\()")
-TRUTH = re.compile(r"\b(?:true|false)\b")
-REAL = re.compile(r"(?<![\w.])(?:\d+\.\d+(?:e[-+]?\d+)?|\d+e[-+]?\d+)(?![\w.])")
-INTEGER = re.compile(r"(?<![\w.])\d+(?= [-+*/] )|(?<= [*/] )\d+(?![\w.'])")
-# The value of a whole expression, one per cent too large: what tests have a number for they must have to better than that.
-VALUE = re.compile(r"(?:\b(?:Real|T) \w+ = |\breturn )(?P<value>[^;{}?\n]+)(?=;)")
-NO_NUMBER = re.compile(r"[<>=!]=|&&|\|\||[^-]>(?!\()| < | = |!|\b(?:true|false|none|nullptr|std::move)\b|\b(?:is|has|can|are|everywhere|somewhere)(?:_\w+)?\b|\*this|\"")
-NOT_JUDGED = re.compile(r"\b(?:static_assert|assert|throw)\b")
-SMALLEST = 1e-6  # numbers below are tolerances: no test has to know them to a per cent
-BY = 1.01
-
-
-def scaled(literal):
-    return f"{float(literal) * BY:.12g}"
-
-
-def finds(code):
-    """(begin, end, new) of every change of a source that was blanked by code_only."""
-    for m in TWO_OPERANDS.finditer(code):
-        yield m.start(), m.end(), OPERATORS[m.group()]
-    for m in LEADING_OPERATOR.finditer(code):
-        yield m.start("operator"), m.end("operator"), OPERATORS[m.group("operator")]
-    for pattern in (MINUS, NOT):
-        for m in pattern.finditer(code):
-            yield m.start(), m.end(), ""
-    for m in MIN_MAX.finditer(code):
-        yield m.start(), m.end(), {"min": "max", "max": "min"}[m.group()]
-    for m in TRUTH.finditer(code):
-        yield m.start(), m.end(), {"true": "false", "false": "true"}[m.group()]
-    for m in REAL.finditer(code):
-        if abs(float(m.group())) >= SMALLEST:
-            yield m.start(), m.end(), scaled(m.group())
-    for m in INTEGER.finditer(code):
-        yield m.start(), m.end(), str(int(m.group()) + 1)
-    for m in VALUE.finditer(code):
-        value = m.group("value")
-        if not NO_NUMBER.search(value) and not re.fullmatch(r"[\s\d.]+", value):
-            yield m.start("value"), m.end("value"), f"{BY} * ({value})"
-
-
-def mutants_of(path, source):
-    """Every change of one source, in the order of its characters."""
-    found = []
-    times = collections.Counter()
-    for begin, end, new in sorted(set(finds(code_only(source)))):
-        line_begin = source.rfind("\n", 0, begin) + 1
-        line_end = source.find("\n", begin)
-        text = source[line_begin:line_end if line_end >= 0 else len(source)]
-        if not NOT_JUDGED.search(text):
-            old = source[begin:end]
-            if new.startswith(f"{BY} * ("):
-                new = f"{BY} * ({old})"   # with its texts, which code_only left out
-            times[text.strip(), old, new] += 1
-            found.append(Mutant(path, begin, end, old, new, source.count("\n", 0, begin) + 1, text.strip(), times[text.strip(), old, new]))
-    return found
-
-
-def mutants_of_group(root, group):
-    paths = sorted({p for pattern in group.sources for p in root.glob(pattern)})
-    return [m for p in paths for m in mutants_of(str(p.relative_to(root)), p.read_text())]
-
-
-def sample(name, mutants, size, seed):
-    """A larger sample begins with the smaller one."""
-    order = list(mutants)
-    random.Random(f"{seed}:{name}").shuffle(order)
-    return order[:size]
-
-
-def judge(mutant, tree, tests, build, test):
-    """Makes the change in the tree, builds and tries until a test fails, and takes the change back.  (verdict, by whom):
-    "caught", "survived", or "does not compile", which says nothing about the tests."""
-    file = tree / mutant.path
-    source = file.read_text()
-    assert source[mutant.begin:mutant.end] == mutant.old, f"{mutant.path} is not what was sampled"
-    try:
-        file.write_text(mutant.apply(source))
-        for target, chosen in tests:
-            if not build(target):
-                return "does not compile", target
-            if not test(target, chosen):
-                return "caught", target
-        return "survived", ""
-    finally:
-        file.write_text(source)
-
-
-class Trial:
-    """The build of a tree and the tests in it."""
+class Tree:
+    """A copy of the sources with its own build, into which changes are put."""
     most_memory = 12 << 30  # B: a loop that does not end may ask for all there is
 
-    def __init__(self, tree, build, jobs, log):
-        self.tree, self.folder, self.jobs, self.log = tree, tree / build, jobs, log
+    def __init__(self, folder, jobs):
+        self.folder, self.build, self.jobs = folder, folder / "build", jobs
         self.usual = {}  # seconds of the tests when nothing is changed
+        self.sound = set()  # what compiles: a change that is taken out does not alter that
         self.environment = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMP_NUM_THREADS": "1"}
 
-    def run(self, command, limit):
-        """Exit code; None: it took too long."""
+    def fill(self, changed):
+        """What is in the tree at hand, with the texts {path: text} in the place of some; what stays as it was need not be compiled again."""
+        self.folder.mkdir(parents=True, exist_ok=True)
+        names = subprocess.run(["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"], cwd=ROOT, check=True, capture_output=True,
+                               text=True).stdout
+        wanted = {n for n in names.split("\0") if n and (ROOT / n).is_file()}
+        for old in self.folder.rglob("*.[ch]pp"):
+            if self.build not in old.parents and str(old.relative_to(self.folder)) not in wanted:
+                old.unlink()
+        for name in wanted:
+            text, copy = changed[name].encode() if name in changed else (ROOT / name).read_bytes(), self.folder / name
+            if not copy.exists() or copy.read_bytes() != text:
+                copy.parent.mkdir(parents=True, exist_ok=True)
+                copy.write_bytes(text)
+        (self.folder / HEADER_NAME).parent.mkdir(exist_ok=True)
+        header = self.folder / HEADER_NAME
+        if not header.exists() or header.read_text() != HEADER:
+            header.write_text(HEADER)
+
+    def configure(self):
+        if not (self.build / "build.ninja").exists():
+            subprocess.run(["cmake", "-G", "Ninja", "-S", str(self.folder), "-B", str(self.build), "-Wno-dev", *OPTIONS], check=True,
+                           stdout=subprocess.DEVNULL)
+
+    def complaints(self, libraries):
+        """What the compiler says of the sources of these libraries without making code of them; of those that were sound before, nothing."""
+        subprocess.run(["ninja", "-C", str(self.build), "talus_pch", "talus_version_header"], check=False,
+                       stdout=subprocess.DEVNULL)
+        entries = json.loads((self.build / "compile_commands.json").read_text())
+        commands = []
+        for e in entries:
+            if e["command"] not in self.sound and any(f"CMakeFiles/{library}.dir/" in e["command"] for library in libraries):
+                words = shlex.split(e["command"])
+                at = words.index("-o")
+                commands.append((e["command"], [*words[:at], *words[at + 2:], "-fsyntax-only", "-fmax-errors=500"]))
+
+        def said_of(command):
+            done = subprocess.run(command[1], cwd=self.build, check=False, capture_output=True, text=True)
+            if done.returncode == 0:
+                self.sound.add(command[0])
+            return done.stderr
+
+        with concurrent.futures.ThreadPoolExecutor(self.jobs) as pool:
+            return "\n".join(pool.map(said_of, commands))
+
+    def compile(self, targets):
+        """What the compiler says; nothing: it is all there."""
+        done = subprocess.run(["ninja", "-k", "0", "-C", str(self.build), f"-j{self.jobs}", *targets], check=False, capture_output=True, text=True)
+        if done.returncode < 0 or done.returncode == INTERRUPTED:
+            sys.exit(f"the build was ended from outside (exit code {done.returncode})")
+        return "" if done.returncode == 0 else done.stdout + done.stderr
+
+    def run(self, number, target, chosen, limit):
+        """(whether the tests pass with this change, the first that does not)."""
         def quietly():
             resource.setrlimit(resource.RLIMIT_AS, (self.most_memory, self.most_memory))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        with open(self.log, "w") as log, subprocess.Popen(command, cwd=self.tree, env=self.environment, stdout=log, stderr=log,
-                                                          start_new_session=True, preexec_fn=quietly) as child:
+        command = [str(self.build / target), "--gtest_fail_fast", f"--gtest_filter={chosen}"]
+        with tempfile.TemporaryFile("w+", errors="replace") as log, subprocess.Popen(
+                command, cwd=self.build, env={**self.environment, "TALUS_MUTANT": str(number)}, stdout=log, stderr=log, start_new_session=True,
+                preexec_fn=quietly) as child:
             try:
-                return child.wait(limit)
+                code = child.wait(limit)
             except subprocess.TimeoutExpired:
-                return None
+                code = None
             finally:
                 if child.poll() is None:
                     os.killpg(child.pid, signal.SIGKILL)
-
-    def build(self, target):
-        wanted = [target] if target != "talus_app_tests" else ["talus", target]
-        code = self.run(["ninja", "-C", str(self.folder), f"-j{self.jobs}", *wanted], None)
-        if code < 0 or code == INTERRUPTED:
-            sys.exit(f"the build was ended from outside (exit code {code}): nothing is known of the change at hand")
-        return code == 0
-
-    def test(self, target, chosen):
-        limit = 60 + 10 * self.usual[target, chosen] if (target, chosen) in self.usual else 3600
-        return self.run([str(self.folder / target), "--gtest_fail_fast", "--gtest_brief=1", f"--gtest_filter={chosen}"], limit) == 0
+            log.seek(0)
+            said = log.read()
+        failed = re.findall(r"^\[  FAILED  \] ([^\s,]+)", said, re.MULTILINE)[:1] or re.findall(r"^\[ RUN      \] (\S+)", said, re.MULTILINE)[-1:]
+        return code == 0, failed[0] if failed else target
 
     def measure(self, tests):
         """The tests as they are have to pass."""
         for target, chosen in tests:
-            if (target, chosen) in self.usual:
-                continue
-            if not self.build(target):
-                sys.exit(f"{target} does not compile in {self.tree}: see {self.log}")
-            start = time.monotonic()
-            if not self.test(target, chosen):
-                sys.exit(f"{target} fails in {self.tree} with nothing changed: see {self.log}")
-            self.usual[target, chosen] = time.monotonic() - start
+            if (target, chosen) not in self.usual:
+                start = time.monotonic()
+                passed, test = self.run(0, target, chosen, 3600)
+                if not passed:
+                    sys.exit(f"{target} fails in {self.folder} with nothing changed: {test}")
+                self.usual[target, chosen] = time.monotonic() - start
+
+    def limit(self, target, chosen):
+        return 20 + 5 * self.usual[target, chosen]
 
 
-def make_tree(tree):
-    """A clone of what is committed here, with a build of its own."""
-    if not (tree / ".git").exists():
-        subprocess.run(["git", "clone", "--quiet", str(ROOT), str(tree)], check=True)
-        subprocess.run(["cmake", "--preset", "dev", "-D", "TALUS_UNITY=OFF", "-Wno-dev"], cwd=tree, check=True, stdout=subprocess.DEVNULL)
+def judge(number, tests, tree, first):
+    """Tries until a test fails, beginning with those that caught changes nearby: {target: names}.  (verdict, by which test)."""
+    for target, chosen in tests:
+        limit = tree.limit(target, chosen)
+        for names in ([":".join(first[target])] if first[target] else []) + [chosen]:
+            passed, test = tree.run(number, target, names, limit)
+            if not passed:
+                if test not in first[target]:
+                    first[target].append(test)
+                return "caught", f"{target} {test}"
+    return "survived", ""
+
+
+def put_together(tree, numbered, targets, left_out):
+    """Writes and builds the tree with all the changes {path: {number: Mutant}} that can be compiled; returns the numbers of the others, of
+    which some may be known."""
+    most = max(LIBRARIES.index(t.removesuffix("_tests")) for t in targets)
+    stage = "compiled" if left_out else "checked"
+    while True:
+        changed, together = {}, {}
+        inside = {path: {n: m for n, m in of_file.items() if n not in left_out} for path, of_file in numbered.items()}
+        for path, of_file in inside.items():
+            if of_file:
+                changed[path], groups = schema((ROOT / path).read_text(), of_file, HEADER_NAME)
+                together |= groups
+        tree.fill(changed)
+        tree.configure()
+        said = tree.complaints(LIBRARIES[:most + 1]) if stage == "checked" else tree.compile(targets)
+        guilty = culprits(said, inside, together, tree.folder)
+        if guilty:
+            left_out |= guilty
+            print(f"{len(guilty)} of the changes do not compile, {sum(map(len, inside.values())) - len(guilty)} are left", flush=True)
+        elif stage == "checked":
+            stage = "compiled"
+        elif said:
+            (tree.folder / "said.log").write_text(said)
+            sys.exit(f"does not compile, and by none of the changes: see {tree.folder / 'said.log'}")
+        else:
+            return left_out
+
+
+def plan_for(chosen, everything, file):
+    """({path: {number: Mutant}}, numbers known not to compile) for the names chosen: the plan of the tree that is there, if it has all of
+    them, so that nothing need be compiled again but tests that changed."""
+    plan = json.loads(file.read_text()) if file.exists() else {"number": {}, "left_out": []}
+    if not (chosen <= plan["number"].keys() <= everything.keys()):
+        plan = {"number": {key: n for n, key in enumerate(sorted(chosen), start=1)}, "left_out": []}
+    numbered = collections.defaultdict(dict)
+    for key, number in plan["number"].items():
+        numbered[everything[key].path][number] = everything[key]
+    return numbered, set(plan["left_out"])
+
+
+def keep_plan(numbered, left_out, file):
+    file.write_text(json.dumps({"number": {m.key: n for of_file in numbered.values() for n, m in of_file.items()}, "left_out": sorted(left_out)}))
 
 
 def read_results(file):
@@ -284,15 +269,52 @@ def missed(results, notes):
     return [name for name in sorted(judged) if caught[name] < ASKED * judged[name]]
 
 
+def try_all(names, options):
+    """Samples of the groups, all of them in one tree."""
+    known = {key for key, row in read_results(options.results).items() if row["verdict"] != "survived"}
+    everything, group_of, chosen = {}, {}, set()
+    for name, group in GROUPS.items():
+        of_group = mutants_of_group(ROOT, group.sources)
+        everything |= {m.key: m for m in of_group}
+        group_of |= {m.key: name for m in of_group}
+        if name in names:
+            considered = [m for m in of_group if not options.only or options.only in m.key]
+            chosen |= {m.key for m in sample(name, considered, options.sample, options.seed)} - known
+    if not chosen:
+        return
+    tests = {name: tuple(t for t in GROUPS[name].tests if options.program or t[0] != "talus_app_tests") for name in {group_of[key] for key in chosen}}
+    tree = Tree((options.results.parent / "tree").resolve(), options.jobs)
+    plan = options.results.parent / "plan.json"
+    numbered, left_out = plan_for(chosen, everything, plan)
+    left_out = put_together(tree, numbered, sorted({target for of in tests.values() for target, _ in of}), left_out)
+    keep_plan(numbered, left_out, plan)
+    for of in tests.values():
+        tree.measure(of)
+    print("seconds of the tests with nothing changed:", ", ".join(f"{t} {s:.0f}" for (t, _), s in tree.usual.items()), flush=True)
+    first = collections.defaultdict(lambda: collections.defaultdict(list))
+    writing = threading.Lock()
+
+    def tried(number, m):
+        name = group_of[m.key]
+        verdict, by = ("does not compile", "") if number in left_out else judge(number, tests[name], tree, first[m.path])
+        row = {"group": name, "key": m.key, "verdict": verdict, "by": by, **dataclasses.asdict(m)}
+        with writing, open(options.results, "a") as file:
+            file.write(json.dumps(row) + "\n")
+            print(f"{verdict:16} {m.path}:{m.line}: {m.change}    {m.text}    {by}", flush=True)
+
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for done in [pool.submit(tried, n, m) for of_file in numbered.values() for n, m in of_file.items() if m.key in chosen]:
+            done.result()
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("groups", nargs="*", metavar="GROUP", help=f"of {', '.join(GROUPS)}; default all")
     parser.add_argument("--sample", type=int, default=60, help="changes of each group, default 60")
     parser.add_argument("--seed", type=int, default=1, help="another seed is another sample")
-    parser.add_argument("--only", help="only files whose path has this in it")
-    parser.add_argument("--tree", type=pathlib.Path, help="a clone with a build, whose sources are changed")
-    parser.add_argument("--build", default="build/dev", help="its build, below the tree")
-    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers at a time")
+    parser.add_argument("--only", help="only changes whose name, PATH: LINE : OLD -> NEW, has this in it")
+    parser.add_argument("--program", action="store_true", help="what the tests of the folders let pass is tried on those of the program, too")
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="compilers, and changes that are tried, at a time")
     parser.add_argument("--results", type=pathlib.Path, default=ROOT / "build" / "mutants" / "results.jsonl")
     parser.add_argument("--list", action="store_true", help="only say what could be changed")
     parser.add_argument("--report", action="store_true", help="only write the table of what was found")
@@ -300,43 +322,20 @@ def main():
     for name in options.groups:
         if name not in GROUPS:
             parser.error(f"no group '{name}': {', '.join(GROUPS)}")
-    notes = read_notes(NOTES)
-    if options.report:
-        print(table(read_results(options.results), notes), end="")
-        return 0
-
-    tree = (options.tree or ROOT / "build" / "mutants" / "tree").resolve()
-    if tree == ROOT and not options.list:
-        parser.error("--tree must be a clone: its sources are changed")
+    names = options.groups or list(GROUPS)
     if options.list:
-        tree = ROOT
-    else:
-        options.results.parent.mkdir(parents=True, exist_ok=True)
-        make_tree(tree)
-    trial = Trial(tree, options.build, options.jobs, options.results.parent / "last.log")
-    for name in options.groups or GROUPS:
-        group = GROUPS[name]
-        everything = [m for m in mutants_of_group(tree, group) if not options.only or options.only in m.path]
-        if options.list:
+        for name in names:
+            everything = [m for m in mutants_of_group(ROOT, GROUPS[name].sources) if not options.only or options.only in m.key]
             print(f"{name}: {len(everything)} changes")
             for m in everything:
                 print(f"  {m.path}:{m.line}: {m.change}    {m.text}")
-            continue
-        known = read_results(options.results)
-        chosen = [m for m in sample(name, everything, options.sample, options.seed) if m.key not in known]
-        if chosen:
-            trial.measure(group.tests)
-        for m in sorted(chosen, key=lambda one: one.path):  # changes of one file follow each other: the rest is compiled already
-            verdict, by = judge(m, tree, group.tests, trial.build, trial.test)
-            row = {"group": name, "key": m.key, "verdict": verdict, "by": by, **dataclasses.asdict(m)}
-            with open(options.results, "a") as file:
-                file.write(json.dumps(row) + "\n")
-            print(f"{verdict:16} {m.path}:{m.line}: {m.change}    {m.text}", flush=True)
-    if options.list:
         return 0
-    results = read_results(options.results)
+    if not options.report:
+        options.results.parent.mkdir(parents=True, exist_ok=True)
+        try_all(names, options)
+    results, notes = read_results(options.results), read_notes(NOTES)
     print(table(results, notes), end="")
-    return 1 if missed(results, notes) else 0
+    return 1 if not options.report and missed(results, notes) else 0
 
 
 if __name__ == "__main__":

@@ -124,6 +124,17 @@ TEST(LinearFirstPiola, MakesStressOutOfARotation)
   EXPECT_GT(stress_at<LinearFirstPiola>(rotation_about(Vec3::UnitZ(), 0.5)).norm(), 0.1 * E);
 }
 
+/// The Kirchhoff stress of a change of size alone is 3 K ln(stretch) in all directions; it is taken off the stiffness along a wave.
+TEST(Hencky, WaveSpeedInCompressionIsStiffnessLessKirchhoffStress)
+{
+  const Hencky law = sample<Hencky>();
+  for (const Real stretch : {0.7, 0.9, 1.0}) {
+    const Real stress = (3 * lambda + 2 * mu) * std::log(stretch),
+               speed = law.wave_speed(Mat3(stretch * Mat3::Identity()), law.constants());
+    EXPECT_NEAR(speed * speed * law.density, std::max(lambda + 2 * mu - stress, mu - 2 * stress), exact * E * 100);
+  }
+}
+
 TEST(ElasticLaws, AgreeForSmallStrains)
 {
   Dice dice(3);

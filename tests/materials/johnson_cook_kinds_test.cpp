@@ -97,6 +97,7 @@ TEST(JohnsonCookRules, ContradictionsAreToldInWords)
             Problems{"melting_temperature 294 is not above room_temperature 294"});
   EXPECT_EQ(problems([](auto& law) { law.initial_temperature = 1400; }),
             Problems{"initial_temperature 1400 is not below melting_temperature 1356: there would be no strength"});
+  EXPECT_EQ(problems([](auto& law) { law.initial_temperature = 1355; }), Problems{});
   EXPECT_EQ(problems([](auto& law) { law.bulk_modulus.reset(), law.poisson_ratio = 0.7; }),
             Problems{"poisson_ratio 0.7 and shear_modulus 4.6e+10 make Poisson's ratio 0.7, which must lie in (-1, 0.5)"});
 }

@@ -180,6 +180,18 @@ TEST(MuI, PlasticWorkIsShearStressTimesPlasticShear)
   EXPECT_NEAR(point.state.plastic_work, work, 1e-4 * work);  // Kirchhoff against Cauchy: J is within 1e-5 of one
 }
 
+/// Of a start stress, which is Kirchhoff stress as well: J is one.
+TEST(MuI, YieldIsShearStressLessTheLimitingFrictionOfThePressure)
+{
+  const MuI law = beads();
+  Mat3 stress = Vec3(-3e3, -5e3, -1e4).asDiagonal();
+  stress(0, 1) = stress(1, 0) = 700;
+  MuI::State state;
+  law.prestress(stress, state);
+  const Real expected = tau_of(stress) - law.limiting_friction * pressure_of(stress);
+  EXPECT_NEAR(law.yield(stress, state), expected, 1e-9 * pressure_of(stress));  // strains of 1e-3 keep 1e-13 of themselves
+}
+
 TEST(MuIRules, ContradictionsAreToldInWords)
 {
   const auto problems = [](auto change) { return testing::problems_of(beads(), change); };
