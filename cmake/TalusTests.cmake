@@ -92,6 +92,7 @@ function(talus_python_tests)
   add_test(NAME read_back COMMAND ${TALUS_PYTHON} ${PROJECT_SOURCE_DIR}/tests/app/read_back.py $<TARGET_FILE:talus>)
   add_test(NAME python.reader COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/python/reader_test.py $<TARGET_FILE:talus>)
   set_tests_properties(read_back python.reader PROPERTIES LABELS unit TIMEOUT 120)
+  set_tests_properties(python.reader PROPERTIES COST 100)   # it takes long: not last, when a core has nothing else to do
 endfunction()
 
 # The package of the programs at hand, looked into and run from where it is unpacked.  Nobody packs programs with sanitizers.
@@ -100,7 +101,7 @@ function(talus_package_test)
     return()
   endif()
   add_test(NAME package.deb COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/package/package_test.py ${CMAKE_CPACK_COMMAND} ${PROJECT_BINARY_DIR})
-  set_tests_properties(package.deb PROPERTIES LABELS package TIMEOUT 120)
+  set_tests_properties(package.deb PROPERTIES LABELS package TIMEOUT 120 COST 100)
 endfunction()
 
 # The schema of scenes, as editors use it.
