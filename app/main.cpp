@@ -18,7 +18,7 @@ constexpr int run_failed = 1, scene_wrong = 2, environment_wrong = 3, run_stoppe
 
 int main(int argc, char** argv)
 {
-  talus::let_waiting_threads_sleep(argv);
+  talus::let_waiting_threads_sleep_soon(argv);
   talus::prepare_process();
   std::optional<talus::Ranks> ranks;
   const auto fail = [&](int code, const char* what) {

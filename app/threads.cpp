@@ -24,7 +24,7 @@ void fit_threads(std::optional<int> asked, const Scene& scene, Index particles)
     set_threads(threads_that_pay(particles / world().size(), threads()));
 }
 
-void let_waiting_threads_sleep(char** arguments) noexcept
+void let_waiting_threads_sleep_soon(char** arguments) noexcept
 {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr || threads() == 1)
     return;
@@ -32,7 +32,7 @@ void let_waiting_threads_sleep(char** arguments) noexcept
   const std::filesystem::path self =
       std::filesystem::read_symlink("/proc/self/exe", unknown);            // by its name, which lists of processes show
   const bool by_the_loader = self.filename().string().starts_with("ld-");  // called by name: it would be what is begun again
-  if (!unknown && !by_the_loader && ::setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+  if (!unknown && !by_the_loader && ::setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
     ::execv(self.c_str(), arguments);
 }
 

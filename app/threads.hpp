@@ -18,10 +18,11 @@ int threads_that_pay(Index particles, int available) noexcept;
 /// is: `asked` on the command line, `threads` of the scene, or OMP_NUM_THREADS.
 void fit_threads(std::optional<int> asked, const Scene& scene, Index particles);
 
-/// Makes threads sleep that wait for others.  OpenMP's let them spin for milliseconds, which on a machine with other work takes the processor
-/// from those that they wait for.  Its library reads the environment when it is loaded, before main(): the program sets OMP_WAIT_POLICY and
-/// begins once more in the same process.  OMP_WAIT_POLICY and GOMP_SPINCOUNT of the user stay as they are.  To be called first in main(); returns
-/// where there is nothing to do, or where the program cannot be begun again.
-void let_waiting_threads_sleep(char** arguments) noexcept;
+/// Makes threads that wait for others sleep soon.  OpenMP's library lets them spin for milliseconds, which on a machine with other work takes the
+/// processor from those that they wait for.  A thousand turns, some ten microseconds, spare most sleeps where there is no other work (docs/speed.md).
+/// The library reads the environment when it is loaded, before main(): the program sets GOMP_SPINCOUNT and begins once more in the same process.
+/// OMP_WAIT_POLICY and GOMP_SPINCOUNT of the user stay as they are.  To be called first in main(); returns where there is nothing to do, or where
+/// the program cannot be begun again.
+void let_waiting_threads_sleep_soon(char** arguments) noexcept;
 
 }  // namespace talus
