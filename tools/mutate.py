@@ -40,6 +40,7 @@ OPTIONS = ("-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1 -DNDEBUG
            "-DTALUS_UNITY=ON", "-DTALUS_QUICK_TESTS=ON")
 LIBRARIES = ("talus_materials", "talus_kernels", "talus_solver", "talus_app")  # a header is seen by its own and those after it
 INTERRUPTED = 130  # exit code of a ninja that was
+QUICK = 100  # ms
 ASKED = 0.9  # share of the changes that the tests have to notice
 
 
@@ -72,6 +73,7 @@ class Tree:
     def __init__(self, folder, jobs):
         self.folder, self.build, self.jobs = folder, folder / "build", jobs
         self.usual = {}  # seconds of the tests when nothing is changed
+        self.quick = {}  # names of those that take next to no time, for --gtest_filter
         self.sound = set()  # what compiles: a change that is taken out does not alter that
         self.environment = {**os.environ, "OMP_WAIT_POLICY": "passive", "OMP_NUM_THREADS": "1"}
 
@@ -128,7 +130,7 @@ class Tree:
         return "" if done.returncode == 0 else done.stdout + done.stderr
 
     def run(self, number, target, chosen, limit):
-        """(whether the tests pass with this change, the first that does not)."""
+        """(whether the tests pass with this change, the first that does not, what they print)."""
         def quietly():
             resource.setrlimit(resource.RLIMIT_AS, (self.most_memory, self.most_memory))
             resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -146,28 +148,30 @@ class Tree:
             log.seek(0)
             said = log.read()
         failed = re.findall(r"^\[  FAILED  \] ([^\s,]+)", said, re.MULTILINE)[:1] or re.findall(r"^\[ RUN      \] (\S+)", said, re.MULTILINE)[-1:]
-        return code == 0, failed[0] if failed else target
+        return code == 0, failed[0] if failed else target, said
 
     def measure(self, tests):
         """The tests as they are have to pass."""
         for target, chosen in tests:
             if (target, chosen) not in self.usual:
                 start = time.monotonic()
-                passed, test = self.run(0, target, chosen, 3600)
+                passed, test, said = self.run(0, target, chosen, 3600)
                 if not passed:
                     sys.exit(f"{target} fails in {self.folder} with nothing changed: {test}")
                 self.usual[target, chosen] = time.monotonic() - start
+                took = re.findall(r"^\[       OK \] ([^\s,]+).*\((\d+) ms\)$", said, re.MULTILINE)
+                self.quick[target, chosen] = [test for test, ms in took if int(ms) <= QUICK]
 
     def limit(self, target, chosen):
         return 20 + 5 * self.usual[target, chosen]
 
 
 def judge(number, tests, tree, first):
-    """Tries until a test fails, beginning with those that caught changes nearby: {target: names}.  (verdict, by which test)."""
+    """Tries until a test fails, beginning with those that caught changes nearby, {target: names}, and quick ones.  (verdict, by which test)."""
     for target, chosen in tests:
         limit = tree.limit(target, chosen)
-        for names in ([":".join(first[target])] if first[target] else []) + [chosen]:
-            passed, test = tree.run(number, target, names, limit)
+        for names in [":".join(some) for some in (first[target], tree.quick[target, chosen]) if some] + [chosen]:
+            passed, test, _ = tree.run(number, target, names, limit)
             if not passed:
                 if test not in first[target]:
                     first[target].append(test)

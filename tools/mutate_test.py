@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 from mutants import mutants_of_group
-from mutate import GROUPS, ROOT, judge, missed, read_notes, table
+from mutate import ALL, GROUPS, ROOT, judge, missed, read_notes, table
 
 
 class Groups(unittest.TestCase):
@@ -20,6 +20,7 @@ class MadeUpTree:
 
     def __init__(self):
         self.asked = []
+        self.quick = {("first", ALL): ["Quick.Holds", "Other.Holds"], ("second", ALL): []}
 
     @staticmethod
     def limit(*_):
@@ -27,11 +28,11 @@ class MadeUpTree:
 
     def run(self, number, target, chosen, _):
         self.asked.append((target, chosen))
-        return (False, "Sum.Holds") if number == 1 and target == "second" else (True, "Other.Holds")
+        return number != 1 or target != "second", "Sum.Holds", ""
 
 
 class Verdicts(unittest.TestCase):
-    TESTS = (("first", "-*Nightly*"), ("second", "-*Nightly*"))
+    TESTS = (("first", ALL), ("second", ALL))
 
     def test_caught_by_the_second_and_first_tried_with_what_caught_before(self):
         tree, first = MadeUpTree(), collections.defaultdict(list)
@@ -39,12 +40,12 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(dict(first), {"first": [], "second": ["Sum.Holds"]})
         tree.asked.clear()
         self.assertEqual(judge(1, self.TESTS, tree, first), ("caught", "second Sum.Holds"))
-        self.assertEqual(tree.asked, [("first", "-*Nightly*"), ("second", "Sum.Holds")])
+        self.assertEqual(tree.asked, [("first", "Quick.Holds:Other.Holds"), ("first", ALL), ("second", "Sum.Holds")])
 
     def test_survived_after_all_tests(self):
         tree = MadeUpTree()
         self.assertEqual(judge(2, self.TESTS, tree, collections.defaultdict(list)), ("survived", ""))
-        self.assertEqual(tree.asked, list(self.TESTS))
+        self.assertEqual(tree.asked, [("first", "Quick.Holds:Other.Holds"), ("first", ALL), ("second", ALL)])
 
 
 class Report(unittest.TestCase):
