@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names, and those of the tutorials then; docs: those of docs/pictures.md.
+# Runs scenes and writes the picture of each: tools/make_pictures.sh [scene ...], all of them without names, and those of the tutorials then; docs: those of pages in docs.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 [ -x build/talus ] || { echo "build/talus is missing: make build" >&2; exit 3; }
@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 render() { build/talus render "runs/$1" --size 900x420 "${@:2}"; }
 
 docs() {
-  for name in slope_failure_2d slope_failure_3d; do
+  for name in slope_failure_2d slope_failure_3d layered_slope; do
     [ -f "runs/$name/summary.json" ] || build/talus run "scenes/$name/scene.yaml" --out "runs/$name"
   done
   render slope_failure_2d --field stress:xy --map coolwarm --window 20 10 70 40 --out docs/images/pictures_window.png
@@ -20,6 +20,10 @@ docs() {
   cp runs/landslide_maps/pictures/map_thickness_max.png docs/images/runout_thickness.png
   build/talus render runs/landslide_maps --size 900x640 --frames 8 --range 0 25 --out docs/images/pictures_ground.png
   render slope_failure_3d --view iso --clip z 5 --outline start --out docs/images/pictures_clip.png
+  build/talus render runs/layered_slope --frames first --field body --mesh edges --no-ground --window 17 6 101 44 --size 1200x560 \
+    --out docs/images/terrain_columns.png
+  build/talus fos benchmarks/factor_of_safety/acads.yaml --from 0.9 --to 1.1 --width 0.025 --out runs/acads_fos
+  cp runs/acads_fos/mechanism.png docs/images/fos_mechanism.png
 }
 
 [ "$*" = docs ] && { docs; exit; }
