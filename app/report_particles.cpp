@@ -19,6 +19,7 @@ struct ShownFrame {
   std::vector<std::int64_t> ids;
   std::vector<std::uint8_t> body;         // empty where there is one
   std::vector<Real> places;               // 3 numbers a particle
+  std::vector<Real> volume;               // m^3, m^2 in 2-D; empty where the file does not have it
   std::vector<std::vector<Real>> fields;  // empty where the file does not have it
 };
 
@@ -40,7 +41,9 @@ ShownFrame read_shown(const RunSurvey& survey, std::size_t frame, const PagePlan
   for (std::size_t p = 0; p < particles.ids.size(); ++p)
     if (is_sampled(particles.ids[p], plan.share))
       rows.push_back(p);
-  ShownFrame shown{chosen_rows(particles.ids, rows, 1), {}, chosen_rows(particles.fields.front().values, rows, 3), {}};
+  ShownFrame shown{chosen_rows(particles.ids, rows, 1), {}, chosen_rows(particles.fields.front().values, rows, 3), {}, {}};
+  if (const StoredField* volume = stored_field(particles, "volume"); volume != nullptr && volume->components == 1)
+    shown.volume = chosen_rows(volume->values, rows, 1);
   if (const StoredField* body = bodies > 1 ? stored_field(particles, "body") : nullptr)
     for (const std::size_t row : rows)
       shown.body.push_back(static_cast<std::uint8_t>(std::clamp<Real>(body->values[row], 0, 255)));
@@ -60,9 +63,9 @@ std::vector<Real> coordinate(const std::vector<Real>& places, std::size_t axis)
 }
 
 /// By how many hundredths of the radius each disc is larger, so that no hole is left between neighbours; empty where none is.
-std::vector<std::uint8_t> growth_of(std::span<const Real> places, Real radius)
+std::vector<std::uint8_t> growth_of(std::span<const Real> places, Real radius, std::span<const Real> spread)
 {
-  const std::vector<Real> radii = closing_radii(places, radius);
+  const std::vector<Real> radii = closing_radii(places, radius, spread);
   if (std::all_of(radii.begin(), radii.end(), [&](Real one) { return one <= radius; }))
     return {};
   std::vector<std::uint8_t> growth;
@@ -95,14 +98,16 @@ class FrameWriter {
       const ValueRange range = of_place ? ValueRange{all.low[axis], all.high[axis]} : ranges_[k - dimension_];
       blocks[k] = packed(quantised(values, range.low, range.high));
     });
-    if (radius_ == 0 && !shown.ids.empty())
+    if (radius_ == 0 && !shown.ids.empty()) {
       radius_ = drawn_radius(shown.places, static_cast<int>(dimension_));
+      spread_ = Spread(shown.ids, shown.volume);
+    }
     PageFrame frame{known.time,
                     static_cast<std::int64_t>(shown.ids.size()),
                     {all.low, all.high, {}},
                     add_ids(shown.ids),
                     add_body(shown.body),
-                    add_growth(shown.places),
+                    add_growth(shown),
                     {}};
     for (std::size_t d = 0; d < dimension_; ++d)
       frame.x.axes.push_back(page_.add(std::move(blocks[d])));
@@ -133,9 +138,9 @@ class FrameWriter {
     }
     return body_block_;
   }
-  std::optional<BlockId> add_growth(const std::vector<Real>& places)
+  std::optional<BlockId> add_growth(const ShownFrame& shown)
   {
-    const auto growth = dimension_ == 2 ? growth_of(places, radius_) : std::vector<std::uint8_t>();
+    const auto growth = dimension_ == 2 ? growth_of(shown.places, radius_, spread_.of(shown.ids)) : std::vector<std::uint8_t>();
     return growth.empty() ? std::nullopt : std::optional(page_.add(packed(growth)));
   }
 
@@ -148,6 +153,7 @@ class FrameWriter {
   std::vector<std::uint8_t> last_body_;
   BlockId id_block_ = 0, body_block_ = 0;
   Real radius_ = 0;
+  Spread spread_;
 };
 
 /// Before anything is known: what irregular meshes in 3-D take.

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <set>
 
 #include "core/parallel.hpp"
 
@@ -131,6 +132,45 @@ std::vector<Real> closing_radii(std::span<const Real> positions, Real radius)
         Real& mine = radii[static_cast<std::size_t>(grid.nearest[place])];
         mine = std::max(mine, static_cast<Real>(grid.distance[place]) + between);
       }
+  }
+  return radii;
+}
+
+Spread::Spread(std::span<const std::int64_t> ids, std::span<const Real> areas)
+{
+  std::vector<Real> sorted(areas.begin(), areas.end());
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  if (sorted.empty() || !(*middle > 0))
+    return;
+  for (std::size_t p = 0; p < areas.size(); ++p)
+    of_id_.emplace(ids[p], std::sqrt(std::max(Real{0}, areas[p]) / *middle));
+}
+
+std::vector<Real> Spread::of(std::span<const std::int64_t> ids) const
+{
+  std::vector<Real> spread;
+  spread.reserve(ids.size());
+  for (const std::int64_t id : ids) {
+    const auto known = of_id_.find(id);
+    spread.push_back(known == of_id_.end() ? 1 : known->second);
+  }
+  return spread;
+}
+
+std::vector<Real> closing_radii(std::span<const Real> positions, Real radius, std::span<const Real> spread)
+{
+  constexpr Real levels_a_doubling = 2;  // radii up to a fifth too large or too small leave no hole
+  std::vector<Real> radii(positions.size() / 3, radius);
+  std::vector<long> levels(radii.size(), 0);
+  for (std::size_t p = 0; p < levels.size(); ++p)
+    if (spread[p] > 1)
+      levels[p] = std::lround(levels_a_doubling * std::log2(spread[p]));
+  for (const long level : std::set<long>(levels.begin(), levels.end())) {
+    const std::vector<Real> closing = closing_radii(positions, radius * std::exp2(static_cast<Real>(level) / levels_a_doubling));
+    for (std::size_t p = 0; p < levels.size(); ++p)
+      if (levels[p] == level)
+        radii[p] = closing[p];
   }
   return radii;
 }

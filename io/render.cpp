@@ -81,9 +81,11 @@ Cloud clipped(Cloud cloud, const Plane& plane)
   for (std::size_t p = 0; p < cloud.x.size(); ++p)
     if (plane.normal.dot(cloud.x[p]) <= plane.offset) {
       cloud.x[kept] = cloud.x[p];
+      cloud.ids[kept] = cloud.ids[p];
       cloud.value[kept++] = cloud.value[p];
     }
   cloud.x.resize(kept);
+  cloud.ids.resize(kept);
   cloud.value.resize(kept);
   return cloud;
 }
@@ -121,6 +123,8 @@ Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& f
   picture.title = settings.title;
   picture.scale = {settings.map, range_of(settings, series, last), settings.log};
   picture.radius = settings.radius.value_or(drawn_radius(numbers_of(first.x), facts.dimension));
+  if (facts.dimension == 2)
+    picture.spread = Spread(first.ids, first.volume);
   std::vector<Vec3> shape = first.x;
   shape.insert(shape.end(), last.x.begin(), last.x.end());
   if (const auto frames = chosen(settings.frames, series.size()); frames.size() == 1)

@@ -63,8 +63,8 @@ vtkSmartPointer<vtkPolyData> coloured(const Picture& picture, const Cloud& cloud
   auto data = vtkSmartPointer<vtkPolyData>::New();
   data->SetPoints(points);
   data->GetPointData()->SetScalars(colours);
-  const std::vector<Real> radii =
-      picture.dimension == 2 ? closing_radii(numbers_of(cloud.x), picture.radius) : std::vector<Real>(cloud.x.size(), picture.radius);
+  const std::vector<Real> radii = picture.dimension == 2 ? closing_radii(numbers_of(cloud.x), picture.radius, picture.spread.of(cloud.ids))
+                                                         : std::vector<Real>(cloud.x.size(), picture.radius);
   vtkNew<vtkDoubleArray> widths;
   widths->SetName(radius_name);
   for (const Real radius : radii)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/spacing.hpp"
 #include "io/render_camera.hpp"
 #include "io/render_colours.hpp"
 #include "io/render_data.hpp"
@@ -19,6 +20,7 @@ struct Picture {
   Camera camera;
   int dimension{};
   Real radius{};  ///< m, of a particle as drawn
+  Spread spread;  ///< of the particles in 2-D
   Scale scale;
   Lines mesh;                         ///< behind the particles, or around them
   MeshLines mesh_lines{};             ///< what those are: edges lie over the particles in 2-D

@@ -118,7 +118,11 @@ Cloud read_cloud(const fs::path& file, const std::optional<std::string>& field)
   const StoredParticles particles = read_particles(file);
   const auto viewed = ViewedField::of(field ? *field : default_field(field_names(particles)));
   const StoredField shown = find_field(particles, viewed.name, file);
-  return {points_of(particles.fields.front().values), values_of(shown, viewed), viewed.label(shown.components), shown.unit};
+  Cloud cloud{points_of(particles.fields.front().values), values_of(shown, viewed), viewed.label(shown.components), shown.unit,
+              particles.ids};
+  if (const StoredField* volume = field_called(particles, "volume"); volume != nullptr && volume->components == 1)
+    cloud.volume = volume->values;
+  return cloud;
 }
 
 Lines read_mesh_lines(const fs::path& folder, MeshLines which)

@@ -1,6 +1,7 @@
 #pragma once
 // What a picture is made of, read back from the result files: particles with one number each, and lines of the mesh.
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -29,6 +30,8 @@ struct Cloud {
   std::vector<Vec3> x;      ///< m
   std::vector<Real> value;  ///< one per particle, in SI units
   std::string label, unit;  ///< of the values; empty where the file says nothing
+  std::vector<std::int64_t> ids;
+  std::vector<Real> volume = {};  ///< m^3, m^2 in 2-D; empty where the file has none
 };
 
 struct Lines {

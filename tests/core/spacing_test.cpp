@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace talus::spacing_test {
 
@@ -72,6 +73,44 @@ TEST(ClosingRadii, DisksThatTouchStayAsTheyAreAndVoidsStayOpen)
   EXPECT_EQ(closing_radii(ring, 0.5), std::vector<Real>(24, 0.5)) << "its inside is five radii wide";
   EXPECT_EQ(closing_radii(lattice(2, 10), 0.5), std::vector<Real>(4, 0.5)) << "apart";
   EXPECT_TRUE(closing_radii({}, 1).empty());
+}
+
+TEST(ClosingRadii, HolesOfCoarseCellsAreClosedAndVoidsOfFineOnesStayOpen)
+{
+  std::vector<Real> points, areas;
+  std::vector<std::int64_t> ids;
+  const auto add = [&](Real x, Real y, Real area) {
+    points.insert(points.end(), {x, y, 0});
+    areas.push_back(area);
+    ids.push_back(static_cast<std::int64_t>(100 + 2 * ids.size()));
+  };
+  for (int i = 0; i < 12; ++i)  // distances of 1, and a void 4 wide: they are the most
+    for (int j = 0; j < 12; ++j)
+      if (!(i > 3 && i < 7 && j > 3 && j < 7))
+        add(i, j, 1);
+  for (int i = 0; i < 5;
+       ++i)  // and far from them distances of 3: the middle of each square is 2.12 away, which 2.2 times 0.85 does not reach
+    for (int j = 0; j < 5; ++j)
+      add(40 + 3 * i, 3 * j, 9);
+  constexpr Real radius = 0.85;
+  const std::vector<Real> radii = closing_radii(points, radius, Spread(ids, areas).of(ids));
+  for (Real x = 40; x <= 52; x += 0.0971)
+    for (Real y = 0; y <= 12; y += 0.0971)
+      ASSERT_TRUE(is_covered(x, y, points, radii)) << x << " " << y;
+  EXPECT_FALSE(is_covered(5, 5, points, radii));
+  for (std::size_t p = 0; p < radii.size(); ++p)
+    EXPECT_LE(radii[p], areas[p] > 1 ? 1.2 * 3 * radius : radius) << p;
+  EXPECT_FALSE(is_covered(41.5, 1.5, points, closing_radii(points, radius)));
+  EXPECT_EQ(closing_radii(points, radius, std::vector<Real>(ids.size(), 1)), closing_radii(points, radius)) << "no spread";
+  EXPECT_EQ(closing_radii(points, radius, std::vector<Real>(ids.size(), 0.2)), closing_radii(points, radius)) << "radii never shrink";
+}
+
+TEST(Spread, IsTheRootOfTheAreaOverTheMedianAndOneForWhatWasNotThere)
+{
+  const Spread spread(std::vector<std::int64_t>{7, 3, 9, 4, 1}, std::vector<Real>{1, 4, 4, 36, 4});
+  EXPECT_EQ(spread.of(std::vector<std::int64_t>{4, 2, 7, 3}), (std::vector<Real>{3, 1, 0.5, 1}));
+  EXPECT_EQ(Spread().of(std::vector<std::int64_t>{4}), std::vector<Real>{1});
+  EXPECT_EQ(Spread(std::vector<std::int64_t>{4}, {}).of(std::vector<std::int64_t>{4}), std::vector<Real>{1}) << "a file without volumes";
 }
 
 }  // namespace
