@@ -7,7 +7,7 @@ namespace talus {
 Real EnergyNow::largest_term() const noexcept
 {
   Real largest = 0;
-  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls, waves, before})
+  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls, waves, size})
     largest = std::max(largest, std::abs(term));
   return largest;
 }
@@ -51,7 +51,6 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
   if (moment == Moment::stage_begins) {
     if (!begun_) {
       kinetic_begin_ = totals(frame).kinetic;
-      before_all_ = frame.energy.largest_before;
       plastic_begin_ = frame.energy.plastic_start;
       start_ = momentum_of(frame);
     } else {
@@ -93,7 +92,7 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
   now.loads = before_.loads + e.loads;
   now.walls = before_.walls + e.walls;
   now.waves = before_.waves + e.waves;
-  now.before = before_all_;
+  now.size = e.largest_seen;
   now.transfer = transfer_before_ + e.transfer(now.kinetic + taken_out_);
   now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction -
                now.damping - now.carried_away - now.transfer;

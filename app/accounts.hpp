@@ -15,7 +15,7 @@ struct EnergyNow {
   Real waves{};     ///< that waves brought to the walls: no term of the balance, but what is small beside it is small
   Real transfer{};  ///< lost between particles and nodes
   Real defect{};    ///< what the terms above leave unexplained
-  Real before{};    ///< largest term of what went before: errors are measured by it, too
+  Real size{};      ///< largest of these terms at any time up to now, and not less than what is judged: errors are measured by it
 
   static constexpr auto fields()
   {
@@ -32,7 +32,7 @@ struct EnergyNow {
                       kept("waves", &EnergyNow::waves),
                       kept("transfer", &EnergyNow::transfer),
                       kept("defect", &EnergyNow::defect),
-                      kept("before", &EnergyNow::before)};
+                      kept("size", &EnergyNow::size)};
   }
 
   Real dissipated() const noexcept { return plastic + friction + damping; }
@@ -84,7 +84,6 @@ class Accounts {
                       kept("taken_out_before", &Accounts::taken_out_before_),
                       kept("stage", &Accounts::stage_),
                       kept("begun", &Accounts::begun_),
-                      kept("before_all", &Accounts::before_all_),
                       kept("start", &Accounts::start_)};
   }
 
@@ -95,8 +94,7 @@ class Accounts {
   Real taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;
   bool begun_ = false;
-  Real before_all_ = 0;  // largest term of the run whose state this one began with
-  Push<D> start_;        // momentum at the start of the run
+  Push<D> start_;  // momentum at the start of the run
 };
 
 extern template struct MomentumNow<2>;

@@ -3,6 +3,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "app/failed_accounts.hpp"
 #include "app/move_rule.hpp"
 #include "app/simulate.hpp"
 #include "core/exchange.hpp"
@@ -70,6 +71,7 @@ Model<D, K> build(const Scene& scene, Part<D> part, Setup<D> setup)
   m.guards = setup.guards;
   m.clock.lag = setup.lag;
   m.energy.largest_before = setup.largest_before;
+  m.energy.largest_seen = m.guards.least_energy * least_energy_factor;
   make_ready(m, setup.laws);
   return std::move(m);
 }

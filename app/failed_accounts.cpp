@@ -56,9 +56,9 @@ std::vector<std::string> failed_accounts(const RunSummary& summary, Real least_e
         fmt::format("particles and nodes lost {:.3g} of the angular momentum between them (transfer_loss), more than {:.2g}: bodies "
                     "turn as the mesh allows; compare with cells half as large",
                     summary.angular_momentum->transfer_share, most_angular_loss));
+  judge("energy", summary.energy);
   if (!summary.energy || largest_term(*summary.energy) < least_energy)
     return failed;
-  judge("energy", summary.energy);
   if (const std::string what = transfer_loss(*summary.energy); !what.empty())
     failed.push_back(what);
   return failed;

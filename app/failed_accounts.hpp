@@ -19,8 +19,8 @@ inline constexpr Real least_strain_judged = 1e-4;
 /// Its energy over that below which gains are round-off (Guards::least_energy, of a strain of 1e-6).
 inline constexpr Real least_energy_factor = (least_strain_judged / 1e-6) * (least_strain_judged / 1e-6);
 
-/// In words, one entry each: balances that do not close, and transfer losses beyond those above.  Empty if all is well.  Energy is
-/// judged if one of its terms is more than `least_energy` [J].
+/// In words, one entry each: balances that do not close, and transfer losses beyond those above.  Empty if all is well.  The loss of
+/// energy is judged if one of the terms is more than `least_energy` [J].
 std::vector<std::string> failed_accounts(const RunSummary& summary, Real least_energy);
 
 }  // namespace talus

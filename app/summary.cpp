@@ -30,7 +30,7 @@ EnergyNow balance_of(const StageResult& stage)
   now.gravity = e.gravity;
   now.loads = e.loads;
   now.walls = e.walls;
-  now.before = e.largest_before;
+  now.size = e.largest_seen;
   now.transfer = e.transfer(stage.kinetic_end);
   now.defect = e.defect(stage.kinetic_end);
   return now;

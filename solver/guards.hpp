@@ -66,6 +66,7 @@ std::optional<std::string> fault(Model<D, K>& m, Look look)
     return std::nullopt;
 
   const Totals<D> now = totals(m);
+  m.energy.largest_seen = std::max(m.energy.largest_seen, m.energy.largest_term(now.kinetic));
   const Real there = m.mass.due();
   const Real lost = std::max(std::abs(now.mass - there), std::abs(m.mass.on_nodes - there)) / (m.mass.start + m.mass.placed);
   seen.mass = std::max(seen.mass, lost);

@@ -27,6 +27,7 @@ struct EnergyLedger {
   Real carried_away{};                    ///< kinetic energy of the particles that were deleted
   Real plastic_deleted{};                 ///< plastic work that they had behind them
   Real largest_before{};                  ///< largest term of the stages before
+  Real largest_seen{};                    ///< largest term at any time up to now, and not less than what is judged: the size of the balance
   Real internal_ahead{}, loads_ahead{};   ///< of `internal`, and of `loads` on particles: done after the time of the velocities
   static constexpr auto fields()
   {
@@ -46,6 +47,7 @@ struct EnergyLedger {
                       kept("carried_away", &EnergyLedger::carried_away),
                       kept("plastic_deleted", &EnergyLedger::plastic_deleted),
                       kept("largest_before", &EnergyLedger::largest_before),
+                      kept("largest_seen", &EnergyLedger::largest_seen),
                       kept("internal_ahead", &EnergyLedger::internal_ahead),
                       kept("loads_ahead", &EnergyLedger::loads_ahead)};
   }

@@ -139,7 +139,8 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
               .internal = m.energy.internal_ahead,
               .kinetic_start = kinetic,
               .plastic_start = plastic_work(m),
-              .largest_before = m.energy.largest_term(kinetic)};
+              .largest_before = m.energy.largest_term(kinetic),
+              .largest_seen = std::max(m.energy.largest_seen, m.energy.largest_term(kinetic))};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
   ExactSums<Push<D>> total;
   apply(m.loads, time, m.stage.ramp(time), m.followed, m.order, m.particles, total);
