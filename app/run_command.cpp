@@ -69,7 +69,7 @@ class Run {
     auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
     watch_.lap(mesh_seconds_);
     auto setup = set_up(scene_, mesh, world());
-    fit_threads(options_.threads, scene_, setup.n_particles);
+    thread_choice_ = fit_threads(options_.threads, scene_, setup.n_particles);
     if (quick_)
       shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
     stages_ = setup.stages;
@@ -91,10 +91,18 @@ class Run {
       whole_ = mesh;
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
+    StopWatch of_step;
     Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
+                           Real seconds = 0;
+                           of_step.lap(seconds);
+                           if (moment == Moment::step_done)
+                             thread_choice_.took(seconds);
                            recorder.watch(frame, moment);
-                           if (moment == Moment::step_begins)
+                           if (moment == Moment::step_begins) {
                              checkpoints.see(frame, recorder);
+                             set_threads(thread_choice_.next());
+                             of_step = {};
+                           }
                            if (moment == Moment::given_up)
                              checkpoints.write(frame, recorder);
                          },
@@ -389,6 +397,7 @@ class Run {
     Real steps = 0;
     watch_.lap(steps);
     RunSummary summary = summary_;
+    summary.threads = thread_choice_.kept();
     summary.status = status;
     summary.message = message;
     summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
@@ -426,6 +435,7 @@ class Run {
   std::vector<std::string> edits_;  // of the scene of a run that goes on; on the root
   RunSummary summary_;              // as it begins
   std::vector<std::string> failed_accounts_;
+  ThreadChoice thread_choice_;
   Real least_energy_ = 0;            // of a balance that is judged [J]
   std::optional<fs::path> initial_;  // what bodies begin with
   bool began_ = false;               // the folder is this run's

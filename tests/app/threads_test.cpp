@@ -1,6 +1,8 @@
 // Threads: how many a run takes, and that they do not spin for long.
 #include "app/threads.hpp"
 
+#include <algorithm>
+
 #include "core/parallel.hpp"
 #include "tests/app/program.hpp"
 
@@ -20,6 +22,55 @@ TEST(Threads, NeverMoreThanThereAre)
   EXPECT_EQ(threads_that_pay(1'000'000'000, 8), 8);
   EXPECT_EQ(threads_that_pay(1'000'000'000, 1), 1);
   EXPECT_EQ(threads_that_pay(1'000'000'000, 0), 1);
+}
+
+/// The numbers that a choice has after each of so many steps, which take as long as f(threads) says.
+template <class F>
+std::vector<int> kept_by(ThreadChoice choice, int steps, F&& f)
+{
+  std::vector<int> kept;
+  for (int step = 0; step < steps; ++step) {
+    choice.took(f(choice.next(), step));
+    kept.push_back(choice.kept());
+  }
+  return kept;
+}
+
+TEST(ThreadChoice, KeepsTheNumberWithWhichStepsTakeTheLeastTime)
+{
+  const auto sooner_with_more = [](int threads, int) { return 1.0 / threads; };
+  const auto sooner_with_fewer = [](int threads, int) { return 1.0 * threads; };
+  EXPECT_EQ(kept_by(ThreadChoice(1, 1, 8), 1000, sooner_with_more).back(), 8);
+  EXPECT_EQ(kept_by(ThreadChoice(8, 1, 8), 1000, sooner_with_fewer).back(), 1);
+  EXPECT_EQ(kept_by(ThreadChoice(3, 1, 8), 1000, [](int threads, int) { return threads == 3 ? 0.95 : 1; }).back(), 3);
+  EXPECT_EQ(kept_by(ThreadChoice(3, 3, 3), 1000, sooner_with_more).back(), 3);
+}
+
+TEST(ThreadChoice, FollowsWhatElseTheMachineDoes)
+{
+  const auto kept = kept_by(ThreadChoice(1, 1, 2), 1500, [](int threads, int step) {
+    return (step < 700) == (threads == 2) ? 1 : 1.5;  // free cores at first, busy ones later
+  });
+  EXPECT_EQ(kept[600], 2);
+  EXPECT_EQ(kept[1400], 1);
+}
+
+TEST(ThreadChoice, TriesOthersOnlyNowAndThen)
+{
+  ThreadChoice choice(1, 1, 2);
+  int others = 0;
+  for (int step = 0; step < 10'000; ++step) {
+    others += choice.next() == 2 ? 1 : 0;
+    choice.took(choice.next());
+  }
+  EXPECT_GT(others, 0);
+  EXPECT_LT(others, 200);
+}
+
+TEST(ThreadChoice, OneStepThatTakesLongDecidesNothing)
+{
+  const auto kept = kept_by(ThreadChoice(1, 1, 2), 1000, [](int threads, int step) { return step % 7 == 0 ? 100.0 : threads; });
+  EXPECT_EQ(*std::max_element(kept.begin(), kept.end()), 1);
 }
 
 class ThreadsOfRuns : public Program {
