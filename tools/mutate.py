@@ -52,8 +52,8 @@ class Group:
 
 
 ALL = "-*Nightly*"
-# What only shows in whole runs: conservation, walls, loads, stages and restarts of small scenes.
-OF_THE_PROGRAM = "Run.*:Stages.*:Restart.*-*Nightly*"
+# What only shows in whole runs: conservation, walls, loads, stages and restarts of small scenes; and the accounts of a run by hand.
+OF_THE_PROGRAM = "AccountsByHand.*:Run.*:Stages.*:Restart.*-*Nightly*"
 GROUPS = {
     "laws": Group(("materials/*.cpp", "materials/*.hpp"), (("talus_materials_tests", ALL),)),
     "kernels": Group(("kernels/*.cpp", "kernels/*.hpp"), (("talus_kernels_tests", ALL), ("talus_solver_tests", ALL))),
