@@ -60,7 +60,7 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
 {
   Scene s;
   s.now(2, 10);
-  s.m.energy = {.kinetic_start = 4, .plastic_start = 10, .largest_before = 12345};
+  s.m.energy = {.kinetic_start = 4, .plastic_start = 10, .largest_seen = 12345};
   s.see(Moment::stage_begins);
   book_terms(s.m.energy, 1);
   s.now(3, 14);
@@ -75,7 +75,7 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
   EXPECT_EQ(first.damping, 30 + 50) << "with what the stage took out at its end";
   const Real transfer_of_first = 5000 - 200 - (9 + 50 - 4 + 7);
   EXPECT_EQ(first.transfer, transfer_of_first);
-  EXPECT_EQ(first.before, 12345);
+  EXPECT_EQ(first.size, 12345);
   expect_balance(first);
 
   s.m.energy = {.kinetic_start = 9 + 6, .plastic_start = 14 - 3};  // what came brought 6 J, what went had dissipated 3 J
@@ -86,7 +86,7 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
   s.see(Moment::stage_done);
   const Real transfer_of_second = 2 * (5000 - 200) - (16 + 500 - 15 + 2 * 7);
 
-  s.m.energy = {.kinetic_start = 16 - 5, .plastic_start = 22 + 8};  // 5 J went; what came had dissipated 8 J
+  s.m.energy = {.kinetic_start = 16 - 5, .plastic_start = 22 + 8, .largest_seen = 23456};  // 5 J went; what came had dissipated 8 J
   s.see(Moment::stage_begins);
   book_terms(s.m.energy, 4);
   s.m.energy.internal_ahead = 600, s.m.energy.loads_ahead = 6;
@@ -105,7 +105,7 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
   EXPECT_EQ(third.plastic, 34 - 10 + 490 + 3 - 8);
   EXPECT_EQ(third.strain, 280000 - 600 - third.plastic);
   EXPECT_EQ(third.transfer, transfer_of_first + transfer_of_second + 4 * (5000 - 200) - (25 - 11 + 28));
-  EXPECT_EQ(third.before, 12345);
+  EXPECT_EQ(third.size, 23456);
   expect_balance(third);
 }
 
@@ -120,7 +120,7 @@ TEST(AccountsByHand, MeasureByTheTermOfTheGreatestModulus)
 {
   for (Real EnergyNow::*term :
        {&EnergyNow::kinetic_start, &EnergyNow::kinetic, &EnergyNow::strain, &EnergyNow::plastic, &EnergyNow::friction, &EnergyNow::damping,
-        &EnergyNow::carried_away, &EnergyNow::gravity, &EnergyNow::loads, &EnergyNow::walls, &EnergyNow::waves, &EnergyNow::before}) {
+        &EnergyNow::carried_away, &EnergyNow::gravity, &EnergyNow::loads, &EnergyNow::walls, &EnergyNow::waves, &EnergyNow::size}) {
     EnergyNow e;
     e.kinetic = 3, e.gravity = -5;
     e.*term = -8;
