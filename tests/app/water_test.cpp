@@ -187,7 +187,8 @@ TEST_F(WaterRun, UndrainedBodiesKeepTotalStressAndSuctionIsLimited)
 TEST_F(WaterRun, K0IsOfABodyOfItsDepthOrOfItsFriction)
 {
   const auto ratios = [&](const std::string& rule) {
-    run_well("column", {.stages = "{type: geostatic, duration: 2, residual: 0.5, initial_stress: {" + rule + "}}"});
+    // Ended after some steps, in the midst of its first swing, the run would leave more of its energy open than it may.
+    run_well("column", {.stages = "{type: geostatic, duration: 2, residual: 0.05, initial_stress: {" + rule + "}}"});
     const Seen seen = at_begin("column");
     std::vector<std::array<Real, 2>> by_depth;
     for (std::size_t p = 0; p < seen.size(); ++p)
