@@ -365,6 +365,7 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
     std::vector<std::string> faults;
     find_faults(state.clock, faults);
     find_faults(state.stage, state.clock, faults);
+    find_faults(state.energy, faults);
     find_faults(state.particles, state.bodies, state.materials, faults);
     refuse_if_any(faults);
     recall(arrays, "recorder", recorder);
@@ -396,6 +397,7 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
       recall_slice(arrays, 0, 1, kept.bodies, kept.materials, kept.particles);
       std::vector<std::string> faults;
       find_faults(kept.clock, faults);
+      find_faults(kept.energy, faults);
       find_faults(kept.particles, kept.bodies, kept.materials, faults);
       refuse_if_any(faults);
     });

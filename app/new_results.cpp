@@ -8,6 +8,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <new>
 #include <vector>
 
 #include "app/shell_words.hpp"
@@ -186,11 +187,14 @@ NewResults::~NewResults()
 
 void NewResults::leave_as_it_was() const noexcept
 {
-  std::error_code stays;
-  fs::remove_all(staging_, stays);
-  fs::remove(folder_ / own_folder, stays);  // unless there is a list in it
-  if (made_)
-    fs::remove(folder_, stays);
+  try {
+    std::error_code stays;
+    fs::remove_all(staging_, stays);
+    fs::remove(folder_ / own_folder, stays);  // unless there is a list in it
+    if (made_)
+      fs::remove(folder_, stays);
+  } catch (const std::bad_alloc&) {  // the first error is the one to report; the next run removes what is left
+  }
 }
 
 FolderLock NewResults::commit()

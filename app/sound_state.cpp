@@ -109,6 +109,14 @@ void find_faults(const StageState& stage, const Clock& now, std::vector<std::str
                                  stage.begin, now.step, now.time));
 }
 
+void find_faults(const EnergyLedger& energy, std::vector<std::string>& faults)
+{
+  for_each_field<EnergyLedger>([&](const auto& field) {
+    if (const Real value = energy.*field.member; !std::isfinite(value))
+      faults.push_back(fmt::format("energy/{} is {} J", field.key, value));
+  });
+}
+
 template <int D>
 void find_faults(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
                  std::vector<std::string>& faults)

@@ -11,6 +11,8 @@ namespace talus {
 /// Adds to `faults`, in words, what no sound run has.
 void find_faults(const Clock& clock, std::vector<std::string>& faults);
 void find_faults(const StageState& stage, const Clock& now, std::vector<std::string>& faults);
+/// Errors are measured by the largest of these.
+void find_faults(const EnergyLedger& energy, std::vector<std::string>& faults);
 /// Of each fault the first particle.  Bodies, histories and the rows of columns fit together.
 template <int D>
 void find_faults(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,

@@ -25,7 +25,7 @@ inline Real drawn_radius(std::span<const Real> positions, int dimension)
 /// `positions`: 3 numbers a point.
 std::vector<Real> closing_radii(std::span<const Real> positions, Real radius);
 
-/// How many times as far apart as usual neighbours of each particle are, where cells are not of one size.  It is told of the first frame only:
+/// How many times as far apart as usual neighbours of each particle are, where cells are not of one size.  It is made from the first frame only:
 /// areas grow where matter comes apart, and what has come apart must not be drawn as if it were whole.
 class Spread {
  public:

@@ -183,6 +183,7 @@ void ArrayWriter::close()
 
 void write_arrays(Exchange& ranks, const fs::path& file, std::span<const SharedArray> shared, const std::function<void(ArrayWriter&)>& rest)
 {
+  const LibraryCall at_work("HDF5", "writing", file.native());  // it is asked about types for the digests too
   // Digests first: the root lays out the file with them, and then everyone knows where its rows go.
   const auto shape_of = [](const SharedArray& array) {
     return Extents{static_cast<hsize_t>(array.slice.of_all), static_cast<hsize_t>(array.columns)};
@@ -200,7 +201,6 @@ void write_arrays(Exchange& ranks, const fs::path& file, std::span<const SharedA
   const auto of_rank = gather_rows<std::uint64_t>(ranks, mine);
   std::vector<std::uint64_t> places;
   const auto lay_out = [&](const fs::path& temporary) {
-    const LibraryCall at_work("HDF5", "writing", file.native());
     ArrayWriter writer(temporary);
     rest(writer);
     std::vector<std::size_t> read(of_rank.size(), 0);  // of each rank

@@ -181,7 +181,7 @@ end_all() {
   done
 }
 
-# Until the job has ended, and with it those that end before. What a job says is told as a whole at its end. If one ends badly, all do.
+# Until the job has ended, and with it those that end before. The output of a job is printed as a whole at its end. If one ends badly, all do.
 await() { # name of the job
   local name status
   while [ -n "${sessions[$1]-}" ]; do
@@ -194,7 +194,7 @@ await() { # name of the job
   done
 }
 
-# The lints and what is told in the documentation run beside what compiles and what computes long: there are cores to spare at the end of each.
+# The lints, the documentation and its tutorials run beside what compiles and what computes long: there are cores to spare at the end of each.
 run_all() {
   local pipe
   pipe=$(mktemp -u)

@@ -221,6 +221,7 @@ TEST_F(Checkpoint, OfAnUnsoundStateIsRefused)
                             {"clock/dt", nan, "clock/dt is nan s"},
                             {"clock/lag", -1, "clock/lag is -1 s, not a time from 0 on"},
                             {"stage/begin", nan, "stage/begin is nan s"},
+                            {"energy/largest_seen", infinity, "energy/largest_seen is inf J"},
                             {"stage/begin", 1, "the stage began at step 0, t = 1 s, and the state is of step "},
                             {"particles/id", 0, "there is more than one particle "},
                             {"particles/position", nan, "at (nan, "},

@@ -1,7 +1,7 @@
 // Walls that give way: what a dashpot and the ground beside do to a node in one step, by the equations of give_way.
 #include <gtest/gtest.h>
 
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/nodes_in_a_square.hpp"
 
 namespace talus::testing::giving_walls_test {
 namespace {
@@ -26,33 +26,8 @@ Wall<2> wall(WallKind kind, const std::string& name)
 }
 
 /// A square of two by two cells, 2 m wide, of which one node moves at a time.
-struct Ground {
-  Mesh<2> mesh{box<2>(Vec<2>::Zero(), {2, 2}, {2, 2})};
-  Walls<2> walls;
-  Nodes<2> nodes;
-  ExactSums<WallWork> work;
-
-  Ground()
-  {
-    nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
-    nodes.motion.resize(nodes.sum.size());
-    nodes.active.assign(nodes.sum.size(), 0);
-    nodes.kick = 0.25;
-  }
-  std::size_t node(const Vec<2>& place) const
-  {
-    for (Index n = 0; n < mesh.n_nodes(); ++n)
-      if ((mesh.node(n) - place).norm() < 1e-9)
-        return static_cast<std::size_t>(n);
-    throw std::logic_error("no node there");
-  }
-  NodeMotion<2>& set(const Vec<2>& place, Real mass, const NodeMotion<2>& motion)
-  {
-    const std::size_t n = node(place);
-    nodes.active[n] = 1;
-    nodes.sum[n].mass = mass;
-    return nodes.motion[n] = motion;
-  }
+struct Ground : NodesInASquare {
+  Ground() : NodesInASquare(2, 0.25) {}
   Shaking& shaking() { return walls.*std::get<1>(Walls<2>::fields()).member; }
   Wall<2> compliant() const
   {

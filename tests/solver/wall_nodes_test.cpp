@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/nodes_in_a_square.hpp"
 
 namespace talus::testing::wall_nodes_test {
 namespace {
@@ -21,21 +21,10 @@ Wall<2> wall(WallKind kind, const Vec<2>& velocity = Vec<2>::Zero(), Real fricti
 }
 
 /// The unit square in two by two, with walls on its sides; one node has a mass of its own and moves.
-struct Square {
+struct Square : NodesInASquare {
   static constexpr Real mass = 2;
   static constexpr Kick kick{0.2, 0.6};
-  Mesh<2> mesh{box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {2, 2})};
-  Walls<2> walls;
-  Nodes<2> nodes;
-  ExactSums<WallWork> work;
-
-  Square()
-  {
-    nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
-    nodes.motion.resize(nodes.sum.size());
-    nodes.active.assign(nodes.sum.size(), 0);
-    nodes.kick = kick.length();
-  }
+  Square() : NodesInASquare(1, kick.length()) {}
   void hold(const std::string& side, const Wall<2>& w)
   {
     if (w.kind == WallKind::fixed || w.kind == WallKind::velocity)
@@ -43,23 +32,13 @@ struct Square {
     else
       walls.add(w, mesh, *mesh.facet_set(side));
   }
-  std::size_t node(const Vec<2>& place) const
-  {
-    for (Index n = 0; n < mesh.n_nodes(); ++n)
-      if ((mesh.node(n) - place).norm() < 1e-9)
-        return static_cast<std::size_t>(n);
-    throw std::logic_error("no node there");
-  }
   /// The motion of a node that came with v - change, went on with v, and then met the walls.
   NodeMotion<2> meet(const Vec<2>& place, const Vec<2>& v, const Vec<2>& change)
   {
-    const std::size_t n = node(place);
-    nodes.active[n] = 1;
-    nodes.sum[n].mass = mass;
-    nodes.motion[n] = {v, change};
+    const NodeMotion<2>& motion = set(place, mass, {v, change});
     walls.apply(kick, nodes, work);
     walls.keep_impulses();
-    return nodes.motion[n];
+    return motion;
   }
   const Wall<2>& first() const { return walls.walls().front(); }
 };

@@ -1,0 +1,39 @@
+#pragma once
+// A small square of nodes that walls act on, of which single ones take part: shared by the tests of walls.
+#include <stdexcept>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::testing {
+
+/// Two by two cells; no node is active until a test gives it a mass and a motion.
+struct NodesInASquare {
+  Mesh<2> mesh;
+  Walls<2> walls;
+  Nodes<2> nodes;
+  ExactSums<WallWork> work;
+
+  NodesInASquare(Real side, Real kick) : mesh(box<2>(Vec<2>::Zero(), {side, side}, {2, 2}))
+  {
+    nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+    nodes.motion.resize(nodes.sum.size());
+    nodes.active.assign(nodes.sum.size(), 0);
+    nodes.kick = kick;
+  }
+  std::size_t node(const Vec<2>& place) const
+  {
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      if ((mesh.node(n) - place).norm() < 1e-9)
+        return static_cast<std::size_t>(n);
+    throw std::logic_error("no node there");
+  }
+  NodeMotion<2>& set(const Vec<2>& place, Real mass, const NodeMotion<2>& motion)
+  {
+    const std::size_t n = node(place);
+    nodes.active[n] = 1;
+    nodes.sum[n].mass = mass;
+    return nodes.motion[n] = motion;
+  }
+};
+
+}  // namespace talus::testing
