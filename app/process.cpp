@@ -65,16 +65,33 @@ extern "C" void at_exit(int, void*)
     end_in_library();
 }
 
+volatile std::sig_atomic_t memory_ran_out = 0;
+
+[[noreturn]] void at_lack_of_memory()
+{
+  memory_ran_out = 1;
+  throw std::bad_alloc();
+}
+
+[[noreturn]] void end_without_memory() noexcept
+{
+  write_error("error: not enough memory\n");
+  ::_exit(environment_wrong);
+}
+
+/// Where the exception leaves a function of a library that promises to throw none, as some of libstdc++'s for folders do, it is on its way and is
+/// not the current one.
 [[noreturn]] void at_terminate()
 {
   if (const std::exception_ptr error = std::current_exception())
     try {
       std::rethrow_exception(error);
     } catch (const std::bad_alloc&) {
-      write_error("error: not enough memory\n");
-      ::_exit(environment_wrong);
+      end_without_memory();
     } catch (...) {  // NOLINT(bugprone-empty-catch): the program ends as it would have
     }
+  else if (memory_ran_out != 0 && std::uncaught_exceptions() > 0)
+    end_without_memory();
   std::abort();
 }
 
@@ -88,6 +105,7 @@ void prepare_process()
       break;
     }
   std::signal(SIGXFSZ, SIG_IGN);  // then the write fails, with EFBIG
+  std::set_new_handler(at_lack_of_memory);
   std::set_terminate(at_terminate);
   ::on_exit(at_exit, nullptr);
 #ifndef __SANITIZE_ADDRESS__  // which has handlers of its own
