@@ -68,6 +68,7 @@ TEST(NodesAtWalls, AMovingWallGivesItsVelocityAndKeepsItsImpulse)
   expect_near(square.first().impulse, impulse);
   EXPECT_NEAR(square.first().angular[2], -0.5 * impulse[0], rounding);
   const WallWork work = square.work.value();
+  EXPECT_NEAR(work.turned[2], -0.5 * impulse[0], rounding);
   EXPECT_EQ(work.friction, 0);
   EXPECT_NEAR(work.moved, impulse.dot(mean), rounding);
   EXPECT_NEAR(work.arrival, impulse.dot(0.5 * (old + end)) - impulse.dot(mean), rounding);
