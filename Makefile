@@ -77,7 +77,7 @@ bench: build  ## speed of the parts (Google Benchmark) and of whole steps (talus
 	@$(BUILD)/talus_speed
 	@if build/talus bench --help >/dev/null 2>&1; then build/talus bench; fi
 
-scaling: build  ## what sharing a run over ranks costs: measure, fit, write docs/scaling.md (some minutes)
+scaling: build  ## what sharing a run over ranks costs: measure, fit, write docs/development/scaling.md (some minutes)
 	@$(packages) scripts
 	@/usr/bin/python3 benchmarks/scaling.py --write-docs
 

@@ -1,6 +1,6 @@
 """What single precision costs: every number of two verification runs, one in double and one in single, side by side.
 
-Usage: precision.py DOUBLE/verify.json SINGLE/verify.json [--write-docs]      the table goes to the terminal, or into docs/precision.md
+Usage: precision.py DOUBLE/verify.json SINGLE/verify.json [--write-docs]      the table goes to the terminal, or into docs/development/precision.md
 """
 import argparse
 import json
@@ -8,7 +8,7 @@ import pathlib
 
 from lab import ROOT
 
-PAGE = ROOT / "docs" / "precision.md"
+PAGE = ROOT / "docs" / "development" / "precision.md"
 BEGIN, END = "<!-- table: begin, written by benchmarks/precision.py -->", "<!-- table: end -->"
 STEPS = (1e-6, 1e-4, 1e-2)  # relative changes that are counted
 NOTHING = 1e-9  # errors and drifts below this are rounding in either precision
@@ -57,7 +57,7 @@ def main():
     options = argparse.ArgumentParser(description="What single precision costs.")
     options.add_argument("double", type=pathlib.Path)
     options.add_argument("single", type=pathlib.Path)
-    options.add_argument("--write-docs", action="store_true", help="put the table into docs/precision.md")
+    options.add_argument("--write-docs", action="store_true", help="put the table into docs/development/precision.md")
     given = options.parse_args()
     text = markdown(rows(numbers(given.double), numbers(given.single)))
     if not given.write_docs:

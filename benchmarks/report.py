@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes benchmarks/results.json, docs/verification.md with its figures and the block in README.md from the verify.json of a run of the suite.
+"""Writes benchmarks/results.json, docs/development/verification.md with its figures and the block in README.md from the verify.json of a run of the suite.
 
 Usage: benchmarks/report.py OUT/verify.json     cases that were not run stay as they are in benchmarks/results.json
 """
@@ -86,9 +86,9 @@ def counts(records):
 
 
 def section(document, info):
-    """One case of docs/verification.md."""
+    """One case of docs/development/verification.md."""
     case, records = info["case"], of(document, "results", info["case"])
-    lines = ["", f"## {info['title']}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../benchmarks/{case}/README.md). "
+    lines = ["", f"## {info['title']}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../../benchmarks/{case}/README.md). "
              f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s in all.", "", *table(records), "",
              f"References: {'; '.join(dict.fromkeys(r['source'] for r in records if r['source']))}."]
     lines += [f"\n{r['metric']}: {r['error']}" for r in records if "error" in r]
@@ -96,7 +96,7 @@ def section(document, info):
         lines += ["", *orders(convergence)]
     for figure in of(document, "figures", case):
         if figure["shown"] == "everywhere":
-            lines += ["", f"![{figure['caption']}](images/{figure['file']})", "", figure["caption"]]
+            lines += ["", f"![{figure['caption']}](../images/{figure['file']})", "", figure["caption"]]
     return lines + price(case)
 
 
@@ -106,7 +106,7 @@ def price(case):
     if not path.exists():
         return []
     swept = json.loads(path.read_text(encoding="utf-8"))
-    return ["", f"![Error over processor time and memory](images/{swept['figure']})", "", f"What accuracy costs: {swept['what']}, commit {swept['commit']}.", "",
+    return ["", f"![Error over processor time and memory](../images/{swept['figure']})", "", f"What accuracy costs: {swept['what']}, commit {swept['commit']}.", "",
             *(f"* {advice}" for advice in swept["advice"])]
 
 
@@ -114,12 +114,12 @@ def first_price(cases):
     """The figure of the first case that was swept, for README.md."""
     for case in cases:
         if lines := price(case):
-            return [lines[1].replace("](images/", "](docs/images/"), "", f"{lines[3]} Ringed: what nothing beats in both; `talus tradeoff {case}`.", *lines[4:]]
+            return [lines[1].replace("](../images/", "](docs/images/"), "", f"{lines[3]} Ringed: what nothing beats in both; `talus tradeoff {case}`.", *lines[4:]]
     return []
 
 
 def page(document):
-    """docs/verification.md as text."""
+    """docs/development/verification.md as text."""
     records = document["results"]
     programs = list(dict.fromkeys(f"{c['program']['version']} ({c['program']['compiler']})" for c in document["cases"]))
     judged, passed = counts(records)
@@ -153,7 +153,7 @@ def block(document):
     commits = ", ".join(dict.fromkeys(info["program"]["commit"] for info in document["cases"] if info["case"] in shown))
     judged, passed = counts(document["results"])
     note = [f"Measured at commit {commits}, default kernel and transfer unless a row names another. {len(document['cases'])} benchmarks judge {judged} numbers, of which {passed} pass:",
-            "[all of them](docs/verification.md), also those that fail."]
+            "[all of them](docs/development/verification.md), also those that fail."]
     return "\n".join([*rows, "", *note, "", *first_price([info["case"] for info in document["cases"]])]).rstrip()
 
 
@@ -187,8 +187,8 @@ def write(new, images):
 
 
 def write_documents(document):
-    """docs/verification.md and the block in README.md."""
-    (ROOT / "docs/verification.md").write_text(page(document), encoding="utf-8")
+    """docs/development/verification.md and the block in README.md."""
+    (ROOT / "docs/development/verification.md").write_text(page(document), encoding="utf-8")
     readme = ROOT / "README.md"
     text = replace_block(readme.read_text(encoding="utf-8"), block(document))
     if text is None:

@@ -2,7 +2,7 @@
 """What sharing a run costs: measures blocks on a few ranks (talus bench --mpi), fits a model to what ranks hold and send, works it out for many ranks.
 
 Usage: benchmarks/scaling.py [--program build/talus] [--ranks 1,2,4,8] [--particles 50000,200000,400000] [--out runs/scaling] [--reuse] [--write-docs]
-The tables go to the terminal, with --write-docs into docs/scaling.md; the figure is docs/images/scaling.png, or OUT/scaling.png.
+The tables go to the terminal, with --write-docs into docs/development/scaling.md; the figure is docs/images/scaling.png, or OUT/scaling.png.
 """
 import argparse
 import json
@@ -16,7 +16,7 @@ import matplotlib.figure
 import numpy as np
 from lab import ROOT
 
-PAGE, PICTURE = ROOT / "docs" / "scaling.md", ROOT / "docs" / "images" / "scaling.png"
+PAGE, PICTURE = ROOT / "docs" / "development" / "scaling.md", ROOT / "docs" / "images" / "scaling.png"
 MARKS = {name: (f"<!-- {name}: begin, written by benchmarks/scaling.py -->", f"<!-- {name}: end -->") for name in ("measured", "model", "predicted")}
 SIMPLICES = {2: 2, 3: 6}  # cells that a square or a cube is cut into
 BLOCK_CELLS = 128  # blocks of so many cells are shared out whole

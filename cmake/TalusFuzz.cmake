@@ -5,14 +5,16 @@
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
-              ONLY accuracy array_ ascii_grid hdf5 cell_count csv document field_reader gdal_door gmsh_door gmsh_mesh gmsh_read history_columns http_request manifest map_crs memory mesh_groups module msh_ page_block
-                   point_file polygon_file progress_json raster_file reader record_file result_files scalars scene shape stl_file study summary_json surface_file terrain_ text_file vtk whole_file xml_tags
+              ONLY accuracy array_ ascii_grid atomic_file byte_digest hdf5 cell_count csv document field_reader gdal_plugin gmsh_plugin gmsh_read history_columns load_mesh
+                   http_request manifest map_crs memory mesh_groups plugin msh_ page_block point_file polygon_file progress_json raster_file reader record_file
+                   result_files scalars scene shape signals stl_file study summary_json surface_file terrain_ text_file traps vtk xml_tags
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5 ZLIB::ZLIB)
-talus_library(fuzz_solver FOLDER solver ONLY cell_order deal loads soil_column walls LINKS talus_mesh talus_fuzz_materials)
+talus_library(fuzz_solver FOLDER solver ONLY cell_order redistribute loads soil_column boundary_conditions LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
-              ONLY accounts body_forces checkpoints differences disk_space duration expression fields history new_results progress reach recorder report_fields report_survey results runout shell_words signals slices sound_state traps watch_drawing
+              ONLY accounts body_forces checkpoints differences disk_space expression output_fields history new_results progress rank_slices
+                   recorder report_fields report_survey results runout validate_state watch_drawing
               LINKS talus_fuzz_io talus_fuzz_solver
               PRIVATE muparser::muparser)
 

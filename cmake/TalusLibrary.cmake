@@ -22,7 +22,7 @@ function(talus_in_batches target size)
 endfunction()
 
 # talus_library(name [APART] [FOLDER folder] [BATCH size] [EXCLUDE stems] [ONLY stems] LINKS public... PRIVATE private...)
-# makes the library talus_<name> of all folder/*.cpp. A stem is the beginning of a file name: EXCLUDE render leaves out
+# makes the library talus_<name> of all sources in the folder and below it. A stem is the beginning of a file name: EXCLUDE render leaves out
 # render.cpp and render_scene.cpp. A folder of headers alone becomes an INTERFACE library. APART:
 # never some sources at a time (TALUS_UNITY), where there is little to gain; else BATCH of them, 12 unless told.
 function(talus_library name)
@@ -33,7 +33,7 @@ function(talus_library name)
   if(NOT arg_BATCH)
     set(arg_BATCH 12)
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_FOLDER}/*.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_FOLDER}/*.cpp)
   talus_choose(sources "${arg_EXCLUDE}" "${arg_ONLY}")
 
   if(sources)
@@ -53,10 +53,8 @@ endfunction()
 # (dlopen). What it uses of the library it finds in the program that has opened it.
 function(talus_module name)
   cmake_parse_arguments(arg "" "FOLDER;USES" "ONLY;PRIVATE" ${ARGN})
-  set(sources)
-  foreach(stem ${arg_ONLY})
-    list(APPEND sources ${arg_FOLDER}/${stem}.cpp)
-  endforeach()
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${arg_FOLDER}/*.cpp)
+  talus_choose(sources "" "${arg_ONLY}")
   add_library(talus_${name} MODULE ${sources})
   target_link_libraries(talus_${name} PRIVATE Eigen3::Eigen fmt::fmt OpenMP::OpenMP_CXX ${arg_PRIVATE})
   if(TALUS_SHARED)
@@ -94,7 +92,7 @@ function(talus_render_modules)
   endif()
 endfunction()
 
-# scenes/templates/*.yaml as texts in the program, for `talus new` (app/templates.hpp). A file that changes makes them again.
+# scenes/templates/*.yaml as texts in the program, for `talus new` (app/commands/new/templates.hpp). A file that changes makes them again.
 function(talus_embed_templates folder)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/templates/*.yaml)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
@@ -108,7 +106,7 @@ function(talus_embed_templates folder)
   set(source ${PROJECT_BINARY_DIR}/generated/scene_templates.cpp)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 // Made of scenes/templates by cmake.
-#include "app/templates.hpp"
+#include "app/commands/new/templates.hpp"
 
 #include <array>
 

@@ -10,7 +10,7 @@ if(TALUS_LEVEL)
   list(APPEND TALUS_COMPILE_OPTIONS -march=${TALUS_LEVEL})
 elseif(TALUS_NATIVE)
   list(APPEND TALUS_COMPILE_OPTIONS -march=native)
-  # Without AVX-512, which gains nothing (docs/speed.md): Eigen would add up in another order, so that processors differed in the last bits,
+  # Without AVX-512, which gains nothing (docs/development/speed.md): Eigen would add up in another order, so that processors differed in the last bits,
   # and gcc's own header of it makes warnings.
   check_cxx_compiler_flag(-mno-avx512f TALUS_KNOWS_AVX512)
   if(TALUS_KNOWS_AVX512)

@@ -1,5 +1,5 @@
 # talus_tests(name [FOLDER folder] [EXCLUDE stems] [ONLY stems] [LIBRARY name] [LINKS more...] [SOURCES more...]):
-# tests/<folder>/*_test.cpp -> talus_<name>_tests, linked with that folder's library only, so that the linker tests the layers too. A test
+# tests/<folder>/**/*_test.cpp -> talus_<name>_tests, linked with that folder's library only, so that the linker tests the layers too. A test
 # whose name contains "Nightly" gets the label nightly, any other the label unit.
 function(talus_tests name)
   cmake_parse_arguments(arg "" "FOLDER;LIBRARY" "EXCLUDE;ONLY;LINKS;SOURCES" ${ARGN})
@@ -8,7 +8,7 @@ function(talus_tests name)
       set(arg_${default} ${name})
     endif()
   endforeach()
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${arg_FOLDER}/*_test.cpp)
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/tests/${arg_FOLDER}/*_test.cpp)
   talus_choose(sources "${arg_EXCLUDE}" "${arg_ONLY}")
   if(NOT sources)
     return()

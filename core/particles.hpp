@@ -4,9 +4,9 @@
 #include <string_view>
 #include <vector>
 
-#include "core/column.hpp"
 #include "core/error.hpp"
 #include "core/fields.hpp"
+#include "core/particle_column.hpp"
 #include "core/tensor.hpp"
 
 namespace talus {

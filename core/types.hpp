@@ -19,7 +19,7 @@ template <int D>
 using Vec = Eigen::Matrix<Real, D, 1, Eigen::DontAlign>;
 template <int D>
 using Mat = Eigen::Matrix<Real, D, D, Eigen::DontAlign>;
-/// T is a Real, or the Lanes of core/lanes.hpp: the tensors of several particles at once.
+/// T is a Real, or the Lanes of core/simd.hpp: the tensors of several particles at once.
 template <class T>
 using Mat3Of = Eigen::Matrix<T, 3, 3, Eigen::DontAlign>;
 /// The six entries xx, yy, zz, xy, yz, xz of a symmetric 3x3 tensor.

@@ -1,6 +1,6 @@
 #pragma once
 // The node part of a kernel: sparse operators over the one-ring, applied to nodal rows after the scatter and before the gather.
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {

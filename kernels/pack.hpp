@@ -1,8 +1,8 @@
 #pragma once
-// Arithmetic on packs (core/lanes.hpp) that the loops over a stencil need; the same bits on every processor.
+// Arithmetic on packs (core/simd.hpp) that the loops over a stencil need; the same bits on every processor.
 #include <cmath>
 
-#include "core/lanes.hpp"
+#include "core/simd.hpp"
 
 namespace talus {
 

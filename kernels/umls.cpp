@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 #include "kernels/symmetric.hpp"
 
 namespace talus {

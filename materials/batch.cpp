@@ -2,7 +2,7 @@
 
 #include <cassert>
 
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 
 namespace talus {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/pages.hpp"
+#include "core/huge_page_allocator.hpp"
 #include "materials/laws.hpp"
 
 namespace talus {

@@ -6,7 +6,7 @@
 #include <type_traits>
 
 #include "core/fields.hpp"
-#include "core/lanes.hpp"
+#include "core/simd.hpp"
 
 namespace talus {
 

@@ -35,7 +35,7 @@ struct JohnsonCookDamage {
                     const std::type_identity_t<T>& homologous) const noexcept;
 };
 
-/// What the four kinds of the law have in common: parameters and formulas.  Formulas and numbers: docs/materials.md.
+/// What the four kinds of the law have in common: parameters and formulas.  Formulas and numbers: docs/reference/materials.md.
 struct JohnsonCookMetal : Elasticity {
   Real density{}, yield_stress{}, hardening_coefficient{}, hardening_exponent{}, rate_coefficient{}, reference_rate = 1, thermal_exponent{};
   Real room_temperature{}, melting_temperature{}, specific_heat{}, heat_fraction = 0.9;

@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "core/fields.hpp"
-#include "core/lanes.hpp"
+#include "core/simd.hpp"
 #include "core/tensor.hpp"
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
-#include "core/lanes.hpp"
+#include "core/simd.hpp"
 #include "core/tensor.hpp"
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <concepts>
 #include <type_traits>
 
-#include "core/lanes.hpp"
+#include "core/simd.hpp"
 
 namespace talus {
 

@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 
 namespace talus {
 

@@ -2,8 +2,8 @@
 // Which cell holds a point: a walk across facets from a hint, a search in a tree of boxes when the walk loses its way.
 #include <optional>
 
-#include "core/lanes.hpp"
-#include "mesh/box_tree.hpp"
+#include "core/simd.hpp"
+#include "mesh/geometry/box_tree.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {

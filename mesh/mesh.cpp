@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 #include "mesh/check.hpp"
 #include "mesh/connectivity.hpp"
 #include "mesh/simplex.hpp"

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/map_frame.hpp"
 #include "core/types.hpp"
+#include "mesh/geometry/map_frame.hpp"
 
 namespace talus {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "mesh/box_tree.hpp"
+#include "mesh/geometry/box_tree.hpp"
 #include "mesh/simplex.hpp"
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 #include "mesh/connectivity.hpp"
 
 namespace talus {

@@ -4,7 +4,7 @@
 #include <set>
 #include <string_view>
 
-#include "mesh/single_items.hpp"
+#include "mesh/geometry/single_items.hpp"
 
 namespace talus {
 

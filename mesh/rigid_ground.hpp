@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "mesh/geometry/outline.hpp"
 #include "mesh/mesh.hpp"
-#include "mesh/outline.hpp"
 
 namespace talus {
 
@@ -17,7 +17,7 @@ struct RigidGround {
   std::vector<Edge> layers;  ///< where layers end: in 3-D the rim of the bottom of each, in 2-D the bottoms above the rigid line
 };
 
-/// By the names that a mesh of terrain gives its groups (docs/terrain.md): `base` and `obstacle:NAME` are rigid, `layer:NAME:bottom` is the
+/// By the names that a mesh of terrain gives its groups (docs/guide/terrain.md): `base` and `obstacle:NAME` are rigid, `layer:NAME:bottom` is the
 /// bottom of a layer.  Nothing for a mesh without the group `terrain`, or without anything rigid.
 template <int D>
 std::optional<RigidGround> rigid_ground_of(const MeshData<D>& data);

@@ -508,7 +508,7 @@ def _fits_digest(name: str, array: Any, values: np.ndarray) -> bool:
 # ---------------------------------------------------------------------------------------------------------------------- runs and studies
 
 
-_BEFORE_THE_END = "the run did not end"  # app/summary.hpp
+_BEFORE_THE_END = "the run did not end"  # app/run/summary.hpp
 
 
 def _written(path: Path, what: str) -> Path:

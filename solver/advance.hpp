@@ -1,10 +1,10 @@
 #pragma once
-// The algorithm: one explicit step, stress last.  Numbers are those of docs/algorithm.md.
+// The algorithm: one explicit step, stress last.  Numbers are those of docs/theory/algorithm.md.
 #include <chrono>
 
-#include "solver/average_volume.hpp"
 #include "solver/gather.hpp"
 #include "solver/model.hpp"
+#include "solver/stress/average_volume.hpp"
 
 namespace talus {
 

@@ -1,26 +1,11 @@
 #pragma once
 // The nodes' equation of motion.
-#include "core/parallel.hpp"
+#include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
-#include "solver/walls.hpp"
+#include "solver/boundary/boundary_conditions.hpp"
+#include "solver/state/node_work.hpp"
 
 namespace talus {
-
-/// What a step did to the nodes: work [J], force times the mean of old and new velocity, and impulses [N s].
-template <int D>
-struct NodeWork {
-  Real kinetic_before{}, kinetic_after{}, gravity{}, damping{};
-  Real mass{};                           ///< [kg]
-  Vec<D> first_moment = Vec<D>::Zero();  ///< of mass [kg m]
-  Vec3 turned = Vec3::Zero();            ///< change of the moment of momentum about the origin [kg m^2/s]
-  Push<D> damped;
-  NodeWork& operator+=(const NodeWork& other) noexcept
-  {
-    kinetic_before += other.kinetic_before, kinetic_after += other.kinetic_after, gravity += other.gravity, damping += other.damping;
-    mass += other.mass, first_moment += other.first_moment, turned += other.turned, damped += other.damped;
-    return *this;
-  }
-};
 
 /// Local non-viscous damping [Cundall 1987]: a force against the motion of a node, componentwise the share `damping` of its net
 /// force.  Nodes under a wall condition are left out.  `net` is force or acceleration, the result the same.
@@ -105,18 +90,6 @@ Real remap_work(const Nodes<D>& nodes, const std::vector<NodeMotion<D>>& remappe
   const auto i = static_cast<std::size_t>(n);
   return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(remapped[i].change - remapped[i].v) : 0;
 }
-
-/// Sums of the moduli of forces [N].
-struct Balance {
-  Real net{};       ///< with wall reactions, without damping
-  Real load{};      ///< gravity
-  Real reaction{};  ///< of walls
-  Balance& operator+=(const Balance& other) noexcept
-  {
-    net += other.net, load += other.load, reaction += other.reaction;
-    return *this;
-  }
-};
 
 /// Those at one node.  The net force is the one that is `felt` in stages that seek rest.
 template <int D>

@@ -1,6 +1,6 @@
 #pragma once
 // How long a step may be: a share of the time in which a wave crosses the cell of a particle.
-#include "solver/update_stress.hpp"
+#include "solver/stress/update_stress.hpp"
 
 namespace talus {
 

@@ -1,5 +1,7 @@
 #!/usr/bin/python3
-"""Fails on any include that the layers forbid: folders see only what is below them, a third-party header only its own file.
+"""Fails on any include that the layers forbid: a folder includes what its README.md names, in no circle; a third-party header has its own files.
+
+Also fails on a folder without README.md or with more than 40 files, and on a header name that occurs twice.
 
 Usage: check_layers.py [root]      prints file:line: what is wrong, one a line; exit status 1 if there was any.
 """
@@ -8,37 +10,46 @@ import pathlib
 import re
 import sys
 
-BELOW = {  # folder -> folders it may include, besides itself
-    "core": [],
-    "mesh": ["core"],
-    "kernels": ["core", "mesh"],
-    "materials": ["core"],
-    "solver": ["core", "mesh", "kernels", "materials"],
-    "io": ["core", "mesh", "kernels", "materials"],
-    "app": ["core", "mesh", "kernels", "materials", "solver", "io"],
-}
-BELOW_TESTS = {**{folder: [folder, *below] for folder, below in BELOW.items()},
-               "fuzz": [*BELOW], "tutorials": ["core", "mesh", "kernels", "materials", "solver"], "ranks": [*BELOW], "speed": ["core", "mesh", "kernels", "materials", "solver"]}
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TOP = ("core", "mesh", "kernels", "materials", "solver", "io", "app")
+MOST_FILES = 40
+MAY_INCLUDE = re.compile(r"^May include: (.*)\.$", re.MULTILINE)
 
-# header pattern, files that may include it; tests/io/report_test.cpp may include what io/report.cpp may. The first match decides.
+
+def folders_of(root):
+    """{folder: folders it may include}, as the README.md of each folder with sources says."""
+    table = {}
+    for readme in sorted(f for top in TOP for f in (root / top).rglob("README.md")):
+        if line := MAY_INCLUDE.search(readme.read_text(encoding="utf-8")):
+            table[readme.parent.relative_to(root).as_posix()] = [] if line[1] == "nothing" else line[1].split(", ")
+    return table
+
+
+FOLDERS = folders_of(ROOT)
+# What tests of a folder may include: what is below it.
+TESTS_SEE = {"core": ["core"], "mesh": ["core", "mesh"], "kernels": ["core", "mesh", "kernels"], "materials": ["core", "materials"],
+             "solver": ["core", "mesh", "kernels", "materials", "solver"], "io": ["core", "mesh", "kernels", "materials", "io"], "app": TOP,
+             "fuzz": TOP, "tutorials": ["core", "mesh", "kernels", "materials", "solver"], "ranks": TOP, "speed": ["core", "mesh", "kernels", "materials", "solver"]}
+
+# header pattern, files that may include it; tests/io/output/run_summary_test.cpp may include what io/output/run_summary.cpp may. The first match decides.
 THIRD_PARTY = [
     ("Eigen/*", ["*"]),
     ("fmt/*", ["*"]),
-    ("omp.h", ["core/parallel.hpp", "core/parallel.cpp"]),
-    ("mpi.h", ["core/exchange.cpp"]),
-    ("immintrin.h", ["core/lanes.hpp"]),
+    ("omp.h", ["core/parallel/threads.hpp", "core/parallel.cpp"]),
+    ("mpi.h", ["core/parallel/communicator.cpp"]),
+    ("immintrin.h", ["core/simd.hpp"]),
     ("metis.h", ["mesh/partition.cpp"]),
-    ("yaml-cpp/*", ["io/reader.cpp"]),
-    ("gmsh.h*", ["io/gmsh_*.cpp"]),
-    ("gdal*", ["io/gdal_*"]),
-    ("ogr_*", ["io/gdal_*"]),
-    ("cpl_*", ["io/gdal_*"]),
-    ("vtk*", ["io/vtk*.cpp", "io/render*"]),
-    ("nlohmann/*", ["io/*json*.cpp", "io/report.cpp", "io/manual.cpp", "tests/io/page_test.cpp"]),
-    ("hdf5.h", ["io/hdf5*", "io/array_*.cpp"]),
-    ("zlib.h", ["io/page_block.cpp", "tests/io/page_test.cpp"]),
-    ("CLI/*", ["app/cli.cpp", "app/cli_checks.hpp"]),
-    ("muParser*", ["app/expression.cpp"]),
+    ("yaml-cpp/*", ["io/scene/reader.cpp"]),
+    ("gmsh.h*", ["io/mesh/gmsh_*.cpp", "tests/io/load_mesh_test.cpp"]),
+    ("gdal*", ["io/terrain/gdal_*"]),
+    ("ogr_*", ["io/terrain/gdal_*"]),
+    ("cpl_*", ["io/terrain/gdal_*"]),
+    ("vtk*", ["io/output/vtk*.cpp", "io/pictures/render*"]),
+    ("nlohmann/*", ["io/*json*.cpp", "io/output/run_summary.cpp", "io/scene/manual.cpp", "tests/io/page/page_test.cpp"]),
+    ("hdf5.h", ["io/checkpoint/hdf5*", "io/checkpoint/array_*.cpp"]),
+    ("zlib.h", ["io/page/page_block.cpp", "tests/io/page/page_test.cpp"]),
+    ("CLI/*", ["app/cli/cli.cpp", "app/cli/cli_checks.hpp"]),
+    ("muParser*", ["app/setup/expression.cpp"]),
     ("gtest/*", ["tests/*"]),
     ("gmock/*", ["tests/*"]),
     ("benchmark/*", ["tests/speed/*"]),
@@ -59,10 +70,11 @@ def wrong_include(path, quote, header):
     parts, target = path.split("/"), header.split("/")
     if ".." in target:
         return f'"{header}" climbs out of its folder: write the path from the root of the repository'
-    if len(target) > 1 and target[0] in BELOW and quote == '"':
-        folder = parts[0]
-        allowed = BELOW_TESTS.get(parts[1], []) if folder == "tests" else [folder, *BELOW.get(folder, [])]
-        return None if target[0] in allowed else f'{"/".join(parts[:-1])} may not include {target[0]} ("{header}")'
+    if len(target) > 1 and target[0] in TOP and quote == '"':
+        if parts[0] == "tests":
+            return None if target[0] in TESTS_SEE.get(parts[1], []) else f'{"/".join(parts[:2])} may not include {target[0]} ("{header}")'
+        folder, other = "/".join(parts[:-1]), "/".join(target[:-1])
+        return None if other == folder or other in FOLDERS.get(folder, []) else f'{folder} may not include {other} ("{header}"): {folder}/README.md says what it may'
     if quote == '"' and target[0] == "tests":
         return None if parts[0] == "tests" else f'only tests may include "{header}"'
     if quote == '"' and target[:2] == ["docs", "tutorials"]:
@@ -76,9 +88,9 @@ def wrong_include(path, quote, header):
 
 
 def wrong_pragma(path, rest):
-    if re.match(r"\s*(simd|declare\s+simd)\b", rest) or fits(path, ["core/parallel.hpp", "core/parallel.cpp"]):
+    if re.match(r"\s*(simd|declare\s+simd)\b", rest) or fits(path, ["core/parallel/threads.hpp", "core/parallel.cpp"]):
         return None
-    return "OpenMP is for core/parallel.hpp only (omp simd excepted)"
+    return "OpenMP is for core/parallel/threads.hpp only (omp simd excepted)"
 
 
 def check_text(path, text):
@@ -95,10 +107,56 @@ def check_text(path, text):
     return found
 
 
+def circle_in(table):
+    """Folders that include each other in a circle, or []."""
+    done, path = set(), []
+
+    def visit(folder):
+        if folder in path:
+            return path[path.index(folder):] + [folder]
+        if folder in done:
+            return []
+        path.append(folder)
+        for other in table.get(folder, []):
+            if found := visit(other):
+                return found
+        path.pop()
+        done.add(folder)
+        return []
+
+    for folder in table:
+        if found := visit(folder):
+            return found
+    return []
+
+
+def check_folders(table, files):
+    """Findings on the folders of these source files (paths from the root) and on what the table {folder: may include} says."""
+    found, sources, headers = [], {}, {}
+    for path in files:
+        folder, _, name = path.rpartition("/")
+        sources.setdefault(folder, []).append(name)
+        if name.endswith(".hpp") and not path.startswith("tests/"):
+            headers.setdefault(name, []).append(path)
+    for folder, names in sorted(sources.items()):
+        if len(names) > MOST_FILES:
+            found.append(f"{folder}: {len(names)} source files, more than {MOST_FILES}: give it sub-folders")
+        if folder.split("/")[0] in TOP and folder not in table:
+            found.append(f"{folder}: there is no README.md that says what the folder is for and 'May include: ...'")
+    found += [f"{' and '.join(paths)}: the same name twice" for paths in headers.values() if len(paths) > 1]
+    found += [f"{folder}/README.md: there is no folder {other}" for folder, others in table.items() for other in others if other not in sources]
+    found += [f"{folder}/README.md: there are no sources in {folder}" for folder in table if folder not in sources]
+    if circle := circle_in(table):
+        found.append(f"folders include each other in a circle: {' -> '.join(circle)}")
+    return found
+
+
 def main():
-    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).parent.parent)
-    files = sorted(f for folder in [*BELOW, "tests"] for f in (root / folder).rglob("*") if f.suffix in (".hpp", ".cpp"))
-    found = [line for f in files for line in check_text(f.relative_to(root).as_posix(), f.read_text(encoding="utf-8"))]
+    root = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ROOT)
+    files = sorted(f for folder in [*TOP, "tests"] for f in (root / folder).rglob("*") if f.suffix in (".hpp", ".cpp"))
+    paths = [f.relative_to(root).as_posix() for f in files]
+    found = check_folders(folders_of(root), paths)
+    found += [line for path, f in zip(paths, files) for line in check_text(path, f.read_text(encoding="utf-8"))]
     print("\n".join(found) if found else f"layers: {len(files)} files, nothing forbidden")
     return 1 if found else 0
 

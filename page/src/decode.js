@@ -1,5 +1,5 @@
 // What a block of the report holds: text -> bytes -> numbers.
-// The way back of io/page.cpp: base64, zlib, planes of bytes, differences, whole numbers instead of real ones.
+// The way back of io/page/page.cpp: base64, zlib, planes of bytes, differences, whole numbers instead of real ones.
 
 /**
  * Where a table of numbers stands and how it was packed.

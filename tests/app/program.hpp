@@ -9,8 +9,8 @@
 #include <sstream>
 #include <string>
 
-#include "io/csv.hpp"
-#include "io/whole_file.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/output/csv.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus {

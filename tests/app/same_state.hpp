@@ -7,8 +7,8 @@
 #include <set>
 
 #include "core/error.hpp"
-#include "io/array_file.hpp"
-#include "io/whole_file.hpp"
+#include "io/checkpoint/array_file.hpp"
+#include "io/files/atomic_file.hpp"
 
 namespace talus {
 

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <random>
 
-#include "core/parallel.hpp"
-#include "core/table.hpp"
+#include "core/parallel/threads.hpp"
 #include "core/tensor.hpp"
+#include "core/time_table.hpp"
 
 namespace talus::numbers_test {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
-#include "core/words.hpp"
+#include "core/word_match.hpp"
 
 namespace talus::text_test {
 namespace {

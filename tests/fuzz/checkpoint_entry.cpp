@@ -12,10 +12,10 @@
 #include <sstream>
 #include <variant>
 
-#include "app/checkpoints.hpp"
+#include "app/observers/checkpoints.hpp"
 #include "core/error.hpp"
-#include "io/whole_file.hpp"
-#include "mesh/generate.hpp"
+#include "io/files/atomic_file.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/simplex.hpp"
 #include "tests/fuzz/entries.hpp"
 #include "tests/fuzz/memory_file.hpp"

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "io/whole_file.hpp"
+#include "io/files/atomic_file.hpp"
 #include "tests/fuzz/entries.hpp"
 
 namespace talus::corpus_test {

@@ -1,5 +1,5 @@
 #include "core/error.hpp"
-#include "io/gmsh_mesh.hpp"
+#include "io/load_mesh.hpp"
 #include "tests/fuzz/entries.hpp"
 #include "tests/fuzz/memory_file.hpp"
 

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "app/expression.hpp"
+#include "app/setup/expression.hpp"
 #include "core/error.hpp"
-#include "io/gmsh_mesh.hpp"
-#include "io/reader.hpp"
+#include "io/load_mesh.hpp"
+#include "io/scene/reader.hpp"
 #include "tests/fuzz/entries.hpp"
 
 namespace talus {

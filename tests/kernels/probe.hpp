@@ -7,7 +7,7 @@
 #include <string>
 
 #include "kernels/kernels.hpp"
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
 
 namespace talus::test {

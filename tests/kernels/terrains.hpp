@@ -5,9 +5,9 @@
 #include <functional>
 #include <numbers>
 
-#include "mesh/columns.hpp"
-#include "mesh/generate.hpp"
-#include "mesh/random.hpp"
+#include "mesh/generate/columns.hpp"
+#include "mesh/generate/generate.hpp"
+#include "mesh/generate/random.hpp"
 
 namespace talus::test {
 

@@ -1,7 +1,7 @@
 // Fracture of Johnson & Cook's metal, and what is left of it.
 #include <gtest/gtest.h>
 
-#include "materials/point_path.hpp"
+#include "materials/laboratory/point_path.hpp"
 #include "tests/materials/metals.hpp"
 
 namespace talus::johnson_cook_failure_test {

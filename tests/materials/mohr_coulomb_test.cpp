@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-#include "materials/point_path.hpp"
+#include "materials/laboratory/point_path.hpp"
 #include "tests/materials/soil.hpp"
 
 namespace talus::mohr_coulomb_test {

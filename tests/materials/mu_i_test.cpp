@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "materials/point_path.hpp"
+#include "materials/laboratory/point_path.hpp"
 #include "tests/materials/soil.hpp"
 
 namespace talus::mu_i_test {

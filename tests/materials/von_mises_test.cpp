@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "materials/point_path.hpp"
+#include "materials/laboratory/point_path.hpp"
 #include "tests/materials/metals.hpp"
 
 namespace talus::von_mises_test {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus::bad_mesh_test {

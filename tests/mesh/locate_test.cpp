@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/simplex.hpp"
 
 namespace talus::locate_test {

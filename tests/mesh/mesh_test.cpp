@@ -9,7 +9,7 @@
 #include <set>
 
 #include "mesh/digest.hpp"
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/simplex.hpp"
 
 namespace talus::mesh_test {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "tests/mesh/rough_box.hpp"
 
 namespace talus::overlap_test {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <set>
 
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 
 namespace talus::rigid_ground_test {
 

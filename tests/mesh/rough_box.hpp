@@ -2,7 +2,7 @@
 // Boxes of a few hundred or thousand irregular cells with groups of every kind, some of them inside.
 #include <algorithm>
 
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 
 namespace talus {
 

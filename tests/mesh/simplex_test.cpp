@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/quality.hpp"
 
 namespace talus::simplex_test {

@@ -49,7 +49,7 @@ materials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e
 bodies: [{name: all, material: rubber, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 6}]
 time: {end: 1}
 """
-ROWS_OF_A_PIECE = 32768  # core/slices.hpp
+ROWS_OF_A_PIECE = 32768  # core/parallel/slices.hpp
 
 
 class OfARun(unittest.TestCase):

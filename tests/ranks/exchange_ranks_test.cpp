@@ -12,7 +12,7 @@
 #include <typeinfo>
 
 #include "core/error.hpp"
-#include "core/exchange.hpp"
+#include "core/parallel/communicator.hpp"
 
 namespace talus::exchange_ranks_test {
 namespace {

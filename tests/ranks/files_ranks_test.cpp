@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <fstream>
 
-#include "app/checkpoints.hpp"
-#include "app/fields.hpp"
-#include "app/slices.hpp"
+#include "app/observers/checkpoints.hpp"
+#include "app/observers/output_fields.hpp"
+#include "app/observers/rank_slices.hpp"
 #include "core/error.hpp"
-#include "io/kept.hpp"
-#include "io/whole_file.hpp"
-#include "mesh/generate.hpp"
-#include "solver/deal.hpp"
+#include "io/checkpoint/serialize.hpp"
+#include "io/files/atomic_file.hpp"
+#include "mesh/generate/generate.hpp"
+#include "solver/particles/redistribute.hpp"
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 

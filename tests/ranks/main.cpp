@@ -3,7 +3,7 @@
 
 #include <iostream>
 
-#include "core/exchange.hpp"
+#include "core/parallel/communicator.hpp"
 
 namespace {
 

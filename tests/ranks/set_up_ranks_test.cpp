@@ -2,13 +2,13 @@
 // wait: EXPECT, not ASSERT.
 #include <gtest/gtest.h>
 
-#include "app/seed.hpp"
-#include "app/setup.hpp"
-#include "core/exchange.hpp"
-#include "io/gmsh_mesh.hpp"
-#include "io/reader.hpp"
+#include "app/setup/seed.hpp"
+#include "app/setup/setup.hpp"
+#include "core/parallel/communicator.hpp"
+#include "io/load_mesh.hpp"
+#include "io/scene/reader.hpp"
 #include "mesh/partition.hpp"
-#include "solver/deal.hpp"
+#include "solver/particles/redistribute.hpp"
 
 namespace talus::set_up_ranks_test {
 namespace {

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "kernels/kernels.hpp"
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
-#include "solver/run.hpp"
+#include "solver/stages.hpp"
 
 namespace talus::testing {
 

@@ -1,7 +1,7 @@
 // The message of a stage that did not come to rest: the condition that was not met.
 #include <gmock/gmock.h>
 
-#include "solver/run.hpp"
+#include "solver/stages.hpp"
 
 namespace talus::rest_test {
 namespace {

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "kernels/kernels.hpp"
-#include "mesh/generate.hpp"
+#include "mesh/generate/generate.hpp"
 
 namespace talus {
 namespace {

@@ -1,0 +1,172 @@
+#include "app/commands/bench/bench_block.hpp"
+
+#include <cmath>
+
+#include "app/commands/bench/bench_laws.hpp"
+#include "mesh/generate/generate.hpp"
+#include "mesh/quadrature.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr Real bench_jitter = 0.15;
+
+/// n points of a set that has at least as many: where there is no set of n, each cell in turn takes other points of the next larger set.
+template <int D>
+class BenchPoints {
+ public:
+  explicit BenchPoints(int n) : n_(static_cast<std::size_t>(n))
+  {
+    for (const int count : seeding_counts<D>())
+      if (points_.size() < n_)
+        points_ = seeding_points<D>(count).value();
+  }
+  const std::array<Real, D + 1>& operator()(Index cell, std::size_t i) const
+  {
+    return points_[(static_cast<std::size_t>(cell) * n_ + i) % points_.size()];
+  }
+
+ private:
+  std::size_t n_;
+  std::vector<std::array<Real, D + 1>> points_;
+};
+
+/// A swirl about the middle of the unit box that keeps to its sides, and its gradient.
+template <int D>
+void set_swirling(Real speed, Particles<D>& particles)
+{
+  for (std::size_t p = 0; p < particles.x.size(); ++p) {
+    const Real x = M_PI * particles.x[p][0], y = M_PI * particles.x[p][1];
+    Vec<D> v = Vec<D>::Zero();
+    v[0] = speed * std::sin(x) * std::cos(y);
+    v[1] = -speed * std::cos(x) * std::sin(y);
+    particles.v.set(p, v);
+    Mat<D> L = Mat<D>::Zero();
+    L(0, 0) = M_PI * speed * std::cos(x) * std::cos(y), L(0, 1) = -M_PI * speed * std::sin(x) * std::sin(y);
+    L(1, 0) = -L(0, 1), L(1, 1) = -L(0, 0);
+    particles.L.set(p, L);
+  }
+}
+
+template <int D>
+Particles<D> bench_particles(const Mesh<D>& mesh, int per_cell, Real density)
+{
+  Particles<D> p;
+  const BenchPoints<D> points(per_cell);
+  for (Index cell = 0; cell < mesh.n_cells(); ++cell) {
+    const auto corners = mesh.corners(cell);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(per_cell); ++i) {
+      Vec<D> x = Vec<D>::Zero();
+      for (std::size_t a = 0; a <= D; ++a)
+        x += points(cell, i)[a] * corners[a];
+      p.id.push_back(p.size());
+      p.cell.push_back(cell);
+      p.x.push_back(x);
+      const Real volume = mesh.volume(cell) / per_cell;
+      p.volume0.push_back(volume);
+      p.mass.push_back(density * volume);
+    }
+  }
+  p.v.assign(p.id.size(), Vec<D>::Zero());
+  p.L.assign(p.id.size(), Mat<D>::Zero());
+  p.F.assign(p.id.size(), Mat3::Identity());
+  p.stress.assign(p.id.size(), Sym3::Zero());
+  return p;
+}
+
+Transfer bench_transfer(const std::string& name)
+{
+  TransferSpec spec;
+  for (std::size_t i = 0; i < words(TransferScheme{}).size(); ++i)
+    if (words(TransferScheme{})[i] == name)
+      spec.scheme = static_cast<TransferScheme>(i);
+  return transfer_of(spec);
+}
+
+/// Walls and loads, by what the block is to have besides.
+template <int D>
+void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
+{
+  Setup<D>& setup = block.setup;
+  for (const auto& name : block.mesh.facet_set_names()) {
+    const auto facets = block.mesh.facet_set(name).value();
+    Wall<D> wall;
+    wall.name = name;
+    wall.kind = WallKind::roller;
+    if (setting.option == bench_options::friction) {
+      wall.kind = WallKind::friction;
+      wall.friction = 0.3;
+    }
+    if (setting.option == bench_options::traction) {
+      auto load = carried_by_particles<D>(block.mesh, facets, setup.particles);
+      load.pressure = pressure;
+      setup.loads.on_particles.push_back(std::move(load));
+    }
+    setup.walls.add(wall, block.mesh, facets);
+  }
+  if (setting.option == bench_options::body_force)
+    setup.loads.of_place.push_back({[](std::span<const Vec<D>> places, Real, std::span<Vec<D>> accelerations) {
+                                      std::ranges::transform(places, accelerations.begin(), [](const Vec<D>& x) { return Vec<D>(-x); });
+                                    },
+                                    false});
+  if (setting.option == bench_options::history) {
+    HistoryOutputSpec history;
+    history.points.push_back({"middle", std::vector<Real>(D, 0.5), "", {}});
+    block.scene.outputs.history = std::move(history);
+    setup.particles.x0 = setup.particles.x;
+  }
+}
+
+}  // namespace
+
+Index cells_a_side(int dimension, Index particles, int per_cube)
+{
+  const Real side = std::pow(static_cast<Real>(particles) / per_cube, Real{1} / dimension);
+  return std::max<Index>(2, static_cast<Index>(std::lround(side)));
+}
+
+template <int D>
+BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int steps)
+{
+  constexpr int simplices = D == 2 ? 2 : 6;  // of a square or a cube
+  std::array<Index, D> cells;
+  cells.fill(cells_a_side(D, particles, simplices * setting.per_cell));
+  BenchBlock<D> block{.scene = {}, .mesh = Mesh<D>(jittered(box<D>(Vec<D>::Zero(), Vec<D>::Ones(), cells), bench_jitter, 1)), .setup = {}};
+  block.scene.kernel = setting.kernel;
+  block.scene.precision = setting.precision == "single" ? Precision::single : Precision::full;
+  Setup<D>& setup = block.setup;
+  const AnyLaw law = bench_law(setting.law);
+  setup.particles = bench_particles<D>(block.mesh, setting.per_cell, std::visit([](const auto& l) { return l.density; }, law));
+  setup.particles.keep_in(block.scene.precision);
+  const Index n = setup.particles.size();
+  setup.bodies.push_back({"block", 0, n, {}});
+  setup.materials.push_back(std::visit([&](const auto& l) { return make_any_batch(l, 0, n, setting.law); }, law));
+  Real wave = 0, pressure = 0;
+  std::visit(
+      [&]<class L>(Batch<L>& batch) {
+        batch.averages_volume = is_isochoric<L>() || setting.option == bench_options::f_bar;
+        if (setting.option == bench_options::bulk_viscosity)
+          batch.viscosity = BulkViscosity{};
+        wave = batch.wave_speed(0, Mat3::Identity());
+        pressure = 1e-3 * batch.law.density * wave * wave;  // strains of the order of 0.1 %
+      },
+      setup.materials.front());
+  set_swirling<D>(bench_swirl * wave, setup.particles);
+  setup.transfer = bench_transfer(setting.transfer);
+  close_in(setting, pressure, block);
+
+  setup.limits.cfl = 1;  // bends to nothing but a state four times as stiff: `longest` decides
+  setup.limits.longest = bench_cfl * shortest_crossing(block.mesh, setup.materials, setup.particles);
+  setup.limits.shortest = 0;
+  Stage stage;
+  stage.name = "run";
+  stage.duration = setup.limits.longest * (steps - 0.5);  // the loop halves what is left of the last two
+  setup.stages.push_back(stage);
+  return block;
+}
+
+template BenchBlock<2> bench_block<2>(const BenchSetting&, Index, int);
+template BenchBlock<3> bench_block<3>(const BenchSetting&, Index, int);
+
+}  // namespace talus

@@ -1,0 +1,334 @@
+#include "app/commands/fos/fos_trials.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "app/observers/results.hpp"
+#include "app/run/summary.hpp"
+#include "app/setup/laws_in_force.hpp"
+#include "app/setup/setup.hpp"
+#include "app/setup/vertical_axis.hpp"
+#include "core/word_match.hpp"
+#include "io/load_mesh.hpp"
+#include "io/scene/reader.hpp"
+#include "materials/strength.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Rows of a trial's history and files of its particles.
+constexpr int rows_of_trial = 100, files_of_trial = 10;
+
+fs::path default_fos_folder(const fs::path& scene) { return default_results(scene).string() + "_fos"; }
+
+std::size_t stages_until_rest(const Scene& scene)
+{
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < scene.stages.size(); ++i)
+    if (std::holds_alternative<GeostaticSpec>(scene.stages[i]))
+      count = i + 1;
+  return count;
+}
+
+Index material_number(const Scene& scene, const std::string& name)
+{
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const MaterialSpec& m) { return m.name == name; });
+  return static_cast<Index>(found - scene.materials.begin());
+}
+
+/// Bodies whose strength is divided, with their materials: of those that are there in the stage `last`.
+void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
+{
+  const Scene& scene = plan.spec;
+  std::vector<BodySpec> there;
+  std::vector<std::string> known;
+  for (const BodySpec& body : scene.bodies)
+    if (presence_of(body.name, scene.stages).in(last)) {
+      there.push_back(body);
+      known.push_back(body.name);
+    }
+  for (const std::string& name : options.bodies)
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error(fmt::format("--bodies: in the state at rest there is no body \"{}\"{}", name, suggestion(name, known)));
+  std::vector<Problem> problems;
+  for (const BodySpec& body : there) {
+    const Index number = material_number(scene, body.material);
+    const MaterialSpec& material = scene.materials[static_cast<std::size_t>(number)];
+    const bool asked = std::find(options.bodies.begin(), options.bodies.end(), body.name) != options.bodies.end();
+    if (asked && !has_strength(material))
+      problems.push_back({body.where, fmt::format("--bodies: its material \"{}\" has no strength to divide", material.name), ""});
+    if (asked || (options.bodies.empty() && has_strength(material))) {
+      plan.bodies.push_back(body.name);
+      if (std::find(plan.materials.begin(), plan.materials.end(), number) == plan.materials.end())
+        plan.materials.push_back(number);
+    }
+  }
+  for (const BodySpec& body : there) {
+    const bool chosen = std::find(plan.bodies.begin(), plan.bodies.end(), body.name) != plan.bodies.end();
+    const Index number = material_number(scene, body.material);
+    if (!chosen && std::find(plan.materials.begin(), plan.materials.end(), number) != plan.materials.end())
+      problems.push_back(
+          {body.where, fmt::format("its material \"{}\" is that of a body in --bodies too: give it one of its own", body.material), ""});
+  }
+  if (plan.bodies.empty() && problems.empty())
+    problems.push_back({scene.where, "no body has a material with strength that could be divided", ""});
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+}
+
+/// What particles and materials say of the state before.
+template <int D>
+AtRest measured(const FosPlan& plan)
+{
+  const Scene& scene = plan.spec;
+  AtRest before;
+  for (const LoadSpec& load : scene.loads)
+    if (const auto* gravity = std::get_if<GravitySpec>(&load))
+      before.gravity = Eigen::Map<const Eigen::VectorXd>(gravity->acceleration.data(), std::ssize(gravity->acceleration)).norm();
+  const Mesh<D> mesh = load_mesh<D>(scene.mesh, folder_of(scene));
+  const Setup<D> setup = set_up(scene, mesh);
+  const Vec<D> up = upright_of(scene).template head<D>();
+  Real low = std::numeric_limits<Real>::infinity(), high = -low;
+  before.wave_speed = low;
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+    const Body& body = setup.bodies[b];
+    if (std::find(plan.bodies.begin(), plan.bodies.end(), body.name) == plan.bodies.end())
+      continue;
+    before.wave_speed = std::min(before.wave_speed, wave_speed(setup.materials[b], Mat3::Identity()));
+    for (Index row = body.begin; row < body.end; ++row) {
+      const Real at = up.dot(setup.particles.x[static_cast<std::size_t>(row)]);
+      low = std::min(low, at), high = std::max(high, at);
+    }
+  }
+  before.height = high - low;
+  return before;
+}
+
+/// One number of a material and those inside its groups: those that differ, as changes.
+template <class T>
+void tell_difference(const T& before, const T& after, const std::string& path, std::vector<std::string>& changes)
+{
+  if constexpr (std::is_same_v<T, Real>) {
+    if (before != after)
+      changes.push_back(fmt::format("{}={}", path, after));
+  } else if constexpr (requires { before.has_value(); }) {
+    if (before && after)
+      tell_difference(*before, *after, path, changes);
+  } else if constexpr (HasFields<T>) {
+    for_each_field<T>([&](const auto& field) {
+      tell_difference(before.*(field.member), after.*(field.member), fmt::format("{}.{}", path, field.key), changes);
+    });
+  }
+}
+
+/// Entries of a list of the scene as they are written, joined to a list again: those that are kept, each with some of its keys and more.
+class Rewritten {
+ public:
+  Rewritten(const FosOptions& options, std::string list) : options_(options), list_(std::move(list)) {}
+  void keep(std::size_t i, const KeyChoice& keys = {}, const std::string& more = "")
+  {
+    std::string entry = written_in_scene(options_.scene, options_.set, fmt::format("{}[{}]", list_, i), keys);
+    if (!more.empty())
+      entry.insert(entry.size() - 1, ", " + more);
+    entries_.push_back(std::move(entry));
+  }
+  std::string change() const { return fmt::format("{}=[{}]", list_, fmt::join(entries_, ", ")); }
+
+ private:
+  const FosOptions& options_;
+  std::string list_;
+  std::vector<std::string> entries_;
+};
+
+/// A text in quotes that YAML reads back.
+std::string in_quotes(const fs::path& path)
+{
+  Node text;
+  text.kind = Node::Kind::scalar;
+  text.quoted = true;
+  text.text = path.string();
+  return in_one_line(text);
+}
+
+/// The stages up to the state at rest.  SceneErrors: a law that changes on the way is not that of the scene's bodies any more.
+void keep_stages(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
+{
+  Rewritten stages(options, "stages");
+  std::vector<Problem> problems;
+  for (std::size_t i = 0; i < n_stages; ++i) {
+    const StageSpec& stage = plan.spec.stages[i];
+    if (const StageChanges& changes = changes_of(stage); !changes.change.empty() || !changes.weaken.empty())
+      problems.push_back(
+          {where_of(stage), "change and weaken before the state at rest: give the bodies the material that they have there instead", ""});
+    stages.keep(i);
+  }
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+  plan.at_rest.changes.push_back(stages.change());
+}
+
+/// Bodies that come later are left out; a trial has those that are there when all is at rest.
+void keep_bodies(const FosOptions& options, Index last, FosPlan& plan)
+{
+  Rewritten before(options, "bodies"), then(options, "bodies");
+  bool all = true;
+  for (std::size_t b = 0; b < plan.spec.bodies.size(); ++b) {
+    const Presence presence = presence_of(plan.spec.bodies[b].name, plan.spec.stages);
+    all = all && presence.from <= last;
+    if (presence.from <= last)
+      before.keep(b);
+    if (presence.in(last))
+      then.keep(b, {.only = BodySpec::keys_without_filling});
+  }
+  if (!all)
+    plan.at_rest.changes.push_back(before.change());
+  plan.of_state.push_back(then.change());
+}
+
+/// Walls act in the trials as they do in the stage that finds rest.
+void keep_walls(const FosOptions& options, Index last, FosPlan& plan)
+{
+  const auto& walls = plan.spec.boundaries;
+  if (std::all_of(walls.begin(), walls.end(), [](const BoundarySpec& wall) { return during_of(wall).empty(); }))
+    return;
+  constexpr std::array<std::string_view, 1> key{"during"};
+  Rewritten before(options, "boundaries"), then(options, "boundaries");
+  for (std::size_t w = 0; w < walls.size(); ++w) {
+    std::vector<std::string> names;
+    for (Index s = 0; s <= last; ++s)
+      if (const std::string name = name_of(plan.spec.stages[static_cast<std::size_t>(s)]); acts_in(walls[w], name))
+        names.push_back(in_quotes(name));
+    if (during_of(walls[w]).empty())
+      before.keep(w);
+    else if (!names.empty())
+      before.keep(w, {.without = key}, fmt::format("during: [{}]", fmt::join(names, ", ")));
+    if (acts_in(walls[w], name_of(plan.spec.stages[static_cast<std::size_t>(last)])))
+      then.keep(w, {.without = key});
+  }
+  plan.at_rest.changes.push_back(before.change());
+  plan.of_state.push_back(then.change());
+}
+
+/// The water table of trials is that of the state at rest.
+void keep_table(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
+{
+  for (std::size_t i = n_stages; i-- > 0;)
+    if (changes_of(plan.spec.stages[i]).water)
+      return plan.of_state.push_back("water.table=" +
+                                     written_in_scene(options.scene, options.set, fmt::format("stages[{}].water.table", i)));
+}
+
+/// The scene itself has been read: what is wrong with it after these changes is no mistake in the scene or on the command line, so the
+/// error names the scene and not a --set that was not typed.
+std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
+try {
+  return scene_digest(read_scene(plan.scene, changes));
+} catch (const SceneErrors& e) {
+  std::vector<Problem> problems;
+  for (const Problem& problem : e.problems()) {
+    Where where = plan.spec.where;
+    where.path = problem.where.path;
+    problems.push_back({where, "a run that talus fos makes of this scene is refused: " + problem.message, ""});
+  }
+  throw SceneErrors(std::move(problems));
+}
+
+}  // namespace
+
+std::vector<std::string> divided(const FosPlan& plan, Real factor)
+{
+  std::vector<std::string> changes;
+  for (const Index number : plan.materials)
+    std::visit(
+        [&](const auto& law) {
+          auto weaker = law;
+          divide_strength(weaker, factor);
+          tell_difference(law, weaker, fmt::format("materials[{}]", number), changes);
+        },
+        plan.spec.materials[static_cast<std::size_t>(number)].law);
+  return changes;
+}
+
+PlannedRun trial_of(const FosPlan& plan, Real factor, int times_as_long)
+{
+  const Real duration = plan.duration * times_as_long;
+  PlannedRun run;
+  run.changes = plan.of_state;
+  const auto add = [&](const std::vector<std::string>& more) { run.changes.insert(run.changes.end(), more.begin(), more.end()); };
+  add(divided(plan, factor));
+  add({fmt::format("stages=[{{type: run, duration: {}, damping: {}}}]", duration, plan.damping),
+       fmt::format("outputs={{particles: {{every: {}, fields: {}}}, history: {{every: {}, moved: {}}}{}}}", duration / files_of_trial,
+                   plan.fields, duration / rows_of_trial, plan.moved, plan.picture)});
+  run.folder = plan.folder / fmt::format("trial_{}", factor);
+  run.scene_digest = digest_of_changed(plan, run.changes);
+  return run;
+}
+
+FosPlan plan_fos(const FosOptions& options)
+{
+  FosPlan plan;
+  plan.scene = options.scene;
+  plan.folder = options.out.value_or(default_fos_folder(options.scene));
+  plan.set = options.set;
+  plan.quick = options.quick;
+  plan.spec = read_scene(options.scene, options.set);
+  const Scene& scene = plan.spec;
+  const std::size_t n_stages = stages_until_rest(scene);
+  if (n_stages == 0) {
+    Where where = scene.where;
+    where.path = "stages";
+    throw SceneErrors(where, "there is no stage of type geostatic: strength is divided in the state at rest that such a stage finds");
+  }
+  const auto last = static_cast<Index>(n_stages) - 1;
+  choose_bodies(options, last, plan);
+  plan.before = scene.dimension == 2 ? measured<2>(plan) : measured<3>(plan);
+  if (!(plan.before.gravity > 0) && !options.duration)
+    throw Error("--duration is needed where there is no gravity: how long a trial lasts follows from it");
+  plan.duration = options.duration.value_or(usual_duration(plan.before));
+  plan.damping = options.damping;
+
+  plan.at_rest.changes = options.set;
+  plan.of_state = options.set;
+  keep_stages(options, n_stages, plan);
+  keep_bodies(options, last, plan);
+  keep_walls(options, last, plan);
+  keep_table(options, n_stages, plan);
+  plan.at_rest.changes.emplace_back("outputs.checkpoint.at_end=true");
+  plan.at_rest.folder = plan.folder / "at_rest";
+  plan.at_rest.scene_digest = digest_of_changed(plan, plan.at_rest.changes);
+
+  // Relative to the scene, so that both can be moved together.
+  const fs::path here = fs::absolute(options.scene).lexically_normal().parent_path();
+  const fs::path state = fs::absolute(plan.at_rest.folder).lexically_normal().lexically_relative(here);
+  plan.of_state.push_back(fmt::format("initial={{from: {}}}", in_quotes(state)));
+  std::vector<std::string> moved;
+  for (const std::string& body : options.bodies) {
+    plan.columns.push_back("moved_" + body);
+    moved.push_back(
+        fmt::format("{{name: {}, body: {}, mass_share: {}}}", in_quotes(plan.columns.back()), in_quotes(body), options.mass_share));
+  }
+  if (options.bodies.empty()) {
+    plan.columns.emplace_back("moved");
+    moved.push_back(fmt::format("{{name: moved, mass_share: {}}}", options.mass_share));
+  }
+  plan.keeps_strain = std::any_of(plan.materials.begin(), plan.materials.end(), [&](Index number) {
+    return std::visit(
+        []<class L>(const L&) {
+          return requires(typename L::State state) { state.plastic_strain; };
+        },
+        scene.materials[static_cast<std::size_t>(number)].law);
+  });
+  plan.fields = plan.keeps_strain ? "[velocity, displacement, plastic_strain]" : "[velocity, displacement]";
+  plan.moved = fmt::format("[{}]", fmt::join(moved, ", "));
+  if (const std::string picture = written_in_scene(options.scene, options.set, "outputs.picture"); picture.starts_with('{'))
+    plan.picture = ", picture: " + picture;
+  trial_of(plan, 1, 1);  // what keeps a trial from being run is said before the state at rest is sought
+  return plan;
+}
+
+}  // namespace talus

@@ -1,0 +1,26 @@
+// talus info
+#include <fmt/format.h>
+
+#include "app/commands/info_command.hpp"
+#include "core/parallel/threads.hpp"
+#include "core/version.hpp"
+#include "io/scene/scene_rules.hpp"
+#include "kernels/kernels.hpp"
+#include "materials/laws.hpp"
+
+namespace talus {
+
+void print_info()
+{
+  fmt::print("{}\n", describe(version()));
+  fmt::print("threads: {}\n", threads());
+  fmt::print("laws:\n");
+  for_each_type(Laws{}, []<class L>() { fmt::print("  {:<20} {}\n", L::name, L::summary); });
+  fmt::print("kernels:\n");
+  for_each_type(Kernels<2>{}, []<class K>() { fmt::print("  {:<20} {}\n", K::name, K::summary); });
+  fmt::print(
+      "licence: the source is under the Apache License 2.0.  This program is linked with gmsh, which is under the GNU General Public\n"
+      "License (version 2 or later), so whoever passes on the compiled program does so under the GPL, version 3.  See THIRD_PARTY.md.\n");
+}
+
+}  // namespace talus

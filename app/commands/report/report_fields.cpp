@@ -1,0 +1,80 @@
+#include "app/commands/report/report_fields.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/error.hpp"
+#include "core/parallel/threads.hpp"
+#include "core/word_match.hpp"
+
+namespace talus {
+
+namespace {
+
+/// What every file has and nobody looks at as colours.
+bool is_shown(const StoredField& field) { return field.name != "position" && field.name != "body"; }
+
+std::vector<std::string> names_of_fields(const StoredParticles& particles)
+{
+  std::vector<std::string> names;
+  for (const StoredField& field : particles.fields)
+    if (field.name != "position")
+      names.push_back(field.name);
+  return names;
+}
+
+}  // namespace
+
+const StoredField* stored_field(const StoredParticles& particles, std::string_view name)
+{
+  const auto found =
+      std::find_if(particles.fields.begin(), particles.fields.end(), [&](const StoredField& field) { return field.name == name; });
+  return found == particles.fields.end() ? nullptr : &*found;
+}
+
+std::vector<Real> viewed_values(const StoredField& field, const ViewedField& viewed)
+{
+  const auto width = static_cast<std::size_t>(field.components);
+  const auto component = viewed.component_of(field.components);
+  const std::span<const Real> all = field.values;
+  std::vector<Real> values(all.size() / width);
+  parallel_for(static_cast<Index>(values.size()), [&](Index i) {
+    const auto entry = all.subspan(static_cast<std::size_t>(i) * width, width);
+    values[static_cast<std::size_t>(i)] = component ? entry[static_cast<std::size_t>(*component)] : viewed_value(entry);
+  });
+  return values;
+}
+
+std::string words_of(const ViewedField& field) { return field.component.empty() ? field.name : field.name + ':' + field.component; }
+
+std::vector<ViewedField> fields_to_show(const StoredParticles& particles, const std::vector<std::string>& asked,
+                                        const std::string& of_picture)
+{
+  std::vector<ViewedField> shown;
+  const auto add = [&](const ViewedField& field) {
+    const auto same = [&](const ViewedField& other) { return words_of(other) == words_of(field); };
+    if (std::none_of(shown.begin(), shown.end(), same))
+      shown.push_back(field);
+  };
+  for (const std::string& text : asked) {
+    const auto field = ViewedField::of(text);
+    const StoredField* there = stored_field(particles, field.name);
+    if (there == nullptr)
+      throw Error(
+          fmt::format("--fields: the particles have no field \"{}\"{}", field.name, suggestion(field.name, names_of_fields(particles))));
+    field.component_of(there->components);
+    add(field);
+  }
+  if (!asked.empty())
+    return shown;
+  const auto first = ViewedField::of(of_picture);
+  if (stored_field(particles, first.name) != nullptr)
+    add(first);
+  for (const StoredField& field : particles.fields)
+    if (is_shown(field))
+      add({field.name});
+  return shown;
+}
+
+}  // namespace talus

@@ -1,0 +1,476 @@
+// talus run
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdlib>
+#include <new>
+
+#include "app/commands/run_command.hpp"
+#include "app/observers/balance_errors.hpp"
+#include "app/observers/checkpoints.hpp"
+#include "app/observers/results.hpp"
+#include "app/observers/scene_copy.hpp"
+#include "app/run/disk_space.hpp"
+#include "app/run/new_results.hpp"
+#include "app/run/summary.hpp"
+#include "app/run/thread_choice.hpp"
+#include "app/setup/quick.hpp"
+#include "app/setup/resumed_scene.hpp"
+#include "core/parallel/communicator.hpp"
+#include "core/parallel/threads.hpp"
+#include "core/print.hpp"
+#include "core/shell_quote.hpp"
+#include "core/version.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/manifest.hpp"
+#include "io/load_mesh.hpp"
+#include "io/mesh/gmsh_write.hpp"
+#include "io/output/summary_json.hpp"
+#include "io/scene/reader.hpp"
+#include "io/system/signals.hpp"
+#include "io/system/traps.hpp"
+#include "mesh/digest.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> names_of(const std::vector<fs::path>& files)
+{
+  std::vector<std::string> names;
+  for (const fs::path& file : files)
+    names.push_back(file.filename().string());
+  return names;
+}
+
+/// How a run that does not go on in its folder treats what is there.
+Replacing replacing(const RunOptions& options) { return {options.force, options.resume ? std::nullopt : std::optional(options.scene)}; }
+
+/// Goes on in the folder of the run that it comes from.
+bool goes_on_in_place(const CheckpointList* from, const fs::path& folder)
+{
+  std::error_code not_there;
+  return from != nullptr && from->folder() && fs::equivalent(folder, *from->folder(), not_there);
+}
+
+/// One run in its folder, from mesh to summary.
+template <int D>
+class Run {
+ public:
+  /// `from`: what to go on from, if anything.
+  Run(Scene scene, fs::path folder, bool quick, const RunOptions& options, const CheckpointList* from)
+      : scene_(std::move(scene)), folder_(std::move(folder)), quick_(quick), options_(options), from_(from)
+  {}
+
+  void operator()()
+  {
+    auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
+    watch_.lap(mesh_seconds_);
+    auto setup = set_up(scene_, mesh, world());
+    thread_choice_ = fit_threads(options_.threads, scene_, setup.n_particles);
+    if (quick_)
+      shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
+    stages_ = setup.stages;
+    notes_ = setup.notes;
+    if (from_)
+      check_durations(*from_, stages_, options_.set);
+    check_sources(setup);
+    if (setup.origin && from_)
+      setup.origin->file = from_->identity().initial;  // what was read is the copy
+    const std::uint64_t mesh_digest = digest(mesh);
+    const RunIdentity identity = identity_of(mesh_digest, setup);
+    if (from_)
+      compare(from_->identity(), identity);
+    least_energy_ = setup.guards.least_energy * least_energy_factor;
+    summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
+
+    n_particles_ = setup.n_particles, n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
+    if (!world().alone() && world().is_root())
+      whole_ = mesh;
+    Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
+    Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
+    StopWatch of_step;
+    Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
+                           Real seconds = 0;
+                           of_step.lap(seconds);
+                           if (moment == Moment::step_done)
+                             thread_choice_.took(seconds);
+                           recorder.watch(frame, moment);
+                           if (moment == Moment::step_begins) {
+                             checkpoints.see(frame, recorder);
+                             set_threads(thread_choice_.next());
+                             of_step = {};
+                           }
+                           if (moment == Moment::given_up)
+                             checkpoints.write(frame, recorder);
+                         },
+                         [&](const Frame<D>& frame, const StageResult& result) {
+                           recorder.stage_done(result);
+                           checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
+                         }};
+    fs::path taken;
+    const auto laws = setup.laws;
+    const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
+    audience.changed = [&](const Frame<D>& frame, const Stage& stage, const StageNews& news) {
+      recorder.changed(tell(frame, stage, news));
+    };
+    if (from_)
+      audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
+    // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
+    audience.ready = [&](const Frame<D>& frame) {
+      summary_.nodes_as_corners = world().sum(frame.nodes_as_corners);
+      check_disk_space(folder_, frame, scene_.outputs, time_left(frame));
+      world().together([&] { prepare(frame); });
+      began_ = true;  // for the other ranks too
+      whole_.reset();
+      if (from_)
+        go_on(frame, taken, recorder);
+      watch_.lap(build_seconds_);
+    };
+    const auto failed = [&](const char* what, const std::string& way_back = {}) {
+      std::string message = what;
+      if (!began_)
+        return message;
+      if (!recorder.last_output().empty())
+        message += "; last good output " + recorder.last_output();
+      if (!checkpoints.last().empty())
+        message += "; last checkpoint " + checkpoints.last().string();
+      message += way_back;
+      try {
+        finish(recorder, RunStatus::failed, message);
+      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
+      }
+      return message;
+    };
+    const StopRequests requests;  // until the summary is written
+    try {
+      std::optional<FloatingPointTraps> traps(std::in_place);
+      simulate(scene_, std::move(mesh), std::move(setup), audience, moves_of_shares(mesh_digest, traps));
+      finish(recorder, RunStatus::done, "");
+    } catch (const Stopped& e) {
+      const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), shell_word(folder_));
+      finish(recorder, RunStatus::stopped, message);
+      throw Stopped(message);
+    } catch (const RunError& e) {
+      throw RunError(failed(e.what(), way_back(checkpoints, recorder.last_seen().clock.step)));
+    } catch (const EnvironmentError& e) {
+      throw EnvironmentError(failed(e.what()));
+    } catch (const std::bad_alloc&) {
+      throw EnvironmentError(failed("not enough memory"));
+    }
+    if (!options_.quiet && world().is_root())
+      say(stdout, "{}results in {}; as one page for the browser: talus report {}\n", table(recorder), folder_.string(),
+          shell_word(folder_));
+    world().together([&] { tell_failed_accounts(); });
+  }
+
+ private:
+  bool strict() const noexcept { return scene_.strict || options_.strict; }
+
+  /// RunError: they are an error here.
+  void tell_failed_accounts() const
+  {
+    std::fflush(stdout);
+    if (!failed_accounts_.empty() && strict())
+      throw RunError(strict_message());
+    for (const std::string& what : failed_accounts_)
+      say(stderr, "warning: {}\n", what);
+  }
+  std::string strict_message() const { return fmt::format("{} (strict); the results are complete", fmt::join(failed_accounts_, "; ")); }
+
+  bool is_over(const Frame<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
+
+  RunIdentity identity_of(std::uint64_t mesh_digest, const Setup<D>& setup) const
+  {
+    const Version v = version();
+    return {std::string(v.number),
+            std::string(v.commit),
+            std::string(v.compiler),
+            build_of(v),
+            fs::absolute(scene_.file).lexically_normal().string(),
+            scene_.text,
+            scene_.overrides,
+            quick_,
+            static_cast<std::int64_t>(mesh_digest),
+            static_cast<std::int64_t>(setup.from_files),
+            setup.origin ? setup.origin->file : ""};
+  }
+
+  /// To the state after the last sound step, where that is not a checkpoint: the command that computes it again.
+  std::string way_back(const Checkpoints<D>& checkpoints, std::int64_t sound) const
+  {
+    if (checkpoints.last_step() == sound || resumed_after_ == sound)
+      return {};
+    std::string command = fmt::format("talus run {} --out {}{}", shell_word(options_.scene), shell_word(folder_), quick_ ? " --quick" : "");
+    if (from_)
+      command = fmt::format("talus run --resume {} --out {}", shell_word(*options_.resume), shell_word(folder_));
+    for (const std::string& change : options_.set)
+      command += " --set " + shell_word(change);
+    if (!checkpoints.last().empty())  // it knows the changes
+      command = fmt::format("talus run --resume {}", shell_word(folder_));
+    return fmt::format("; the state before it: {} --until {}", command, sound);
+  }
+
+  /// EnvironmentError: the mesh, or what other files say, is not that of the checkpoint.
+  static void compare(const RunIdentity& then, const RunIdentity& now)
+  {
+    if (then.mesh != now.mesh)
+      throw EnvironmentError(
+          fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
+    if (then.from_files != now.from_files)
+      throw EnvironmentError(
+          fmt::format("a record or the water table of {} is not the one that the checkpoint was made with: its file has changed since",
+                      now.scene_file));
+    std::vector<std::string> maker, here;  // what they differ in
+    for (const auto& [what, part] : {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler),
+                                     std::pair("build", &RunIdentity::build)})
+      if (then.*part != now.*part) {
+        maker.push_back(fmt::format("{} {}", what, then.*part));
+        here.push_back(fmt::format("{} {}", what, now.*part));
+      }
+    if (!maker.empty() && world().is_root())
+      say(stderr, "warning: the checkpoint was made by {}; this program is {}: results may differ in the last digits\n",
+          fmt::join(maker, ", "), fmt::join(here, ", "));
+  }
+
+  bool in_place() const { return goes_on_in_place(from_, folder_); }
+
+  /// EnvironmentError, SceneErrors: what the run comes from would be gone with the results in its folder.
+  void check_sources(const Setup<D>& setup)
+  {
+    if (setup.origin)
+      initial_ = setup.origin->file;
+    if (in_place())
+      return;
+    const auto refusal = [&](const fs::path& source) {
+      return fmt::format("{} is among the results in {}, which this run replaces: choose another folder with --out", source.string(),
+                         folder_.string());
+    };
+    if (from_)
+      for (const fs::path& file : from_->files())
+        if (lies_in(file, folder_))
+          throw EnvironmentError(refusal(file));
+    if (initial_ && lies_in(*initial_, folder_))
+      throw SceneErrors(scene_.initial->where, refusal(*initial_));
+  }
+
+  /// Of all stages [s], at most.
+  Real time_left(const Frame<D>& frame) const
+  {
+    Real time = from_ ? 0 - frame.clock.time : 0;
+    for (const Stage& stage : stages_)
+      time += stage.duration;
+    return std::max(time, 0.0);
+  }
+
+  /// The folder, the mesh and the scene in it, and a summary that says "not ended".
+  void prepare(const Frame<D>& frame)
+  {
+    if (from_)
+      edits_ = find_edits(from_->identity().scene_file, from_->folder(), from_->identity().scene_text, from_->identity().set);
+    if (in_place()) {
+      lock_ = FolderLock(folder_);
+      remove_leftovers(folder_);
+      adopt_results(folder_);
+      began_ = true;
+      write_first_files(folder_, frame);
+      update_scene_copy(folder_, scene_);
+    } else {
+      NewResults fresh(folder_, replacing(options_));
+      write_first_files(fresh.staging(), frame);
+      if (!fresh.keeps_scene())
+        write_whole(fresh.staging() / scene_copy_file, with_changes(scene_.text, scene_.overrides));
+      lock_ = fresh.commit();
+      began_ = true;
+    }
+    for (const std::string& warning : summary_.warnings)
+      say(stderr, "warning: {}\n", warning);
+    if (!options_.quiet)
+      say(stdout, "{}: {} particles, {} cells, {} nodes, kernel {}, transfer {}, {}{} thread{}\n", scene_.title, n_particles_, n_cells_,
+          n_nodes_, scene_.kernel, summary_.transfer, world().alone() ? "" : fmt::format("{} ranks with ", world().size()), threads(),
+          threads() == 1 ? "" : "s");
+    if (!options_.quiet && summary_.origin)
+      say(stdout, "{}", describe(*summary_.origin));
+    for (std::size_t n = 0; n < notes_.size() && !options_.quiet; ++n)
+      say(stdout, "  {}\n", notes_[n]);
+    std::fflush(stdout);
+  }
+
+  /// Summary, mesh and state at the start; a mesh that is there is that of the run, or what the user has made of it.
+  void write_first_files(const fs::path& place, const Frame<D>& frame) const
+  {
+    write_summary(place / "summary.json", summary_);
+    const Mesh<D>& mesh = whole_ ? *whole_ : frame.mesh;
+    if (!fs::exists(place / "mesh.msh"))
+      write_msh(place / "mesh.msh", mesh);
+    if (!fs::exists(place / "mesh.vtu"))
+      write_mesh<D>(place / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
+    if (const fs::path copy = place / initial_file; initial_ && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial_))
+      write_whole(copy, [&](const fs::path& temporary) {
+        std::error_code trouble;
+        fs::copy_file(*initial_, temporary, trouble);
+        if (trouble)
+          throw EnvironmentError(fmt::format("{} cannot be copied to {}: {}", initial_->string(), copy.string(), trouble.message()));
+      });
+  }
+
+  void go_on(const Frame<D>& frame, const fs::path& taken, Recorder<D>& recorder)
+  {
+    resumed_after_ = frame.clock.step;
+    std::vector<std::string> news = edits_;
+    if (in_place()) {
+      std::vector<fs::path> aside;
+      world().together([&] { aside = set_aside_newer(folder_, taken); });
+      if (!aside.empty())
+        news.push_back(fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}",
+                                   taken.filename().string(), fmt::join(names_of(aside), ", ")));
+      const auto missing = recorder.resume(frame);
+      news.insert(news.end(), missing.begin(), missing.end());
+    } else {
+      recorder.begin_again(frame);
+    }
+    for (const std::string& what : news)  // of the root alone
+      say(stderr, "warning: {}\n", what);
+    summary_.warnings.insert(summary_.warnings.end(), news.begin(), news.end());
+    if (!options_.quiet && world().is_root())
+      say(stdout, "{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
+          frame.clock.step, frame.clock.time);
+  }
+
+  /// What a stage has changed; returns it as lines for the summary.
+  std::vector<std::string> tell(const Frame<D>& frame, const Stage& stage, const StageNews& news)
+  {
+    const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", frame.clock.time, stage.name);
+    std::vector<std::string> lines;
+    for (const std::string& what : news.told)
+      lines.push_back(when + what);
+    for (const std::string& what : news.warnings)
+      summary_.warnings.push_back(when + what);
+    if (!world().is_root())
+      return lines;
+    for (const std::string& what : news.warnings)
+      say(stderr, "warning: {}{}\n", when, what);
+    for (const std::string& line : lines)
+      if (!options_.quiet)
+        say(stdout, "{}\n", line);
+    std::fflush(stdout);
+    return lines;
+  }
+
+  Moves<D> moves_of_shares(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
+  {
+    const auto whole_mesh = [this, mesh_digest, &traps] {
+      traps.reset();  // whoever makes meshes is not looked at
+      Mesh<D> again = load_mesh<D>(scene_.mesh, folder_of(scene_));
+      traps.emplace();
+      if (digest(again) != mesh_digest)
+        throw EnvironmentError("the mesh is not the one that the run began with: its file has changed since");
+      return again;
+    };
+    const auto stayed = [this](const std::string& why) {
+      summary_.warnings.push_back("the ranks cannot share the run out anew, and go on as they are: " + why);
+      if (world().is_root())
+        say(stderr, "warning: {}\n", summary_.warnings.back());
+    };
+    return {options_.rebalance, whole_mesh, mesh_seconds_, [this](const SharesMoved& by) { note(by); }, stayed};
+  }
+
+  void note(const SharesMoved& by)
+  {
+    ++rebalances_;
+    rebalancing_ += by.seconds;
+    if (options_.quiet || !world().is_root())
+      return;
+    say(stdout,
+        "step {}, t = {:.6g} s: shared out anew in {:.2g} s, the busiest rank has {:.3g} times the mean of the work, before {:.3g}\n",
+        by.clock.step, by.clock.time, by.seconds, by.after, by.before);
+    std::fflush(stdout);
+  }
+
+  void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
+  {
+    if (!world().is_root())
+      return;
+    require_results(folder_);
+    Real steps = 0;
+    watch_.lap(steps);
+    RunSummary summary = summary_;
+    summary.threads = thread_choice_.kept();
+    summary.status = status;
+    summary.message = message;
+    summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
+    summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
+    complete(recorder, quick_, summary);
+    if (status == RunStatus::done)
+      failed_accounts_ = failed_accounts(summary, least_energy_);
+    summary.warnings.insert(summary.warnings.begin(), failed_accounts_.begin(), failed_accounts_.end());
+    if (!failed_accounts_.empty() && strict())
+      summary.status = RunStatus::failed, summary.message = strict_message();
+    summary.ranks.rebalances = rebalances_, summary.ranks.rebalancing = rebalancing_;
+    summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
+    if (summary.origin)
+      summary.files.emplace_back(initial_file);
+    for (const char* const table : {"history.csv", "runout.csv"})  // which grow no more
+      if (fs::exists(folder_ / table))
+        note_result(folder_ / table, folder_ / table);
+    write_summary(folder_ / "summary.json", summary);
+  }
+
+  Scene scene_;
+  fs::path folder_;
+  bool quick_;
+  const RunOptions& options_;
+  const CheckpointList* from_;
+  std::optional<std::int64_t> resumed_after_;  // steps
+  StopWatch watch_;
+  Real mesh_seconds_ = 0, build_seconds_ = 0;
+  std::int64_t rebalances_ = 0;
+  Real rebalancing_ = 0;                               // [s]
+  Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
+  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
+  std::vector<Stage> stages_;
+  std::vector<std::string> notes_;  // of the set-up
+  std::vector<std::string> edits_;  // of the scene of a run that goes on; on the root
+  RunSummary summary_;              // as it begins
+  std::vector<std::string> failed_accounts_;
+  ThreadChoice thread_choice_;
+  Real least_energy_ = 0;            // of a balance that is judged [J]
+  std::optional<fs::path> initial_;  // what bodies begin with
+  bool began_ = false;               // the folder is this run's
+  FolderLock lock_;
+};
+
+}  // namespace
+
+void run_scene(const RunOptions& options)
+{
+  std::optional<CheckpointList> from;
+  if (options.resume)
+    from.emplace(*options.resume);
+  Scene scene = from ? read_again(from->identity(), options.set) : read_scene(options.scene, options.set);
+  take_threads(options.threads, scene);
+  if (from && !from->folder() && !options.out)
+    throw EnvironmentError(fmt::format("{} lies in no folder of a run (DIR/{}, with DIR/summary.json): say with --out where the results go",
+                                       options.resume->string(), checkpoint_folder));
+  if (from && scene.initial) {
+    const fs::path copy = from->folder().value_or(options.resume->parent_path()) / initial_file;
+    if (!fs::exists(copy))
+      throw EnvironmentError(fmt::format("{} is not there: the state that the run began with, which it needs to go on", copy.string()));
+    scene.initial->from = copy.string();
+  }
+  const bool quick = from ? from->identity().quick : options.quick;
+  if (quick)
+    coarsen(scene);
+  const fs::path folder = options.out ? *options.out : from ? *from->folder() : default_results(options.scene);
+  const CheckpointList* const resumed = from ? &*from : nullptr;
+  if (!goes_on_in_place(resumed, folder))
+    world().together([&] { check_replaceable(folder, replacing(options)); });  // and again when all is there: a mesh may take long
+  if (scene.dimension == 2)
+    Run<2>(std::move(scene), folder, quick, options, resumed)();
+  else
+    Run<3>(std::move(scene), folder, quick, options, resumed)();
+}
+
+}  // namespace talus

@@ -1,0 +1,236 @@
+#include "app/commands/sweep/sweep_table.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/word_match.hpp"
+#include "io/files/atomic_file.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Behind the fronts.
+constexpr std::array usual_numbers{"kinetic", "plastic", "friction",       "energy.closure", "mass.removed",
+                                   "fastest", "steps",   "simulated_time", "cost.wall"};
+
+/// One process at a time in a folder, where the file system knows locks; others wait.
+class OneAtATime {
+ public:
+  explicit OneAtATime(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+  {
+    if (handle_ >= 0)
+      ::flock(handle_, LOCK_EX);
+  }
+  ~OneAtATime()
+  {
+    if (handle_ >= 0)
+      ::close(handle_);
+  }
+  OneAtATime(const OneAtATime&) = delete;
+  OneAtATime& operator=(const OneAtATime&) = delete;
+
+ private:
+  int handle_;
+};
+
+/// What is told of a column of a history.
+enum class Of : std::uint8_t { last, max, min };
+
+/// "max(toe)" -> max of toe; a name alone is its last entry.
+std::pair<Of, std::string> column_asked(const std::string& name)
+{
+  for (const auto& [word, of] : {std::pair("last(", Of::last), std::pair("max(", Of::max), std::pair("min(", Of::min)})
+    if (name.starts_with(word) && name.ends_with(')'))
+      return {of, name.substr(std::string_view(word).size(), name.size() - std::string_view(word).size() - 1)};
+  return {Of::last, name};
+}
+
+/// Entries that are there count: "no value" is NaN.
+std::optional<NamedValue> of_history(const HistoryTable& history, const std::string& name)
+{
+  const auto [of, column] = column_asked(name);
+  for (std::size_t c = 0; c < history.columns.size(); ++c) {
+    if (history.columns[c].name != column)
+      continue;
+    NamedValue found{name, std::nan(""), history.columns[c].unit};
+    for (const Real value : history.values[c])
+      if (!std::isnan(value) && (of == Of::last || std::isnan(found.value) || (of == Of::max ? value > found.value : value < found.value)))
+        found.value = value;
+    return found;
+  }
+  return std::nullopt;
+}
+
+std::optional<HistoryTable> history_of(const SweepCase& one)
+{
+  const fs::path file = one.folder / "history.csv";
+  if (std::error_code unknown; !fs::exists(file, unknown))
+    return std::nullopt;
+  return read_history(file);
+}
+
+}  // namespace
+
+SweepTable::SweepTable(const SweepPlan& plan) : plan_(plan), status_(plan.cases.size()), rows_(plan.cases.size())
+{
+  for (const Written& name : plan.study.collect)
+    names_.push_back(name.text);
+  if (names_.empty()) {
+    names_ = plan.fronts;
+    names_.insert(names_.end(), usual_numbers.begin(), usual_numbers.end());
+  }
+}
+
+SweepTable::Row SweepTable::row_of(std::size_t i) const
+{
+  Row row;
+  row.numbers.resize(names_.size());
+  const auto& numbers = status_[i].summary.numbers;
+  if (status_[i].state != CaseState::done)
+    return row;
+  const auto history = history_of(plan_.cases[i]);
+  bool all_found = true;
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    if (const NamedValue* number = find_number(numbers, names_[k]))
+      row.numbers[k] = *number;
+    else if (history)
+      row.numbers[k] = of_history(*history, names_[k]);
+    all_found = all_found && row.numbers[k];
+  }
+  if (!all_found) {
+    for (const NamedValue& number : numbers)
+      row.known.push_back(number.name);
+    if (history)
+      for (const CsvColumn& column : history->columns)
+        row.known.push_back(column.name);
+  }
+  return row;
+}
+
+std::vector<CsvColumn> SweepTable::columns() const
+{
+  std::vector<CsvColumn> all{{"case"}};
+  for (const Varied& varied : plan_.study.vary)
+    all.push_back({varied.key});
+  all.push_back({"status"});
+  for (std::size_t k = 0; k < names_.size(); ++k) {
+    const auto has = std::find_if(rows_.begin(), rows_.end(), [&](const Row& row) { return k < row.numbers.size() && row.numbers[k]; });
+    all.push_back({names_[k], has == rows_.end() ? "" : has->numbers[k]->unit});
+  }
+  return all;
+}
+
+std::vector<std::string> SweepTable::number_headings() const
+{
+  std::vector<std::string> headings;
+  for (const CsvColumn& column : columns())
+    headings.push_back(csv_heading(column));
+  headings.erase(headings.begin(), headings.end() - std::ssize(names_));
+  return headings;
+}
+
+std::optional<Real> SweepTable::number(std::size_t i, std::size_t k) const
+{
+  const auto& numbers = rows_[i].numbers;
+  if (k >= numbers.size() || !numbers[k] || !std::isfinite(numbers[k]->value))
+    return std::nullopt;
+  return numbers[k]->value;
+}
+
+std::vector<std::string> SweepTable::words_of_case(std::size_t i) const
+{
+  std::vector<std::string> all{std::to_string(plan_.cases[i].number)};
+  for (const Written& value : plan_.cases[i].values)
+    all.push_back(value.text);
+  all.emplace_back(words(CaseState{})[static_cast<std::size_t>(status_[i].state)]);
+  return all;
+}
+
+void SweepTable::update()
+{
+  std::error_code said_when_written;
+  fs::create_directories(plan_.folder, said_when_written);
+  const OneAtATime alone(plan_.folder);
+  for (std::size_t i = 0; i < status_.size(); ++i)
+    if (status_[i].state != CaseState::done) {
+      status_[i] = status_of(plan_.cases[i], plan_.quick);
+      rows_[i] = row_of(i);
+    }
+  std::string text;
+  const auto add_line = [&](const std::vector<std::string>& cells) {
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      text.append(c == 0 ? "" : ",").append(csv_cell(cells[c]));
+    text += '\n';
+  };
+  std::vector<std::string> heads;
+  for (const CsvColumn& column : columns())
+    heads.push_back(csv_heading(column));
+  add_line(heads);
+  for (std::size_t i = 0; i < status_.size(); ++i) {
+    std::vector<std::string> cells = words_of_case(i);
+    for (const auto& number : rows_[i].numbers)
+      cells.push_back(number && !std::isnan(number->value) ? fmt::format("{}", number->value) : "");
+    add_line(cells);
+  }
+  write_whole(plan_.folder / "sweep.csv", text);
+}
+
+std::string SweepTable::print() const
+{
+  std::vector<std::vector<std::string>> lines(1);
+  for (const CsvColumn& column : columns())
+    lines.front().push_back(csv_heading(column));
+  for (std::size_t i = 0; i < status_.size(); ++i) {
+    lines.push_back(words_of_case(i));
+    const CaseStatus& status = status_[i];
+    if (status.state == CaseState::stopped || status.state == CaseState::not_ended)
+      lines.back().back() += status.goes_on_from ? fmt::format(" at t = {:.6g} s", *status.goes_on_from) : ", no checkpoint";
+    for (const auto& number : rows_[i].numbers)
+      lines.back().push_back(number ? fmt::format("{:.6g}", number->value) : "-");
+  }
+  std::string text;
+  std::vector<std::size_t> widths(lines.front().size(), 0);
+  for (const auto& line : lines)
+    for (std::size_t c = 0; c < line.size(); ++c)
+      widths[c] = std::max(widths[c], line[c].size());
+  for (const auto& line : lines) {
+    for (std::size_t c = 0; c < line.size(); ++c)
+      text += fmt::format("{}{:>{}}", c == 0 ? "" : "  ", line[c], widths[c]);
+    text += '\n';
+  }
+  return text;
+}
+
+std::vector<std::string> SweepTable::unknown_names() const
+{
+  std::vector<std::string> complaints;
+  for (std::size_t k = 0; k < plan_.study.collect.size(); ++k) {
+    bool found = false;
+    const std::vector<std::string>* known = nullptr;
+    for (const Row& row : rows_) {
+      found = found || (k < row.numbers.size() && row.numbers[k]);
+      if (!row.known.empty())
+        known = &row.known;
+    }
+    if (found || known == nullptr)
+      continue;
+    const Where& where = plan_.study.collect[k].at.where;
+    const auto near = closest_match(column_asked(names_[k]).second, *known);
+    complaints.push_back(fmt::format("{}: {}: no case has a number \"{}\"{}", to_string(where), where.path, names_[k],
+                                     near ? fmt::format(" — did you mean \"{}\"?", *near)
+                                          : "; names are the keys of summary.json, joined by points, and the columns of history.csv"));
+  }
+  return complaints;
+}
+
+}  // namespace talus

@@ -1,0 +1,44 @@
+#pragma once
+// What `talus watch` answers the browser: the page of the run, a word that changes when the page would, and pictures.
+#include <chrono>
+#include <memory>
+#include <mutex>
+
+#include "app/commands/report/report.hpp"
+#include "io/system/http_server.hpp"
+
+namespace talus {
+
+/// Nothing else of the disk: `/`, `/stamp`, `/pictures/NAME.png`.  May be asked by several threads at once.
+class WatchPages {
+ public:
+  /// `readers`: whoever reads results in this process holds it, since VTK's readers are not for several threads.
+  WatchPages(std::filesystem::path folder, std::filesystem::path template_file, Real interval, std::mutex& readers)
+      : folder_(std::move(folder)), template_file_(std::move(template_file)), interval_(interval), readers_(readers)
+  {}
+  std::optional<HttpAnswer> answer(const std::string& path);
+  /// Whether somebody has asked lately, and has not had the page of the run as it ended.
+  bool is_waited_for();
+
+ private:
+  using Watch = std::chrono::steady_clock;
+  std::string stamp();
+  void make_page();
+
+  std::filesystem::path folder_, template_file_;
+  Real interval_;
+  std::mutex& readers_;
+  RunSurvey survey_;
+  std::string stamp_, stamp_of_page_;  // of summary, then of outputs
+  std::string outputs_;                // of the stamp
+  bool page_is_last_ = false, last_is_given_ = false;
+  std::optional<Watch::time_point> asked_at_;
+  std::shared_ptr<const std::string> page_;
+  Watch::time_point stamped_at_;
+  Watch::duration rest_{};  ///< until the results are looked at again
+};
+
+/// The picture that a path such as "/pictures/displacement_0003.png" names, if it is an ordinary file of the run's pictures.
+std::optional<std::filesystem::path> picture_at(const std::filesystem::path& folder, const std::string& path);
+
+}  // namespace talus

@@ -1,0 +1,122 @@
+#include "app/observers/accounts.hpp"
+
+#include <algorithm>
+
+namespace talus {
+
+Real EnergyNow::largest_term() const noexcept
+{
+  Real largest = 0;
+  for (const Real term : {kinetic_start, kinetic, strain, plastic, friction, damping, carried_away, gravity, loads, walls, waves, size})
+    largest = std::max(largest, std::abs(term));
+  return largest;
+}
+
+namespace {
+
+/// Momentum of the particles; the moduli are those of each.
+template <int D>
+Push<D> momentum_of(const Frame<D>& frame)
+{
+  const Particles<D>& particles = frame.particles;
+  return sum_particles<Push<D>>(frame.order, *frame.ranks, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
+    return Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+  });
+}
+
+}  // namespace
+
+template <int D>
+Real MomentumNow<D>::linear_defect() const noexcept
+{
+  return share((end.linear - start.linear - given.linear).norm(), start.size + given.size);
+}
+
+template <int D>
+Real MomentumNow<D>::angular_defect() const noexcept
+{
+  return share(forces.norm(), start.turn + given.turn);
+}
+
+template <int D>
+Real MomentumNow<D>::angular_loss() const noexcept
+{
+  return share(lost.norm(), start.turn + given.turn);
+}
+
+template <int D>
+void Accounts<D>::see(const Frame<D>& frame, Moment moment)
+{
+  if (moment == Moment::stage_begins) {
+    if (!begun_) {
+      kinetic_begin_ = totals(frame).kinetic;
+      plastic_begin_ = frame.energy.plastic_start;
+      start_ = momentum_of(frame);
+    } else {
+      before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
+      before_.waves += stage_.waves;
+      before_.friction += stage_.friction, before_.damping += stage_.damping, before_.internal += stage_.internal;
+      before_.carried_away += stage_.carried_away, before_.plastic_deleted += stage_.plastic_deleted;
+      transfer_before_ += stage_.transfer(kinetic_end_);
+      taken_out_before_ += taken_out_;
+      // What differs between the end of the one stage and the beginning of the next has come or gone with bodies.
+      const Real came = frame.energy.kinetic_start - (kinetic_end_ - taken_out_);
+      (came > 0 ? kinetic_begin_ : before_.carried_away) += std::abs(came);
+      before_.plastic_deleted += plastic_end_ - frame.energy.plastic_start;
+    }
+    begun_ = true;
+    taken_out_ = 0;
+  }
+  if (moment == Moment::stage_done) {
+    taken_out_ = frame.energy.set_to_rest;
+    kinetic_end_ = totals(frame).kinetic + taken_out_;
+    plastic_end_ = plastic_work(frame);
+  }
+  stage_ = frame.energy.at_velocities();
+}
+
+template <int D>
+EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
+{
+  const EnergyLedger e = frame.energy.at_velocities();
+  EnergyNow now;
+  now.kinetic_start = kinetic_begin_;
+  now.kinetic = totals(frame).kinetic;
+  now.plastic = plastic_work(frame) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;
+  now.strain = before_.internal + e.internal - now.plastic;
+  now.friction = 0 - before_.friction - e.friction;  // 0 - 0 is not -0
+  now.damping = taken_out_before_ + taken_out_ - before_.damping - e.damping;
+  now.carried_away = before_.carried_away + e.carried_away;
+  now.gravity = before_.gravity + e.gravity;
+  now.loads = before_.loads + e.loads;
+  now.walls = before_.walls + e.walls;
+  now.waves = before_.waves + e.waves;
+  now.size = e.largest_seen;
+  now.transfer = transfer_before_ + e.transfer(now.kinetic + taken_out_);
+  now.defect = now.gravity + now.loads + now.walls - (now.kinetic - now.kinetic_start) - now.strain - now.plastic - now.friction -
+               now.damping - now.carried_away - now.transfer;
+  return now;
+}
+
+template <int D>
+MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
+{
+  const MomentumLedger<D>& given = frame.momentum;
+  Push<D> in_steps = given.loads + given.damping;
+  for (const Wall<D>& wall : frame.walls.walls())
+    in_steps += Push<D>::of(wall.impulse, wall.angular);
+  MomentumNow<D> now{start_, momentum_of(frame), in_steps + given.rest + given.changes + -1 * frame.mass.carried_away};
+  if (frame.particles.precision() == Precision::single)
+    now.most_linear_defect = 1e-5;
+  now.forces = given.on_nodes - in_steps.angular;
+  now.lost = now.start.angular + now.given.angular + now.forces - now.end.angular;
+  return now;
+}
+
+template struct MomentumNow<2>;
+template struct MomentumNow<3>;
+template class Accounts<2>;
+template class Accounts<3>;
+
+}  // namespace talus

@@ -1,0 +1,67 @@
+#include "app/observers/body_forces.hpp"
+
+#include <algorithm>
+
+namespace talus {
+
+namespace {
+
+template <int D>
+BodySums<D> sums_of_body(const Frame<D>& frame, Index body)
+{
+  const Particles<D>& particles = frame.particles;
+  ExactSums<BodySums<D>> sum;
+  add_particles(frame.order, {body, body + 1}, sum, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
+    const Real m = particles.mass[p];
+    const Vec<D> v = particles.v[p], load = particles.applied.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(particles.applied[p]);
+    return BodySums<D>{m, 0.5 * m * v.squaredNorm(), m * v, load};
+  });
+  frame.ranks->sum(sum);
+  return sum.value();
+}
+
+}  // namespace
+
+template <int D>
+void BodyForces<D>::see(const Frame<D>& frame, Moment moment)
+{
+  if (!wanted_ || moment == Moment::step_begins || moment == Moment::given_up)
+    return;
+  std::vector<BodySums<D>> now;
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+    now.push_back(sums_of_body(frame, static_cast<Index>(b)));
+  impulses_.resize(now.size());
+  if (moment == Moment::step_done)
+    add_step(frame, now);
+  sums_ = std::move(now);
+  deleted_ = frame.mass.carried_away.linear;
+  failed_ = frame.mass.failed;
+}
+
+template <int D>
+void BodyForces<D>::add_step(const Frame<D>& frame, const std::vector<BodySums<D>>& now)
+{
+  const Vec<D> gravity = frame.nodes.gravity;
+  const Real kick = frame.nodes.kick;
+  const auto lost = [&](std::size_t b) { return now[b].mass != sums_[b].mass; };
+  std::size_t losers = 0;
+  for (std::size_t b = 0; b < now.size(); ++b)
+    losers += lost(b) ? 1 : 0;
+  const Real failed = frame.mass.failed - failed_;  // took part in the step in which it failed, with loads that went with it
+  for (std::size_t b = 0; b < now.size(); ++b) {
+    BodyImpulse<D>& impulse = impulses_[b];
+    if (lost(b) && (losers > 1 || (failed > 0 && !frame.particles.applied.empty()))) {
+      ++impulse.unknown;
+      continue;
+    }
+    const Vec<D> deleted = lost(b) ? Vec<D>(frame.mass.carried_away.linear - deleted_) : Vec<D>(Vec<D>::Zero());
+    const Real mass = now[b].mass + (lost(b) ? failed : 0);
+    impulse.given += now[b].momentum - sums_[b].momentum + deleted - kick * (mass * gravity + now[b].load);
+  }
+}
+
+template class BodyForces<2>;
+template class BodyForces<3>;
+
+}  // namespace talus

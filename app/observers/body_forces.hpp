@@ -1,0 +1,72 @@
+#pragma once
+// What walls and other bodies do to each body, from the balance of its momentum.
+#include "solver/run_view.hpp"
+
+namespace talus {
+
+/// Sums over the particles of a body at one time.
+template <int D>
+struct BodySums {
+  Real mass{}, kinetic{};            ///< [kg], [J]
+  Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
+  Vec<D> load = Vec<D>::Zero();      ///< forces that its particles carried in the last step: tractions and body forces [N]
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("mass", &BodySums::mass), kept("kinetic", &BodySums::kinetic), kept("momentum", &BodySums::momentum),
+                      kept("load", &BodySums::load)};
+  }
+  BodySums& operator+=(const BodySums& other) noexcept
+  {
+    mass += other.mass, kinetic += other.kinetic, momentum += other.momentum, load += other.load;
+    return *this;
+  }
+};
+
+/// What a body was given since the start of the run, apart from gravity and the loads that its particles carry.
+template <int D>
+struct BodyImpulse {
+  Vec<D> given = Vec<D>::Zero();  ///< [N s]
+  Real unknown{};                 ///< steps that are not in it, because what left the mesh in them cannot be shared out among bodies
+  static constexpr auto fields() { return std::tuple{kept("given", &BodyImpulse::given), kept("unknown", &BodyImpulse::unknown)}; }
+};
+
+/// Follows the momentum of every body through each step.  All bodies share one velocity at a node, so there is no contact force to look up; but
+/// what the momentum of a body gains in a step, less gravity on its mass and the loads on its particles, is what walls and other bodies gave it:
+///
+///     I_b += P_b(new) - P_b(old) + (momentum of its particles that were deleted) - kick (m_b g + f_b)
+///
+/// with the time `kick` over which forces act in the step (docs/theory/algorithm.md).
+/// The sum over all bodies is what walls gave, mesh tractions and the damping of stages included, to round-off.  Changes between steps do not
+/// count: bodies that appear, and the motion that is taken out where a stage ends at rest.  Does nothing unless it is `wanted`.
+template <int D>
+class BodyForces {
+ public:
+  explicit BodyForces(bool wanted) noexcept : wanted_(wanted) {}
+  /// Called at every event of a run, on every rank.
+  void see(const Frame<D>& frame, Moment moment);
+
+  /// Of each body, at the last event.
+  const std::vector<BodySums<D>>& sums() const noexcept { return sums_; }
+  const std::vector<BodyImpulse<D>>& impulses() const noexcept { return impulses_; }
+  /// Whether fields() that were taken over may be those of a run with so many bodies.
+  bool fits(std::size_t bodies) const noexcept { return sums_.size() == (wanted_ ? bodies : 0) && impulses_.size() == sums_.size(); }
+  static constexpr auto fields()
+  {
+    return std::tuple{kept("sums", &BodyForces::sums_), kept("impulses", &BodyForces::impulses_), kept("deleted", &BodyForces::deleted_),
+                      kept("failed", &BodyForces::failed_)};
+  }
+
+ private:
+  void add_step(const Frame<D>& frame, const std::vector<BodySums<D>>& now);
+
+  bool wanted_;
+  std::vector<BodySums<D>> sums_;
+  std::vector<BodyImpulse<D>> impulses_;
+  Vec<D> deleted_ = Vec<D>::Zero();  // momentum of all particles that were deleted so far
+  Real failed_ = 0;                  // mass of those of them that failed
+};
+
+extern template class BodyForces<2>;
+extern template class BodyForces<3>;
+
+}  // namespace talus

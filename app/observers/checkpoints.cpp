@@ -1,0 +1,414 @@
+#include "app/observers/checkpoints.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "app/observers/rank_slices.hpp"
+#include "app/observers/results.hpp"
+#include "app/observers/validate_state.hpp"
+#include "io/checkpoint/serialize.hpp"
+#include "io/files/atomic_file.hpp"
+#include "io/files/manifest.hpp"
+#include "io/system/signals.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of what is kept and how.  A change of what is kept makes it another.
+constexpr std::int64_t written_format = 7;
+constexpr auto prefix = "step_", suffix = ".h5";
+
+bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
+
+/// Numbers have the same length up to a billion steps, and longer ones are newer.
+bool is_newer(const fs::path& a, const fs::path& b)
+{
+  const std::string x = a.filename().string(), y = b.filename().string();
+  return std::pair(x.size(), x) > std::pair(y.size(), y);
+}
+
+/// Those in a folder, the newest first.  EnvironmentError: it is there and cannot be read.
+std::vector<fs::path> checkpoints_in(const fs::path& folder)
+{
+  std::vector<fs::path> files;
+  std::error_code trouble;
+  for (const auto& entry : fs::directory_iterator(folder, trouble))
+    if (is_checkpoint(entry.path()))
+      files.push_back(entry.path());
+  if (trouble && trouble != std::errc::no_such_file_or_directory)
+    throw EnvironmentError(fmt::format("{} cannot be read: {}", folder.string(), trouble.message()));
+  std::sort(files.begin(), files.end(), is_newer);
+  return files;
+}
+
+std::string history_of(std::size_t body) { return below("laws/history", body); }
+
+/// Of the rows of a file those of a body, where the rows from `rows.first` on are here, which `here` counts.
+Slice rows_of_body(const Body& in_file, const Body& here, const Slice& rows)
+{
+  const std::int64_t first = here.size() > 0 ? rows.first + here.begin - in_file.begin : 0;
+  return {first, in_file.size(), rows.piece, in_file.begin % rows.piece};
+}
+
+/// The rows of the file that are here, [first, end), as rows that count from 0.
+void take_slice(std::int64_t first, std::int64_t end, std::vector<Body>& bodies)
+{
+  for (Body& body : bodies) {
+    body.begin = static_cast<Index>(std::clamp<std::int64_t>(body.begin, first, end) - first);
+    body.end = static_cast<Index>(std::clamp<std::int64_t>(body.end, first, end) - first);
+  }
+}
+
+void recall_laws(const ArrayReader& file, const std::vector<Body>& in_file, const std::vector<Body>& here, std::int64_t first,
+                 std::vector<AnyBatch>& materials)
+{
+  for (std::size_t b = 0; b < materials.size(); ++b) {
+    const Body &all = in_file[b], &body = here[b];
+    if (const std::string name = file.text(below("laws/name", b)); name != law_name(materials[b]))
+      throw EnvironmentError(
+          fmt::format("the law of body \"{}\" is {} there and {} in the scene", body.name, name, law_name(materials[b])));
+    std::visit([&](auto& batch) { batch.begin = body.begin, batch.end = body.end; }, materials[b]);
+    const Slice rows = rows_of_body(all, body, {first});
+    recall_history(file, history_of(b), static_cast<std::size_t>(rows.first), static_cast<std::size_t>(all.size()), materials[b]);
+  }
+}
+
+/// Which columns there are: set-up has decided, and no state of the same scene with particles in it has others.
+template <int D>
+std::vector<bool> filled_columns(const Particles<D>& particles)
+{
+  std::vector<bool> there;
+  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { there.push_back(!column.empty()); });
+  return there;
+}
+
+void must(bool holds, const char* what)
+{
+  if (!holds)
+    throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
+}
+
+/// A list of which set-up has as many: looked at before its items, of which not all is kept, are replaced.
+void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
+{
+  std::int64_t count = 0;
+  recall(arrays, below(list, "count"), count);
+  must(std::cmp_equal(count, n), what);
+}
+
+/// Reads bodies, particles and histories: of the rows the slice of one of so many ranks, the bodies being those of the slice.  Bodies stand one
+/// after the other, with as many rows in each column; those that every scene needs are there.  Returns how many rows there are of all ranks.
+template <int D>
+std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                          Particles<D>& particles)
+{
+  recall(arrays, "bodies", bodies);
+  Index end = 0;
+  for (const Body& body : bodies) {
+    must(body.begin == end && body.end >= end, "bodies");
+    end = body.end;
+  }
+  must(std::cmp_equal(end, arrays.rows("particles/id")), "bodies");
+  const std::vector<Body> in_file = bodies;
+  const Slices slices{end, ranks};
+  const std::int64_t first = slices.begin(rank);
+  const std::size_t n = slices.size(rank);
+  take_slice(first, slices.end(rank), bodies);
+  particles.for_each_column([&](std::string_view name, std::string_view, const auto&) {
+    const std::size_t rows = arrays.rows(below("particles", name));
+    must(rows == 0 || std::cmp_equal(rows, end), "columns");
+  });
+  recall_columns(arrays, "particles", static_cast<std::size_t>(first), n, particles);
+  const auto all_there = [n](const auto&... columns) { return ((columns.size() == n) && ...); };
+  const Particles<D>& p = particles;
+  must(all_there(p.cell, p.x, p.v, p.L, p.F, p.stress, p.mass, p.volume0, p.volume), "columns");
+  recall_laws(arrays, in_file, bodies, first, materials);
+  return end;
+}
+
+/// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
+template <int D>
+void check_fit(const State<D>& state, const std::vector<bool>& columns, std::int64_t n_particles, const StateLimits& limits)
+{
+  const Particles<D>& particles = state.particles;
+  must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
+  const bool known = std::find(columns.begin(), columns.end(), true) != columns.end();  // not by a rank that had no particles
+  must(!known || filled_columns(particles) == columns || particles.size() == 0, "columns");
+  must(n_particles <= limits.particles, "bodies");
+  const auto within = [](const auto& column, auto limit) {
+    return std::all_of(column.begin(), column.end(), [&](auto value) { return 0 <= value && value < limit; });
+  };
+  must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
+}
+
+/// Bodies have other laws in another stage.
+void take_laws_of(const StageState& stage, std::span<const std::vector<AnyBatch>> laws, std::vector<AnyBatch>& materials)
+{
+  if (laws.empty())
+    return;
+  must(stage.number >= 0 && std::cmp_less(stage.number, laws.size()), "stages");
+  materials = laws[static_cast<std::size_t>(stage.number)];
+}
+
+/// EnvironmentError: a state that nothing sound comes of.
+void refuse_if_any(const std::vector<std::string>& faults)
+{
+  if (!faults.empty())
+    throw EnvironmentError(fmt::format("{}", fmt::join(faults, "; ")));
+}
+
+}  // namespace
+
+template <int D>
+Checkpoints<D>::Checkpoints(fs::path folder, const CheckpointSpec& spec, RunIdentity identity, std::optional<std::int64_t> until)
+    : folder_(std::move(folder)), spec_(spec), identity_(std::move(identity)), until_(until)
+{}
+
+template <int D>
+bool Checkpoints<D>::due(const Clock& clock) const
+{
+  const auto passed = [](Real from, Real to, Real every) { return std::floor(to / every) > std::floor(from / every); };
+  return (spec_.steps && clock.step / *spec_.steps > at_->step / *spec_.steps) ||
+         (spec_.every && passed(at_->time, clock.time, *spec_.every)) ||
+         std::chrono::duration<Real>(Watch::now() - when_).count() >= spec_.wall_time;
+}
+
+template <int D>
+void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
+{
+  if (!at_)
+    at_ = frame.clock;
+  std::string reason = StopRequests::received();
+  if (!reason.empty())
+    reason = "by " + reason;
+  else if (until_ && frame.clock.step >= *until_)
+    reason = "as asked";
+  // Signals and clocks on the wall differ from rank to rank.
+  enum : std::int64_t { go_on, write_one, stop };
+  const std::int64_t wish = !reason.empty() ? stop : frame.ranks->is_root() && due(frame.clock) ? write_one : go_on;
+  const std::int64_t what = frame.ranks->max(wish);
+  if (what == go_on)
+    return;
+  if (what == stop)
+    reason = frame.ranks->first(reason);
+  write(frame, recorder);
+  if (!reason.empty())
+    throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, frame.clock.step + 1, frame.clock.time,
+                              last_.string()));
+}
+
+template <int D>
+void Checkpoints<D>::see_end_of_stage(const Frame<D>& frame, const Recorder<D>& recorder, Index n_stages)
+{
+  if (spec_.at_end && frame.stage_number + 1 == n_stages)
+    write(frame, recorder);
+}
+
+template <int D>
+void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
+{
+  const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
+  frame.ranks->together([&] {
+    require_results(folder_);
+    recorder.flush();  // what the checkpoint says is written is on the disk before it
+  });
+  on_slices(frame, [&](const Frame<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
+    std::vector<SharedArray> arrays;
+    share_columns("particles", slice.particles, rows, arrays);
+    for (std::size_t b = 0; b < bodies.size(); ++b)
+      share_history(history_of(b), slice.materials[b], rows_of_body(bodies[b], slice.bodies[b], rows), arrays);
+    write_arrays(*frame.ranks, file, arrays, [&](ArrayWriter& rest) {
+      keep(rest, "format", written_format);
+      keep(rest, "run", identity_);
+      for_each_part(slice, [&](const std::string& name, const auto& part) {
+        using Part = std::decay_t<decltype(part)>;
+        if constexpr (std::is_same_v<Part, std::vector<Body>>)
+          keep(rest, name, bodies);
+        else if constexpr (!std::is_same_v<Part, Particles<D>>)
+          keep(rest, name, part);
+      });
+      for (std::size_t b = 0; b < bodies.size(); ++b)
+        keep(rest, below("laws/name", b), std::string(law_name(slice.materials[b])));
+      keep(rest, "recorder", recorder);
+    });
+  });
+  last_ = file;
+  at_ = frame.clock;
+  when_ = Watch::now();
+  if (!frame.ranks->is_root())
+    return;
+  const auto all = checkpoints_in(folder_ / checkpoint_folder);
+  const auto manifest = Manifest::of(folder_);
+  std::error_code stays;  // one too many is no reason to end a run
+  for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
+    if (!manifest || manifest->proves((fs::path(checkpoint_folder) / all[i].filename()).string()))
+      fs::remove(all[i], stays);
+}
+
+std::vector<fs::path> set_aside_newer(const fs::path& folder, const fs::path& taken)
+{
+  std::vector<fs::path> aside;
+  const auto manifest = Manifest::of(folder);
+  for (const fs::path& file : checkpoints_in(folder / checkpoint_folder))
+    if (is_newer(file, taken)) {
+      aside.push_back(name_aside(file));
+      if (manifest && manifest->proves((fs::path(checkpoint_folder) / file.filename()).string()))
+        note_result(aside.back(), file);
+      std::error_code stays;
+      fs::rename(file, aside.back(), stays);
+      if (stays)
+        throw EnvironmentError(fmt::format("{} cannot be renamed: {}", file.string(), stays.message()));
+    }
+  return aside;
+}
+
+namespace {
+
+/// The run whose checkpoint lies there, if it lies where a run puts it.
+std::optional<fs::path> folder_of_run(const fs::path& checkpoint)
+{
+  const fs::path place = fs::weakly_canonical(checkpoint).parent_path();
+  std::error_code not_there;
+  if (place.filename() == checkpoint_folder && fs::exists(place.parent_path() / "summary.json", not_there))
+    return place.parent_path();
+  return std::nullopt;
+}
+
+}  // namespace
+
+CheckpointList::CheckpointList(const fs::path& at)
+{
+  std::error_code unreadable;
+  if (!fs::exists(at, unreadable))
+    throw EnvironmentError(fmt::format("{} is not there", at.string()));
+  const bool is_run = fs::is_directory(at, unreadable);
+  files_ = is_run ? checkpoints_in(at / checkpoint_folder) : std::vector{at};
+  if (!is_run)
+    folder_ = folder_of_run(at);
+  else if (fs::exists(at / "summary.json", unreadable))
+    folder_ = at;
+  if (files_.empty())
+    throw EnvironmentError(fmt::format(
+        "{} has no checkpoints: the run is over, or was stopped before one was due; with outputs.checkpoint.at_end it leaves one",
+        at.string()));
+  std::string reasons;
+  for (const fs::path& file : files_) {
+    try {
+      const ArrayReader arrays(file);
+      std::int64_t written_in = 0;
+      recall(arrays, "format", written_in);
+      recall(arrays, "run/version", identity_.version);
+      if (written_in != written_format)
+        throw EnvironmentError(fmt::format("{} was written by version {} in format {}; this program knows format {}", file.string(),
+                                           identity_.version, written_in, written_format));
+      recall(arrays, "run", identity_);
+      recall(arrays, "clock", clock_);
+      recall(arrays, "stage", stage_);
+      return;
+    } catch (const EnvironmentError& e) {
+      reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
+    }
+  }
+  throw EnvironmentError(reasons);
+}
+
+template <class F>
+CheckpointList::Read CheckpointList::newest(F&& f) const
+{
+  std::string reasons;
+  for (const fs::path& file : files_) {
+    try {
+      f(file);
+      return {file, reasons};
+    } catch (const EnvironmentError& e) {
+      reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
+    }
+  }
+  throw EnvironmentError(reasons);
+}
+
+namespace {
+
+/// Names the file in what check() throws, unless it is named there.
+template <class Check>
+void check_in(const fs::path& file, Check&& check)
+try {
+  check();
+} catch (const EnvironmentError& e) {
+  const std::string what = e.what();
+  throw EnvironmentError(what.find(file.string()) != what.npos ? what : fmt::format("{}: {}", file.string(), what));
+}
+
+}  // namespace
+
+template <int D>
+fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
+{
+  Exchange& ranks = world();
+  const auto columns = filled_columns(state.particles);
+  const auto read_all = [&](const ArrayReader& arrays) {
+    check_count(arrays, "bodies", state.bodies.size(), "bodies");
+    check_count(arrays, "walls/wall", state.walls.walls().size(), "walls");
+    for_each_part(state, [&](const std::string& name, auto& part) {
+      using Part = std::decay_t<decltype(part)>;
+      if constexpr (!std::is_same_v<Part, std::vector<Body>> && !std::is_same_v<Part, Particles<D>>)
+        recall(arrays, name, part);
+    });
+    take_laws_of(state.stage, limits.laws, state.materials);
+    const std::int64_t n = recall_slice(arrays, ranks.rank(), ranks.size(), state.bodies, state.materials, state.particles);
+    check_fit(state, columns, n, limits);
+    std::vector<std::string> faults;
+    find_faults(state.clock, faults);
+    find_faults(state.stage, state.clock, faults);
+    find_faults(state.energy, faults);
+    find_faults(state.particles, state.bodies, state.materials, faults);
+    refuse_if_any(faults);
+    recall(arrays, "recorder", recorder);
+    if (!state.walls.fits() || !recorder.fits(state.walls.walls().size(), state.bodies.size(), limits.particles))
+      throw EnvironmentError("the walls, bodies or points of the checkpoint do not fit the scene");
+  };
+  const auto [from, reasons] = newest([&](const fs::path& file) {
+    // Each rank looks at its slice; what one of them finds wrong is wrong for all.
+    ranks.agree(Exchange::caught([&] { check_in(file, [&] { read_all(ArrayReader(file)); }); }));
+    if (const auto twice = ranks.alone() ? std::nullopt : doubled_id(ranks, state.particles.id))
+      throw EnvironmentError(fmt::format("{}: there is more than one particle {}", file.string(), *twice));
+  });
+  if (!reasons.empty() && ranks.is_root())
+    fmt::print(stderr, "warning: {}; going on from {}\n", reasons, from.string());
+  return from;
+}
+
+template <int D>
+CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
+{
+  return newest([&](const fs::path& file) {
+    check_in(file, [&] {
+      const ArrayReader arrays(file);
+      check_count(arrays, "bodies", kept.bodies.size(), "bodies");
+      recall(arrays, "clock", kept.clock);
+      recall(arrays, "stage", kept.stage);
+      recall(arrays, "energy", kept.energy);
+      take_laws_of(kept.stage, kept.laws, kept.materials);
+      recall_slice(arrays, 0, 1, kept.bodies, kept.materials, kept.particles);
+      std::vector<std::string> faults;
+      find_faults(kept.clock, faults);
+      find_faults(kept.energy, faults);
+      find_faults(kept.particles, kept.bodies, kept.materials, faults);
+      refuse_if_any(faults);
+    });
+  });
+}
+
+template class Checkpoints<2>;
+template class Checkpoints<3>;
+template fs::path CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
+template fs::path CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
+template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
+
+}  // namespace talus

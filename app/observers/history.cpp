@@ -1,0 +1,281 @@
+#include "app/observers/history.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "io/scene/history_columns.hpp"
+
+namespace talus {
+
+namespace {
+
+constexpr Real empty_entry = std::numeric_limits<Real>::quiet_NaN();
+
+/// f(row) for the particles of one body, or of all.
+template <class F>
+void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& f)
+{
+  for (const Body& b : bodies)
+    if (body.empty() || b.name == body)
+      for (Index row = b.begin; row < b.end; ++row)
+        f(static_cast<std::size_t>(row));
+}
+
+/// The value that a share of the mass does not exceed, from value and mass of particles of all ranks.  NaN where there are none, and on ranks
+/// beside the root.
+Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Exchange& ranks)
+{
+  std::vector<std::pair<Real, Real>> all;
+  for (const std::vector<Vec<2>>& of_rank : gather_rows<Vec<2>>(ranks, here))
+    for (const Vec<2>& one : of_rank)
+      all.emplace_back(one[0], one[1]);
+  if (all.empty())
+    return empty_entry;
+  std::sort(all.begin(), all.end());
+  const Real total = std::accumulate(all.begin(), all.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
+  std::size_t i = 0;
+  Real mass = all[0].second;
+  const Real wanted = share * total * (1 - 1e-12);  // sums of the same masses in another order
+  while (mass < wanted && i + 1 < all.size())
+    mass += all[++i].second;
+  return all[i].first;
+}
+
+template <int D>
+void put(const Vec<D>& v, std::vector<Real>& row)
+{
+  row.insert(row.end(), v.begin(), v.end());
+}
+
+/// The part of a wall with mass at its nodes: area vectors out of the mesh [m^(D-1)], their moduli and those times the places of the nodes.
+template <int D>
+struct Touched {
+  Vec<D> area = Vec<D>::Zero(), place = Vec<D>::Zero();
+  Real measure{};
+};
+
+/// Where the line of action of a force [N] with that moment [N m] about the origin crosses a plane through `place`; NaN if it never does.
+template <int D>
+Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, const Vec<D>& place)
+{
+  const Real through = force.dot(normal);
+  if (through == 0)
+    return Vec<D>::Constant(empty_entry);
+  Vec3 push = Vec3::Zero();
+  push.template head<D>() = force;
+  const Vec3 cross(push[1] * moment[2] - push[2] * moment[1], push[2] * moment[0] - push[0] * moment[2],
+                   push[0] * moment[1] - push[1] * moment[0]);
+  const Vec<D> foot = cross.template head<D>() / push.squaredNorm();  // the point of the line nearest to the origin
+  return foot + (place - foot).dot(normal) / through * force;
+}
+
+}  // namespace
+
+template <int D>
+std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+{
+  const Vec<D> at = Eigen::Map<const Vec<D>>(spec.at.data());
+  constexpr auto nobody = std::numeric_limits<std::int64_t>::max();
+  std::pair<Real, std::int64_t> best{std::numeric_limits<Real>::infinity(), nobody};
+  for_each_row(spec.body, bodies, [&](std::size_t p) {
+    best = std::min(best, std::pair{(particles.x[p] - at).squaredNorm(), particles.id[p]});
+  });
+  const Real nearest = ranks.min(best.first);
+  const std::int64_t id = ranks.min(best.first == nearest ? best.second : nobody);
+  return id == nobody ? 0 : id;
+}
+
+template <int D>
+std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std::string& wall)
+{
+  auto facets = mesh.facet_set(wall);
+  return facets ? facets : mesh.facet_set(wall.substr(0, wall.rfind('_')));
+}
+
+template <int D>
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+{
+  const auto axis = static_cast<Index>(spec.direction) / 2;
+  const Real sign = static_cast<Index>(spec.direction) % 2 == 0 ? 1 : -1;
+  std::vector<Vec<2>> here;  // coordinate along the direction, mass
+  for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({sign * particles.x[p][axis], particles.mass[p]}); });
+  return sign * not_exceeded_by(spec.mass_share, here, ranks);
+}
+
+template <int D>
+Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+{
+  std::vector<Vec<2>> here;  // length of displacement, mass
+  for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({(particles.x[p] - particles.x0[p]).norm(), particles.mass[p]}); });
+  return not_exceeded_by(spec.mass_share, here, ranks);
+}
+
+template <int D>
+std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, const Frame<D>& start)
+{
+  std::vector<CsvColumn> all = common_columns(D);
+  const auto add = [&](const std::vector<CsvColumn>& more) { all.insert(all.end(), more.begin(), more.end()); };
+  for (const Wall<D>& wall : start.walls.walls())
+    add(reaction_columns(wall.name, D));
+  for (const PointSpec& point : spec.points)
+    add(columns_of(point, D));
+  for (const FrontSpec& front_spec : spec.fronts)
+    add(columns_of(front_spec));
+  for (const WallSpec& wall : spec.walls)
+    add(columns_of(wall, D));
+  for (const MovedSpec& moved_spec : spec.moved)
+    add(columns_of(moved_spec));
+  for (const std::string& body : spec.bodies)
+    add(body_columns(body, D));
+  return all;
+}
+
+template <int D>
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start) : spec_(std::move(spec))
+{
+  start.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
+  state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
+  state_.angular.assign(start.walls.walls().size(), Vec3::Zero());
+  state_.given.resize(spec_.bodies.size());
+  for (const PointSpec& point : spec_.points)
+    state_.followed.push_back(nearest_particle(point, start.bodies, start.particles, *start.ranks));
+}
+
+template <int D>
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state)
+    : spec_(std::move(spec)), state_(std::move(state))
+{
+  now.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.clock.time)); });
+}
+
+template <int D>
+void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts, const BodyForces<D>& forces)
+{
+  const Totals<D> sums = totals(frame);
+  const Clock& clock = frame.clock;
+  std::vector<Real> row{clock.time, static_cast<Real>(clock.step), clock.dt, static_cast<Real>(frame.stage_number), sums.mass};
+  put<D>(sums.momentum, row);
+  for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
+    row.push_back(sums.angular[d]);
+  put<D>(sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry)), row);
+  const EnergyNow e = accounts.energy(frame);
+  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
+                         e.defect, frame.residual});
+  const Real elapsed = clock.time - state_.time;
+  for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
+    const Vec<D>& impulse = frame.walls.walls()[w].impulse;
+    put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
+  }
+  FollowedRows followed(state_.followed);
+  followed.find(frame.particles.id);
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    add_point(frame, spec_.points[k], followed.row(state_.followed[k]), row);
+  for (const FrontSpec& spec : spec_.fronts)
+    row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
+  for (const WallSpec& spec : spec_.walls)
+    add_wall(frame, spec, elapsed, row);
+  for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
+    state_.impulse[w] = frame.walls.walls()[w].impulse;
+    state_.angular[w] = frame.walls.walls()[w].angular;
+  }
+  for (const MovedSpec& spec : spec_.moved)
+    row.push_back(moved(spec, frame.bodies, frame.particles, *frame.ranks));
+  for (std::size_t k = 0; k < spec_.bodies.size(); ++k)
+    add_body(frame, forces, k, elapsed, row);
+  frame.ranks->together([&] { file_->append(row); });
+  state_.time = clock.time;
+}
+
+template <int D>
+void HistoryWriter<D>::add_body(const Frame<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
+{
+  const auto named = std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const Body& body) { return body.name == spec_.bodies[k]; });
+  const auto b = static_cast<std::size_t>(named - frame.bodies.begin());
+  const BodySums<D>& sums = forces.sums()[b];
+  const BodyImpulse<D>&before = state_.given[k], &now = forces.impulses()[b];
+  ExactSums<Real> plastic;
+  add_plastic_work(frame.materials[b], frame.order, static_cast<Index>(b), frame.particles.volume0, plastic);
+  frame.ranks->sum(plastic);
+  row.push_back(sums.mass);
+  put<D>(sums.momentum, row);
+  row.insert(row.end(), {sums.kinetic, plastic.value()});
+  Vec<D> force = Vec<D>::Zero();
+  if (now.unknown != before.unknown)
+    force = Vec<D>::Constant(empty_entry);
+  else if (elapsed > 0)
+    force = (now.given - before.given) / elapsed;
+  put<D>(force, row);
+  state_.given[k] = now;
+}
+
+/// Its mean push since the row before, where the line of that push crosses the wall, and on how much of the wall there is mass now.
+template <int D>
+void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
+{
+  const auto walls = frame.walls.walls();
+  const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall<D>& one) { return one.name == spec.on; });
+  const auto w = static_cast<std::size_t>(wall - walls.begin());
+  const MeshTraction<D> on_nodes = carried_by_mesh<D>(frame.mesh, facets_of_wall(frame.mesh, spec.on).value_or(std::vector<Facet>()));
+  ExactSums<Touched<D>> sum;
+  for (std::size_t i = 0; i < on_nodes.node.size(); ++i) {
+    const Index n = on_nodes.node[i];
+    const bool counted = frame.share.alone() || frame.share.owns_node(n);
+    if (counted && frame.nodes.active[static_cast<std::size_t>(n)] != 0)
+      sum.add({on_nodes.area[i], on_nodes.measure[i] * frame.mesh.node(n), on_nodes.measure[i]});
+  }
+  frame.ranks->sum(sum);
+  const Touched<D> touched = sum.value();
+  const Real area = touched.area.norm();
+  const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // on the wall
+  if (!(area > 0) || force.norm() == 0) {
+    const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // what has just left it has pushed, in a direction that is gone
+    row.insert(row.end(), {none_or_unknown, none_or_unknown, area, area > 0 ? 0 : empty_entry});
+    row.insert(row.end(), D, empty_entry);
+    return;
+  }
+  const Vec<D> normal = touched.area / area;
+  const Real push = force.dot(normal);
+  row.insert(row.end(), {push, (force - push * normal).norm(), area, push / area});
+  put<D>(attack<D>(force, Vec3((state_.angular[w] - wall->angular) / elapsed), normal, touched.place / touched.measure), row);
+}
+
+template <int D>
+void HistoryWriter<D>::follow_anew(const std::string& body, const Frame<D>& now)
+{
+  for (std::size_t k = 0; k < spec_.points.size(); ++k)
+    if (spec_.points[k].body == body)
+      state_.followed[k] = nearest_particle(spec_.points[k], now.bodies, now.particles, *now.ranks);
+}
+
+template <int D>
+void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
+{
+  std::vector<Real> here;
+  const bool is_there = at != none && (point_spec.body.empty() || frame.bodies[body_of(frame.bodies, at)].name == point_spec.body);
+  if (is_there) {
+    const auto p = static_cast<std::size_t>(at);
+    put<D>(frame.particles.x[p], here);
+    put<D>(frame.particles.x[p] - frame.particles.x0[p], here);
+    put<D>(frame.particles.v[p], here);
+    const Sym3 stress = frame.particles.stress[p];
+    here.insert(here.end(), stress.begin(), stress.end());
+  }
+  std::vector<Real> point(3 * D + 6, empty_entry);
+  for (const std::vector<Real>& of_rank : gather_rows<Real>(*frame.ranks, here))
+    if (!of_rank.empty())
+      point = of_rank;
+  row.insert(row.end(), point.begin(), point.end());
+}
+
+template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
+template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
+template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
+template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
+template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
+template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
+template Real moved<2>(const MovedSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
+template Real moved<3>(const MovedSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
+template class HistoryWriter<2>;
+template class HistoryWriter<3>;
+
+}  // namespace talus

@@ -1,0 +1,38 @@
+#pragma once
+// Fields of particles and nodes by the names a scene gives them.
+#include "io/output/vtk.hpp"
+#include "io/scene/scene_output.hpp"
+#include "solver/run_view.hpp"
+
+namespace talus {
+
+/// What particle files hold: the fields asked for, the one that pictures show, body and volume.
+std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
+
+/// A field of all particles in the order of `rows`.  Names: those of io/scene/scene_rules.hpp, `body` (its number), and every history
+/// variable, which is 0 for bodies whose law does not have it.
+template <int D>
+Column particle_column(const Frame<D>& frame, std::span<const Index> rows, std::string_view name);
+
+/// Of all nodes: mass, velocity, force (internal and loads), reaction (of all walls), as the last step left them.
+template <int D>
+Column node_column(const Frame<D>& frame, std::string_view name);
+
+/// Rows in the order of their ids, which does not change during a run.
+template <int D>
+std::vector<Index> rows_by_id(const Particles<D>& particles);
+
+/// Three numbers per particle [m].
+template <int D>
+std::vector<Real> positions(const Particles<D>& particles, std::span<const Index> rows);
+
+extern template Column particle_column<2>(const Frame<2>&, std::span<const Index>, std::string_view);
+extern template Column particle_column<3>(const Frame<3>&, std::span<const Index>, std::string_view);
+extern template Column node_column<2>(const Frame<2>&, std::string_view);
+extern template Column node_column<3>(const Frame<3>&, std::string_view);
+extern template std::vector<Index> rows_by_id<2>(const Particles<2>&);
+extern template std::vector<Index> rows_by_id<3>(const Particles<3>&);
+extern template std::vector<Real> positions<2>(const Particles<2>&, std::span<const Index>);
+extern template std::vector<Real> positions<3>(const Particles<3>&, std::span<const Index>);
+
+}  // namespace talus

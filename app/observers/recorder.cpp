@@ -1,0 +1,365 @@
+#include "app/observers/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/observers/output_fields.hpp"
+#include "app/observers/rank_slices.hpp"
+#include "app/observers/results.hpp"
+#include "core/print.hpp"
+#include "io/files/manifest.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "never", for outputs the scene does not have.
+template <class Spec>
+Real every(const std::optional<Spec>& spec)
+{
+  return spec ? spec->every : std::numeric_limits<Real>::infinity();
+}
+
+Real total(std::span<const Stage> stages)
+{
+  Real sum = 0;
+  for (const Stage& stage : stages)
+    sum += stage.duration;
+  return sum;
+}
+
+struct Content {
+  Real particles{}, mass{};  ///< mass in [kg]
+  Content& operator+=(const Content& other) noexcept
+  {
+    particles += other.particles, mass += other.mass;
+    return *this;
+  }
+};
+
+template <int D>
+BodySummary summary_of(const Frame<D>& frame, std::size_t b)
+{
+  const Body& body = frame.bodies[b];
+  ExactSums<Content> sum;
+  const auto number = static_cast<Index>(b);
+  add_particles(frame.order, {number, number + 1}, sum, [&](Index row) {
+    return Content{1, frame.particles.mass[static_cast<std::size_t>(row)]};
+  });
+  frame.ranks->sum(sum);
+  const Content content = sum.value();
+  return {body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]),
+          std::string(law_name(frame.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
+}
+
+/// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.
+template <int D>
+RanksSummary ranks_of(const Frame<D>& frame, const Traffic& begin, std::int64_t step_begin)
+{
+  Exchange& ranks = *frame.ranks;
+  RanksSummary summary{.count = ranks.size()};
+  if (ranks.alone())
+    return summary;
+  const Traffic now = ranks.traffic();
+  const auto steps = static_cast<Real>(std::max(frame.clock.step - step_begin, std::int64_t{1}));
+  const auto a_step = [&](std::int64_t from, std::int64_t to) { return ranks.max(static_cast<Real>(to - from) / steps); };
+  Index own = 0;
+  for (Index c = 0; c < frame.mesh.n_cells(); ++c)
+    own += frame.share.owns_cell(c) ? 1 : 0;
+  const std::int64_t here = frame.particles.size(), all = std::max(ranks.sum(here), std::int64_t{1});
+  summary.imbalance = static_cast<Real>(ranks.max(here)) * ranks.size() / static_cast<Real>(all);
+  summary.cells_held = ranks.max(own > 0 ? static_cast<Real>(frame.mesh.n_cells()) / own : Real{1});
+  summary.messages = a_step(begin.messages, now.messages);
+  summary.bytes = a_step(begin.bytes, now.bytes);
+  summary.collectives = a_step(begin.calls, now.calls);
+  summary.collective_bytes = a_step(begin.bytes_to_all, now.bytes_to_all);
+  summary.particles_moved = static_cast<Real>(ranks.sum(frame.migrated)) / 2 / steps / static_cast<Real>(all);
+  return summary;
+}
+
+}  // namespace
+
+template <int D>
+Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet,
+                      std::string made_by)
+    : folder_(std::move(folder)),
+      made_by_(std::move(made_by)),
+      outputs_(outputs),
+      stage_list_(stages),
+      body_forces_(outputs.history && !outputs.history->bodies.empty()),
+      progress_(quiet || !world().is_root(), world().is_root() ? folder_ / progress_file : fs::path()),
+      particle_times_(every(outputs.particles)),
+      mesh_times_(every(outputs.mesh)),
+      history_times_(every(outputs.history)),
+      particle_series_(folder_ / "particles.pvd", made_by_),
+      mesh_series_(folder_ / "mesh.pvd", made_by_),
+      runout_(folder_, outputs.runout)
+{}
+
+template <int D>
+void Recorder<D>::open(const Frame<D>& frame)
+{
+  traffic_begin_ = frame.ranks->traffic();
+  bytes_per_particle_ = talus::bytes_per_particle(frame);
+  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
+    bodies_.push_back(summary_of(frame, b));
+  if (outputs_.history) {
+    history_.emplace(folder_ / "history.csv", *outputs_.history, frame);
+    history_state_ = history_->state();
+  }
+  name_lists();
+}
+
+/// Bodies that were not there before.
+template <int D>
+void Recorder<D>::welcome(const Frame<D>& frame)
+{
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (bodies_[b].particles > 0)
+      continue;
+    bodies_[b] = summary_of(frame, b);
+    if (history_ && bodies_[b].particles > 0)
+      history_->follow_anew(bodies_[b].name, frame);
+  }
+  if (history_)
+    history_state_ = history_->state();
+}
+
+/// Of the files the run writes those that are there from the beginning.
+template <int D>
+void Recorder<D>::name_lists()
+{
+  if (outputs_.history)
+    files_.push_back("history.csv");
+  if (runout_.has_begun())
+    files_.push_back("runout.csv");
+  if (outputs_.particles)
+    files_.push_back("particles.pvd");
+  if (outputs_.mesh)
+    files_.push_back("mesh.pvd");
+}
+
+template <int D>
+void Recorder<D>::go_on(const Frame<D>& frame)
+{
+  traffic_begin_ = frame.ranks->traffic(), step_begin_ = frame.clock.step;
+  if (outputs_.history)
+    history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
+  runout_.go_on(frame);
+  progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
+}
+
+template <int D>
+std::vector<std::string> Recorder<D>::resume(const Frame<D>& frame)
+{
+  go_on(frame);
+  std::vector<std::string> missing;
+  frame.ranks->together([&] { missing = drop_later(frame); });
+  return missing;
+}
+
+template <int D>
+std::vector<std::string> Recorder<D>::drop_later(const Frame<D>& frame)
+{
+  std::vector<std::string> missing;
+  for (const std::string& file : files())
+    if (std::error_code unreadable; !fs::exists(folder_ / file, unreadable))
+      missing.push_back(fmt::format("{} is not there any more", (folder_ / file).string()));
+  if (history_ && history_time_ > elsewhere_.time && history_->last_time() != history_time_)
+    missing.push_back(fmt::format("{} lacks what was there up to t = {:.6g} s", (folder_ / "history.csv").string(), history_time_));
+  particle_series_.resume(frame.clock.time);
+  mesh_series_.resume(frame.clock.time);
+  const auto check_series = [&](const PvdSeries& series, int written, const char* name) {
+    if (series.size() != static_cast<std::size_t>(written))
+      missing.push_back(fmt::format("{} names {} files, {} had been written", (folder_ / name).string(), series.size(), written));
+  };
+  if (outputs_.particles)
+    check_series(particle_series_, particle_files_ - elsewhere_.particle_files, "particles.pvd");
+  if (outputs_.mesh)
+    check_series(mesh_series_, mesh_files_ - elsewhere_.mesh_files, "mesh.pvd");
+  if (!runout_.drop_later() && elsewhere_.time < 0)
+    missing.push_back(fmt::format("{} lacks rows that had been written", (folder_ / "runout.csv").string()));
+  const auto remove = [](const fs::path& file) {
+    set_aside_unless_proved(file);
+    return fs::remove(file);
+  };
+  for (int n = particle_files_; remove(particle_file(n)); ++n) {
+  }
+  for (int n = mesh_files_; remove(mesh_file(n)); ++n) {
+  }
+  return missing;
+}
+
+template <int D>
+void Recorder<D>::begin_again(const Frame<D>& frame)
+{
+  go_on(frame);
+  elsewhere_ = {static_cast<std::int64_t>(files_.size()), particle_files_, mesh_files_, frame.clock.time};
+  last_output_.clear();
+  name_lists();
+}
+
+template <int D>
+bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, Index particles) const
+{
+  if (!body_forces_.fits(bodies))
+    return false;
+  if (!outputs_.history)
+    return true;
+  const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may not be there any more
+  return history_state_.impulse.size() == walls && history_state_.angular.size() == walls &&
+         history_state_.given.size() == outputs_.history->bodies.size() &&
+         history_state_.followed.size() == outputs_.history->points.size() && std::ranges::all_of(history_state_.followed, known);
+}
+
+template <int D>
+void Recorder<D>::flush() const
+{
+  if (history_)
+    history_->flush();
+  runout_.flush();
+}
+
+template <int D>
+void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
+{
+  if (moment == Moment::step_begins || moment == Moment::given_up)
+    return;
+  accounts_.see(frame, moment);
+  body_forces_.see(frame, moment);
+  const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
+  if (first)
+    open(frame);
+  else if (moment == Moment::stage_begins)
+    welcome(frame);
+  if (moment == Moment::stage_begins)
+    stage_start_ = frame.clock.time;
+  if (moment == Moment::stage_begins && outputs_.runout && !runout_.has_begun() && frame.stage_name != "geostatic") {
+    runout_.begin(frame);
+    name("runout.csv");
+  }
+  if (moment == Moment::step_done)
+    progress_.step(done_before_ + frame.clock.time - stage_start_,
+                   done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(frame.stage_number))),
+                   frame.clock, frame.stage_name, frame.timings.particle_steps);
+
+  StopWatch watch;
+  if (first || moment != Moment::stage_begins)  // the beginning of a later stage is the end of the one before
+    write(frame, moment == Moment::stage_done);
+  write_runout(frame, moment == Moment::stage_done);
+  watch.lap(output_seconds_);
+
+  warn(frame);
+  last_.clock = frame.clock;
+  last_.timings = frame.timings;
+  last_.mass = frame.mass;
+  last_.watched = frame.watched;
+  if (moment != Moment::stage_done)
+    return;
+  done_before_ += frame.clock.time - stage_start_;  // a stage that seeks rest may end before its time
+  last_.mass_there = totals(frame).mass;
+  last_.energy = accounts_.energy(frame);
+  last_.momentum = accounts_.momentum(frame);
+  ranks_ = ranks_of(frame, traffic_begin_, step_begin_);
+}
+
+/// Of what the guards see and let pass, the first time.
+template <int D>
+void Recorder<D>::warn(const Frame<D>& frame) const
+{
+  if (!frame.ranks->is_root())
+    return;
+  const Watched &now = frame.watched, &before = last_.watched;
+  const auto warning = [&](const std::string& what) {
+    say(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
+  };
+  if (const Index failed = frame.mass.failed_count - last_.mass.failed_count; failed > 0)
+    warning(fmt::format("failed and deleted: {}{}", now.failure, failed > 1 ? fmt::format("; and {} more", failed - 1) : ""));
+  if (now.speeding > 0 && before.speeding == 0)
+    warning(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, frame.guards.speed));
+  if (now.gaining > 0 && before.gaining == 0)
+    warning(fmt::format("the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
+                        now.gain, frame.guards.gain));
+}
+
+template <int D>
+void Recorder<D>::write(const Frame<D>& frame, bool last)
+{
+  const Real time = frame.clock.time;
+  const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
+  const bool mesh = frame.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
+  const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
+  if (particles || mesh || history)
+    frame.ranks->together([&] { require_results(folder_); });
+  if (particles)
+    write_particles_file(frame);
+  if (mesh)
+    write_mesh_file(frame);
+  if (history) {
+    history_->append(frame, accounts_, body_forces_);
+    history_state_ = history_->state();
+    history_time_ = time;
+  }
+}
+
+template <int D>
+void Recorder<D>::write_particles_file(const Frame<D>& frame)
+{
+  const auto file = particle_file(particle_files_++);
+  on_slices(frame, [&](const Frame<D>& slice, const std::vector<Body>&, const Slice& of_file) {
+    const auto rows = rows_by_id(slice.particles);
+    std::vector<Column> columns;
+    for (const std::string& name : particle_fields_of(outputs_))
+      columns.push_back(particle_column(slice, rows, name));
+    std::vector<std::int64_t> ids;
+    ids.reserve(rows.size());
+    for (const Index row : rows)
+      ids.push_back(slice.particles.id[static_cast<std::size_t>(row)]);
+    write_particles(*frame.ranks, file, frame.clock.time, of_file, positions(slice.particles, rows), ids, columns, made_by_);
+  });
+  frame.ranks->together([&] { particle_series_.append(frame.clock.time, file); });
+  particle_time_ = frame.clock.time;
+  files_.push_back(file.filename().string());
+  last_output_ = files_.back();
+}
+
+template <int D>
+void Recorder<D>::write_mesh_file(const Frame<D>& frame)
+{
+  std::vector<Column> columns;
+  for (const std::string& name : outputs_.mesh->fields_wanted)
+    columns.push_back(slice_of_column(frame, node_column(frame, name)));
+  const auto file = mesh_file(mesh_files_++);
+  write_mesh(*frame.ranks, file, frame.clock.time, slice_of_mesh(frame), columns, {}, made_by_);
+  frame.ranks->together([&] { mesh_series_.append(frame.clock.time, file); });
+  mesh_time_ = frame.clock.time;
+  files_.push_back(file.filename().string());
+}
+
+template <int D>
+void Recorder<D>::write_runout(const Frame<D>& frame, bool last)
+{
+  if (!runout_.has_begun())
+    return;
+  for (const std::string& file : runout_.see(frame, last))
+    name(file);
+  if (last)
+    for (const std::string& file : runout_.write_maps(frame))
+      name(file);
+}
+
+/// A file that may have been written before.
+template <int D>
+void Recorder<D>::name(const std::string& file)
+{
+  const auto named = files();
+  if (std::find(named.begin(), named.end(), file) == named.end())
+    files_.push_back(file);
+}
+
+template class Recorder<2>;
+template class Recorder<3>;
+
+}  // namespace talus

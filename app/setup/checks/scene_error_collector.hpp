@@ -1,0 +1,28 @@
+#pragma once
+// Collects what is wrong with a scene once its mesh is known, so that everything is said at once.
+#include <fmt/format.h>
+
+#include "core/word_match.hpp"
+#include "io/scene/scene.hpp"
+
+namespace talus {
+
+class Complaints {
+ public:
+  explicit Complaints(const Scene& scene) : scene_(&scene) {}
+
+  /// About the value of `key` in the mapping at `where`; an empty key means the mapping itself.
+  void add(Where where, std::string_view key, std::string message);
+  /// What is wrong in a file that the value of `key` there names.
+  void add(const Where& where, std::string_view key, const SceneErrors& in_file);
+  /// There is no such group: names the nearest one, or all.
+  void unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
+                     std::vector<std::string> known);
+  void throw_if_any() const;
+
+ private:
+  const Scene* scene_;
+  std::vector<Problem> problems_;
+};
+
+}  // namespace talus

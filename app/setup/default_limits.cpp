@@ -1,0 +1,104 @@
+#include "app/setup/default_limits.hpp"
+
+#include "core/parallel/threads.hpp"
+
+namespace talus {
+
+namespace {
+
+Real largest_factor(const Table& table)
+{
+  Real largest = table.points.empty() ? 1 : 0;
+  for (const auto& [time, value] : table.points)
+    largest = std::max(largest, std::abs(value));
+  return largest;
+}
+
+/// Speeds of waves, and the energy of all particles if they moved with the speed of theirs.
+struct Waves {
+  Real fastest = 0, energy = 0;  ///< [m/s], [J]
+};
+
+template <int D>
+Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
+{
+  const Particles<D>& particles = setup.particles;
+  CellOrder order;
+  sort_by_cell(particles.cell, particles.id, setup.bodies, mesh.n_cells(), order);
+  Real least = std::numeric_limits<Real>::infinity();  // minus the speed of the fastest
+  ExactSums<Real> energy;
+  for (Index b = 0; b < static_cast<Index>(setup.materials.size()); ++b)
+    std::visit(
+        [&](const auto& batch) {
+          const auto speed = [&](Index i) { return batch.wave_speed(i, particles.F[static_cast<std::size_t>(batch.begin + i)]); };
+          least = parallel_min(batch.size(), least, [&](Index i) { return -speed(i); });
+          add_particles(order, {b, b + 1}, energy, [&](Index row) {
+            const Real c = speed(row - batch.begin);
+            return 0.5 * particles.mass[static_cast<std::size_t>(row)] * c * c;
+          });
+        },
+        setup.materials[static_cast<std::size_t>(b)]);
+  ranks.sum(energy);
+  return {std::max(Real{0}, -ranks.min(least)), energy.value()};
+}
+
+/// What loads and walls can make of a particle within the mesh [m/s]; infinite where that cannot be told.
+template <int D>
+Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
+{
+  if (!setup.loads.of_place.empty())
+    return std::numeric_limits<Real>::infinity();
+  const Real size = (mesh.high() - mesh.low()).norm();
+  Real speed = 0;
+  for (const Wall<D>& wall : setup.walls.walls()) {
+    const Real of_wave = wall.kind == WallKind::compliant_base ? 2 : 1;  // it meets the one that is thrown back
+    speed = std::max(speed, of_wave * wall.velocity.norm() * (wall.record ? wall.record->peak_velocity() : largest_factor(wall.table)));
+  }
+  speed += std::sqrt(2 * setup.loads.gravity.acceleration.norm() * largest_factor(setup.loads.gravity.table) * size);
+  Real pressure = 0;  // on the thinnest layer that carries it, over the size of the mesh
+  const auto press = [&](const auto& load) {
+    pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure)) * largest_factor(load.table));
+  };
+  std::for_each(setup.loads.on_particles.begin(), setup.loads.on_particles.end(), press);
+  std::for_each(setup.loads.on_mesh.begin(), setup.loads.on_mesh.end(), press);
+  if (pressure > 0) {
+    Real layer = std::numeric_limits<Real>::infinity();  // [kg/m^2]
+    for (Index row = 0; row < setup.particles.size(); ++row) {
+      const auto p = static_cast<std::size_t>(row);
+      layer = std::min(layer, setup.particles.mass[p] / setup.particles.volume0[p] * mesh.altitude(setup.particles.cell[p]));
+    }
+    speed += std::sqrt(2 * pressure * size / ranks.min(layer));
+  }
+  return speed;
+}
+
+}  // namespace
+
+template <int D>
+Guards guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
+{
+  constexpr Real far_beyond = 10;
+  constexpr Real least_strain = 1e-6;  // waves of less are not looked at
+  const WatchSpec& spec = scene.watch;
+  const Waves waves = waves_in(mesh, setup, ranks);
+  Real start = 0;
+  for (Index row = 0; row < setup.particles.size(); ++row)
+    start = std::max(start, setup.particles.v[static_cast<std::size_t>(row)].norm());
+  start = ranks.max(start);
+  Guards guards;
+  if (spec.on_speed != OnAlarm::ignore)
+    guards.speed = spec.speed.value_or(far_beyond * (waves.fastest + start + driven_speed(mesh, setup, ranks)));
+  if (spec.on_energy_gain != OnAlarm::ignore)
+    guards.gain = spec.energy_gain;
+  if (spec.on_failure == OnFailure::remove)
+    guards.failed = spec.failed_mass;
+  guards.speed_stops = spec.on_speed == OnAlarm::stop;
+  guards.gain_stops = spec.on_energy_gain == OnAlarm::stop;
+  guards.least_energy = least_strain * least_strain * waves.energy;
+  return guards;
+}
+
+template Guards guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Exchange&);
+template Guards guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Exchange&);
+
+}  // namespace talus

@@ -1,0 +1,15 @@
+#pragma once
+// How fast particles may be, and how much energy may come from nowhere, before a run is taken for broken.
+#include "app/setup/setup.hpp"
+
+namespace talus {
+
+/// As the scene says; without a word of it, limits that no sound run comes near.
+/// Every rank has to ask.
+template <int D>
+Guards guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks);
+
+extern template Guards guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Exchange&);
+extern template Guards guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Exchange&);
+
+}  // namespace talus

@@ -1,0 +1,187 @@
+#include "app/setup/initial.hpp"
+
+#include <algorithm>
+
+#include "app/setup/laws_in_force.hpp"
+#include "app/setup/setup.hpp"
+#include "core/parallel/threads.hpp"
+#include "io/scene/reader.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class Item>
+std::vector<std::string> names_of(const std::vector<Item>& items)
+{
+  std::vector<std::string> names;
+  for (const Item& item : items)
+    names.push_back(item.name);
+  return names;
+}
+
+Index number_of(const std::string& name, const std::vector<std::string>& names)
+{
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? none : static_cast<Index>(found - names.begin());
+}
+
+/// Which body there becomes which body of the scene.
+std::vector<Index> match_bodies(const Scene& scene, const std::vector<std::string>& there, const std::string& run, Complaints& complaints)
+{
+  std::vector<Index> source(scene.bodies.size(), none);
+  const auto mine = names_of(scene.bodies);
+  for (const TakenSpec& taken : scene.initial->bodies) {
+    const std::string& name = taken.from.empty() ? taken.body : taken.from;
+    const Index from = number_of(name, there);
+    source[static_cast<std::size_t>(number_of(taken.body, mine))] = from;
+    if (from == none)
+      complaints.add(taken.where, taken.from.empty() ? "body" : "from",
+                     fmt::format("there is no body \"{}\" in {}{}", name, run, suggestion(name, there)));
+  }
+  if (!scene.initial->bodies.empty())
+    return source;
+  for (std::size_t b = 0; b < mine.size(); ++b) {
+    const BodySpec& body = scene.bodies[b];
+    source[b] = number_of(body.name, there);
+    if (source[b] == none && !body.fills())
+      complaints.add(body.where, "",
+                     fmt::format("one of region or shape is needed, or a source in initial.bodies: there is no body \"{}\" in {}{}",
+                                 body.name, run, suggestion(body.name, there)));
+    if (source[b] != none && body.fills())
+      complaints.add(body.where, body.shape ? "shape" : "region",
+                     fmt::format("body \"{}\" takes its particles from the one of its name in {}: leave this out, or list in "
+                                 "initial.bodies those that do",
+                                 body.name, run));
+  }
+  if (std::all_of(source.begin(), source.end(), [](Index from) { return from == none; }) &&
+      std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const BodySpec& body) { return body.fills(); }))
+    complaints.add(scene.initial->where, "from",
+                   fmt::format("no body of this scene has the name of one in {}, which has {}; say in initial.bodies which takes which",
+                               run, or_list(there)));
+  return source;
+}
+
+/// The scene of that run as it was run.
+Scene scene_of(const RunIdentity& identity)
+try {
+  return read_scene_text(identity.scene_file, identity.scene_text, identity.set);
+} catch (const SceneErrors& e) {
+  throw EnvironmentError(fmt::format("this program does not understand its scene: {}", e.problems().front().message));
+}
+
+template <int D>
+KeptBodies<D> bodies_of(const Scene& scene)
+{
+  KeptBodies<D> kept;
+  kept.particles.keep_in(scene.precision);
+  for (const BodySpec& body : scene.bodies)
+    kept.bodies.push_back({body.name, 0, 0, body.where});
+  kept.laws = laws_of_stages(scene);
+  return kept;
+}
+
+/// Whether the state is the one that a stage ended with, or a later stage began with.
+template <int D>
+bool ends_a_stage(const KeptBodies<D>& there)
+{
+  return there.stage.done || (there.stage.number > 0 && there.clock.step == there.stage.first_step);
+}
+
+template <int D>
+void warn(const Scene& scene, const RunIdentity& identity, const CheckpointList::Read& read, const KeptBodies<D>& there,
+          std::vector<std::string>& warnings)
+{
+  const std::string where = to_string(scene.initial->where);
+  if (!read.reasons.empty())
+    warnings.push_back(fmt::format("{}: {}; taking {}", where, read.reasons, read.file.string()));
+  if (identity.quick)
+    warnings.push_back(fmt::format("{}: {} was left by a quick run, coarse and short", where, read.file.string()));
+  if (!ends_a_stage(there))
+    warnings.push_back(fmt::format(
+        "{}: {} is the state after step {}, t = {:.6g} s, before its stage was over: of a run on its way, stopped or failed, or "
+        "one that did not keep its end; with outputs.checkpoint.at_end a run keeps it",
+        where, read.file.string(), there.clock.step, there.clock.time));
+  if (const auto* stage = scene.stages.empty() ? nullptr : std::get_if<GeostaticSpec>(&scene.stages.front());
+      stage != nullptr && stage->ramp > 0)
+    warnings.push_back(
+        fmt::format("{}: gravity grows from nothing (ramp) under bodies that carry their stress already; without ramp they stay at rest",
+                    to_string(stage->where)));
+}
+
+}  // namespace
+
+template <int D>
+std::optional<InitialState<D>> find_initial_state(const Scene& scene, Complaints& complaints, std::vector<std::string>& warnings)
+{
+  if (!scene.initial)
+    return std::nullopt;
+  const Where& where = scene.initial->where;
+  try {
+    const CheckpointList list((folder_of(scene) / scene.initial->from).lexically_normal());
+    const RunIdentity& identity = list.identity();
+    const Scene other = scene_of(identity);
+    if (other.dimension != D) {
+      complaints.add(where, "from", fmt::format("the bodies there are of {} dimensions, this scene has {}", other.dimension, D));
+      return std::nullopt;
+    }
+    InitialState<D> state;
+    state.there = bodies_of<D>(other);
+    const CheckpointList::Read read = list.read(state.there);
+    warn(scene, identity, read, state.there, warnings);
+    state.source = match_bodies(scene, names_of(other.bodies), read.file.string(), complaints);
+    state.origin = {.file = fs::absolute(read.file).string(),
+                    .title = other.title,
+                    .scene_file = identity.scene_file,
+                    .version = identity.version,
+                    .commit = identity.commit,
+                    .mesh_digest = fmt::format("{:016x}", static_cast<std::uint64_t>(identity.mesh)),
+                    .step = state.there.clock.step,
+                    .time = state.there.clock.time,
+                    .bodies = {}};
+    return state;
+  } catch (const EnvironmentError& e) {
+    complaints.add(where, "from", e.what());
+    return std::nullopt;
+  }
+}
+
+void carry_history(const AnyBatch& from, std::span<const Index> rows, AnyBatch& to)
+{
+  for_each_history(to, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
+    for_each_history(from, [&](std::string_view other, std::string_view, std::string_view, const auto& source) {
+      if constexpr (std::decay_t<decltype(column)>::components == std::decay_t<decltype(source)>::components)
+        if (key == other)
+          parallel_for(column.size(), [&](Index i) { column[i] = source[rows[static_cast<std::size_t>(i)]]; });
+    });
+  });
+}
+
+template <int D>
+Real settle_stress(const Body& body, std::string_view law_there, Real dt, Exchange& ranks, AnyBatch& material, Particles<D>& particles)
+{
+  constexpr Real round_off = 1e-6;  // stresses in single precision
+  const auto compare = [&](bool take_over) {
+    const StressFit here = fit_stress(body, material, dt, take_over, particles);
+    return StressFit{ranks.max(here.largest), ranks.max(here.apart)};
+  };
+  const auto fits = [&](const StressFit& fit) { return fit.apart <= round_off * fit.largest; };
+  if (law_name(material) == law_there && fits(compare(false)))
+    return 0;
+  if (can_start_from_stress(material))
+    start_from_stress(body, material, particles);
+  const StressFit fit = compare(false);
+  if (fits(fit))
+    return 0;
+  compare(true);
+  return fit.apart / fit.largest;
+}
+
+template Real settle_stress<2>(const Body&, std::string_view, Real, Exchange&, AnyBatch&, Particles<2>&);
+template Real settle_stress<3>(const Body&, std::string_view, Real, Exchange&, AnyBatch&, Particles<3>&);
+template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, Complaints&, std::vector<std::string>&);
+template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, Complaints&, std::vector<std::string>&);
+
+}  // namespace talus

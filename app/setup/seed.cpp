@@ -1,0 +1,433 @@
+#include "app/setup/seed.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "app/setup/checks/shared_cells.hpp"
+#include "app/setup/expression.hpp"
+#include "app/setup/laws_in_force.hpp"
+#include "app/setup/setup.hpp"
+#include "core/parallel/threads.hpp"
+#include "io/system/memory.hpp"
+#include "mesh/locate.hpp"
+#include "mesh/quadrature.hpp"
+
+namespace talus {
+
+namespace {
+
+Real density_of(const MaterialSpec& material)
+{
+  return std::visit([](const auto& law) { return law.density; }, material.law);
+}
+
+template <int D>
+void make_room(std::size_t n, Particles<D>& p)
+{
+  const auto resize = [n](auto&... columns) { (columns.resize(n), ...); };
+  resize(p.id, p.cell, p.x, p.v, p.L, p.F, p.stress, p.mass, p.volume0, p.volume);
+}
+
+/// Where the particles stand that a rank has counted, among those that all have.
+struct Standing {
+  std::int64_t before, all;  ///< of lower ranks; of all
+};
+
+Standing standing_of(std::int64_t here, Exchange& ranks)
+{
+  const std::vector<std::int64_t> counts = of_all_ranks(ranks, here);
+  const auto mine = counts.begin() + ranks.rank();
+  return {std::accumulate(counts.begin(), mine, std::int64_t{0}), std::accumulate(counts.begin(), counts.end(), std::int64_t{0})};
+}
+
+/// Fills one body after the other.  Bodies of another run are taken whole by every rank, until settle().
+template <int D>
+class Seeder {
+ public:
+  Seeder(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints)
+      : scene_(scene), mesh_(mesh), ranks_(ranks), mine_(cells_to_fill(mesh, ranks)), complaints_(complaints)
+  {
+    seeds_.particles.keep_in(scene.precision);  // while they are none: never more memory than the run needs
+  }
+
+  void add(const BodySpec& spec)
+  {
+    const auto points = seeding_points<D>(spec.particles_per_cell.value());
+    if (!points)
+      complain_of_count(spec);
+    const auto cells = cells_of(spec);
+    const MaterialSpec* material = first_material(spec);
+    if (!points || !cells || material == nullptr)
+      return;
+    const Index begin = seeds_.particles.size();
+    const std::vector<std::int64_t> first = count(*cells, *points, spec);
+    const Standing standing = standing_of(first.back() - begin, ranks_);
+    if (const std::string why = too_many_particles(standing.all, material->law); !why.empty())
+      return complaints_.add(spec.where, "particles_per_cell", why);
+    fill(*cells, *points, spec, density_of(*material), first, seeds_.n_particles + standing.before);
+    seeds_.n_particles += static_cast<Index>(standing.all);
+    const Index end = seeds_.particles.size();
+    if (standing.all == 0)
+      complaints_.add(spec.where, "",
+                      fmt::format("the body has no particles: {}",
+                                  spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
+    seeds_.bodies.push_back({spec.name, begin, end, spec.where});
+    seeds_.materials.push_back(first_law(spec, begin, end));
+    set_velocity(spec, begin, end);
+  }
+
+  /// The body begins as the one of that number there.
+  void add(const BodySpec& spec, InitialState<D>& initial, Index from)
+  {
+    const MaterialSpec* material = first_material(spec);
+    if (material == nullptr)
+      return;
+    const Body& source = initial.there.bodies[static_cast<std::size_t>(from)];
+    const AnyBatch& law_there = initial.there.materials[static_cast<std::size_t>(from)];
+    const std::vector<Index> rows = rows_by_id(initial.there.particles, source);
+    const Index begin = seeds_.particles.size(), end = begin + source.size();
+    if (begin == end)
+      complaints_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
+    const Body body{spec.name, begin, end, spec.where};
+    AnyBatch batch = first_law(spec, begin, end);
+    copy(initial.there.particles, rows, density_of(*material) / density(law_there), begin, seeds_.n_particles);
+    seeds_.n_particles += source.size();
+    find_cells(body, source);
+    if (law_name(batch) == law_name(law_there)) {
+      std::vector<Index> of_body(rows);
+      for (Index& row : of_body)
+        row -= source.begin;
+      carry_history(law_there, of_body, batch);
+    } else if (!can_start_from_stress(batch)) {
+      complaints_.add(spec.where, "material",
+                      fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
+                                  law_name(law_there), law_name(batch), or_list(laws_that_start_from_stress())));
+    }
+    taken_.push_back({seeds_.bodies.size(), std::string(law_name(law_there)), rows});
+    initial.origin.bodies.push_back({spec.name, source.name, source.size()});
+    seeds_.bodies.push_back(body);
+    seeds_.materials.push_back(std::move(batch));
+  }
+
+  /// What concerns all bodies of another run together, once they are all there.
+  void settle(const InitialState<D>& initial, std::vector<std::string>& warnings)
+  {
+    carry_columns(initial.there.particles);
+    for (const auto& [body, law, rows] : taken_) {
+      constexpr Real worth_a_word = 0.01;
+      const Body& here = seeds_.bodies[body];
+      const AnyBatch& material = seeds_.materials[body];
+      const Real change = settle_stress(here, law, initial.there.clock.dt, ranks_, seeds_.materials[body], seeds_.particles);
+      if (change > worth_a_word)
+        warnings.push_back(fmt::format(
+            "{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest there: law \"{}\" makes another "
+            "of the same state, with the constants of this scene",
+            to_string(here.where), here.name, 100 * change, law_name(material)));
+    }
+    seeds_.origin = initial.origin;
+    seeds_.lag = initial.there.clock.lag;
+    seeds_.largest_before = initial.there.energy.largest_term(0);
+    if (ranks_.alone())
+      return;
+    for (Index& cell : seeds_.particles.cell)
+      cell = is_mine(cell) ? cell : none;
+    drop_lost(seeds_.bodies, seeds_.materials, seeds_.particles);
+  }
+
+  Seeds<D> take() { return std::move(seeds_); }
+
+ private:
+  void complain_of_count(const BodySpec& spec)
+  {
+    std::vector<std::string> known;
+    for (const int n : seeding_counts<D>())
+      known.push_back(std::to_string(n));
+    complaints_.add(spec.where, "particles_per_cell",
+                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell.value(),
+                                D == 2 ? "triangle" : "tetrahedron", or_list(known)));
+  }
+
+  bool is_mine(Index cell) const noexcept { return mine_.begin <= cell && cell < mine_.end; }
+
+  /// Those to be filled here.
+  std::optional<std::vector<Index>> cells_of(const BodySpec& spec)
+  {
+    if (spec.shape) {
+      std::vector<Index> all(static_cast<std::size_t>(mine_.end - mine_.begin));
+      std::iota(all.begin(), all.end(), mine_.begin);
+      return all;
+    }
+    auto cells = mesh_.cell_set(spec.region);
+    if (!cells)
+      complaints_.unknown_group(spec.where, "region", "cell", spec.region, mesh_.cell_set_names());
+    else
+      std::erase_if(*cells, [&](Index c) { return !is_mine(c); });
+    return cells;
+  }
+
+  Index first_stage(const BodySpec& spec) const { return presence_of(spec.name, scene_.stages).from; }
+  /// If it is not there the reader has complained.
+  const MaterialSpec* first_material(const BodySpec& spec) const { return material_of(scene_, spec, first_stage(spec)); }
+  AnyBatch first_law(const BodySpec& spec, Index begin, Index end) const
+  {
+    AnyBatch batch = law_in_force(scene_, spec, first_stage(spec));
+    begin_anew(begin, end, batch);
+    return batch;
+  }
+
+  /// f(x) for the particles of a cell that lie in the shape.
+  template <class F>
+  void for_each_place(Index cell, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, F&& f) const
+  {
+    const auto corners = mesh_.corners(cell);
+    for (const auto& point : points) {
+      Vec<D> x = Vec<D>::Zero();
+      for (std::size_t a = 0; a <= D; ++a)
+        x += point[a] * corners[a];
+      if (!spec.shape || contains(*spec.shape, std::span<const Real>(x.data(), D)))
+        f(x);
+    }
+  }
+
+  /// Row of the first particle of each cell, behind those there are, and of what comes then.
+  std::vector<std::int64_t> count(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points,
+                                  const BodySpec& spec) const
+  {
+    std::vector<std::int64_t> first(cells.size() + 1, 0);
+    parallel_for(static_cast<Index>(cells.size()),
+                 [&](Index i) { for_each_place(cells[i], points, spec, [&](const Vec<D>&) { ++first[i + 1]; }); });
+    first[0] = seeds_.particles.size();
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    return first;
+  }
+
+  /// Why there cannot be so many more on all ranks; empty if there can.
+  std::string too_many_particles(std::int64_t more, const AnyLaw& law) const
+  {
+    if (seeds_.n_particles + more > std::numeric_limits<Index>::max())
+      return fmt::format("{} particles are more than can be numbered", seeds_.n_particles + more);
+    Particles<D> one;
+    one.keep_in(scene_.precision);
+    make_room(1, one);
+    std::size_t bytes = std::visit([]<class L>(const L&) { return sizeof(typename L::State); }, law);
+    one.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+    const Real on_this_machine = static_cast<Real>(std::min(ranks_on_this_machine(), ranks_.size())) / ranks_.size();
+    return ranks_.first(too_many(static_cast<Real>(more) * on_this_machine, "particles", static_cast<Real>(bytes)));
+  }
+
+  /// Rows for the particles of cells.
+  void fill(const std::vector<Index>& cells, const std::vector<std::array<Real, D + 1>>& points, const BodySpec& spec, Real density,
+            const std::vector<std::int64_t>& first, std::int64_t first_id)
+  {
+    Particles<D>& p = seeds_.particles;
+    const auto all = static_cast<std::size_t>(first.back());
+    make_room(all, p);
+    parallel_for(static_cast<Index>(cells.size()), [&](Index i) {
+      const Index cell = cells[i];
+      const Real volume = mesh_.volume(cell) / static_cast<Real>(points.size());
+      auto row = static_cast<std::size_t>(first[i]);
+      for_each_place(cell, points, spec, [&](const Vec<D>& x) {
+        p.id[row] = first_id + static_cast<std::int64_t>(row) - first.front();
+        p.cell[row] = cell;
+        p.x[row] = x;
+        p.v.set(row, Vec<D>::Zero());
+        p.L.set(row, Mat<D>::Zero());
+        p.F.set(row, Mat3::Identity());
+        p.stress.set(row, Sym3::Zero());
+        p.volume0[row] = p.volume[row] = volume;
+        p.mass.set(row, density * volume);
+        ++row;
+      });
+    });
+  }
+
+  /// Velocity and its gradient: without the latter, affine schemes would begin with particles that do not turn.
+  void set_velocity(const BodySpec& spec, Index begin, Index end)
+  {
+    if (spec.velocity.empty())
+      return;
+    Particles<D>& particles = seeds_.particles;
+    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
+    std::vector<Vec3> places(count, Vec3::Zero());
+    std::vector<Real> sizes(count);  // of cells [m]
+    for (std::size_t p = 0; p < count; ++p) {
+      places[p].template head<D>() = particles.x[first + p];
+      sizes[p] = std::pow(mesh_.volume(particles.cell[first + p]), Real{1} / D);
+    }
+    for (int d = 0; d < D; ++d) {
+      std::string wrong;
+      try {
+        const std::string& formula = spec.velocity[static_cast<std::size_t>(d)];
+        const auto values = evaluate(formula, places);
+        const auto slopes = gradients(formula, places, sizes);
+        for (std::size_t p = 0; p < count; ++p) {
+          Vec<D> v = particles.v[first + p];
+          v[d] = values[p];
+          particles.v.set(first + p, v);
+          Mat<D> L = particles.L[first + p];
+          L.row(d) = slopes[p].template head<D>();
+          particles.L.set(first + p, L);
+        }
+      } catch (const std::invalid_argument& e) {
+        wrong = e.what();
+      }
+      if (wrong = ranks_.first(wrong); !wrong.empty())
+        complaints_.add(spec.where, fmt::format("velocity[{}]", d), wrong);
+    }
+  }
+
+  static std::vector<Index> rows_by_id(const Particles<D>& particles, const Body& body)
+  {
+    std::vector<Index> rows(static_cast<std::size_t>(body.size()));
+    std::iota(rows.begin(), rows.end(), body.begin);
+    std::sort(rows.begin(), rows.end(),
+              [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
+    return rows;
+  }
+
+  /// f(row of this scene, row there)
+  template <class F>
+  static void for_each_pair(Index begin, const std::vector<Index>& rows, F&& f)
+  {
+    parallel_for(static_cast<Index>(rows.size()),
+                 [&](Index i) { f(static_cast<std::size_t>(begin + i), static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])); });
+  }
+
+  /// Rows behind those there are; masses change as the density of the material does.
+  void copy(const Particles<D>& from, const std::vector<Index>& rows, Real heavier, Index begin, std::int64_t first_id)
+  {
+    Particles<D>& p = seeds_.particles;
+    make_room(static_cast<std::size_t>(begin) + rows.size(), p);
+    const bool moves = scene_.initial->velocity == Carried::keep;
+    for_each_pair(begin, rows, [&](std::size_t row, std::size_t there) {
+      p.id[row] = first_id + static_cast<std::int64_t>(row) - begin;
+      p.x[row] = from.x[there];
+      p.v.set(row, moves ? Vec<D>(from.v[there]) : Vec<D>(Vec<D>::Zero()));
+      p.L.set(row, moves ? Mat<D>(from.L[there]) : Mat<D>(Mat<D>::Zero()));
+      p.F.set(row, from.F[there]);
+      p.stress.set(row, from.stress[there]);
+      p.mass.set(row, heavier * from.mass[there]);
+      p.volume0[row] = from.volume0[there];
+      p.volume[row] = from.volume[there];
+    });
+  }
+
+  void find_cells(const Body& body, const Body& source)
+  {
+    Particles<D>& p = seeds_.particles;
+    const Locator<D> locator(mesh_);
+    parallel_for(body.size(), [&](Index i) {
+      const auto row = static_cast<std::size_t>(body.begin + i);
+      p.cell[row] = locator(mesh_, p.x[row], none).value_or(none);
+    });
+    const auto first = p.cell.begin() + body.begin, last = p.cell.begin() + body.end;
+    const auto outside = std::find(first, last, none);
+    if (outside == last)
+      return;
+    const Vec<D>& x = p.x[static_cast<std::size_t>(outside - p.cell.begin())];
+    complaints_.add(scene_.initial->where, "from",
+                    fmt::format("{} of the {} particles of body \"{}\" there lie outside the mesh of this scene, the first at ({:.6g})",
+                                std::count(outside, last, none), body.size(), source.name, fmt::join(x.begin(), x.end(), ", ")));
+    std::replace(outside, last, none, Index{0});  // the scene is refused, but looked at to its end
+  }
+
+  /// Columns that a scene may have or not, where both have them; in other bodies they are as at rest.
+  void carry_columns(const Particles<D>& from)
+  {
+    Particles<D>& p = seeds_.particles;
+    const auto n = p.id.size();
+    const auto for_each_taken = [&](auto&& f) {
+      for (const Taken& taken : taken_)
+        for_each_pair(seeds_.bodies[taken.body].begin, taken.rows, [&](std::size_t row, std::size_t there) { f(taken, row, there); });
+    };
+    if (transfer_of(scene_.transfer).own_affine_field() && !from.C.empty()) {
+      p.C = p.L;
+      if (scene_.initial->velocity == Carried::keep)
+        for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.C.set(row, from.C[there]); });
+    }
+    if (scene_.initial->displacement == Carried::keep && from.x0.empty()) {
+      complaints_.add(scene_.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
+    } else if (scene_.initial->displacement == Carried::keep) {
+      p.x0 = p.x;
+      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0[row] = from.x0[there]; });
+    }
+    if (!from.volume_ratio.empty() && std::any_of(seeds_.materials.begin(), seeds_.materials.end(), averages_volume)) {
+      p.volume_ratio.assign(n, 1);
+      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
+    }
+    if (!from.viscous.empty()) {
+      if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
+        p.viscous.assign(n, 0);
+      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+        if (has_bulk_viscosity(seeds_.materials[taken.body]))
+          p.viscous.set(row, from.viscous[there]);
+        else
+          p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));
+      });
+    }
+    if (!from.pore.empty()) {
+      if (scene_.water)
+        p.pore.assign(n, 0);
+      for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
+        if (!scene_.water)  // it is gone, and the effective stress is all there is
+          p.stress.set(row, add_diagonal(p.stress[row], from.pore[there]));
+        else if (is_drained(*scene_.water, seeds_.bodies[taken.body].name))
+          p.pore.set(row, from.pore[there]);  // of others the stress stays in total
+      });
+    }
+  }
+
+  /// One law of a body there.
+  struct Taken {
+    std::size_t body;  ///< here
+    std::string law;   ///< there
+    std::vector<Index> rows;
+  };
+
+  const Scene& scene_;
+  const Mesh<D>& mesh_;
+  Exchange& ranks_;
+  IndexRange mine_;  // cells
+  Complaints& complaints_;
+  Seeds<D> seeds_;
+  std::vector<Taken> taken_;
+};
+
+}  // namespace
+
+template <int D>
+IndexRange cells_to_fill(const Mesh<D>& mesh, const Exchange& ranks)
+{
+  const std::int64_t blocks = blocks_of(mesh.n_cells());
+  const auto begin_of = [&](int rank) {
+    return static_cast<Index>(std::min<std::int64_t>(blocks * rank / ranks.size() * block_cells, mesh.n_cells()));
+  };
+  return {begin_of(ranks.rank()), begin_of(ranks.rank() + 1)};
+}
+
+template <int D>
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints, std::vector<std::string>& warnings)
+{
+  Seeder<D> seeder(scene, mesh, ranks, complaints);
+  auto initial = find_initial_state<D>(scene, complaints, warnings);
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+    if (initial && initial->source[b] != none)
+      seeder.add(scene.bodies[b], *initial, initial->source[b]);
+    else if (scene.bodies[b].fills())  // if not, somebody has complained
+      seeder.add(scene.bodies[b]);
+  if (initial)
+    seeder.settle(*initial, warnings);
+  find_groups_filled_twice(scene, complaints);
+  Seeds<D> seeds = seeder.take();
+  warn_of_shared_cells(scene, seeds.bodies, seeds.particles.cell, mesh.n_cells(), ranks, warnings);
+  return seeds;
+}
+
+template IndexRange cells_to_fill<2>(const Mesh<2>&, const Exchange&);
+template IndexRange cells_to_fill<3>(const Mesh<3>&, const Exchange&);
+template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Exchange&, Complaints&, std::vector<std::string>&);
+template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Exchange&, Complaints&, std::vector<std::string>&);
+
+}  // namespace talus

@@ -1,0 +1,197 @@
+#include "app/setup/setup.hpp"
+
+#include <algorithm>
+
+#include "app/observers/history.hpp"
+#include "app/observers/output_fields.hpp"
+#include "app/observers/runout.hpp"
+#include "app/setup/default_limits.hpp"
+#include "app/setup/loads_of_scene.hpp"
+#include "app/setup/seed.hpp"
+#include "app/setup/stages_of_scene.hpp"
+#include "app/setup/walls_of_scene.hpp"
+#include "app/setup/water_table.hpp"
+#include "core/parallel/communicator.hpp"
+#include "core/parallel/threads.hpp"
+#include "io/scene/scene_rules.hpp"
+#include "io/system/process.hpp"
+#include "mesh/digest.hpp"
+
+namespace talus {
+
+Transfer transfer_of(const TransferSpec& spec)
+{
+  Transfer transfer;
+  constexpr Scheme schemes[] = {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip};  // in the order of TransferScheme
+  transfer.scheme = schemes[static_cast<std::size_t>(spec.scheme)];
+  transfer.musl = spec.musl.value_or(transfer.increments());
+  transfer.pic_damping_time = spec.pic_damping_time;
+  transfer.pic_damping_crossings = spec.pic_damping_crossings;
+  if (transfer.scheme == Scheme::aflip && !spec.pic_damping_time && !spec.pic_damping_crossings)
+    transfer.pic_damping_crossings = 25;  // measured: docs/reference/kernels.md
+  return transfer;
+}
+
+std::string describe(const OriginSummary& origin)
+{
+  std::string text = fmt::format("  from {}, step {}, t = {:.6g} s of \"{}\":\n", origin.file, origin.step, origin.time, origin.title);
+  for (const auto& [body, from, particles] : origin.bodies)
+    text += fmt::format("    body \"{}\": the {} particles of \"{}\"\n", body, particles, from);
+  return text;
+}
+
+void take_threads(std::optional<int> asked, const Scene& scene)
+{
+  const Index wanted = asked.value_or(scene.threads);
+  if (wanted > 0)
+    use_threads(wanted, asked ? "--threads" : "threads in " + scene.file);
+  else if (!world().alone())
+    set_threads(std::max(1, threads() / ranks_on_this_machine()));
+}
+
+std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::path(scene.file).parent_path(); }
+
+namespace {
+
+template <int D>
+std::uint64_t digest_of_files(const Setup<D>& setup)
+{
+  std::vector<Real> numbers = setup.water.table;
+  for (const StageChange<D>& change : setup.changes)
+    if (change.table)
+      numbers.insert(numbers.end(), change.table->begin(), change.table->end());
+  for (const Wall<D>& wall : setup.walls.walls())
+    if (wall.record)
+      for (const std::vector<Real>* part : {&wall.record->time, &wall.record->velocity, &wall.record->acceleration})
+        numbers.insert(numbers.end(), part->begin(), part->end());
+  return digest(std::span<const Real>(numbers));
+}
+
+bool wants_displacement(const OutputSpec& outputs)
+{
+  if (outputs.runout || (outputs.history && (!outputs.history->points.empty() || !outputs.history->moved.empty())))
+    return true;
+  if (!outputs.particles)
+    return false;
+  const auto fields = particle_fields_of(outputs);
+  return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+}
+
+/// A table that no drained body reaches down to is hardly meant.  Every rank has to ask.
+template <int D>
+void warn_if_dry(const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+{
+  const std::vector<std::uint8_t>& drained = setup.water.drained;
+  if (std::none_of(drained.begin(), drained.end(), [](std::uint8_t is) { return is != 0; }))
+    return;
+  std::int64_t wet = 0;
+  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
+    if (setup.water.drains(static_cast<Index>(b)))
+      wet += count_wet(mesh, setup.water, setup.bodies[b], setup.particles);
+  if (ranks.sum(wet) == 0)
+    setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
+}
+
+/// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
+void check_picture(const Scene& scene, Complaints& complaints)
+{
+  if (!scene.outputs.particles)
+    return;
+  std::vector<std::string> known(particle_fields.begin(), particle_fields.end());
+  known.emplace_back("body");
+  for (const MaterialSpec& material : scene.materials)
+    std::visit([&]<class Law>(
+                   const Law&) { for_each_field<typename Law::State>([&](const auto& variable) { known.emplace_back(variable.key); }); },
+               material.law);
+  for (const std::string& name : particle_fields_of(scene.outputs))
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      complaints.add(scene.where, "outputs.picture.field", fmt::format("there is no field \"{}\"{}", name, suggestion(name, known)));
+}
+
+/// Sections that leave the mesh, walls of the history that have no area.
+template <int D>
+void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, Complaints& complaints)
+{
+  if (const auto& history = scene.outputs.history)
+    for (const WallSpec& wall : history->walls)
+      if (!facets_of_wall(mesh, wall.on))
+        complaints.add(wall.where, "on", fmt::format("wall \"{}\" is on nodes, not on facets: it has no area", wall.on));
+  if (D == 2 || !scene.outputs.runout)
+    return;
+  const PlanAxes axes = plan_axes<D>(gravity);
+  for (const SectionSpec& section : scene.outputs.runout->sections)
+    for (std::size_t i = 0; i < section.along.size(); ++i)
+      for (std::size_t d = 0; d < 2; ++d) {
+        const Real shift = mesh.map() ? mesh.map()->origin[d] : 0;
+        const Real low = mesh.low()[axes.plan[d]] + shift, high = mesh.high()[axes.plan[d]] + shift;
+        if (const Real x = section.along[i][d]; !(low <= x && x <= high))
+          complaints.add(
+              section.where, "along",
+              fmt::format("corner {} is outside of the mesh: {:.10g} m does not lie between {:.10g} and {:.10g} m", i + 1, x, low, high));
+      }
+}
+
+}  // namespace
+
+template <int D>
+Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
+{
+  Complaints complaints(scene);
+  Setup<D> setup;
+  setup.warnings = mesh.notes();
+  Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
+  setup.particles = std::move(seeds.particles);
+  setup.n_particles = seeds.n_particles;
+  setup.bodies = std::move(seeds.bodies);
+  setup.materials = std::move(seeds.materials);
+  setup.origin = std::move(seeds.origin);
+  setup.lag = seeds.lag;
+  setup.largest_before = seeds.largest_before;
+  const Filled<D> has_particles(mesh, setup.particles, setup.bodies, ranks, [](const std::string&) { return true; });
+  const Filled<D> at_start(mesh, setup.particles, setup.bodies, ranks,
+                           [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
+  const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
+  add_walls(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.walls);
+  add_loads(scene, mesh, has_particles, at_start, ranks, complaints, setup);
+  set_stages(scene, complaints, setup);
+  setup.water = water_of(
+      scene, mesh, setup.bodies, [&](Index cell) { return at_start(cell); }, complaints, setup.warnings);
+  saturate(scene, 0, mesh, setup.water, setup.bodies, setup.particles);
+  if (setup.water.any())
+    warn_if_dry(mesh, ranks, setup);
+  check_laws(scene, complaints);
+  check_room(scene, mesh, setup, ranks, complaints);
+  check_picture(scene, complaints);
+  check_outputs<D>(scene, mesh, setup.loads.gravity.acceleration, complaints);
+  ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
+
+  setup.transfer = transfer_of(scene.transfer);
+  setup.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
+  setup.limits.cfl = scene.time.cfl.value();
+  setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
+  setup.limits.shortest = scene.time.min_step;
+  const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
+  if (setup.particles.x0.empty() &&
+      (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
+    setup.particles.x0 = setup.particles.x;
+  setup.guards = guards_of(scene, mesh, setup, ranks);
+  set_changes(scene, mesh, ranks, setup);
+  setup.from_files = digest_of_files(setup);
+  return setup;
+}
+
+template <int D>
+void restrict_to(const Share& share, Setup<D>& setup)
+{
+  setup.walls.restrict_to(share);
+  restrict_to(share, setup.water);
+  for (MeshTraction<D>& load : setup.loads.on_mesh)
+    restrict_to(share, load);
+}
+
+template void restrict_to<2>(const Share&, Setup<2>&);
+template void restrict_to<3>(const Share&, Setup<3>&);
+template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
+template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
+
+}  // namespace talus

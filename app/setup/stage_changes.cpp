@@ -1,0 +1,128 @@
+#include "app/setup/stage_changes.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+#include "app/setup/initial.hpp"
+#include "core/parallel/threads.hpp"
+
+namespace talus {
+
+namespace {
+
+/// All that is in some rows, of all ranks.  Every rank has to ask.
+template <int D>
+Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Index begin,
+                       Index end, Exchange& ranks)
+{
+  ExactSums<Departed<D>> sum;
+  for (Index row = begin; row < end; ++row)
+    sum.add(content_of(bodies, materials, particles, row));
+  ranks.sum(sum);
+  return sum.value();
+}
+
+template <int D>
+std::string in_words(const Departed<D>& content)
+{
+  return fmt::format("{} particles, {:.6g} kg", static_cast<std::int64_t>(content.count), content.mass);
+}
+
+/// Forces of artificial viscosity that the new law does not know become stress, and stay that.
+template <int D>
+void drop_viscosity(const Body& body, Particles<D>& particles)
+{
+  for (Index row = body.begin; row < body.end; ++row) {
+    const auto p = static_cast<std::size_t>(row);
+    particles.stress.set(p, add_diagonal(particles.stress[p], particles.viscous[p]));
+    particles.viscous.set(p, 0);
+  }
+}
+
+}  // namespace
+
+template <int D>
+void vanish(const std::vector<Index>& bodies, const State<D>& state, Exchange& ranks, StageNews& news)
+{
+  const Crowd<D> gone = take_out_bodies(std::span(bodies), state.bodies, state.materials, state.particles);
+  for (const Index b : bodies) {
+    const Body& body = gone.bodies[static_cast<std::size_t>(b)];
+    const Departed<D> content = content_of(gone.bodies, gone.materials, gone.particles, body.begin, body.end, ranks);
+    state.mass.taken += content.mass, state.mass.taken_count += static_cast<Index>(content.count);
+    state.momentum.changes += -1 * content.momentum;
+    news.told.push_back(fmt::format("body \"{}\" vanishes: {}", body.name, in_words(content)));
+  }
+}
+
+template <int D>
+void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Exchange& ranks, StageNews& news)
+{
+  constexpr Real worth_a_word = 0.01;
+  Particles<D>& particles = state.particles;
+  for (const auto& [b, becomes] : bodies) {
+    const Body& body = state.bodies[static_cast<std::size_t>(b)];
+    AnyBatch& material = state.materials[static_cast<std::size_t>(b)];
+    const AnyBatch before = std::exchange(material, laws[static_cast<std::size_t>(b)]);
+    begin_anew(body.begin, body.end, material);
+    if (law_name(before) == law_name(material)) {
+      std::vector<Index> same(static_cast<std::size_t>(body.size()));
+      std::iota(same.begin(), same.end(), 0);
+      carry_history(before, same, material);
+    }
+    if (has_bulk_viscosity(before) && !has_bulk_viscosity(material))
+      drop_viscosity(body, particles);
+    if (const Real heavier = density(material) / density(before); heavier != 1) {
+      const Departed<D> then = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
+      parallel_for(body.size(), [&](Index i) {
+        const auto p = static_cast<std::size_t>(body.begin + i);
+        particles.mass.set(p, heavier * particles.mass[p]);
+      });
+      const Departed<D> now = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
+      (heavier > 1 ? state.mass.placed : state.mass.taken) += std::abs(now.mass - then.mass);
+      state.momentum.changes += now.momentum + -1 * then.momentum;
+    }
+    const Real change = settle_stress(body, law_name(before), state.clock.dt, ranks, material, particles);
+    news.told.push_back(fmt::format("body \"{}\" {}", body.name, becomes));
+    if (change > worth_a_word)
+      news.warnings.push_back(
+          fmt::format("the stress of body \"{}\" changes with its material, by up to {:.3g} % of the largest: law \"{}\" makes another of "
+                      "the same state",
+                      body.name, 100 * change, law_name(material)));
+  }
+}
+
+template <int D>
+void appear(const std::vector<Index>& bodies, Crowd<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
+            const State<D>& state, Exchange& ranks, StageNews& news)
+{
+  const auto all = [](Index) { return true; };
+  CellOrder order_of_coming;
+  sort_by_cell(coming.particles.cell, coming.particles.id, coming.bodies, mesh.n_cells(), order_of_coming);
+  const auto there = volume_in_cells(mesh, state.particles, order, all);
+  for (const Index b : bodies) {
+    const Body& body = coming.bodies[static_cast<std::size_t>(b)];
+    const auto its = volume_in_cells(mesh, coming.particles, order_of_coming, [&](Index other) { return other == b; });
+    const Overlap<D> taken = overlap<D>(mesh, there, its, ranks);
+    if (taken.share() > most_overlap)
+      throw RunError(fmt::format("stage \"{}\"{}: body \"{}\" cannot appear: {}", stage.name,
+                                 stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", body.name, describe(taken)));
+    if (taken.cells > 0)
+      news.warnings.push_back(fmt::format("body \"{}\" appears although {}", body.name, describe(taken)));
+    const Departed<D> content = content_of(coming.bodies, coming.materials, coming.particles, body.begin, body.end, ranks);
+    state.mass.placed += content.mass, state.mass.placed_count += static_cast<Index>(content.count);
+    state.momentum.changes += content.momentum;
+    news.told.push_back(fmt::format("body \"{}\" appears: {}", body.name, in_words(content)));
+  }
+  put_in(std::move(coming), state.bodies, state.materials, state.particles);
+}
+
+template void vanish<2>(const std::vector<Index>&, const State<2>&, Exchange&, StageNews&);
+template void vanish<3>(const std::vector<Index>&, const State<3>&, Exchange&, StageNews&);
+template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Exchange&, StageNews&);
+template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Exchange&, StageNews&);
+template void appear<2>(const std::vector<Index>&, Crowd<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&, Exchange&,
+                        StageNews&);
+template void appear<3>(const std::vector<Index>&, Crowd<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&, Exchange&,
+                        StageNews&);
+
+}  // namespace talus

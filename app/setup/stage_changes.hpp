@@ -1,0 +1,107 @@
+#pragma once
+// What stages of a scene change between two steps: bodies appear, vanish and become another material, other walls act, the water table moves.
+#include "solver/particles/staged_bodies.hpp"
+#include "solver/state.hpp"
+
+namespace talus {
+
+/// A body whose law is another from a stage on.
+struct Renewal {
+  Index body;
+  std::string becomes;  ///< in words
+};
+
+/// Found at set-up, done before the first step of the stage.
+template <int D>
+struct StageChange {
+  std::vector<Index> appear, vanish;  ///< bodies
+  Crowd<D> coming;                    ///< particles of those that appear, in cells of the whole mesh: a share of them on each rank
+  std::vector<Renewal> renew;
+  std::optional<Walls<D>> walls;           ///< that act from here on, of the whole mesh; none: those of the stage before
+  std::optional<std::vector<Real>> table;  ///< of the water from here on, at the nodes of the whole mesh; none: that of the stage before
+  std::vector<std::string> told;           ///< of walls and water, in words
+  bool any() const noexcept { return !appear.empty() || !vanish.empty() || !renew.empty() || walls || table; }
+};
+
+/// What has been done, a line for each body.
+struct StageNews {
+  std::vector<std::string> told, warnings;
+};
+
+/// More than this share of what appears must not come where other material is: as much is round-off of surfaces that have settled.
+inline constexpr Real most_overlap = 0.05;
+
+/// In words, whichever body it is that comes.
+template <int D>
+std::string describe(const Overlap<D>& overlap)
+{
+  return fmt::format("other material is in its place: {:.3g} % of its volume in {} cell{}, the fullest at {}", 100 * overlap.share(),
+                     overlap.cells, overlap.cells == 1 ? "" : "s", overlap.place);
+}
+
+/// The verbs; each books mass and momentum.  Every rank has to ask.
+template <int D>
+void vanish(const std::vector<Index>& bodies, const State<D>& state, Exchange& ranks, StageNews& news);
+/// The bodies keep their stress as in app/setup/initial.hpp.  `laws` are those of all bodies in the stage.
+template <int D>
+void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Exchange& ranks, StageNews& news);
+/// RunError naming `stage`: the place is taken.  Cells are those of this rank's mesh; `order` is that of the particles that are there.
+template <int D>
+void appear(const std::vector<Index>& bodies, Crowd<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
+            const State<D>& state, Exchange& ranks, StageNews& news);
+
+/// The walls of a stage, of the whole mesh, take the place of those that acted; what is kept of these stays.
+template <int D, Kernel<D> K>
+void take_walls(Model<D, K>& m, Walls<D> walls)
+{
+  if (!m.share.alone())
+    walls.restrict_to(m.share);
+  walls.go_on_from(m.walls);
+  m.walls = std::move(walls);
+  bind_walls(m);
+}
+
+/// The water table of a stage, of the whole mesh, takes the place of that which was.  Pore pressures follow when the stage begins.
+template <int D, Kernel<D> K>
+void take_table(Model<D, K>& m, const std::vector<Real>& table)
+{
+  m.water.table = m.share.alone() ? table : part_of_table(m.share, table);
+}
+
+/// Does all that the stage changes, between two steps, before the stage begins.  What comes is moved out of `change`.
+template <int D, Kernel<D> K>
+StageNews enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
+{
+  StageNews news{.told = change.told, .warnings = {}};
+  const State<D> state = state_of(m);
+  if (!change.vanish.empty()) {
+    vanish(change.vanish, state, *m.ranks, news);
+    take_rows(m);
+  }
+  if (!change.renew.empty())
+    renew(change.renew, laws, state, *m.ranks, news);
+  if (!change.appear.empty()) {
+    Crowd<D> coming = std::exchange(change.coming, {});
+    if (!m.share.alone())
+      take_own_particles(*m.ranks, m.share, coming.bodies, coming.materials, coming.particles);
+    fill_columns(m.columns, coming.particles);
+    appear(change.appear, std::move(coming), m.mesh, m.order, stage, state, *m.ranks, news);
+    take_rows(m);
+  }
+  if (change.walls)
+    take_walls(m, *change.walls);
+  if (change.table)
+    take_table(m, *change.table);
+  return news;
+}
+
+extern template void vanish<2>(const std::vector<Index>&, const State<2>&, Exchange&, StageNews&);
+extern template void vanish<3>(const std::vector<Index>&, const State<3>&, Exchange&, StageNews&);
+extern template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Exchange&, StageNews&);
+extern template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Exchange&, StageNews&);
+extern template void appear<2>(const std::vector<Index>&, Crowd<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&,
+                               Exchange&, StageNews&);
+extern template void appear<3>(const std::vector<Index>&, Crowd<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&,
+                               Exchange&, StageNews&);
+
+}  // namespace talus

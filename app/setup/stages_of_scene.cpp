@@ -1,0 +1,216 @@
+#include "app/setup/stages_of_scene.hpp"
+
+#include <algorithm>
+
+#include "app/setup/k0_stress.hpp"
+#include "app/setup/laws_in_force.hpp"
+#include "app/setup/walls_of_scene.hpp"
+#include "app/setup/water_table.hpp"
+#include "io/scene/history_columns.hpp"
+
+namespace talus {
+
+namespace {
+
+Stage stage_of(const RunSpec& spec) { return {.duration = spec.duration, .damping = spec.damping, .where = spec.where}; }
+Stage stage_of(const GeostaticSpec& spec)
+{
+  return {.duration = spec.duration,
+          .damping = spec.damping,
+          .ramp = spec.ramp,
+          .ramp_shape = spec.ramp_shape,
+          .elastic = spec.elastic,
+          .residual = spec.residual,
+          .start_stress = {},
+          .reset_displacement = spec.reset_displacement,
+          .where = spec.where};
+}
+Stage stage_of(const StageSpec& spec)
+{
+  Stage stage = std::visit([](const auto& s) { return stage_of(s); }, spec);
+  stage.name = name_of(spec);
+  stage.kind = std::visit([]<class Spec>(const Spec&) { return std::string(Spec::name); }, spec);
+  return stage;
+}
+
+/// The numbers of bodies that are named.
+std::vector<Index> numbers_of(const std::vector<std::string>& names, const std::vector<Body>& bodies)
+{
+  std::vector<Index> numbers;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    if (std::find(names.begin(), names.end(), bodies[b].name) != names.end())
+      numbers.push_back(static_cast<Index>(b));
+  return numbers;
+}
+
+/// In words what becomes of the law of a body in a stage; empty if it stays what it is.
+std::string renewal(const Scene& scene, const BodySpec& body, Index stage)
+{
+  if (!is_renewed(scene, body, stage))
+    return {};
+  const MaterialSpec &before = *material_of(scene, body, stage - 1), &after = *material_of(scene, body, stage);
+  const Real weaker = weakened_by(scene, body, stage) / (&before == &after ? weakened_by(scene, body, stage - 1) : 1);
+  const bool changes = &before != &after, weakens = weaker != 1 && has_strength(after);
+  std::string text = changes ? fmt::format("goes on as \"{}\"", after.name) : "";
+  if (weakens)
+    text += fmt::format("{}has its strength divided by {:.6g}", changes ? " and " : "", weaker);
+  return text;
+}
+
+/// How a new water table lies to the one before it, in words.  Of a table that something is wrong with there is nothing.
+template <int D>
+std::string moved_table(const Mesh<D>& mesh, const std::vector<Real>& before, const std::vector<Real>& after)
+{
+  if (after.empty() || before.size() != after.size())
+    return "the water table changes";
+  Real rise = 0, fall = 0;
+  for (std::size_t n = 0; n < after.size(); ++n)
+    rise = std::max(rise, after[n] - before[n]), fall = std::max(fall, before[n] - after[n]);
+  if (rise == 0 && fall == 0)
+    return fmt::format("the water table stays where it is, at all {} nodes", mesh.n_nodes());
+  const std::string up = fmt::format("rises by up to {:.4g} m", rise), down = fmt::format("falls by up to {:.4g} m", fall);
+  return fmt::format("the water table {}", fall == 0 ? up : rise == 0 ? down : up + " and " + down);
+}
+
+}  // namespace
+
+template <int D>
+void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
+{
+  if (scene.stages.empty())
+    setup.stages.push_back({.name = "run", .duration = scene.time.end, .where = scene.time.where});
+  for (const StageSpec& spec : scene.stages)
+    setup.stages.push_back(stage_of(spec));
+  for (std::size_t s = 0; s < scene.stages.size(); ++s) {
+    Stage& stage = setup.stages[s];
+    const auto* spec = std::get_if<GeostaticSpec>(&scene.stages[s]);
+    if (spec == nullptr || !spec->initial_stress)
+      continue;
+    stage.start_stress = start_stress_of_bodies(*spec->initial_stress, scene, complaints);
+    if (s > 0)
+      stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.bodies);
+    for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
+      const Index from = presence_of(setup.bodies[b].name, scene.stages).from;
+      if (std::cmp_equal(from, s) && !can_start_from_stress(setup.materials[b]))
+        complaints.add(
+            stage.where, "initial_stress",
+            fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
+                        law_name(setup.materials[b]), setup.bodies[b].name));
+    }
+  }
+}
+
+void check_laws(const Scene& scene, Complaints& complaints)
+{
+  const auto body_of = [&](const std::string& name) {
+    return std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) { return body.name == name; });
+  };
+  for (std::size_t s = 0; s < scene.stages.size(); ++s) {
+    const auto stage = static_cast<Index>(s);
+    for (const NewMaterialSpec& change : changes_of(scene.stages[s]).change) {
+      const MaterialSpec &before = *material_of(scene, *body_of(change.body), stage - 1),
+                         &after = *material_of(scene, *body_of(change.body), stage);
+      const auto name = [](const MaterialSpec& material) { return std::visit([]<class L>(const L&) { return L::name; }, material.law); };
+      const auto can = laws_that_start_from_stress();
+      if (name(before) != name(after) && std::find(can.begin(), can.end(), name(after)) == can.end())
+        complaints.add(change.where, "material",
+                       fmt::format("the body comes from law \"{}\", and law \"{}\" cannot start from its stress; of other laws {} can",
+                                   name(before), name(after), or_list(can)));
+    }
+    for (const WeakenSpec& weaken : changes_of(scene.stages[s]).weaken) {
+      const bool found = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) {
+        return (weaken.body.empty() || body.name == weaken.body) && presence_of(body.name, scene.stages).in(stage) &&
+               has_strength(*material_of(scene, body, stage));
+      });
+      if (!found)
+        complaints.add(weaken.where, weaken.body.empty() ? "" : "body",
+                       weaken.body.empty() ? std::string("no body of this stage has a law with shear strength")
+                                           : fmt::format("the law of body \"{}\" has no shear strength", weaken.body));
+    }
+  }
+}
+
+template <int D>
+void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks, Complaints& complaints)
+{
+  CellOrder order;
+  for (std::size_t s = 1; s < scene.stages.size(); ++s)
+    for (const std::string& name : changes_of(scene.stages[s]).appear) {
+      if (order.row.empty())
+        sort_by_cell(setup.particles.cell, setup.particles.id, setup.bodies, mesh.n_cells(), order);
+      const auto volumes = [&](const auto& chosen) {
+        return volume_in_cells(mesh, setup.particles, order,
+                               [&](Index b) { return chosen(setup.bodies[static_cast<std::size_t>(b)].name); });
+      };
+      const auto its = volumes([&](const std::string& body) { return body == name; });
+      const auto there =
+          volumes([&](const std::string& body) { return body != name && presence_of(body, scene.stages).in(static_cast<Index>(s)); });
+      if (const Overlap<D> taken = overlap<D>(mesh, there, its, ranks); taken.share() > most_overlap)
+        complaints.add(where_of(scene.stages[s]), "appear", fmt::format("body \"{}\" cannot appear: {}", name, describe(taken)));
+    }
+}
+
+template <int D>
+void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+{
+  const std::size_t n = setup.stages.size();
+  setup.changes.resize(n);
+  setup.laws = laws_of_stages(scene);
+  const auto said = [&](std::size_t s) -> const StageChanges& { return changes_of(scene.stages[s]); };
+  const bool bodies_differ = std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) {
+    return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty();
+  });
+  const bool walls_differ = bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                                                         [](const BoundarySpec& boundary) { return !during_of(boundary).empty(); });
+  const bool tables_differ =
+      std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
+  const auto names = wall_names(scene.boundaries);
+  Complaints complaints(scene);
+  for (std::size_t s = 1; s < n; ++s) {
+    StageChange<D>& change = setup.changes[s];
+    change.appear = numbers_of(said(s).appear, setup.bodies);
+    change.vanish = numbers_of(said(s).vanish, setup.bodies);
+    for (std::size_t b = 0; b < scene.bodies.size(); ++b)
+      if (std::string becomes = renewal(scene, scene.bodies[b], static_cast<Index>(s)); !becomes.empty())
+        change.renew.push_back({static_cast<Index>(b), std::move(becomes)});
+    if (tables_differ)  // in every stage, so that a run that goes on in any of them finds the one that holds there
+      change.table = setup.changes[s - 1].table ? setup.changes[s - 1].table : setup.water.table;
+    if (!walls_differ && !said(s).water)
+      continue;
+    const auto there = [&](const std::string& body) { return presence_of(body, scene.stages).in(static_cast<Index>(s)); };
+    const Filled<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
+    if (said(s).water) {
+      change.table = table_of_stage(
+          scene, *said(s).water, mesh, [&](Index cell) { return filled(cell); }, complaints, setup.warnings);
+      change.told.push_back(moved_table(mesh, setup.changes[s - 1].table ? *setup.changes[s - 1].table : setup.water.table, *change.table));
+    }
+    if (!walls_differ)
+      continue;
+    change.walls.emplace();
+    add_walls(scene, mesh, filled, ranks, said(s).label, false, complaints, setup, *change.walls);
+    for (std::size_t w = 0; w < names.size(); ++w) {
+      const bool acted = acts_in(scene.boundaries[w], said(s - 1).label), acts = acts_in(scene.boundaries[w], said(s).label);
+      if (acted != acts)
+        change.told.push_back(fmt::format("wall \"{}\" {}", names[w], acts ? "acts from here on" : "is gone"));
+    }
+  }
+  ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
+  for (std::size_t s = 1; s < n; ++s)
+    if (!setup.changes[s].appear.empty()) {
+      Water water = setup.water;
+      water.table = setup.changes[s].table.value_or(water.table);
+      saturate(scene, static_cast<Index>(s), mesh, water, setup.bodies, setup.particles);
+    }
+  for (std::size_t s = 1; s < n; ++s)
+    if (!setup.changes[s].appear.empty())
+      setup.changes[s].coming = take_out_bodies<D>(setup.changes[s].appear, setup.bodies, setup.materials, setup.particles);
+}
+
+template void set_stages<2>(const Scene&, Complaints&, Setup<2>&);
+template void set_stages<3>(const Scene&, Complaints&, Setup<3>&);
+template void check_room<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Exchange&, Complaints&);
+template void check_room<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Exchange&, Complaints&);
+template void set_changes<2>(const Scene&, const Mesh<2>&, Exchange&, Setup<2>&);
+template void set_changes<3>(const Scene&, const Mesh<3>&, Exchange&, Setup<3>&);
+
+}  // namespace talus

@@ -1,0 +1,48 @@
+#pragma once
+// Digests of arrays: what a file says of its values, so that none that changed is ever taken for one that was written.
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/parallel/slices.hpp"
+#include "io/checkpoint/array_file.hpp"
+#include "io/files/byte_digest.hpp"
+
+namespace talus {
+
+struct Extents {
+  std::uint64_t rows = 0;
+  std::uint64_t columns = 1;
+};
+
+/// Of all that says what values mean: it goes into the digest of each piece of them.
+std::uint64_t digest_of(const std::string& path, const std::string& type, const Extents& shape, const std::string& unit);
+
+/// The pieces of an array and their digests.
+struct Pieces {
+  Slice all;  // from row 0 on
+  std::vector<std::uint64_t> digests;
+
+  /// As they are kept; of one piece, or none, there is no more to say.
+  std::vector<std::uint64_t> words() const
+  {
+    std::vector<std::uint64_t> kept;
+    if (digests.size() > 1)
+      kept = {static_cast<std::uint64_t>(all.piece), static_cast<std::uint64_t>(all.lead)};
+    kept.insert(kept.end(), digests.begin(), digests.end());
+    return kept;
+  }
+  std::uint64_t digest(std::uint64_t meaning) const { return digest_of(std::as_bytes(std::span<const std::uint64_t>(words())), meaning); }
+};
+
+/// Copies rows of an array from the one of that number on, as many as there is room for.
+void pack(const SharedArray& array, std::size_t from, std::size_t row_bytes, std::span<std::byte> to);
+
+/// Of the pieces of an array that are here.
+std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t number_bytes, std::uint64_t meaning);
+
+}  // namespace talus

@@ -1,0 +1,153 @@
+#pragma once
+// What is kept of a run, to the last bit: structs by their fields(), particles by their columns, laws by their histories.
+#include <fmt/format.h>
+
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/parallel/threads.hpp"
+#include "core/particles.hpp"
+#include "io/checkpoint/array_file.hpp"
+#include "materials/batch.hpp"
+
+namespace talus {
+
+template <class T>
+inline constexpr bool is_vector = false;
+template <class T, class Allocator>
+inline constexpr bool is_vector<std::vector<T, Allocator>> = true;
+
+namespace detail {
+/// What a number is stored as.
+template <class T>
+using Stored = std::conditional_t<std::is_enum_v<T> || std::is_same_v<T, bool>, std::uint8_t, T>;
+/// Numbers of a row: a number, vector or tensor.
+template <class Row>
+struct RowOf {
+  using Number = Row;
+  static constexpr int columns = 1;
+};
+template <class N, int R, int C, int options>
+struct RowOf<Eigen::Matrix<N, R, C, options>> {
+  using Number = N;
+  static constexpr int columns = R * C;
+};
+}  // namespace detail
+
+/// Paths in the file.
+inline std::string below(const std::string& path, std::string_view key) { return path + "/" + std::string(key); }
+inline std::string below(const std::string& path, std::size_t i) { return path + "/" + std::to_string(i); }
+
+/// Writes a value below `path`.  EnvironmentError.
+template <class T>
+void keep(ArrayWriter& file, const std::string& path, const T& value)
+{
+  if constexpr (HasFields<T>) {
+    for_each_field<T>([&](const auto& field) { keep(file, below(path, field.key), value.*field.member); });
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    file.write(path, std::string_view(value));
+  } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
+    file.write(path, std::span<const Real>(value));
+  } else if constexpr (is_vector<T>) {
+    const auto count = static_cast<std::int64_t>(value.size());
+    file.write(below(path, "count"), std::span(&count, 1));
+    for (std::size_t i = 0; i < value.size(); ++i)
+      keep(file, below(path, i), value[i]);
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+    const auto stored = static_cast<detail::Stored<T>>(value);
+    file.write(path, std::span(&stored, 1));
+  } else {
+    file.write(path, std::span<const Real>(value.data(), static_cast<std::size_t>(value.size())));
+  }
+}
+/// Reads it back.  EnvironmentError: it is not there, or of another kind.
+template <class T>
+void recall(const ArrayReader& file, const std::string& path, T& value)
+{
+  if constexpr (HasFields<T>) {
+    for_each_field<T>([&](const auto& field) { recall(file, below(path, field.key), value.*field.member); });
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    value = file.text(path);
+  } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
+    value = file.read<Real>(path);
+  } else if constexpr (is_vector<T>) {
+    std::int64_t count = 0;
+    recall(file, below(path, "count"), count);
+    const auto n = static_cast<std::size_t>(count);
+    for (std::size_t i = 0; i < n; ++i) {  // one by one: nothing is allocated on the word of a file
+      if (i == value.size())
+        value.emplace_back();
+      recall(file, below(path, i), value[i]);
+    }
+    value.resize(n);
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+    detail::Stored<T> stored{};
+    file.read_into(path, std::span(&stored, 1));
+    value = static_cast<T>(stored);
+  } else {
+    file.read_into(path, std::span<Real>(value.data(), static_cast<std::size_t>(value.size())));
+  }
+}
+
+/// Every column, in the numbers it is kept in: `rows` tells which of the file are here.  Of arrays without rows there are none in the file
+/// either.
+template <int D>
+void share_columns(const std::string& path, const Particles<D>& particles, const Slice& rows, std::vector<SharedArray>& arrays)
+{
+  particles.for_each_column([&](std::string_view name, std::string_view unit, const auto& column) {
+    using Row = std::decay_t<decltype(column[0])>;
+    using Kept = detail::RowOf<Row>;
+    Slice slice = rows;
+    if (column.empty())
+      slice.of_all = 0;
+    arrays.push_back({below(path, name), number_kind<typename Kept::Number>(), Kept::columns, std::string(unit),
+                      reinterpret_cast<const std::byte*>(column.data()), column.size(), sizeof(Row), slice});
+  });
+}
+/// Back from the rows from `first` on, `n` of them; columns without any in the file have none here.  EnvironmentError.
+template <int D>
+void recall_columns(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, Particles<D>& particles)
+{
+  particles.for_each_column([&](std::string_view name, std::string_view, auto& column) {
+    using Kept = detail::RowOf<std::decay_t<decltype(column[0])>>;
+    const std::string at = below(path, name);
+    column.resize(file.rows(at) > 0 ? n : 0);
+    auto* const numbers = reinterpret_cast<typename Kept::Number*>(column.data());
+    file.read_rows(at, column.empty() ? 0 : first, std::span(numbers, column.size() * Kept::columns), Kept::columns);
+  });
+}
+
+/// The history of a law, one array a variable.  `rows` as above.
+inline void share_history(const std::string& path, const AnyBatch& batch, const Slice& rows, std::vector<SharedArray>& arrays)
+{
+  std::visit(
+      [&](const auto& typed) {
+        for_each_history(typed, [&](std::string_view key, std::string_view unit, std::string_view, const auto& column) {
+          constexpr int columns = std::decay_t<decltype(column)>::components;
+          const std::byte* const first = column.size() > 0 ? reinterpret_cast<const std::byte*>(&column[0]) : nullptr;
+          arrays.push_back({below(path, key), NumberKind::float64, columns, std::string(unit), first,
+                            static_cast<std::size_t>(column.size()), sizeof(typed.history[0]), rows});
+        });
+      },
+      batch);
+}
+/// Back from the rows from `first` on, of a batch whose range is right already, where the file has `n` of all ranks.
+inline void recall_history(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, AnyBatch& batch)
+{
+  std::visit([](auto& typed) { typed.history.resize(static_cast<std::size_t>(typed.size())); }, batch);
+  for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
+    constexpr int columns = std::decay_t<decltype(column)>::components;
+    const std::string at = below(path, key);
+    if (const std::size_t there = file.rows(at); there != n)
+      throw EnvironmentError(fmt::format("{} has {} rows, not {}", at, there, n));
+    std::vector<Real> values(static_cast<std::size_t>(column.size() * columns));
+    file.read_rows<Real>(at, first, values, columns);
+    parallel_for(column.size(), [&](Index i) {
+      for (int c = 0; c < columns; ++c)
+        column.component(i, c) = values[static_cast<std::size_t>(i * columns + c)];
+    });
+  });
+}
+
+}  // namespace talus

@@ -1,0 +1,29 @@
+#pragma once
+// The mesh a scene asks for, wherever it comes from: a .msh file, gmsh, or the built-in box.
+#include <filesystem>
+
+#include "io/scene/scene.hpp"
+#include "mesh/mesh.hpp"
+
+namespace talus {
+
+/// Reads, meshes or generates, then names the groups of the scene and the automatic ones (mesh_groups.hpp).  Relative paths start
+/// in `directory`, the folder of the scene.  Equal specs give equal bits: gmsh runs on one thread with a fixed seed.
+///
+/// `geometry`: the .geo is run, the .step imported in metres.  As in gmsh, physical groups of dimension D choose the cells, if there
+/// are any.  The solids of a .step become cell groups by their names (without one: part_1, part_2, ...) and share faces.  `size`
+/// is an upper bound to the sizes a .geo asks for at its points.  `regions` are meshed with edges of length `size`.
+/// Throws SceneErrors at the place of the spec, with the messages of gmsh where there are any.
+template <int D>
+MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directory);
+
+/// The same, checked and renumbered; what Mesh refuses becomes SceneErrors, too.
+template <int D>
+Mesh<D> load_mesh(const MeshSpec& spec, const std::filesystem::path& directory);
+
+extern template MeshData<2> make_mesh<2>(const MeshSpec&, const std::filesystem::path&);
+extern template MeshData<3> make_mesh<3>(const MeshSpec&, const std::filesystem::path&);
+extern template Mesh<2> load_mesh<2>(const MeshSpec&, const std::filesystem::path&);
+extern template Mesh<3> load_mesh<3>(const MeshSpec&, const std::filesystem::path&);
+
+}  // namespace talus

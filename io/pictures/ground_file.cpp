@@ -1,0 +1,42 @@
+#include "io/pictures/ground_file.hpp"
+
+#include <fstream>
+#include <string>
+
+#include "core/error.hpp"
+#include "io/mesh/gmsh_read.hpp"
+
+namespace talus {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether the names of the groups, which stand at the beginning of the file, have that of the ground.
+bool names_terrain(const fs::path& file)
+{
+  std::ifstream text(file, std::ios::binary);
+  constexpr int most_lines = 10'000;  // more groups has no mesh of terrain; a file of nothing but numbers ends the search, too
+  std::string line;
+  for (int i = 0; i < most_lines && std::getline(text, line) && !line.starts_with("$EndPhysicalNames"); ++i)
+    if (line.ends_with(" \"terrain\""))
+      return true;
+  return false;
+}
+
+}  // namespace
+
+std::optional<RigidGround> read_ground(const fs::path& folder, int dimension)
+{
+  const fs::path file = folder / "mesh.msh";
+  if (!fs::exists(file) || !names_terrain(file))
+    return std::nullopt;
+  try {
+    const Where asked_by{file.string(), 0, 0, ""};
+    return dimension == 2 ? rigid_ground_of(read_msh<2>(file, asked_by)) : rigid_ground_of(read_msh<3>(file, asked_by));
+  } catch (const SceneErrors& e) {
+    throw EnvironmentError(e.what());
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,312 @@
+// Charts by VTK, from the table as it is on the disk.
+#include "io/pictures/render_chart.hpp"
+
+#include <fmt/format.h>
+#include <vtkAxis.h>
+#include <vtkChartLegend.h>
+#include <vtkChartXY.h>
+#include <vtkContextActor.h>
+#include <vtkContextScene.h>
+#include <vtkDelimitedTextReader.h>
+#include <vtkDoubleArray.h>
+#include <vtkNew.h>
+#include <vtkPen.h>
+#include <vtkPlot.h>
+#include <vtkPlotPoints.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+#include <vtkStringArray.h>
+#include <vtkTable.h>
+#include <vtkTextProperty.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/units.hpp"
+#include "core/word_match.hpp"
+#include "io/pictures/render_png.hpp"
+#include "io/pictures/render_sheet.hpp"
+#include "io/pictures/render_words.hpp"
+
+namespace talus::render {
+
+namespace {
+
+constexpr std::array<int, 2> size{960, 600};  // pixels
+constexpr int letter = 15 * oversampling;     // pixels
+constexpr float mark = 9;                     // pixels
+constexpr Real headroom = 0.05;               // of the span of y, above and below
+
+/// Colours of Okabe and Ito (2008), told apart with any kind of colour blindness.
+constexpr std::array<Colour, 7> palette{
+    {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0}, {86, 180, 233}, {90, 90, 90}}};
+
+/// "axial_strain [-]" to its name and unit.
+std::pair<std::string, std::string> split(const std::string& column)
+{
+  const auto bracket = column.find(" [");
+  std::string name = column.substr(0, bracket);
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return {name, bracket == std::string::npos ? "-" : column.substr(bracket + 2, column.size() - bracket - 3)};
+}
+
+vtkDataArray* column_of(vtkTable* table, const std::string& name)
+{
+  if (auto* column = vtkDataArray::SafeDownCast(table->GetColumnByName(name.c_str())))
+    return column;
+  std::vector<std::string> known;
+  for (vtkIdType i = 0; i < table->GetNumberOfColumns(); ++i)
+    known.emplace_back(table->GetColumnName(i));
+  throw Error(fmt::format("no column of numbers \"{}\"{}", name, suggestion(name, known)));
+}
+
+vtkSmartPointer<vtkTable> curve(const std::string& name, const std::vector<Real>& x, const std::vector<Real>& y)
+{
+  auto table = vtkSmartPointer<vtkTable>::New();
+  for (const auto& [title, values] : {std::pair{std::string("x"), &x}, std::pair{name, &y}}) {
+    vtkNew<vtkDoubleArray> column;
+    column->SetName(title.c_str());
+    for (const Real value : *values)
+      column->InsertNextValue(value);
+    table->AddColumn(column);
+  }
+  return table;
+}
+
+vtkPlot* add(vtkChartXY* chart, vtkTable* table, std::size_t number)
+{
+  vtkPlot* plot = chart->AddPlot(vtkChart::LINE);
+  plot->SetInputData(table, 0, 1);
+  const Colour& colour = palette[number % palette.size()];
+  plot->SetColor(colour[0], colour[1], colour[2], 255);
+  plot->SetWidth((number == 0 ? 2.5F : 1.8F) * oversampling);
+  if (number > 0)
+    plot->GetPen()->SetLineType(number % 2 == 1 ? vtkPen::DASH_LINE : vtkPen::DASH_DOT_LINE);
+  return plot;
+}
+
+void letter_axis(vtkAxis* axis, const std::string& title)
+{
+  axis->SetTitle(title);
+  axis->GetTitleProperties()->SetFontSize(letter);
+  axis->GetTitleProperties()->BoldOff();
+  axis->GetLabelProperties()->SetFontSize(letter);
+  axis->GetGridPen()->SetColor(225, 225, 225);
+  axis->GetPen()->SetWidth(oversampling);
+}
+
+/// Fixes an axis from `low` to `high` with a share of it on either side, and marks round numbers.
+void show_span(vtkAxis* axis, Real low, Real high, Real margin)
+{
+  low -= margin * (high - low);
+  high += margin * (high - low);
+  axis->SetBehavior(vtkAxis::FIXED);
+  axis->SetRange(low, high);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> words;
+  for (const auto& [value, text] : ticks(low, high)) {
+    places->InsertNextValue(value);
+    words->InsertNextValue(text);
+  }
+  axis->SetCustomTickPositions(places, words);
+}
+
+/// Marks the powers of ten of an axis that shows logarithms from `low` to `high`, with a share of it on either side.
+void show_decades(vtkAxis* axis, Real low, Real high, Real margin)
+{
+  axis->SetBehavior(vtkAxis::FIXED);
+  axis->SetRange(low - margin * (high - low), high + margin * (high - low));
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> words;
+  for (Real decade = std::ceil(low); decade <= high; ++decade) {
+    places->InsertNextValue(decade);
+    words->InsertNextValue(fmt::format("{:g}", std::pow(10, decade)));
+  }
+  axis->SetCustomTickPositions(places, words);
+}
+
+/// Levels at one height share a line and a name.
+std::vector<Chart::Level> merged(const std::vector<Chart::Level>& levels)
+{
+  std::vector<Chart::Level> lines;
+  for (const Chart::Level& level : levels) {
+    const auto same = [&](const Chart::Level& line) { return std::abs(line.value - level.value) <= 1e-9 * std::abs(level.value); };
+    if (const auto line = std::find_if(lines.begin(), lines.end(), same); line != lines.end())
+      line->name += ", " + level.name;
+    else
+      lines.push_back(level);
+  }
+  return lines;
+}
+
+std::vector<Real> values_of(vtkDataArray* column, Real factor = 1)
+{
+  std::vector<Real> values;
+  for (vtkIdType i = 0; i < column->GetNumberOfTuples(); ++i)
+    values.push_back(factor * column->GetTuple1(i));
+  return values;
+}
+
+/// To the base of ten.  What is not above zero lies a decade below what is.
+std::vector<Real> logarithms(const std::vector<Real>& values)
+{
+  Real least = 1;
+  for (const Real value : values)
+    least = value > 0 ? std::min(least, value) : least;
+  std::vector<Real> logs;
+  for (const Real value : values)
+    logs.push_back(std::log10(value > 0 ? value : 0.1 * least));
+  return logs;
+}
+
+/// From the lowest to the highest x of rows and upright lines.
+std::pair<Real, Real> reach_along(const Chart& chart, const std::vector<Real>& x)
+{
+  if (x.empty())
+    throw Error(fmt::format("{} has no rows to draw", chart.table.string()));
+  auto [low, high] = std::pair{*std::min_element(x.begin(), x.end()), *std::max_element(x.begin(), x.end())};
+  for (const Chart::Level& line : chart.uprights)
+    low = std::min(low, line.value), high = std::max(high, line.value);
+  return {low, low < high ? high : low + 1};
+}
+
+void put_on_paper(vtkChartXY* plot, const std::filesystem::path& out)
+{
+  vtkNew<vtkRenderWindow> window;
+  prepare(window, size);
+  vtkNew<vtkRenderer> paper;
+  paper->SetBackground(1, 1, 1);
+  window->AddRenderer(paper);
+  vtkNew<vtkContextActor> actor;
+  actor->GetScene()->AddItem(plot);
+  actor->GetScene()->SetRenderer(paper);
+  paper->AddActor(actor);
+  save(window, out);
+}
+
+void letter_chart(vtkChartXY* plot, const std::string& title)
+{
+  plot->SetTitle(title);
+  plot->GetTitleProperties()->SetFontSize(letter);
+  plot->SetHiddenAxisBorder(2 * letter);  // on the right half of the last number, above the title: both stand outside the frame
+  plot->SetShowLegend(true);
+  plot->GetLegend()->SetLabelSize(letter);
+  plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
+  plot->GetLegend()->SetVerticalAlignment(vtkChartLegend::BOTTOM);
+}
+
+}  // namespace
+
+void draw(const Chart& chart)
+{
+  if (!std::filesystem::exists(chart.table))
+    throw EnvironmentError(fmt::format("there is no {}", chart.table.string()));
+  vtkNew<vtkDelimitedTextReader> reader;
+  reader->SetFileName(chart.table.c_str());
+  reader->SetHaveHeaders(true);
+  reader->DetectNumericColumnsOn();
+  reader->SetForceDouble(true);
+  reader->Update();
+  vtkTable* table = reader->GetOutput();
+  const auto [x_name, x_unit] = split(chart.x);
+  const auto [y_name, y_unit] = split(chart.y);
+  vtkDataArray* y_column = column_of(table, chart.y);
+  Real low = std::min(0.0, y_column->GetRange()[0]), high = std::max(0.0, y_column->GetRange()[1]);
+  for (const Chart::Level& level : chart.levels) {
+    low = std::min(low, level.value);
+    high = std::max(high, level.value);
+  }
+  const ScaledUnit unit = chart.log ? ScaledUnit{1, y_unit} : scaled_unit(y_unit, std::max(-low, high));
+  const std::vector<Real> x = values_of(column_of(table, chart.x));
+  std::vector<Real> y = values_of(y_column, unit.factor);
+  low *= unit.factor, high *= unit.factor;
+  if (chart.log) {
+    const std::vector<Real> shown = logarithms(y);
+    y = shown;
+    low = std::floor(*std::min_element(y.begin(), y.end())), high = std::ceil(*std::max_element(y.begin(), y.end()));
+    high = std::max(high, low + 1);
+  }
+
+  vtkNew<vtkChartXY> plot;
+  letter_chart(plot, chart.title);
+  letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", x_name, x_unit));
+  letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit.name));
+  const auto [first, last] = reach_along(chart, x);
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), first, last, chart.marks ? headroom : 0);  // marks are wider than the points they stand for
+  if (chart.log)
+    show_decades(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
+  else
+    show_span(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
+  vtkPlot* const drawn = add(plot, curve(chart.curve, x, y), 0);
+  if (auto* marked = vtkPlotPoints::SafeDownCast(drawn); marked != nullptr && chart.marks) {
+    marked->SetMarkerStyle(vtkPlotPoints::CIRCLE);
+    marked->SetMarkerSize(mark * oversampling);
+  }
+  const std::vector<Chart::Level> levels = merged(chart.levels);
+  for (std::size_t i = 0; i < levels.size(); ++i)
+    add(plot,
+        curve(levels[i].name, {x.front(), x.back()},
+              std::vector<Real>(2, chart.log ? std::log10(levels[i].value) : unit.factor * levels[i].value)),
+        i + 1);
+  for (std::size_t i = 0; i < chart.uprights.size(); ++i)
+    add(plot, curve(chart.uprights[i].name, std::vector<Real>(2, chart.uprights[i].value), {low, high}), levels.size() + i + 1);
+
+  put_on_paper(plot, chart.out);
+}
+
+void draw(const Tornado& tornado)
+{
+  const auto [name, unit_name] = split(tornado.x);
+  Real low = tornado.base, high = tornado.base;
+  for (const Tornado::Bar& bar : tornado.bars) {
+    low = std::min({low, bar.low, bar.high});
+    high = std::max({high, bar.low, bar.high});
+  }
+  if (!(low < high))
+    high = low + std::max(std::abs(low), 1.0);
+  const ScaledUnit unit = scaled_unit(unit_name, std::max(std::abs(low), std::abs(high)));
+  vtkNew<vtkChartXY> plot;
+  letter_chart(plot, tornado.title);
+  letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", name, unit.name));
+  letter_axis(plot->GetAxis(vtkAxis::LEFT), "");
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), unit.factor * low, unit.factor * high, headroom);
+  const auto count = static_cast<Real>(tornado.bars.size());
+  vtkAxis* const keys = plot->GetAxis(vtkAxis::LEFT);
+  keys->SetBehavior(vtkAxis::FIXED);
+  keys->SetRange(0, count + 1);
+  vtkNew<vtkDoubleArray> places;
+  vtkNew<vtkStringArray> words;
+  const float thick = static_cast<float>(std::min(40.0, 0.5 * size[1] / (count + 1))) * oversampling;
+  for (std::size_t i = 0; i < tornado.bars.size(); ++i) {
+    const Tornado::Bar& bar = tornado.bars[i];
+    const Real height = count - static_cast<Real>(i);
+    places->InsertNextValue(height);
+    words->InsertNextValue(bar.name);
+    for (const std::size_t end : {0U, 1U}) {
+      vtkPlot* const drawn = add(plot,
+                                 curve(end == 0 ? "at the low value" : "at the high value",
+                                       {unit.factor * tornado.base, unit.factor * (end == 0 ? bar.low : bar.high)}, {height, height}),
+                                 0);
+      const Colour& colour = palette[end];
+      drawn->SetColor(colour[0], colour[1], colour[2], 255);
+      drawn->SetWidth(thick);
+      drawn->SetLegendVisibility(false);
+    }
+  }
+  for (const std::size_t end : {0U, 1U}) {  // for the legend, whose samples are as thick as the lines
+    const Tornado::Bar& first = tornado.bars.front();
+    vtkPlot* const sample = add(plot,
+                                curve(end == 0 ? "at the low value" : "at the high value",
+                                      {unit.factor * tornado.base, unit.factor * (end == 0 ? first.low : first.high)}, {count, count}),
+                                0);
+    sample->SetColor(palette[end][0], palette[end][1], palette[end][2], 255);
+  }
+  keys->SetCustomTickPositions(places, words);
+  vtkPlot* const line = add(plot, curve("all in the middle", std::vector<Real>(2, unit.factor * tornado.base), {0, count + 1}), 0);
+  line->SetColor(0, 0, 0, 255);
+  line->SetWidth(oversampling);
+  put_on_paper(plot, tornado.out);
+}
+
+}  // namespace talus::render

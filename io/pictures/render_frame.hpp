@@ -1,0 +1,26 @@
+#pragma once
+// A frame with round numbers around maps and sections.
+#include <array>
+#include <string>
+
+#include "io/pictures/render_camera.hpp"
+#include "io/pictures/render_sheet.hpp"
+
+namespace talus::render {
+
+/// What a panel shows: coordinates of its low and high corner.
+struct Shown {
+  std::array<Real, 2> low, high;
+};
+
+/// Where the panel stands on the sheet [pixels].
+struct Place {
+  Real left, bottom, right, top;
+  Real width() const noexcept { return right - left; }
+  Real height() const noexcept { return top - bottom; }
+};
+
+/// Lines around a panel, ticks at round values below and on the left with their numbers, and the names of the axes.
+void add_frame(Sheet& sheet, const Place& place, const Shown& shown, const std::array<std::string, 2>& axes);
+
+}  // namespace talus::render

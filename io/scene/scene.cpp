@@ -1,0 +1,157 @@
+// Rules between the keys of one block.
+#include "io/scene/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+namespace talus {
+
+namespace {
+
+/// Complains unless exactly one of the keys is there.
+void exactly_one(std::string_view keys, int found, std::vector<std::string>& problems)
+{
+  if (found == 0)
+    problems.push_back(fmt::format("one of {} is needed", keys));
+  if (found > 1)
+    problems.push_back(fmt::format("only one of {} may be given", keys));
+}
+
+void table_or_record(const Table& table, const std::optional<RecordSpec>& record, std::vector<std::string>& problems)
+{
+  if (!table.points.empty() && record)
+    problems.push_back("only one of table and record may be given");
+}
+
+}  // namespace
+
+void GridSpec::check(std::vector<std::string>& problems) const { check_corners(low, high, problems); }
+
+void GroupSpec::check(std::vector<std::string>& problems) const
+{
+  if (!within && facing.empty())
+    problems.emplace_back("within, facing or both say which facets belong to the group");
+  if (!facing.empty() && std::all_of(facing.begin(), facing.end(), [](Real x) { return x == 0; }))
+    problems.emplace_back("facing is no direction: all of its numbers are 0");
+}
+
+void MeshSpec::check(std::vector<std::string>& problems) const
+{
+  exactly_one("file, geometry, regions, grid or terrain",
+              !file.empty() + !geometry.empty() + !regions.empty() + grid.has_value() + terrain.has_value(), problems);
+  const bool meshed = !geometry.empty() || !regions.empty();
+  if ((meshed || terrain) && !size)
+    problems.push_back(fmt::format("missing key \"size\" [m]: {} meshed", terrain ? "terrain is" : "geometry and regions are"));
+  if (!meshed && !terrain && size)
+    problems.push_back("size is for geometry, regions and terrain only");
+  if (!meshed && !refine.empty())
+    problems.push_back(fmt::format("refine is for geometry and regions only{}", terrain ? "; terrain has a refine of its own" : ""));
+  if (!file.empty() && std::filesystem::path(file).extension() != ".msh")
+    problems.push_back(fmt::format("file \"{}\" does not end in .msh; a .geo or .step file is given as geometry", file));
+  static constexpr std::array<std::string_view, 6> kinds{".geo", ".step", ".stp", ".brep", ".iges", ".igs"};
+  if (!geometry.empty() && std::find(kinds.begin(), kinds.end(), std::filesystem::path(geometry).extension()) == kinds.end())
+    problems.push_back(fmt::format("geometry \"{}\" does not end in .geo, .step, .stp, .brep, .iges or .igs", geometry));
+}
+
+void TimeSpec::check(std::vector<std::string>& problems) const
+{
+  if (max_step && *max_step < min_step)
+    problems.push_back(fmt::format("max_step {} s is smaller than min_step {} s", *max_step, min_step));
+}
+
+void TransferSpec::check(std::vector<std::string>& problems) const
+{
+  const bool increments = scheme == TransferScheme::flip || scheme == TransferScheme::aflip;
+  if ((pic_damping_time || pic_damping_crossings) && !increments)
+    problems.push_back("pic_damping_time and pic_damping_crossings are for schemes flip and aflip only");
+  if (pic_damping_time && pic_damping_crossings)
+    problems.push_back("give pic_damping_time or pic_damping_crossings, not both");
+}
+
+void TractionSpec::check(std::vector<std::string>& problems) const
+{
+  exactly_one("traction or pressure", !traction.empty() + pressure.has_value(), problems);
+}
+
+void VelocitySpec::check(std::vector<std::string>& problems) const { table_or_record(table, record, problems); }
+
+void CompliantBaseSpec::check(std::vector<std::string>& problems) const
+{
+  table_or_record(table, record, problems);
+  if (velocity.empty() && (!table.points.empty() || record))
+    problems.push_back("missing key \"velocity\" [m/s]: which way the wave moves the particles");
+  if (p_wave * p_wave * 3 < s_wave * s_wave * 4)  // the bulk modulus is density (p_wave^2 - 4/3 s_wave^2)
+    problems.push_back(fmt::format("p_wave {} m/s belongs to no elastic ground with s_wave {} m/s: at least {:.4g} m/s", p_wave, s_wave,
+                                   std::sqrt(4.0 / 3) * s_wave));
+}
+
+void GeostaticSpec::check(std::vector<std::string>& problems) const
+{
+  if (ramp > duration)
+    problems.push_back(fmt::format("ramp {} s is longer than the stage, {} s", ramp, duration));
+  if (ramp_shape != RampShape::linear && ramp == 0)
+    problems.emplace_back("ramp_shape is of a ramp, and there is none: give ramp, the time over which the loads grow");
+}
+
+void SectionSpec::check(std::vector<std::string>& problems) const
+{
+  if (name.find('/') != name.npos || name.starts_with('.'))
+    problems.push_back(fmt::format("name \"{}\" cannot be that of a file", name));
+  if (along.size() < 2)
+    problems.push_back("along needs two corners at least");
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    if (along[i].size() != 2)
+      problems.push_back(fmt::format("along[{}] needs two numbers, not {}", i, along[i].size()));
+    else if (i > 0 && along[i] == along[i - 1])
+      problems.push_back(fmt::format("along[{}] is the corner before it", i));
+  }
+}
+
+void K0Rule::check_rule(std::vector<std::string>& problems) const
+{
+  if (ocr != 1 && !from_friction)
+    problems.push_back("ocr is for from_friction: true only");
+  for (std::size_t i = 0; i < k0_table.size(); ++i)
+    if (k0_table[i].size() != 2)
+      problems.push_back(fmt::format("k0_table[{}] needs 2 values, depth and k0, not {}", i, k0_table[i].size()));
+    else if (i > 0 && k0_table[i - 1].size() == 2 && !(k0_table[i][0] > k0_table[i - 1][0]))
+      problems.push_back(fmt::format("k0_table[{}]: the depth {} m does not come below {} m", i, k0_table[i][0], k0_table[i - 1][0]));
+}
+
+void K0OfBody::check(std::vector<std::string>& problems) const
+{
+  exactly_one("k0, k0_table, from_friction or stress", given(), problems);
+  check_rule(problems);
+}
+
+void K0Spec::check(std::vector<std::string>& problems) const
+{
+  if (given() > 1 || bodies.empty())
+    exactly_one("k0, k0_table, from_friction or stress", given(), problems);
+  check_rule(problems);
+}
+
+const K0Rule& K0Spec::of(const std::string& body) const noexcept
+{
+  const auto own = std::find_if(bodies.begin(), bodies.end(), [&](const K0OfBody& b) { return b.body == body; });
+  return own == bodies.end() ? static_cast<const K0Rule&>(*this) : *own;
+}
+
+void PictureSpec::check(std::vector<std::string>& problems) const
+{
+  if (!range.empty() && (range.size() != 2 || !(range[0] < range[1])))
+    problems.push_back("range needs two numbers, the smaller one first");
+  const auto needs_direction = [&](std::string_view key, const std::vector<Real>& v) {
+    if (v.size() != 3 || (v[0] == 0 && v[1] == 0 && v[2] == 0))
+      problems.push_back(fmt::format("{} needs three numbers that are not all zero", key));
+  };
+  needs_direction("view", view);
+  if (!up.empty())
+    needs_direction("up", up);
+}
+
+}  // namespace talus

@@ -1,0 +1,141 @@
+#pragma once
+// The scene: plain typed values, one struct per block of the file.  Their field lists are the user manual.
+//
+// A struct may have `Where where` (set by the reader to the place of its mapping) and `void check(std::vector<std::string>&) const`
+// (rules between its keys, in words).  Rules between blocks stand in scene_rules.hpp; rules that need the mesh are checked when the
+// model is built, with the same error type.
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+#include "core/particle_column.hpp"
+#include "io/scene/scene_bodies.hpp"
+#include "io/scene/scene_initial.hpp"
+#include "io/scene/scene_loads.hpp"
+#include "io/scene/scene_mesh.hpp"
+#include "io/scene/scene_output.hpp"
+#include "io/scene/scene_stages.hpp"
+#include "io/scene/scene_watch.hpp"
+#include "io/scene/scene_water.hpp"
+#include "kernels/projected_options.hpp"
+#include "kernels/umls_options.hpp"
+
+namespace talus {
+
+struct TimeSpec {
+  Real end = 0;
+  std::optional<Real> cfl;  ///< has a value in every scene that was read
+  std::optional<Real> max_step;
+  Real min_step = 1e-12;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional("end", &TimeSpec::end, positive, "s", "end of the run; needed unless there are stages"),
+        optional("cfl", &TimeSpec::cfl, within(1e-4, 2), "-",
+                 "time step as a share of smallest altitude / (wave speed + particle speed); default by accuracy: 0.8, 0.4, 0.4"),
+        optional("max_step", &TimeSpec::max_step, positive, "s", "no step longer than this"),
+        optional("min_step", &TimeSpec::min_step, positive, "s",
+                 "the run stops, naming the particle, when a shorter step would be needed")};
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+enum class TransferScheme : std::uint8_t { flip, apic, tpic, aflip };
+constexpr std::array<std::string_view, 4> words(TransferScheme) { return {"flip", "apic", "tpic", "aflip"}; }
+
+struct TransferSpec {
+  TransferScheme scheme = TransferScheme::aflip;
+  std::optional<bool> musl;
+  std::optional<Real> pic_damping_time, pic_damping_crossings;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional_choice("scheme", &TransferSpec::scheme,
+                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient) or aflip (increments, affine)"),
+        optional("musl", &TransferSpec::musl, any, "-",
+                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip and aflip, false otherwise"),
+        optional("pic_damping_time", &TransferSpec::pic_damping_time, positive, "s",
+                 "flip and aflip: share dt/time of the nodes' velocity in each step; default none"),
+        optional("pic_damping_crossings", &TransferSpec::pic_damping_crossings, positive, "-",
+                 "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip")};
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+enum class OnExit : std::uint8_t { stop, remove };
+constexpr std::array<std::string_view, 2> words(OnExit) { return {"stop", "delete"}; }
+
+enum class Accuracy : std::uint8_t { draft, standard, fine };
+constexpr std::array<std::string_view, 3> words(Accuracy) { return {"draft", "standard", "fine"}; }
+
+struct Scene {
+  std::string file;                    ///< path as given, for messages; directory of relative paths
+  std::string text;                    ///< the file, for the echo in the summary
+  std::vector<std::string> overrides;  ///< of --set
+  std::string title;
+  Index dimension{};
+  Accuracy accuracy = Accuracy::standard;
+  MeshSpec mesh;
+  std::string kernel = "projected";
+  std::optional<UmlsOptions> umls;
+  std::optional<ProjectedOptions> projected;
+  Precision precision = Precision::full;
+  TimeSpec time;
+  TransferSpec transfer;
+  std::vector<MaterialSpec> materials;
+  std::vector<BodySpec> bodies;
+  std::optional<InitialSpec> initial;
+  std::optional<WaterSpec> water;
+  std::vector<LoadSpec> loads;
+  std::vector<BoundarySpec> boundaries;
+  std::vector<StageSpec> stages;
+  OutputSpec outputs;
+  OnExit on_exit = OnExit::stop;
+  WatchSpec watch;
+  Index threads = 0;
+  bool strict = false;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("title", &Scene::title, any, "-", "one line"),
+        required("dimension", &Scene::dimension, within(2, 3), "-", "2 (plane strain, unit thickness) or 3"),
+        optional_choice(
+            "accuracy", &Scene::accuracy,
+            "draft: cells twice as large as the mesh block says, few particles, long steps; fine: half as large, many particles; "
+            "particles_per_cell and cfl are kept where they are given, and so are meshes from files"),
+        group("mesh", &Scene::mesh, "the background mesh"),
+        optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
+        group("umls", &Scene::umls, "choices of the kernel umls"),
+        group("projected", &Scene::projected, "choices of the kernel projected"),
+        optional_choice("precision", &Scene::precision,
+                        "in which numbers particles are kept; single takes little more than half the memory, and some accuracy where "
+                        "strains are small"),
+        optional("time", &Scene::time, any, "-", "end and step"),
+        optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
+        required_list("materials", &Scene::materials, "constitutive laws with their constants"),
+        required_list("bodies", &Scene::bodies, "what is made of particles"),
+        group("initial", &Scene::initial, "bodies that begin as another run left them"),
+        group("water", &Scene::water, "pore pressure below a water table; default none"),
+        optional_list("loads", &Scene::loads, "forces"),
+        optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
+        optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
+        optional("outputs", &Scene::outputs, any, "-", "what is written"),
+        optional_choice("on_exit", &Scene::on_exit,
+                        "what happens to a particle that leaves the mesh: stop the run, or delete it and keep account of its mass"),
+        optional("watch", &Scene::watch, any, "-", "what no sound run does, and what becomes of one that does"),
+        optional("threads", &Scene::threads, non_negative, "-",
+                 "threads to use; 0: as many as pay for the particles, all at most; --threads wins"),
+        optional(
+            "strict", &Scene::strict, any, "-",
+            "a run fails at its end, with its results written and exit code 1, if a balance does not close or transfer_loss is more than "
+            "a tenth of the plastic work; without it these are warnings")};
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,85 @@
+#pragma once
+// The blocks `materials` and `bodies` of a scene.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+#include "core/type_list.hpp"
+#include "io/scene/shape.hpp"
+#include "materials/laws.hpp"
+
+namespace talus {
+
+/// A value of any law: std::variant<LinearElastic, ...>.
+using AnyLaw = variant_of<Laws, std::type_identity_t>;
+
+struct MaterialSpec {
+  std::string name;
+  std::optional<BulkViscosity> bulk_viscosity;
+  AnyLaw law;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
+                      group("bulk_viscosity", &MaterialSpec::bulk_viscosity,
+                            "artificial viscous pressure where the volume shrinks, against ringing behind shocks; default none"),
+                      alternative("law", &MaterialSpec::law, "constitutive law; its parameters are keys of the same mapping")};
+  }
+};
+
+/// A body fills a cell group or a shape, or takes its particles from another run (scene_rules.cpp).
+struct BodySpec {
+  std::string name, material;
+  std::string region;
+  std::optional<Shape> shape;
+  std::optional<Index> particles_per_cell;  ///< has a value in every body of a scene that was read, if it fills anything
+  std::optional<bool> f_bar;
+  std::vector<std::string> velocity;
+  std::optional<Real> saturated_density;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("name", &BodySpec::name, any, "-", "name in messages and output"),
+        required("material", &BodySpec::material, any, "-", "name of a material"),
+        optional("region", &BodySpec::region, any, "-", "the body fills this cell group of the mesh"),
+        optional("shape", &BodySpec::shape, any, "-", "the body fills this shape: particles whose centre lies in it"),
+        optional("particles_per_cell", &BodySpec::particles_per_cell, positive, "-",
+                 "symmetric points of equal weight; 2-D: 1, 3, 4, 6, 12, 16, 25; 3-D: 1, 4, 8, 10, 14, ...; default by accuracy: 3, 4, 12 "
+                 "in 2-D and 4, 4, 14 in 3-D"),
+        optional("f_bar", &BodySpec::f_bar, any, "-",
+                 "against locking: the law sees the volume ratio averaged over the cells around nodes; default true under von_mises and "
+                 "johnson_cook, whose flow keeps the volume, false otherwise"),
+        optional("velocity", &BodySpec::velocity, any, "m/s",
+                 "initial velocity, one number or formula of x, y, z per dimension, such as \"0.1 * sin(pi * x / 50)\": see formulas"),
+        optional("saturated_density", &BodySpec::saturated_density, positive, "kg/m^3",
+                 "mass density, pores full of water, of the particles that lie below the water table at the start; default that of the "
+                 "material")};
+  }
+  bool fills() const noexcept { return !region.empty() || shape.has_value(); }
+
+  /// Keys of a body whose particles come from another run.  All others say how a body is filled, and would not be used there.
+  static constexpr std::array<std::string_view, 3> keys_without_filling{"name", "material", "f_bar"};
+  /// f(key, whether it is given) for every other key.
+  template <class F>
+  void for_each_key_of_filling(F&& f) const
+  {
+    for_each_field<BodySpec>([&](const auto& field) {
+      if (std::find(keys_without_filling.begin(), keys_without_filling.end(), field.key) != keys_without_filling.end())
+        return;
+      const auto& value = this->*field.member;
+      if constexpr (requires { value.has_value(); })
+        f(field.key, value.has_value());
+      else
+        f(field.key, !value.empty());
+    });
+  }
+};
+
+}  // namespace talus

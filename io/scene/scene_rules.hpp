@@ -1,0 +1,29 @@
+#pragma once
+// Rules between the blocks of a scene: names that must exist, vectors that must fit the dimension.
+#include <string>
+#include <vector>
+
+#include "io/scene/scene.hpp"
+
+namespace talus {
+
+/// A broken rule and the path of the key that it is about, such as "bodies[1].material"; the key need not exist.
+struct Finding {
+  std::string path, message;
+};
+
+/// What is wrong with a scene as a whole, apart from its mesh.  The scene may be half read: what is empty is passed over.
+std::vector<Finding> broken_rules(const Scene& scene);
+/// Of them those about what stages change: names, and what is there when.
+std::vector<Finding> broken_stage_rules(const Scene& scene);
+
+/// Names a scene may give as kernel.
+std::vector<std::string> kernel_names();
+
+/// Particle and nodal fields that can be written; laws add their history variables to the former.
+inline constexpr std::array<std::string_view, 13> particle_fields{
+    "velocity", "displacement", "stress", "pressure", "von_mises", "pore_pressure",    "effective_stress",
+    "volume",   "mass",         "cell",   "body",     "F",         "velocity_gradient"};
+inline constexpr std::array<std::string_view, 4> node_fields{"mass", "velocity", "force", "reaction"};
+
+}  // namespace talus

@@ -1,0 +1,180 @@
+// Rules of what stages change: which bodies there are in each, what becomes of them, which walls act.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "core/word_match.hpp"
+#include "io/scene/scene_rules.hpp"
+
+namespace talus {
+
+namespace {
+
+class StageRules {
+ public:
+  explicit StageRules(const Scene& scene) : scene_(scene)
+  {
+    for (const BodySpec& body : scene.bodies)
+      bodies_.push_back(body.name);
+    for (const MaterialSpec& material : scene.materials)
+      materials_.push_back(material.name);
+  }
+
+  std::vector<Finding> broken()
+  {
+    stage_names();
+    for (std::size_t s = 0; s < scene_.stages.size(); ++s)
+      stage(static_cast<Index>(s));
+    boundaries();
+    return std::move(findings_);
+  }
+
+ private:
+  void add(std::string path, std::string message) { findings_.push_back({std::move(path), std::move(message)}); }
+
+  /// Names are half read where something else is wrong: what is empty is passed over.
+  bool is_known(const std::string& path, std::string_view what, const std::string& word, const std::vector<std::string>& known)
+  {
+    if (word.empty())
+      return false;
+    if (std::find(known.begin(), known.end(), word) != known.end())
+      return true;
+    add(path, fmt::format("there is no {} \"{}\"{}", what, word, suggestion(word, known)));
+    return false;
+  }
+
+  /// "stages[1] \"fill\""
+  std::string said(Index s) const
+  {
+    const std::string& label = changes_of(scene_.stages[static_cast<std::size_t>(s)]).label;
+    return fmt::format("stages[{}]{}", s, label.empty() ? "" : fmt::format(" \"{}\"", label));
+  }
+
+  void stage_names()
+  {
+    std::map<std::string, std::size_t> first;
+    for (std::size_t s = 0; s < scene_.stages.size(); ++s)
+      if (const std::string& label = changes_of(scene_.stages[s]).label; !label.empty())
+        if (const auto [known, is_new] = first.try_emplace(label, s); !is_new)
+          add(fmt::format("stages[{}].name", s), fmt::format("\"{}\" is the name of stages[{}] already", label, known->second));
+  }
+
+  void stage(Index s)
+  {
+    const StageChanges& changes = changes_of(scene_.stages[static_cast<std::size_t>(s)]);
+    const std::string at = fmt::format("stages[{}]", s);
+    for (std::size_t i = 0; i < changes.appear.size(); ++i)
+      appears(fmt::format("{}.appear[{}]", at, i), changes.appear[i], s, i);
+    for (std::size_t i = 0; i < changes.vanish.size(); ++i)
+      vanishes(fmt::format("{}.vanish[{}]", at, i), changes.vanish[i], s, i);
+    for (std::size_t i = 0; i < changes.change.size(); ++i) {
+      const auto& [body, material, where] = changes.change[i];
+      const std::string path = fmt::format("{}.change[{}]", at, i);
+      is_known(path + ".material", "material", material, materials_);
+      if (is_known(path + ".body", "body", body, bodies_) && is_there(path + ".body", body, s))
+        begins_elsewhere(path, body, s);
+      for (std::size_t j = 0; j < i; ++j)
+        if (!body.empty() && changes.change[j].body == body)
+          add(path + ".body", fmt::format("\"{}\" changes by change[{}] already", body, j));
+    }
+    for (std::size_t i = 0; i < changes.weaken.size(); ++i) {
+      const std::string path = fmt::format("{}.weaken[{}].body", at, i);
+      if (const std::string& body = changes.weaken[i].body; is_known(path, "body", body, bodies_))
+        is_there(path, body, s);
+    }
+    if (changes.water && s == 0)
+      add(at + ".water", "the first stage has the table of the block water of the scene: give it there");
+    else if (changes.water && !scene_.water)
+      add(at + ".water",
+          "there is no water in this scene: its block water says how heavy it is, which bodies are drained, and where its "
+          "table is at the start");
+    const bool any_left = std::any_of(bodies_.begin(), bodies_.end(), [&](const std::string& body) { return presence(body).in(s); });
+    const bool any_before =
+        s == 0 || std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) { return presence(body).in(s - 1); });
+    if (!bodies_.empty() && !any_left && any_before)
+      add(at, s == 0 ? "there is no body at the start: all of them appear later" : "no body is left in this stage");
+  }
+
+  void appears(const std::string& path, const std::string& body, Index s, std::size_t place)
+  {
+    if (!is_known(path, "body", body, bodies_))
+      return;
+    if (const auto earlier = named_before(&StageChanges::appear, body, s, place))
+      add(path, fmt::format("\"{}\" appears in {} already", body, said(*earlier)));
+    else if (s == 0)
+      add(path, fmt::format("\"{}\" is there from the first stage on without being named here: leave it out", body));
+  }
+
+  void vanishes(const std::string& path, const std::string& body, Index s, std::size_t place)
+  {
+    if (!is_known(path, "body", body, bodies_))
+      return;
+    const Presence there = presence(body);
+    if (const auto earlier = named_before(&StageChanges::vanish, body, s, place))
+      add(path, fmt::format("\"{}\" vanishes in {} already", body, said(*earlier)));
+    else if (s == 0)
+      add(path, fmt::format("\"{}\" would never be there: leave the body out", body));
+    else if (there.from >= s)
+      add(path, fmt::format("\"{}\" vanishes before it is there: it appears in {}", body, said(there.from)));
+  }
+
+  bool is_there(const std::string& path, const std::string& body, Index s)
+  {
+    const Presence there = presence(body);
+    if (s < there.from)
+      add(path, fmt::format("\"{}\" is not there yet: it appears in {}", body, said(there.from)));
+    else if (s >= there.until)
+      add(path, fmt::format("\"{}\" is not there any more: it vanishes in {}", body, said(there.until)));
+    return there.in(s);
+  }
+
+  /// A body that has just come can be given the material at once.
+  void begins_elsewhere(const std::string& path, const std::string& body, Index s)
+  {
+    if (presence(body).from == s)
+      add(path, fmt::format("\"{}\" begins in this stage: give it the material in bodies", body));
+  }
+
+  void boundaries()
+  {
+    std::vector<std::string> names;
+    for (const StageSpec& stage : scene_.stages)
+      if (const std::string& label = changes_of(stage).label; !label.empty())
+        names.push_back(label);
+    for (std::size_t b = 0; b < scene_.boundaries.size(); ++b) {
+      const auto& during = during_of(scene_.boundaries[b]);
+      for (std::size_t i = 0; i < during.size(); ++i) {
+        const std::string path = fmt::format("boundaries[{}].during[{}]", b, i);
+        if (names.empty())
+          add(path, fmt::format("there is no stage \"{}\": no stage has a name", during[i]));
+        else
+          is_known(path, "stage", during[i], names);
+      }
+    }
+  }
+
+  Presence presence(const std::string& body) const { return presence_of(body, scene_.stages); }
+
+  /// The stage that names the body before that place in the list of stage `s`.
+  std::optional<Index> named_before(std::vector<std::string> StageChanges::*list, const std::string& body, Index s, std::size_t place) const
+  {
+    for (Index t = 0; t <= s; ++t) {
+      const auto& names = changes_of(scene_.stages[static_cast<std::size_t>(t)]).*list;
+      const auto found = std::find(names.begin(), names.end(), body);
+      if (found != names.end() && (t < s || static_cast<std::size_t>(found - names.begin()) < place))
+        return t;
+    }
+    return std::nullopt;
+  }
+
+  const Scene& scene_;
+  std::vector<std::string> bodies_, materials_;
+  std::vector<Finding> findings_;
+};
+
+}  // namespace
+
+std::vector<Finding> broken_stage_rules(const Scene& scene) { return StageRules(scene).broken(); }
+
+}  // namespace talus

@@ -1,0 +1,230 @@
+#pragma once
+// The block `stages` of a scene.
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+#include "core/ramp.hpp"
+#include "io/scene/scene_surface.hpp"
+
+namespace talus {
+
+/// A stress that is the same everywhere in a body [Pa].
+struct UniformStressSpec {
+  Real xx{}, yy{}, zz{}, xy = 0, yz = 0, xz = 0;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("xx", &UniformStressSpec::xx, any, "Pa", "normal stress along x; tension is positive, so ground has a negative one"),
+        required("yy", &UniformStressSpec::yy, any, "Pa", "normal stress along y"),
+        required("zz", &UniformStressSpec::zz, any, "Pa", "normal stress along z; in 2 dimensions that out of the plane"),
+        optional("xy", &UniformStressSpec::xy, any, "Pa", "shear stress"),
+        optional("yz", &UniformStressSpec::yz, any, "Pa", "shear stress, in 3 dimensions"),
+        optional("xz", &UniformStressSpec::xz, any, "Pa", "shear stress, in 3 dimensions")};
+  }
+};
+
+/// Horizontal over vertical stress, effective stresses where the law sees these: one number, by depth, or by the friction of the law.  Or the
+/// stress itself.
+struct K0Rule {
+  std::optional<Real> k0;
+  std::vector<std::vector<Real>> k0_table;
+  bool from_friction = false;
+  Real ocr = 1;
+  std::optional<UniformStressSpec> stress;
+  int given() const noexcept { return (k0 ? 1 : 0) + (k0_table.empty() ? 0 : 1) + (from_friction ? 1 : 0) + (stress ? 1 : 0); }
+  void check_rule(std::vector<std::string>& problems) const;
+};
+
+/// The fields of a struct that inherits K0Rule, to be joined with its own by std::tuple_cat.
+template <class Spec>
+constexpr auto k0_fields()
+{
+  std::optional<Real> Spec::*const k0 = &Spec::k0;
+  std::vector<std::vector<Real>> Spec::*const table = &Spec::k0_table;
+  bool Spec::*const from_friction = &Spec::from_friction;
+  Real Spec::*const ocr = &Spec::ocr;
+  std::optional<UniformStressSpec> Spec::*const stress = &Spec::stress;
+  return std::tuple{
+      optional("k0", k0, non_negative, "-", "horizontal over vertical stress, of effective stresses where there is water"),
+      optional("k0_table", table, non_negative, "m, -",
+               "the same by depth below the ground, [[depth, k0], ...]: linear in between, constant outside"),
+      optional("from_friction", from_friction, any, "-",
+               "the same from the angle of friction phi of the law, (1 - sin phi) ocr^(sin phi) (Jaky; Mayne & Kulhawy), at most passive"),
+      optional("ocr", ocr, at_least(1), "-", "overconsolidation ratio, for from_friction"),
+      group(
+          "stress", stress,
+          "instead of a ratio the stress itself, the same everywhere, as deep in the ground or in a test without gravity; effective stress "
+          "in drained bodies, to which the pore pressure comes")};
+}
+
+/// One body whose ratio differs from that of the others.
+struct K0OfBody : K0Rule {
+  std::string body;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(std::tuple{required("body", &K0OfBody::body, any, "-", "name of a body")}, k0_fields<K0OfBody>());
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+/// Stress at the start: vertical stress from the weight above, horizontal stress in a given ratio to it; or as it is given.
+struct K0Spec : K0Rule {
+  std::vector<K0OfBody> bodies;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(k0_fields<K0Spec>(), std::tuple{optional_list("bodies", &K0Spec::bodies, "bodies with a ratio of their own")});
+  }
+  void check(std::vector<std::string>& problems) const;
+  /// That of a body: its own, or that of all.
+  const K0Rule& of(const std::string& body) const noexcept;
+};
+
+/// A body that goes on as another material.
+struct NewMaterialSpec {
+  std::string body, material;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("body", &NewMaterialSpec::body, any, "-", "name of a body that is there in this stage"),
+                      required("material", &NewMaterialSpec::material, any, "-", "name of the material that it has from this stage on")};
+  }
+};
+
+/// Shear strength that drops: a trigger.
+struct WeakenSpec {
+  std::string body;
+  Real factor{};
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional("body", &WeakenSpec::body, any, "-", "name of a body that is there in this stage; default all whose law has strength"),
+        required("factor", &WeakenSpec::factor, positive, "-",
+                 "cohesion and tangent of the friction angle are divided by it, from this stage on")};
+  }
+};
+
+/// Another water table.
+struct StageWaterSpec {
+  SurfaceSpec table;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{group("table", &StageWaterSpec::table,
+                            "the water table from this stage on; cut at the ground, which is that of the bodies of this stage as the scene "
+                            "places them")};
+  }
+};
+
+/// What a stage of any type may say of itself, and what it changes before its first step.
+struct StageChanges {
+  std::string label;  ///< its name; empty: that of its type
+  std::vector<std::string> appear, vanish;
+  std::vector<NewMaterialSpec> change;
+  std::vector<WeakenSpec> weaken;
+  std::optional<StageWaterSpec> water;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional("name", &StageChanges::label, any, "-", "in messages and results, and for during of boundaries; default its type"),
+        optional("appear", &StageChanges::appear, any, "-", "bodies that are placed before its first step, and are not there before it"),
+        optional("vanish", &StageChanges::vanish, any, "-", "bodies that are taken away before its first step"),
+        optional_list("change", &StageChanges::change, "bodies that go on as another material"),
+        optional_list("weaken", &StageChanges::weaken, "shear strength that drops"),
+        group("water", &StageChanges::water, "another water table, from this stage on; default that of the stage before")};
+  }
+};
+
+/// Finds the state at rest under the loads: gravity ramp and local damping until the unbalanced force is small.
+struct GeostaticSpec : StageChanges {
+  static constexpr std::string_view name = "geostatic";
+  Real duration{}, ramp = 0, damping = 0.7, residual = 1e-3;
+  RampShape ramp_shape = RampShape::linear;
+  bool elastic = true, reset_displacement = true;
+  std::optional<K0Spec> initial_stress;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(
+        std::tuple{
+            required("duration", &GeostaticSpec::duration, positive, "s", "the stage fails if the residual is not reached by then"),
+            optional("ramp", &GeostaticSpec::ramp, non_negative, "s", "gravity and loads grow over this time"),
+            optional_choice("ramp_shape", &GeostaticSpec::ramp_shape,
+                            "how they grow: linear, or smooth, beginning and ending with the rate zero, which leaves less swing where the "
+                            "ramp takes one and a half periods or more"),
+            optional("damping", &GeostaticSpec::damping, from_to_below(0, 1), "-",
+                     "local damping: share of the nodal force that opposes the motion"),
+            optional("residual", &GeostaticSpec::residual, positive, "-",
+                     "done when the unbalanced nodal force is below this share of the total load and the kinetic energy at most this "
+                     "share of the work done, 20 steps in a row"),
+            optional("elastic", &GeostaticSpec::elastic, any, "-", "suspend yielding during the stage"),
+            optional("reset_displacement", &GeostaticSpec::reset_displacement, any, "-",
+                     "displacement of later stages counts from the end of this one"),
+            group("initial_stress", &GeostaticSpec::initial_stress,
+                  "stress to start from, by K0 or as given, for laws that can carry a prestress; in a later stage of the bodies that "
+                  "appear")},
+        StageChanges::fields());
+  }
+  void check(std::vector<std::string>& problems) const;
+};
+
+struct RunSpec : StageChanges {
+  static constexpr std::string_view name = "run";
+  Real duration{}, damping = 0;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple_cat(
+        std::tuple{required("duration", &RunSpec::duration, positive, "s", "length of the stage"),
+                   optional("damping", &RunSpec::damping, from_to_below(0, 1), "-", "local damping; 0 for anything that flows")},
+        StageChanges::fields());
+  }
+};
+
+using StageSpec = std::variant<GeostaticSpec, RunSpec>;
+
+inline const StageChanges& changes_of(const StageSpec& stage)
+{
+  return std::visit([](const auto& spec) -> const StageChanges& { return spec; }, stage);
+}
+inline const Where& where_of(const StageSpec& stage)
+{
+  return std::visit([](const auto& spec) -> const Where& { return spec.where; }, stage);
+}
+/// As messages and results call it.
+inline std::string name_of(const StageSpec& stage)
+{
+  const std::string& label = changes_of(stage).label;
+  return label.empty() ? std::visit([]<class Spec>(const Spec&) { return std::string(Spec::name); }, stage) : label;
+}
+
+/// The stages in which a body is there: [from, until).
+struct Presence {
+  Index from = 0, until = std::numeric_limits<Index>::max();
+  bool in(Index stage) const noexcept { return from <= stage && stage < until; }
+};
+inline Presence presence_of(const std::string& body, std::span<const StageSpec> stages)
+{
+  Presence presence;
+  const auto names = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), body) != list.end(); };
+  for (std::size_t s = stages.size(); s-- > 0;) {
+    if (names(changes_of(stages[s]).appear))
+      presence.from = static_cast<Index>(s);
+    if (names(changes_of(stages[s]).vanish))
+      presence.until = static_cast<Index>(s);
+  }
+  return presence;
+}
+
+}  // namespace talus

@@ -1,0 +1,92 @@
+#pragma once
+// The file of `talus sweep`: a scene, what is varied of it, and which numbers are told of each case.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/fields.hpp"
+#include "io/document/document.hpp"
+
+namespace talus {
+
+/// Which values of several keys meet: each with each of the others; the first with the first, the second with the second; samples of what they
+/// may be; or, one key at a time, its low and its high value with the middle ones of the others.
+enum class Combine : std::uint8_t { grid, rows, latin, tornado };
+constexpr std::array<std::string_view, 4> words(Combine) { return {"grid", "rows", "latin", "tornado"}; }
+
+/// A text of the file, and where it stands.
+struct Written {
+  std::string text;
+  Problem at;  ///< without a message
+  Problem problem(std::string message) const { return {at.where, std::move(message), at.source_line}; }
+};
+
+/// A key of the scene as --set takes it, and its values.
+struct Varied {
+  std::string key;
+  std::vector<Written> values;  ///< latin: the samples; tornado: middle, low, high
+};
+
+/// Maps of the cases, of which is told where a value is how often exceeded.
+struct ExceedSpec {
+  std::string map;
+  Real above = 0;
+  Where where;
+  static constexpr auto fields()
+  {
+    return std::tuple{required("map", &ExceedSpec::map, any, "-", "name of a map of outputs.runout, such as thickness_max"),
+                      required("above", &ExceedSpec::above, any, "-", "in the unit of the map")};
+  }
+};
+
+struct Study {
+  std::string file;  ///< path as given
+  Written scene;     ///< path of its file, relative to the study
+  std::vector<Varied> vary;
+  Combine combine = Combine::grid;
+  std::vector<Written> collect;  ///< names of numbers; empty: the usual ones
+  std::vector<ExceedSpec> exceed;
+};
+
+/// A value of each key, in the order of Study::vary.
+using StudyCase = std::vector<Written>;
+
+/// Grid: the last key varies fastest.  Tornado: all in the middle, then the low and the high case of each key.
+std::vector<StudyCase> cases_of(const Study& study);
+
+/// "key=value" for each key, as --set takes it.
+std::vector<std::string> changes_of(const Study& study, const StudyCase& values);
+
+/// Path of the scene as seen from here.
+std::filesystem::path scene_of(const Study& study);
+
+/// What the file holds before it is looked at as a whole.
+struct StudySpec {
+  std::string scene;
+  Node vary;
+  Combine combine = Combine::grid;
+  std::optional<Index> samples, seed;
+  std::vector<std::string> collect;
+  std::vector<ExceedSpec> exceed;
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        required("scene", &StudySpec::scene, any, "-", "file of the scene, relative to this file"),
+        required("vary", &StudySpec::vary, any, "-",
+                 "keys of the scene, each with a list of values; for latin and tornado with a distribution"),
+        optional_choice(
+            "combine", &StudySpec::combine,
+            "grid: each value with each; rows: the first with the first, and so on; latin: samples of distributions; tornado: low "
+            "and high of one key at a time"),
+        optional("samples", &StudySpec::samples, at_least(2), "-", "latin: so many cases"),
+        optional("seed", &StudySpec::seed, non_negative, "-", "latin: another one gives other samples; default 1"),
+        optional("collect", &StudySpec::collect, any, "-", "numbers of summary.json and history.csv for the table"),
+        optional_list("exceed", &StudySpec::exceed, "maps of the cases: which share of them exceeds a value, place by place")};
+  }
+};
+
+/// The study in `file`, whose tree is `root`; what is wrong goes to `problems`.
+Study study_of(const std::filesystem::path& file, const Node& root, const StudySpec& spec, Problems& problems);
+
+}  // namespace talus

@@ -1,0 +1,13 @@
+#include "io/terrain/gdal_plugin.hpp"
+
+#include "io/system/plugin.hpp"
+
+namespace talus {
+
+const GdalPart& gdal()
+{
+  static const auto& part = *static_cast<const GdalPart*>(open_module("gdal", "talus_gdal_part", "reads and writes maps with GDAL"));
+  return part;
+}
+
+}  // namespace talus

@@ -1,0 +1,163 @@
+#pragma once
+// Nodes that blocks of several ranks share: rows go to the rank that owns the node, which adds them up in the order of blocks as it would
+// alone, and what comes of it goes back to all that read it.
+#include <numeric>
+#include <stdexcept>
+
+#include "solver/halo/block_rows.hpp"
+#include "solver/halo/halo_exchange.hpp"
+#include "solver/state/owned_nodes.hpp"
+
+namespace talus {
+
+/// From blocks to the owners of nodes: rows of own blocks on nodes of others, by block and node.  Every rank has to ask.
+template <int D, class Sum>
+std::vector<Border> find_row_borders(Exchange& ranks, const Mesh<D>& mesh, const Share& share, const BlockRows<D, Sum>& blocks)
+{
+  const auto z = [](Index i) { return static_cast<std::size_t>(i); };
+  std::vector<Index> node_of_row(blocks.row.size());
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    for (const Index r : blocks.rows_of_node[n])
+      node_of_row[z(r)] = n;
+  std::vector<Border> all(static_cast<std::size_t>(ranks.size()));
+  for (Index b = 0; b < blocks.size(); ++b) {
+    std::vector<std::pair<Index, Index>> rows;  // node, row
+    for (Index r = blocks.begin[z(b)]; r < blocks.begin[z(b) + 1]; ++r)
+      rows.emplace_back(node_of_row[z(r)], r);
+    std::sort(rows.begin(), rows.end());
+    for (const auto& [node, row] : rows) {
+      const int of_block = share.rank_of_block[z(b)], of_node = share.rank_of_node[z(node)];
+      if (of_block == share.rank && of_node != share.rank)
+        all[static_cast<std::size_t>(of_node)].out.push_back(row);
+      if (of_block != share.rank && of_node == share.rank)
+        all[static_cast<std::size_t>(of_block)].in.push_back(row);
+    }
+  }
+  // Each rank says what rows it sends: others must expect the same.
+  const auto names = [&](const std::vector<Index>& rows) {
+    std::vector<Index> named;
+    for (const Index r : rows)
+      named.insert(named.end(), {share.block[z(blocks.block_of_row[z(r)])], share.node[z(node_of_row[z(r)])]});
+    return named;
+  };
+  std::vector<std::vector<Index>> sent;
+  for (const Border& border : all)
+    sent.push_back(names(border.out));
+  sent = exchange_rows(ranks, sent);
+  std::vector<Border> borders;
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    all[q].rank = static_cast<int>(q);
+    if (names(all[q].in) != sent[q])
+      throw std::logic_error("ranks do not agree on the rows that they share");
+    if (!all[q].out.empty() || !all[q].in.empty())
+      borders.push_back(std::move(all[q]));
+  }
+  return borders;
+}
+
+/// `Sum` is what blocks keep rows of: NodeSum, HatSum or the rows of StarSums.  Rows that no particle has touched are not sent.
+template <class Sum>
+class Halo {
+ public:
+  Halo() = default;
+  /// A rank that is alone: all blocks are inner ones.
+  explicit Halo(Index blocks) : inner_(static_cast<std::size_t>(blocks)) { std::iota(inner_.begin(), inner_.end(), 0); }
+  template <int D>
+  Halo(Exchange& ranks, const Mesh<D>& mesh, const Share& share, const BlockRows<D, Sum>& blocks)
+      : letters_(ranks, Topic::rows, find_row_borders(ranks, mesh, share, blocks))
+  {
+    std::vector<std::uint8_t> outer(static_cast<std::size_t>(blocks.size()), 0);
+    for (const Border& border : letters_.borders())
+      for (const Index r : border.out)
+        outer[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])] = 1;
+    for (Index b = 0; b < blocks.size(); ++b)
+      if (share.owns_block(b))
+        (outer[static_cast<std::size_t>(b)] != 0 ? outer_ : inner_).push_back(b);
+      else
+        foreign_.push_back(b);
+  }
+
+  /// Own blocks with rows on nodes of others, which is to say: whose particles read such nodes; and those without.
+  std::span<const Index> outer_blocks() const noexcept { return outer_; }
+  std::span<const Index> inner_blocks() const noexcept { return inner_; }
+
+  /// Sends rows of outer blocks to the owners of their nodes.
+  template <class What, int D>
+  void send_rows(const BlockRows<D, Sum>& blocks)
+  {
+    letters_.send(blocks.row, What{});
+  }
+  /// Rows of others on own nodes, into their places here.
+  template <class What, int D>
+  void take_rows(BlockRows<D, Sum>& blocks)
+  {
+    letters_.take(blocks.row, What{});
+    for (const Index b : foreign_)
+      blocks.occupied[static_cast<std::size_t>(b)] = 1;
+  }
+
+ private:
+  Letters letters_;
+  std::vector<Index> outer_, inner_, foreign_;
+};
+
+/// Marks the nodes that particles in own blocks read.
+template <int D, class Sum>
+std::vector<std::uint8_t> nodes_read(const Share& share, const BlockRows<D, Sum>& blocks)
+{
+  std::vector<std::uint8_t> read(static_cast<std::size_t>(blocks.rows_of_node.size()), 0);
+  for (Index n = 0; n < blocks.rows_of_node.size(); ++n)
+    for (const Index r : blocks.rows_of_node[n])
+      if (share.owns_block(blocks.block_of_row[static_cast<std::size_t>(r)]))
+        read[static_cast<std::size_t>(n)] = 1;
+  return read;
+}
+
+/// Rows of blocks -> sums of the nodes that this rank owns, and those of others that it has `copies` of; the rest stay empty.
+template <class What, int D, class Sum>
+void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, Letters& copies, std::vector<Sum>& sum)
+{
+  halo.template take_rows<What>(blocks);
+  const auto add_up = [&](Index n) {
+    Sum total = sum[static_cast<std::size_t>(n)];
+    What::clear(total);
+    if (own.has(n))
+      for (const Index r : blocks.rows_of_node[n])
+        if (blocks.occupied[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])])
+          What::add(blocks.row[static_cast<std::size_t>(r)], total);
+    sum[static_cast<std::size_t>(n)] = total;
+  };
+  for (const Border& border : copies.borders())
+    parallel_for(static_cast<Index>(border.out.size()), [&](Index i) { add_up(border.out[static_cast<std::size_t>(i)]); });
+  copies.send(sum, What{});
+  parallel_for(static_cast<Index>(sum.size()), add_up);  // the few once more: cheaper than to ask which
+  copies.take(sum, What{});
+}
+
+/// f(block) for the own blocks, and their rows sent on their way.
+template <class What, int D, class Sum, class F>
+void for_each_own_block(BlockRows<D, Sum>& blocks, Halo<Sum>& halo, F&& f)
+{
+  for (const bool outer : {true, false}) {  // one loop, compiled once
+    const std::span<const Index> list = outer ? halo.outer_blocks() : halo.inner_blocks();
+    if (!list.empty())
+      parallel_for_uneven(static_cast<Index>(list.size()), [&](Index i) { f(list[static_cast<std::size_t>(i)]); });
+    if (outer)
+      halo.template send_rows<What>(blocks);
+  }
+}
+
+/// f(block) for the own blocks; for those that read nodes of others after arrive().
+template <class Sum, class Arrive, class F>
+void for_each_reading_block(const Halo<Sum>& halo, Arrive&& arrive, F&& f)
+{
+  for (const bool outer : {false, true}) {
+    const std::span<const Index> list = outer ? halo.outer_blocks() : halo.inner_blocks();
+    if (outer)
+      arrive();
+    if (!list.empty())
+      parallel_for_uneven(static_cast<Index>(list.size()), [&](Index i) { f(list[static_cast<std::size_t>(i)]); });
+  }
+}
+
+}  // namespace talus

@@ -1,0 +1,247 @@
+#pragma once
+// Rows that neighbouring ranks exchange, one message each.
+#include <algorithm>
+#include <cstring>
+#include <tuple>
+#include <utility>
+
+#include "core/parallel/communicator.hpp"
+#include "core/parallel/threads.hpp"
+#include "mesh/part.hpp"
+
+namespace talus {
+
+/// What a message is about: messages of different kinds do not mix.
+enum class Topic : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, slaves = 6, masters = 7 };
+
+/// What of a row goes into a message: all of it,
+struct Whole {
+  template <class Row>
+  static auto parts(Row& row) noexcept
+  {
+    return std::decay_t<Row>::parts(row);
+  }
+  template <class Row>
+  static bool is_there(const Row& row, Index) noexcept
+  {
+    return row.is_seen();
+  }
+  template <class Row>
+  static void clear(Row& row) noexcept
+  {
+    row = Row{};
+  }
+  template <class Row>
+  static void add(const Row& row, Row& sum) noexcept
+  {
+    sum += row;
+  }
+};
+/// or momentum alone.
+struct MomentumAlone {
+  template <class Sum>
+  static auto parts(Sum& sum) noexcept
+  {
+    return std::decay_t<Sum>::momentum_parts(sum);
+  }
+  template <class Sum>
+  static bool is_there(const Sum& sum, Index) noexcept
+  {
+    return sum.has_momentum();
+  }
+  template <class Sum>
+  static void clear(Sum& sum) noexcept
+  {
+    sum.clear_momentum();
+  }
+  template <class Sum>
+  static void add(const Sum& row, Sum& sum) noexcept
+  {
+    sum.add_momentum(row);
+  }
+};
+
+/// Numbers or vectors, all of them.
+struct Numbers {
+  template <class Row>
+  static auto parts(Row& row) noexcept
+  {
+    return std::tie(row);
+  }
+  template <class Row>
+  static bool is_there(const Row&, Index) noexcept
+  {
+    return true;
+  }
+  template <class Row>
+  static void clear(const Row&) noexcept
+  {}
+};
+
+/// Rows in a message: first which of them are there, a bit each, then the parts of those that are.  `Rows` are found by number.
+class Sheet {
+ public:
+  /// Of rows[which[k]].
+  template <class What, class Rows>
+  std::span<std::byte> fill(const std::vector<Index>& which, Rows& rows, const What& what)
+  {
+    std::byte* to = make_room(which.size(), rows, what);
+    std::fill(bytes_.data(), to, std::byte{0});
+    for (std::size_t k = 0; k < which.size(); ++k)
+      if (const auto& row = rows[static_cast<std::size_t>(which[k])]; what.is_there(row, which[k])) {
+        bytes_[k / 8] |= std::byte{1} << (k % 8);
+        std::apply([&](const auto&... part) { (write(part, to), ...); }, what.parts(row));
+      }
+    return {bytes_.data(), to};
+  }
+  template <class What, class Rows>
+  std::span<std::byte> room(std::size_t n_rows, Rows& rows, const What& what)
+  {
+    make_room(n_rows, rows, what);
+    return bytes_;
+  }
+  template <class What, class Rows>
+  void take(const std::vector<Index>& which, Rows& rows, const What& what) const
+  {
+    const std::byte* from = bytes_.data() + head(which.size());
+    for (std::size_t k = 0; k < which.size(); ++k)
+      if (auto&& row = rows[static_cast<std::size_t>(which[k])]; (bytes_[k / 8] >> (k % 8) & std::byte{1}) != std::byte{0})
+        std::apply([&](auto&... part) { (read(from, part), ...); }, what.parts(row));
+      else
+        what.clear(row);
+  }
+
+ private:
+  static std::size_t head(std::size_t n_rows) noexcept { return (n_rows + 63) / 64 * 8; }
+  template <class What, class Rows>
+  std::byte* make_room(std::size_t n_rows, Rows& rows, const What& what)
+  {
+    using Parts = decltype(what.parts(rows[0]));
+    constexpr std::size_t each = [&]<class... Part>(std::type_identity<std::tuple<Part...>>) {
+      return (std::size_t{0} + ... + sizeof(std::remove_reference_t<Part>));
+    }(std::type_identity<Parts>{});
+    bytes_.resize(head(n_rows) + n_rows * each);
+    return bytes_.data() + head(n_rows);
+  }
+  template <class Part>
+  static void write(const Part& part, std::byte*& to) noexcept
+  {
+    std::memcpy(std::exchange(to, to + sizeof(Part)), static_cast<const void*>(&part), sizeof(Part));
+  }
+  template <class Part>
+  static void read(const std::byte*& from, Part& part) noexcept
+  {
+    std::memcpy(static_cast<void*>(&part), std::exchange(from, from + sizeof(Part)), sizeof(Part));
+  }
+  std::vector<std::byte> bytes_;
+};
+
+/// What goes between this rank and another: out here is in there.
+struct Border {
+  int rank = 0;
+  std::vector<Index> out, in;
+};
+
+/// All borders of a rank, for messages of one topic.  A rank alone has none.
+class Letters {
+ public:
+  Letters() = default;
+  Letters(Exchange& ranks, Topic topic, std::vector<Border> borders)
+      : ranks_(&ranks), topic_(topic), borders_(std::move(borders)), sheets_out_(borders_.size()), sheets_in_(borders_.size())
+  {}
+  const std::vector<Border>& borders() const noexcept { return borders_; }
+
+  /// Sends rows `out` across the borders whose numbers to(border) has, and expects some across those of from(border); both sides must agree.
+  template <class What, class Rows, class To, class From>
+  void send(Rows& rows, const What& what, To&& to, From&& from)
+  {
+    if (borders_.empty())
+      return;
+    parcels_out_.clear(), parcels_in_.clear(), expected_.clear();
+    for (std::size_t q = 0; q < borders_.size(); ++q) {
+      const Border& border = borders_[q];
+      if (!border.in.empty() && from(q)) {
+        parcels_in_.push_back({border.rank, sheets_in_[q].room(border.in.size(), rows, what), true});
+        expected_.push_back(q);
+      }
+      if (!border.out.empty() && to(q))
+        parcels_out_.push_back({border.rank, sheets_out_[q].fill(border.out, rows, what)});
+    }
+    ranks_->start(parcels_out_, parcels_in_, static_cast<int>(topic_), talk_);
+  }
+  template <class What, class Rows>
+  void send(Rows& rows, const What& what)
+  {
+    const auto all = [](std::size_t) { return true; };
+    send(rows, what, all, all);
+  }
+  /// What was expected, into its rows; those that are not there are cleared.
+  template <class What, class Rows>
+  void take(Rows& rows, const What& what)
+  {
+    if (borders_.empty())
+      return;
+    talk_.wait();
+    for (const std::size_t q : expected_)
+      sheets_in_[q].take(borders_[q].in, rows, what);
+    expected_.clear();
+  }
+
+ private:
+  Exchange* ranks_ = nullptr;
+  Topic topic_{};
+  std::vector<Border> borders_;
+  std::vector<Sheet> sheets_out_, sheets_in_;  // by border
+  std::vector<Parcel> parcels_out_, parcels_in_;
+  std::vector<std::size_t> expected_;  // borders
+  Talk talk_;
+};
+
+/// Nodes within `rings` rings of those that `marked` holds.
+template <int D>
+std::vector<std::uint8_t> spread_by_rings(const Mesh<D>& mesh, std::vector<std::uint8_t> marked, int rings)
+{
+  for (; rings > 0; --rings) {
+    const std::vector<std::uint8_t> before = marked;
+    parallel_for(mesh.n_nodes(), [&](Index n) {
+      for (const Index m : mesh.ring_of_node()[n])
+        marked[static_cast<std::size_t>(n)] |= before[static_cast<std::size_t>(m)];
+    });
+  }
+  return marked;
+}
+
+/// From owners of nodes to the ranks that want to know of them: `wanted` marks nodes, own ones too.  Every rank has to ask.
+inline Letters copies_of_nodes(Exchange& ranks, const Share& share, Topic topic, std::span<const std::uint8_t> wanted)
+{
+  std::vector<Border> all(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Index>> asked(all.size());  // whole numbers
+  for (std::size_t n = 0; n < wanted.size(); ++n)
+    if (wanted[n] != 0 && !share.owns_node(static_cast<Index>(n))) {
+      const auto owner = static_cast<std::size_t>(share.rank_of_node[n]);
+      all[owner].in.push_back(static_cast<Index>(n));
+      asked[owner].push_back(share.node[n]);
+    }
+  asked = exchange_rows(ranks, asked);
+  std::vector<Border> borders;
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    all[q].rank = static_cast<int>(q);
+    for (const Index whole : asked[q])
+      all[q].out.push_back(share.local_node(whole));
+    if (!all[q].out.empty() || !all[q].in.empty())
+      borders.push_back(std::move(all[q]));
+  }
+  return Letters(ranks, topic, std::move(borders));
+}
+
+/// All nodes that are sent anywhere.
+inline std::vector<std::uint8_t> nodes_out(const Letters& letters, std::size_t n_nodes)
+{
+  std::vector<std::uint8_t> out(letters.borders().empty() ? 0 : n_nodes, 0);
+  for (const Border& border : letters.borders())
+    for (const Index n : border.out)
+      out[static_cast<std::size_t>(n)] = 1;
+  return out;
+}
+
+}  // namespace talus

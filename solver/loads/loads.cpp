@@ -1,0 +1,161 @@
+#include "solver/loads/loads.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace talus {
+
+template <int D>
+ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Facet> facets, const Particles<D>& particles)
+{
+  std::map<Index, std::vector<Index>> in_cell;  // only cells behind the facets
+  for (const Facet facet : facets)
+    in_cell[facet.cell];
+  for (Index p = 0; p < particles.size(); ++p)
+    if (const auto found = in_cell.find(particles.cell[static_cast<std::size_t>(p)]); found != in_cell.end())
+      found->second.push_back(p);
+
+  std::map<std::int64_t, Vec<D>> share;  // by id: one entry for a particle behind several facets
+  for (const Facet facet : facets) {
+    const auto& behind = in_cell[facet.cell];
+    for (const Index p : behind) {
+      auto& area = share.try_emplace(particles.id[static_cast<std::size_t>(p)], Vec<D>::Zero()).first->second;
+      area += mesh.area_vector(facet) / static_cast<Real>(behind.size());
+    }
+  }
+  ParticleTraction<D> load;
+  for (const auto& [id, area] : share) {
+    load.id.push_back(id);
+    load.area.push_back(area);
+  }
+  return load;
+}
+
+template <int D>
+MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets)
+{
+  std::map<Index, std::pair<Vec<D>, Real>> share;
+  for (const Facet facet : facets) {
+    const Vec<D> area = mesh.area_vector(facet);
+    for (const Index n : mesh.nodes_of(facet)) {
+      auto& [sum, measure] = share.try_emplace(n, Vec<D>::Zero(), 0.0).first->second;
+      sum += area / D;
+      measure += area.norm() / D;
+    }
+  }
+  MeshTraction<D> load;
+  for (const auto& [node, both] : share) {
+    load.node.push_back(node);
+    load.area.push_back(both.first);
+    load.measure.push_back(both.second);
+  }
+  return load;
+}
+
+template <int D>
+void restrict_to(const Share& share, MeshTraction<D>& load)
+{
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < load.node.size(); ++k)
+    if (const Index node = share.local_node(load.node[k]); node != none) {
+      load.node[kept] = node;
+      load.area[kept] = load.area[k];
+      load.measure[kept++] = load.measure[k];
+    }
+  load.node.resize(kept), load.area.resize(kept), load.measure.resize(kept);
+}
+
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
+           ExactSums<Push<D>>& total)
+{
+  if (particles.applied.empty())
+    return;
+  particles.applied.assign(particles.applied.size(), Vec<D>::Zero());
+  const auto add = [&](std::size_t p, const Vec<D>& force) { particles.applied.set(p, particles.applied[p] + force); };
+  for (const auto& load : loads.on_particles) {
+    const Real factor = ramp * load.table(time);
+    for (std::size_t k = 0; k < load.id.size(); ++k) {
+      const Index row = followed.row(load.id[k]);
+      if (row == none)
+        continue;
+      const auto p = static_cast<std::size_t>(row);
+      const Mat<D> F = particles.F[p].template topLeftCorner<D, D>();
+      const Vec<D> area = particles.F[p].determinant() * F.inverse().transpose() * load.area[k];
+      add(p, factor * (load.area[k].norm() * load.traction - load.pressure * area));
+    }
+  }
+  for (const auto& load : loads.of_place) {
+    const Rows<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
+    constexpr std::size_t at_once = 256;
+    const std::size_t n = particles.applied.size();
+    parallel_for(static_cast<Index>((n + at_once - 1) / at_once), [&](Index chunk) {
+      const std::size_t begin = static_cast<std::size_t>(chunk) * at_once, count = std::min(at_once, n - begin);
+      std::array<Vec<D>, at_once> places, accelerations;
+      for (std::size_t i = 0; i < count; ++i)
+        places[i] = place[begin + i];
+      load.acceleration(std::span(places).first(count), time, std::span(accelerations).first(count));
+      for (std::size_t i = 0; i < count; ++i)
+        add(begin + i, ramp * particles.mass[begin + i] * accelerations[i]);
+    });
+  }
+  add_particles(order, total, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
+    const Vec<D> x = particles.x[p], force = particles.applied[p];
+    particles.applied_at[p] = force.dot(x);
+    return Push<D>::at(x, force);
+  });
+}
+
+namespace {
+
+/// f(node, force) for every node of every mesh traction.
+template <int D, class F>
+void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
+{
+  for (const auto& load : loads.on_mesh) {
+    const Real factor = ramp * load.table(time);
+    for (std::size_t k = 0; k < load.node.size(); ++k)
+      f(static_cast<std::size_t>(load.node[k]), Vec<D>(factor * (load.measure[k] * load.traction - load.pressure * load.area[k])));
+  }
+}
+
+}  // namespace
+
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
+           ExactSums<Push<D>>& total)
+{
+  for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
+    if (sum[node].mass <= 0)
+      return;
+    sum[node].force += force;
+    if (own.has(static_cast<Index>(node)))
+      total.add(Push<D>::at(mesh.node(static_cast<Index>(node)), force));
+  });
+}
+
+template <int D>
+void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total)
+{
+  for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
+    if (nodes.sum[node].mass > 0 && own.has(static_cast<Index>(node)))
+      total.add(nodes.kick * force.dot(nodes.motion[node].v - 0.5 * nodes.motion[node].change));
+  });
+}
+
+template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<const Facet>, const Particles<2>&);
+template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
+template void restrict_to<2>(const Share&, MeshTraction<2>&);
+template void restrict_to<3>(const Share&, MeshTraction<3>&);
+template void apply<2>(const Loads<2>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<2>&, ExactSums<Push<2>>&);
+template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<Push<2>>&);
+template void add_work<2>(const Loads<2>&, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
+template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
+template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
+template void apply<3>(const Loads<3>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<3>&, ExactSums<Push<3>>&);
+template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<Push<3>>&);
+template void add_work<3>(const Loads<3>&, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
+
+}  // namespace talus

@@ -1,0 +1,117 @@
+#pragma once
+// Loads: gravity at the nodes, forces of place and time, tractions carried by particles or by facets of the mesh.
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/error.hpp"
+#include "core/particles.hpp"
+#include "core/time_table.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/state/ledger.hpp"
+#include "solver/state/nodes.hpp"
+#include "solver/state/owned_nodes.hpp"
+#include "solver/state/sums.hpp"
+#include "solver/state/tracked_particles.hpp"
+
+namespace talus {
+
+/// Gravity is added at the nodes, exactly and for free; `ramp` is the factor of the stage, the same for every load.
+template <int D>
+struct Gravity {
+  Vec<D> acceleration = Vec<D>::Zero();  ///< [m/s^2]
+  Table table;
+  Vec<D> operator()(Real time, Real ramp) const noexcept { return ramp * table(time) * acceleration; }
+};
+
+/// Force per mass [m/s^2] as a function of place and time, such as that of a manufactured solution.
+template <int D>
+struct BodyForce {
+  /// Writes the acceleration at each place.  Called by several threads at once; must not throw.
+  std::function<void(std::span<const Vec<D>> places, Real time, std::span<Vec<D>> accelerations)> acceleration;
+  bool at_start = false;  ///< the place is that at the start (particles.x0, which must be kept), not that of now
+};
+
+/// Force per area that the first layer of particles behind a facet group takes along.  Each facet's area is shared among the
+/// particles of the cell behind it; a pressure turns and stretches with the surface, n da = J F^-T N dA (Nanson).
+template <int D>
+struct ParticleTraction {
+  Vec<D> traction = Vec<D>::Zero();  ///< [Pa], per initial area
+  Real pressure{};                   ///< [Pa], positive pushes
+  Table table;
+  Where where;
+  std::vector<std::int64_t> id;  ///< particles that carry it
+  std::vector<Vec<D>> area;      ///< share of the outward area vector at the start [m^(D-1)]
+};
+
+/// Force per area on facets of the mesh, for as long as there is mass at their nodes.
+template <int D>
+struct MeshTraction {
+  Vec<D> traction = Vec<D>::Zero();
+  Real pressure{};
+  Table table;
+  Where where;
+  std::vector<Index> node;    ///< ascending
+  std::vector<Vec<D>> area;   ///< share of the outward area vector [m^(D-1)]
+  std::vector<Real> measure;  ///< share of the area [m^(D-1)]
+};
+
+template <int D>
+struct Loads {
+  Gravity<D> gravity;
+  std::vector<BodyForce<D>> of_place;
+  std::vector<ParticleTraction<D>> on_particles;
+  std::vector<MeshTraction<D>> on_mesh;
+  bool any_on_particles() const noexcept { return !of_place.empty() || !on_particles.empty(); }
+};
+
+/// Of one of several ranks: nodes that are held, in their numbers here.
+template <int D>
+void restrict_to(const Share& share, MeshTraction<D>& load);
+
+/// Shares the facets' area among the particles of the cells behind them.
+/// Facets without a particle behind them are left out; the caller may compare the areas.
+template <int D>
+ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Facet> facets, const Particles<D>& particles);
+/// Shares the facets' area among their nodes.
+template <int D>
+MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
+
+/// Particles that carry a traction, each once for every load that it carries.
+template <int D>
+std::vector<std::int64_t> ids_of(const std::vector<ParticleTraction<D>>& loads)
+{
+  std::vector<std::int64_t> ids;
+  for (const ParticleTraction<D>& load : loads)
+    ids.insert(ids.end(), load.id.begin(), load.id.end());
+  return ids;
+}
+
+/// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `followed` finds those that carry tractions.
+/// The forces are added to `total`.
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
+           ExactSums<Push<D>>& total);
+
+/// Adds the work [J] of mesh tractions over a step: impulse times the mean of old and new velocity of the nodes that are `own`.
+template <int D>
+void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total);
+
+/// Adds mesh tractions to the force of nodes that have mass, and those of `own` nodes to `total`.
+template <int D>
+void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
+           ExactSums<Push<D>>& total);
+
+/// Adds the work [J] of the forces on particles since apply(): force times displacement.
+template <int D>
+void add_work(const CellOrder& order, const Particles<D>& particles, ExactSums<Real>& total)
+{
+  if (particles.applied.empty())
+    return;
+  add_particles(order, total, [&](Index row) {
+    const auto p = static_cast<std::size_t>(row);
+    return particles.applied[p].dot(particles.x[p]) - particles.applied_at[p];
+  });
+}
+
+}  // namespace talus

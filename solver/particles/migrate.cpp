@@ -1,0 +1,198 @@
+#include "solver/particles/migrate.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "solver/halo/halo_exchange.hpp"
+#include "solver/state/saved_columns.hpp"
+
+namespace talus {
+
+namespace {
+
+template <class T>
+void append_bytes(const T& value, std::vector<std::byte>& to)
+{
+  const auto* const from = reinterpret_cast<const std::byte*>(&value);
+  to.insert(to.end(), from, from + sizeof(T));
+}
+template <class T>
+void take_bytes(std::span<const std::byte>& from, T& value)
+{
+  std::memcpy(static_cast<void*>(&value), from.data(), sizeof(T));
+  from = from.subspan(sizeof(T));
+}
+
+/// How many of a body go and come.
+struct Turnover {
+  std::vector<Index> leaving;  ///< rows, ascending
+  Index arriving = 0;
+};
+
+/// Rows [begin, end) of each body so that the leaving ones are gone and there is room at the end for those who arrive: others take their
+/// places, as few as possible, whatever the order.
+template <int D>
+void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+               std::span<const std::int64_t> keepers, std::vector<std::pair<Index, Index>>& moves)
+{
+  moves.clear();
+  // Holes are filled from the end of the body.
+  std::vector<Index> stay(bodies.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const std::vector<Index>& leaving = turnovers[b].leaving;
+    Index last = bodies[b].end;  // rows from here on are settled
+    std::size_t behind = leaving.size();
+    for (const Index hole : leaving) {
+      while (behind > 0 && leaving[behind - 1] == last - 1)
+        --last, --behind;
+      if (hole >= last)
+        break;
+      moves.emplace_back(--last, hole);
+      std::visit(
+          [&](auto& batch) {
+            batch.history[static_cast<std::size_t>(hole - batch.begin)] = batch.history[static_cast<std::size_t>(last - batch.begin)];
+          },
+          materials[b]);
+    }
+    stay[b] = bodies[b].size() - static_cast<Index>(leaving.size());
+  }
+  // Bodies move up or down by moving rows from one of their ends to the other.
+  std::vector<Index> begin(bodies.size());
+  Index total = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    begin[b] = std::exchange(total, total + stay[b] + turnovers[b].arriving);
+  const auto rotate = [&](std::size_t b, Index by) {  // to the left; of a history, whose rows count from the body's first
+    std::visit(
+        [&](auto& batch) {
+          batch.history.resize(static_cast<std::size_t>(stay[b]));
+          std::rotate(batch.history.begin(), batch.history.begin() + by, batch.history.end());
+        },
+        materials[b]);
+  };
+  for (std::size_t b = 0; b < bodies.size(); ++b)  // down: the last rows become the first
+    if (const Index by = std::min(bodies[b].begin - begin[b], stay[b]); begin[b] < bodies[b].begin) {
+      for (Index i = 0; i < by; ++i)
+        moves.emplace_back(bodies[b].begin + stay[b] - by + i, begin[b] + i);
+      rotate(b, stay[b] - by);
+    }
+  for (std::size_t b = bodies.size(); b-- > 0;)  // up: the first rows become the last
+    if (const Index by = std::min(begin[b] - bodies[b].begin, stay[b]); begin[b] > bodies[b].begin) {
+      for (Index i = 0; i < by; ++i)
+        moves.emplace_back(bodies[b].begin + i, begin[b] + stay[b] - by + i);
+      rotate(b, by);
+    }
+  const auto n = static_cast<std::size_t>(total);
+  for_each_kept_column(particles, keepers, [&](auto& column) {
+    column.resize(std::max(column.size(), n));
+    for (const auto& [from, to] : moves)
+      column[static_cast<std::size_t>(to)] = column[static_cast<std::size_t>(from)];
+    column.resize(n);
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    bodies[b].begin = begin[b];
+    bodies[b].end = begin[b] + stay[b] + turnovers[b].arriving;
+    std::visit(
+        [&](auto& batch) {
+          batch.begin = bodies[b].begin, batch.end = bodies[b].end;
+          batch.history.resize(static_cast<std::size_t>(batch.size()));
+        },
+        materials[b]);
+  }
+}
+
+}  // namespace
+
+template <int D>
+Migration<D>::Migration(Exchange& ranks, const Share& share) : ranks_(&ranks), border_of_block_(share.block.size(), none)
+{
+  for (const int rank : share.rank_of_block)
+    if (rank != share.rank)
+      neighbours_.push_back(rank);
+  std::sort(neighbours_.begin(), neighbours_.end());
+  neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
+  for (std::size_t b = 0; b < share.block.size(); ++b)
+    if (const int rank = share.rank_of_block[b]; rank != share.rank) {
+      foreign_.push_back(static_cast<Index>(b));
+      border_of_block_[b] = static_cast<Index>(std::lower_bound(neighbours_.begin(), neighbours_.end(), rank) - neighbours_.begin());
+    }
+  out_.resize(neighbours_.size());
+}
+
+template <int D>
+void Migration<D>::agree_on_columns(const Particles<D>& particles)
+{
+  keepers_ = count_keepers(*ranks_, particles);
+}
+
+template <int D>
+bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+                              CellOrder& order)
+{
+  if (neighbours_.empty())
+    return false;
+  std::vector<Turnover> turnovers(bodies.size());
+  for (auto& letters : out_)
+    letters.clear();
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (const Index block : foreign_)
+      for (const Index row : order.rows(static_cast<Index>(b), block)) {
+        const auto p = static_cast<std::size_t>(row);
+        auto& letter = out_[static_cast<std::size_t>(border_of_block_[static_cast<std::size_t>(block)])];
+        append_bytes(static_cast<Index>(b), letter);
+        append_bytes(share.whole_cell(particles.cell[p]), letter);
+        for_each_kept_column(particles, keepers_, [&](auto& column) { append_bytes(column[p], letter); });
+        std::visit([&](const auto& batch) { append_bytes(batch.history[static_cast<std::size_t>(row - batch.begin)], letter); },
+                   materials[b]);
+        turnovers[b].leaving.push_back(row);
+      }
+    std::sort(turnovers[b].leaving.begin(), turnovers[b].leaving.end());
+  }
+  const auto in = ranks_->neighbours(neighbours_, out_, static_cast<int>(Topic::particles));
+
+  // How long a record is depends on its body alone.
+  std::size_t columns = 2 * sizeof(Index);
+  for_each_kept_column(particles, keepers_, [&](auto& column) { columns += sizeof(column[0]); });
+  const auto history_bytes = [&](std::size_t b) {
+    return std::visit([](const auto& batch) { return sizeof(batch.history[0]); }, materials[b]);
+  };
+  std::vector<std::vector<std::span<const std::byte>>> records(bodies.size());
+  bool busy = false;
+  for (std::span<const std::byte> letter : in)
+    while (!letter.empty()) {
+      Index body{};
+      std::memcpy(&body, letter.data(), sizeof(Index));
+      const std::size_t bytes = columns + history_bytes(static_cast<std::size_t>(body));
+      records[static_cast<std::size_t>(body)].push_back(letter.first(bytes));
+      letter = letter.subspan(bytes);
+    }
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    turnovers[b].arriving = static_cast<Index>(records[b].size());
+    moved_ += turnovers[b].arriving + static_cast<Index>(turnovers[b].leaving.size());
+    busy = busy || turnovers[b].arriving > 0 || !turnovers[b].leaving.empty();
+  }
+  if (!busy)
+    return false;
+
+  std::vector<std::pair<Index, Index>> moves;
+  make_room(turnovers, bodies, materials, particles, keepers_, moves);
+  std::vector<Index> arrived;  // rows, body by body
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Index row = bodies[b].end - turnovers[b].arriving;
+    for (std::span<const std::byte> record : records[b]) {
+      const auto p = static_cast<std::size_t>(row);
+      Index body{}, cell{};
+      take_bytes(record, body), take_bytes(record, cell);
+      for_each_kept_column(particles, keepers_, [&](auto& column) { take_bytes(record, column[p]); });
+      std::visit([&](auto& batch) { take_bytes(record, batch.history[static_cast<std::size_t>(row - batch.begin)]); }, materials[b]);
+      particles.cell[p] = share.local_cell(cell);
+      arrived.push_back(row++);
+    }
+  }
+  follow_moves(particles.cell, particles.id, bodies, foreign_, moves, arrived, order);
+  return true;
+}
+
+template class Migration<2>;
+template class Migration<3>;
+
+}  // namespace talus

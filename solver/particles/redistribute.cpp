@@ -1,0 +1,135 @@
+#include "solver/particles/redistribute.hpp"
+
+#include <algorithm>
+#include <cassert>
+#include <tuple>
+
+#include "solver/state/saved_columns.hpp"
+
+namespace talus {
+
+namespace {
+
+using RowsOfRanks = std::vector<std::vector<Index>>;
+
+/// Sends out[r] of `rows` to rank r; what comes from rank r stands in the rows in[r] of `n` then.
+template <class Column>
+void send_rows(Exchange& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t n, Column& rows)
+{
+  using Row = typename Column::value_type;
+  std::vector<std::vector<std::byte>> letters(out.size());
+  for (std::size_t r = 0; r < out.size(); ++r) {
+    letters[r].resize(out[r].size() * sizeof(Row));
+    for (std::size_t i = 0; i < out[r].size(); ++i)
+      std::memcpy(letters[r].data() + i * sizeof(Row), static_cast<const void*>(&rows[static_cast<std::size_t>(out[r][i])]), sizeof(Row));
+  }
+  letters = ranks.all_to_all(letters);
+  rows = Column(n);
+  for (std::size_t r = 0; r < in.size(); ++r)
+    for (std::size_t i = 0; i < in[r].size(); ++i)
+      std::memcpy(static_cast<void*>(&rows[static_cast<std::size_t>(in[r][i])]), letters[r].data() + i * sizeof(Row), sizeof(Row));
+}
+
+/// What says where a row comes to stand.
+struct Name {
+  std::int64_t body, id;
+};
+
+/// Of the rows that those in `all` name the places in the order of bodies and ids.  Rows come body by body.
+RowsOfRanks places_of(const std::vector<std::vector<Name>>& all)
+{
+  struct One {
+    Name name;
+    std::size_t rank, row;
+  };
+  std::vector<One> order;
+  RowsOfRanks places;
+  for (std::size_t r = 0; r < all.size(); ++r) {
+    places.emplace_back(all[r].size());
+    for (std::size_t i = 0; i < all[r].size(); ++i)
+      order.push_back({all[r][i], r, i});
+  }
+  std::sort(order.begin(), order.end(), [](const One& a, const One& b) {
+    return std::tie(a.name.body, a.name.id, a.rank, a.row) < std::tie(b.name.body, b.name.id, b.rank, b.row);
+  });
+  for (std::size_t i = 0; i < order.size(); ++i)
+    places[order[i].rank][order[i].row] = static_cast<Index>(i);
+  return places;
+}
+
+/// Of ascending rows, less `begin`, those in [begin, end); of a sender's places those of a body, which ascend as well.
+RowsOfRanks within(const RowsOfRanks& rows, Index begin, Index end)
+{
+  RowsOfRanks some;
+  for (const std::vector<Index>& of_rank : rows) {
+    some.emplace_back();
+    for (const Index row : of_rank)
+      if (begin <= row && row < end)
+        some.back().push_back(row - begin);
+  }
+  return some;
+}
+
+}  // namespace
+
+template <int D>
+void deal_out(Exchange& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+              Particles<D>& particles)
+{
+  assert(rank_of_row.size() == particles.id.size());
+  const std::vector<std::int64_t> keepers = count_keepers(ranks, particles);
+  RowsOfRanks out(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Name>> names(out.size());
+  for (std::size_t b = 0; b < bodies.size(); ++b)
+    for (Index row = bodies[b].begin; row < bodies[b].end; ++row) {
+      const auto p = static_cast<std::size_t>(row);
+      const auto to = static_cast<std::size_t>(rank_of_row[p]);
+      out[to].push_back(row);
+      names[to].push_back({static_cast<std::int64_t>(b), particles.id[p]});
+    }
+  names = exchange_rows(ranks, names);
+  const RowsOfRanks in = places_of(names);
+
+  std::vector<Index> size_of_body(bodies.size(), 0);
+  std::size_t n = 0;
+  for (const std::vector<Name>& of_rank : names) {
+    n += of_rank.size();
+    for (const Name& name : of_rank)
+      size_of_body[static_cast<std::size_t>(name.body)] += 1;
+  }
+  names = {};
+  for_each_kept_column(particles, keepers, [&](auto& column) { send_rows(ranks, out, in, n, column); });
+  Index begin = 0;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    Body& body = bodies[b];
+    const RowsOfRanks leaving = within(out, body.begin, body.end);
+    body.begin = begin, body.end = begin += size_of_body[b];
+    const RowsOfRanks arriving = within(in, body.begin, body.end);
+    std::visit(
+        [&](auto& batch) {
+          send_rows(ranks, leaving, arriving, static_cast<std::size_t>(body.size()), batch.history);
+          batch.begin = body.begin, batch.end = body.end;
+        },
+        materials[b]);
+  }
+}
+
+template <int D>
+void take_own_particles(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                        Particles<D>& particles)
+{
+  std::vector<int> rank_of_row;
+  rank_of_row.reserve(particles.cell.size());
+  for (const Index cell : particles.cell)
+    rank_of_row.push_back(share.rank_of_whole_block[static_cast<std::size_t>(cell / block_cells)]);
+  deal_out(ranks, rank_of_row, bodies, materials, particles);
+  for (Index& cell : particles.cell)
+    cell = share.local_cell(cell);
+}
+
+template void deal_out<2>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void deal_out<3>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void take_own_particles<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void take_own_particles<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+
+}  // namespace talus

@@ -1,0 +1,51 @@
+#pragma once
+// The nodes that a rank counts: each node of the whole mesh is some rank's own.
+#include <utility>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
+#include "solver/state/cell_order.hpp"
+
+namespace talus {
+
+/// Numbers [begin, end).
+struct IndexRange {
+  Index begin, end;
+};
+
+/// Nodes are numbered by the first cell that uses them, so those that a block is the first to use stand in a row.
+struct OwnNodes {
+  std::vector<IndexRange> of_block;  ///< of own blocks, ascending
+  std::vector<std::uint8_t> owned;   ///< by node
+
+  bool has(Index node) const noexcept { return owned[static_cast<std::size_t>(node)] != 0; }
+};
+
+/// Those of a rank that is alone.
+template <int D>
+OwnNodes all_nodes(const Mesh<D>& mesh)
+{
+  OwnNodes own{{}, std::vector<std::uint8_t>(static_cast<std::size_t>(mesh.n_nodes()), 1)};
+  for (Index n = 0, block = none; n < mesh.n_nodes(); ++n) {
+    if (const Index first = mesh.cells_of_node()[n].front() / block_cells; std::exchange(block, first) != first)
+      own.of_block.push_back({n, n});
+    ++own.of_block.back().end;
+  }
+  return own;
+}
+
+/// Those of one of several ranks.
+template <int D>
+OwnNodes own_nodes(const Mesh<D>& mesh, const Share& share)
+{
+  OwnNodes all = all_nodes(mesh), own{{}, std::move(all.owned)};
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    own.owned[static_cast<std::size_t>(n)] = share.owns_node(n) ? 1 : 0;
+  for (const IndexRange& range : all.of_block)
+    if (own.has(range.begin))
+      own.of_block.push_back(range);
+  return own;
+}
+
+}  // namespace talus

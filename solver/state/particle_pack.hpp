@@ -1,0 +1,199 @@
+#pragma once
+// Particles of a cell, four at a time, and what they see of the nodes.
+#include <span>
+
+#include "core/particles.hpp"
+#include "kernels/pack.hpp"
+#include "solver/state/cell_order.hpp"
+
+namespace talus {
+
+/// Up to four particles, side by side in the lanes of packs; their columns are kept in numbers S.
+template <class S>
+struct BunchOf {
+  std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
+  int count;
+
+  /// Those of `rows` from `begin` on.
+  BunchOf(std::span<const Index> rows, std::size_t begin) noexcept
+      : count(static_cast<int>(std::min<std::size_t>(pack_size, rows.size() - begin)))
+  {
+    for (std::size_t lane = 0; lane < pack_size; ++lane)
+      p[lane] = static_cast<std::size_t>(rows[std::min(begin + lane, rows.size() - 1)]);
+  }
+  /// f(p) of every lane.
+  template <class F>
+  Pack lanes(F&& f) const noexcept
+  {
+    return Pack{f(p[0]), f(p[1]), f(p[2]), f(p[3])};
+  }
+
+  /// The particles' entries of a column: numbers, vectors or tensors.
+  template <class Value, Rest rest>
+  [[gnu::always_inline]] auto load(const ParticleColumn<Value, rest>& column) const noexcept
+  {
+    auto all = load(column.template rows<S>());
+    if constexpr (rest == Rest::identity && std::is_same_v<S, float>)
+      for (int i = 0; i < all.rows(); ++i)
+        all(i, i) += 1;
+    return all;
+  }
+  template <class Value, Rest rest>
+  [[gnu::always_inline]] void store(const In<Lanes, Value>& value, ParticleColumn<Value, rest>& column) const noexcept
+  {
+    if constexpr (rest == Rest::identity && std::is_same_v<S, float>)
+      store(In<Lanes, Value>(value - In<Lanes, Value>::Identity()), column.template rows<S>());
+    else
+      store(value, column.template rows<S>());
+  }
+  template <class Row, class Allocator>
+  [[gnu::always_inline]] auto load(const std::vector<Row, Allocator>& column) const noexcept
+  {
+    return load(column.data());
+  }
+  template <class Row, class Allocator>
+  [[gnu::always_inline]] void store(const In<Lanes, Row>& value, std::vector<Row, Allocator>& column) const noexcept
+  {
+    store(value, column.data());
+  }
+  /// The entry of one lane.
+  template <class Value>
+  [[gnu::always_inline]] Value of(int lane, const ParticleColumn<Value>& column) const noexcept
+  {
+    const auto& row = column.template rows<S>()[p[lane]];
+    if constexpr (std::is_same_v<S, Real>)
+      return row;
+    else
+      return ParticleColumn<Value>::widened(row);
+  }
+
+ private:
+  template <class N>
+  requires std::is_arithmetic_v<N>
+  [[gnu::always_inline]] Lanes load(const N* rows) const noexcept
+  {
+    return lanes([&](std::size_t row) { return static_cast<Real>(rows[row]); });
+  }
+  template <class N, int R, int C>
+  [[gnu::always_inline]] Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> load(
+      const Eigen::Matrix<N, R, C, Eigen::DontAlign>* rows) const noexcept
+  {
+    Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> all;
+    Pack of[R * C];
+    load_rows<R * C>({rows[p[0]].data(), rows[p[1]].data(), rows[p[2]].data(), rows[p[3]].data()}, of);
+    for (int k = 0; k < R * C; ++k)
+      all(k) = of[k];
+    return all;
+  }
+  template <class N>
+  requires std::is_arithmetic_v<N>
+  [[gnu::always_inline]] void store(const Lanes& value, N* rows) const noexcept
+  {
+    for (int lane = 0; lane < count; ++lane)
+      rows[p[lane]] = static_cast<N>(value[lane]);
+  }
+  template <class N, int R, int C>
+  [[gnu::always_inline]] void store(const Eigen::Matrix<Lanes, R, C, Eigen::DontAlign>& value,
+                                    Eigen::Matrix<N, R, C, Eigen::DontAlign>* rows) const noexcept
+  {
+    Pack of[R * C];
+    for (int k = 0; k < R * C; ++k)
+      of[k] = value(k).of;
+    store_rows<R * C>(of, {rows[p[0]].data(), rows[p[1]].data(), rows[p[2]].data(), rows[p[3]].data()}, count);
+  }
+};
+using Bunch = BunchOf<Real>;
+
+/// f(S()) with the numbers the particles are kept in.
+template <int D, class F>
+decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
+{
+  if (particles.precision() == Precision::single)
+    return f(float());
+  return f(Real());
+}
+
+/// Asks memory for the rows of a particle in some columns.
+template <class S>
+struct AskFor {
+  template <class... Columns>
+  [[gnu::always_inline]] static void row(std::size_t p, const Columns&... columns) noexcept
+  {
+    (lines(first(columns) + p), ...);
+  }
+
+ private:
+  template <class Value, Rest rest>
+  static const auto* first(const ParticleColumn<Value, rest>& column) noexcept
+  {
+    return column.template rows<S>();
+  }
+  template <class Row, class Allocator>
+  static const Row* first(const std::vector<Row, Allocator>& column) noexcept
+  {
+    return column.data();
+  }
+  /// The end of a row that fills no whole line is asked for with the row after it.
+  template <class Row>
+  static void lines(const Row* row) noexcept
+  {
+    constexpr std::size_t line = 64;
+    for (std::size_t at = 0; at < sizeof(Row); at += line)
+      __builtin_prefetch(reinterpret_cast<const char*>(row) + at);
+  }
+};
+
+/// f(bunch) for all rows, four at a time; ask(p) for each row before its turn.
+template <class S = Real, class F, class Ask = AskForNothing>
+void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
+{
+  RowsAhead ahead(rows, ask);
+  for (std::size_t begin = 0; begin < rows.size(); begin += pack_size) {
+    ahead.until(begin + pack_size);
+    f(BunchOf<S>(rows, begin));
+  }
+}
+/// f(bunch, x) for the particles of a run, four at a time.
+template <class S, int D, class F>
+void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
+{
+  for_each_bunch<S>(run, [&](const BunchOf<S>& bunch) {
+    Pack x[D];
+    const auto place = bunch.load(places);
+    for (int d = 0; d < D; ++d)
+      x[d] = place[d].of;
+    f(bunch, std::as_const(x));
+  });
+}
+
+/// What four particles see of the nodes.
+template <int D>
+struct Seen {
+  Pack v[D], change[D];  ///< sum w v,  sum w change  [m/s]
+  Pack L[D][D];          ///< sum v (x) G  [1/s]
+};
+
+/// Vectors and tensors of four particles.
+template <int D>
+using VecOf = Eigen::Matrix<Lanes, D, 1, Eigen::DontAlign>;
+template <int D>
+using MatOf = Eigen::Matrix<Lanes, D, D, Eigen::DontAlign>;
+template <int D>
+VecOf<D> vector_of(const Pack (&v)[D]) noexcept
+{
+  VecOf<D> all;
+  for (int i = 0; i < D; ++i)
+    all[i] = v[i];
+  return all;
+}
+template <int D>
+MatOf<D> matrix_of(const Pack (&L)[D][D]) noexcept
+{
+  MatOf<D> all;
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j)
+      all(i, j) = L[i][j];
+  return all;
+}
+
+}  // namespace talus

@@ -1,0 +1,29 @@
+#pragma once
+// Which columns of the particles go from rank to rank: those that any of them keeps.
+#include "core/parallel/communicator.hpp"
+#include "core/particles.hpp"
+
+namespace talus {
+
+/// For each column how many ranks keep it: one that has no particles cannot tell.  Every rank has to ask.
+template <int D>
+std::vector<std::int64_t> count_keepers(Exchange& ranks, const Particles<D>& particles)
+{
+  std::vector<std::int64_t> keepers;
+  particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { keepers.push_back(column.empty() ? 0 : 1); });
+  ranks.sum(keepers);
+  return keepers;
+}
+
+/// f(column) for every column that some rank keeps.
+template <class AnyParticles, class F>
+void for_each_kept_column(AnyParticles& particles, std::span<const std::int64_t> keepers, F&& f)
+{
+  std::size_t number = 0;
+  particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
+    if (keepers[number++] > 0)
+      f(column);
+  });
+}
+
+}  // namespace talus

@@ -1,0 +1,85 @@
+#pragma once
+// Sums that come out the same however blocks of cells are shared out among threads and ranks: within a block in a fixed order, over the
+// blocks exact.
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/parallel/communicator.hpp"
+#include "core/parallel/exact_sum.hpp"
+#include "core/parallel/threads.hpp"
+#include "materials/batch.hpp"
+#include "solver/state/cell_order.hpp"
+#include "solver/state/ledger.hpp"
+#include "solver/state/owned_nodes.hpp"
+
+namespace talus {
+
+/// Adds part(i) of all i in [0, n); the parts are found in parallel.
+template <class T, class F>
+void add_parts(Index n, ExactSums<T>& sum, F&& part)
+{
+  static thread_local std::vector<T> buffer;
+  buffer.resize(static_cast<std::size_t>(n));
+  std::vector<T>& parts = buffer;  // a name that the threads below share
+  parallel_for(n, [&](Index i) { parts[static_cast<std::size_t>(i)] = part(i); });
+  for (const T& one : parts)
+    sum.add(one);
+}
+
+/// Adds f(i) of all i in the ranges, each range added up by itself in ascending order.
+template <class T, class F>
+void add_ranges(std::span<const IndexRange> ranges, ExactSums<T>& sum, F&& f)
+{
+  add_parts(static_cast<Index>(ranges.size()), sum, [&](Index r) {
+    T part{};
+    for (Index i = ranges[static_cast<std::size_t>(r)].begin; i < ranges[static_cast<std::size_t>(r)].end; ++i)
+      part += f(i);
+    return part;
+  });
+}
+
+/// Adds f(row) of the particles of bodies [first, last), those of a block and body added up by themselves in the order of cells and ids.
+template <class T, class F>
+void add_particles(const CellOrder& order, std::pair<Index, Index> bodies, ExactSums<T>& sum, F&& f)
+{
+  add_parts((bodies.second - bodies.first) * order.blocks, sum, [&](Index k) {
+    T part{};
+    for (const Index row : order.rows(order.key(bodies.first, 0) + static_cast<std::size_t>(k)))
+      part += f(row);
+    return part;
+  });
+}
+template <class T, class F>
+void add_particles(const CellOrder& order, ExactSums<T>& sum, F&& f)
+{
+  if (order.blocks > 0)
+    add_particles(order, {0, static_cast<Index>(order.keys()) / order.blocks}, sum, f);
+}
+
+/// Adds the energy [J] that the law of a body has dissipated.
+inline void add_plastic_work(const AnyBatch& material, const CellOrder& order, Index body, const Rows<Real>& volume0, ExactSums<Real>& sum)
+{
+  const Index begin = std::visit([](const auto& batch) { return batch.begin; }, material);
+  add_particles(order, {body, body + 1}, sum,
+                [&](Index row) { return plastic_work(material, row - begin, volume0[static_cast<std::size_t>(row)]); });
+}
+
+/// Sum over the particles of all ranks, each of which has to ask.
+template <class T, class F>
+T sum_particles(const CellOrder& order, Exchange& ranks, F&& f)
+{
+  ExactSums<T> sum;
+  add_particles(order, sum, f);
+  ranks.sum(sum);
+  return sum.value();
+}
+
+/// Of all ranks, each of which has to ask.
+template <int D>
+Totals<D> totals(const Particles<D>& particles, const CellOrder& order, Exchange& ranks)
+{
+  return sum_particles<Totals<D>>(order, ranks, [&](Index row) { return totals_of(particles, static_cast<std::size_t>(row)); });
+}
+
+}  // namespace talus

@@ -1,0 +1,106 @@
+#pragma once
+// Sums over the stars of nodes by hats, for scalars that are averaged or conducted: cheap, and apart from the kernel of the momentum.
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "solver/halo/halo.hpp"
+
+namespace talus {
+
+/// Barycentric coordinates of x in cell c, for a particle that may just have left it: none negative, sum one.
+template <int D>
+std::array<Real, D + 1> hats_inside(const Mesh<D>& mesh, Index c, const Vec<D>& x) noexcept
+{
+  std::array<Real, D + 1> hats = mesh.barycentric(c, x);
+  Real sum = 0;
+  for (Real& hat : hats)
+    sum += hat = std::max(hat, Real{0});
+  for (Real& hat : hats)
+    hat /= sum;
+  return hats;
+}
+
+/// K sums at a node.
+template <int K>
+struct StarRow {
+  std::array<Real, K> sum{};
+  Real& operator[](std::size_t k) noexcept { return sum[k]; }
+  const Real& operator[](std::size_t k) const noexcept { return sum[k]; }
+  bool is_seen() const noexcept
+  {
+    return std::any_of(sum.begin(), sum.end(), [](Real entry) { return entry != 0; });
+  }
+  template <class Self>
+  static auto parts(Self& row) noexcept
+  {
+    return std::tie(row.sum);
+  }
+  StarRow& operator+=(const StarRow& other) noexcept
+  {
+    for (std::size_t k = 0; k < K; ++k)
+      sum[k] += other.sum[k];
+    return *this;
+  }
+};
+
+/// K sums per node.  Blocks keep rows of their own, which are then added up as those of momentum are: the bits depend neither on threads nor
+/// on ranks.
+template <int D, int K>
+class StarSums {
+ public:
+  using Row = StarRow<K>;
+
+  /// Of a rank that is alone.
+  explicit StarSums(const Mesh<D>& mesh) : StarSums(mesh, all_nodes(mesh)) { halo_ = Halo<Row>(blocks_.size()); }
+  StarSums(Exchange& ranks, const Mesh<D>& mesh, const Share& share) : StarSums(mesh, own_nodes(mesh, share))
+  {
+    halo_ = Halo<Row>(ranks, mesh, share, blocks_);
+    copies_ = copies_of_nodes(ranks, share, Topic::sums, nodes_read(share, blocks_));
+  }
+
+  /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
+  template <class Add>
+  void gather(const CellOrder& order, Index body, const Particles<D>& particles, Add&& add)
+  {
+    gather(order, std::span<const Index>(&body, 1), particles, std::forward<Add>(add));
+  }
+  /// The same for several bodies as if they were one: `add` is called for each body that has particles in the cell, one after the other, and
+  /// the corners keep what was added before.  So the sums are bitwise those of one body whose particles have the same order in each cell.
+  template <class Add>
+  void gather(const CellOrder& order, std::span<const Index> bodies, const Particles<D>& particles, Add&& add)
+  {
+    for_each_own_block<Whole>(blocks_, halo_, [&](Index block) {
+      const auto rows = blocks_.rows(block);
+      std::fill(rows.begin(), rows.end(), Row{});
+      bool occupied = false;
+      for_each_cell_of(order, bodies, block, particles.cell, [&](Index c, auto&& runs) {
+        std::array<Row, D + 1> corners{};
+        runs([&](std::span<const Index> run) { add(c, run, corners); });
+        for (std::size_t a = 0; a <= D; ++a)
+          rows[blocks_.slots(c)[a]] += corners[a];
+        occupied = true;
+      });
+      blocks_.occupied[static_cast<std::size_t>(block)] = occupied ? 1 : 0;
+    });
+    assemble<Whole>(blocks_, own_, halo_, copies_, of_node_);
+  }
+
+  const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
+
+ private:
+  StarSums(const Mesh<D>& mesh, OwnNodes own)
+      : blocks_(make_block_rows<Row>(mesh, [&](Index c) { return std::span(mesh.cell(c)); })),
+        own_(std::move(own)),
+        of_node_(static_cast<std::size_t>(mesh.n_nodes()))
+  {}
+
+  BlockRows<D, Row> blocks_;
+  OwnNodes own_;
+  Halo<Row> halo_;
+  Letters copies_;
+  std::vector<Row> of_node_;
+};
+
+}  // namespace talus

@@ -1,0 +1,155 @@
+#pragma once
+// What particles of a cell deposit on its stencil: mass, momentum and force through the weights of a kernel.
+#include "kernels/kernel.hpp"
+#include "solver/halo/block_rows.hpp"
+#include "solver/state/particle_pack.hpp"
+
+namespace talus {
+
+/// Sums over the stencil of one cell, one array per component so that lanes run over nodes.
+template <int D, int N>
+struct CellSums {
+  alignas(64) Real mass[N];
+  alignas(64) Real momentum[D][N];
+  alignas(64) Real force[D][N];
+
+  void clear(int n) noexcept
+  {
+    std::fill_n(mass, n, 0.0);
+    for (int i = 0; i < D; ++i) {
+      std::fill_n(momentum[i], n, 0.0);
+      std::fill_n(force[i], n, 0.0);
+    }
+  }
+  /// `lightest` [kg] of the particles summed.
+  template <class Sum>
+  void add_to(std::span<Sum> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
+  {
+    for (std::size_t a = 0; a < slots.size(); ++a) {
+      Sum& row = rows[slots[a]];
+      row.mass += mass[a];
+      row.lightest = std::min(row.lightest, lightest);
+      row.gross += static_cast<float>(std::abs(mass[a]));
+      for (int i = 0; i < D; ++i) {
+        row.momentum[i] += momentum[i][a];
+        row.force[i] += force[i][a];
+      }
+    }
+  }
+};
+
+/// V sigma G_v = s_v (slope y_v - shift) [N] of four particles: the stress of each applied to the factors of its weights.
+template <int D>
+struct Tension {
+  Pack slope[D][D], shift[D];
+};
+template <int D, int N, class S>
+Tension<D> tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, const Weights<D, N>& weights) noexcept
+{
+  const Pack volume = bunch.load(particles.volume).of;
+  const Sym3Of<Lanes> stress = bunch.load(particles.stress);
+  Pack T[D][D];
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j)
+      T[i][j] = T[j][i] = volume * stress[Symmetric<3>::place(i, j)].of;
+  Tension<D> tension;
+  for (int i = 0; i < D; ++i) {
+    tension.shift[i] = Pack{};
+    for (int j = 0; j < D; ++j) {
+      tension.shift[i] += T[i][j] * weights.shift[j];
+      tension.slope[i][j] = Pack{};
+      for (int k = 0; k < D; ++k)
+        tension.slope[i][j] += T[i][k] * weights.H(k, j);
+    }
+  }
+  return tension;
+}
+
+/// m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G.
+/// A is of `fields`, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
+/// MUSL) only momentum is summed.  A sweep per component: all that a sweep needs of the particle stays in registers.
+template <bool affine, bool loaded, bool forces, int D, int N, class S>
+void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const ParticleColumn<Mat<D>>& fields, const StencilCell<D, N>& cell,
+             const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
+{
+  alignas(64) Real share[N];  // m_p w_v
+  for (int lane = 0; lane < bunch.count; ++lane) {
+    const std::size_t p = bunch.p[lane];
+    const int n = weights.padded_size[lane];
+    const Real* const s = weights.s[lane];
+    const Real* y[D];
+    std::copy_n(weights.y[lane], D, y);
+    const bool y_is_x = y[0] == cell.x[0];
+    const Real m = bunch.of(lane, particles.mass);
+    Pack slope[D];
+    for (int j = 0; j < D; ++j)
+      slope[j] = broadcast(-m * weights.slope[j][lane]);
+    const Pack value = broadcast(m * weights.value[lane]);
+    for (int a = 0; a < n; a += pack_size) {
+      Pack w = value;
+      for (int j = 0; j < D; ++j)
+        w += slope[j] * load(y[j] + a);
+      w *= load(s + a);
+      store(share + a, w);
+      if constexpr (forces)
+        store(sums.mass + a, load(sums.mass + a) + w);
+    }
+    const Mat<D> A = affine ? bunch.of(lane, fields) : Mat<D>(Mat<D>::Zero());
+    const Vec<D> v_p = bunch.of(lane, particles.v), f_p = loaded ? bunch.of(lane, particles.applied) : Vec<D>(Vec<D>::Zero());
+    for (int i = 0; i < D; ++i) {
+      Real v_origin = v_p[i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
+      Pack A_i[D], T_i[D];
+      for (int j = 0; j < D; ++j) {
+        if constexpr (affine) {
+          A_i[j] = broadcast(A(i, j));
+          v_origin -= A(i, j) * (particles.x[p][j] - cell.origin[j]);
+        }
+        if constexpr (forces)
+          T_i[j] = broadcast(-tension.slope[i][j][lane]);
+      }
+      const Pack v = broadcast(v_origin);
+      Pack shift, per_mass;
+      if constexpr (forces)
+        shift = broadcast(tension.shift[i][lane]);
+      if constexpr (loaded)
+        per_mass = broadcast(f_p[i] / m);
+      Real* const to_momentum = sums.momentum[i];
+      Real* const to_force = sums.force[i];
+      for (int a = 0; a < n; a += pack_size) {
+        const Pack w = load(share + a);
+        Pack momentum = v, force = shift;  // NOLINT(clang-diagnostic-uninitialized): read with forces alone
+        for (int j = 0; j < D; ++j) {
+          const Pack y_j = load(y[j] + a);
+          if constexpr (forces)
+            force += T_i[j] * y_j;
+          if constexpr (affine)
+            momentum += A_i[j] * (y_is_x ? y_j : load(cell.x[j] + a));
+        }
+        store(to_momentum + a, load(to_momentum + a) + w * momentum);
+        if constexpr (forces) {
+          Pack sum = load(to_force + a) + load(s + a) * force;
+          if constexpr (loaded)
+            sum += w * per_mass;
+          store(to_force + a, sum);
+        }
+      }
+    }
+  }
+}
+
+/// f_v -= V sigma grad w_v of one particle, for the first n nodes.
+template <int D, int N, class S>
+void deposit_force(const Particles<D>& particles, const BunchOf<S>& bunch, int lane, const Real (&slopes)[D][N], int n,
+                   CellSums<D, N>& sums) noexcept
+{
+  const Real volume = particles.volume[bunch.p[lane]];
+  const Sym3 stress = bunch.of(lane, particles.stress);
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) {
+      const Pack T = broadcast(volume * stress[Symmetric<3>::place(i, j)]);
+      for (int a = 0; a < n; a += pack_size)
+        store(sums.force[i] + a, load(sums.force[i] + a) - T * load(slopes[j] + a));
+    }
+}
+
+}  // namespace talus

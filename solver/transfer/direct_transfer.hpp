@@ -1,0 +1,207 @@
+#pragma once
+// How particles of a cell reach the nodes through the weights of a kernel: deposit on its stencil, and read from it.
+#include "solver/transfer/deposit.hpp"
+
+namespace talus {
+
+/// Motion of the nodes of one cell's stencil, one array per component.
+template <int D, int N>
+struct CellMotion {
+  alignas(64) Real v[D][N];
+  alignas(64) Real change[D][N];
+
+  template <class Motion>
+  void read(const std::vector<Motion>& motion, std::span<const Index> nodes, int padded_size) noexcept
+  {
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      const Motion& row = motion[static_cast<std::size_t>(nodes[a])];
+      for (int i = 0; i < D; ++i) {
+        v[i][a] = row.v[i];
+        change[i][a] = row.change[i];
+      }
+    }
+    for (auto a = static_cast<int>(nodes.size()); a < padded_size; ++a)
+      for (int i = 0; i < D; ++i)
+        v[i][a] = change[i][a] = 0;
+  }
+};
+
+/// Sums over the stencil for one particle, four nodes a lane.  Without the gradient `v` is sum w v, otherwise sum s v.
+template <int D, bool with_change, bool with_gradient>
+struct StencilSums {
+  Pack v[D];
+  Pack change[with_change ? D : 1];   ///< w change
+  Pack vy[with_gradient ? D : 1][D];  ///< s v (x) y
+};
+template <bool with_change, bool with_gradient, int D, int N>
+[[gnu::always_inline]] inline void sweep(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int lane,
+                                         StencilSums<D, with_change, with_gradient>& total) noexcept
+{
+  Pack v[D]{}, change[D]{}, vy[D][D]{}, slope[D];
+  const Pack value = broadcast(weights.value[lane]);
+  for (int j = 0; j < D; ++j)
+    slope[j] = broadcast(weights.slope[j][lane]);
+  for (int a = 0; a < weights.padded_size[lane]; a += pack_size) {
+    const Pack s = load(weights.s[lane] + a);
+    Pack y[D], w = value;
+    for (int j = 0; j < D; ++j) {
+      y[j] = load(weights.y[lane][j] + a);
+      w -= slope[j] * y[j];
+    }
+    w *= s;
+    for (int i = 0; i < D; ++i) {
+      const Pack share = (with_gradient ? s : w) * load(motion.v[i] + a);
+      v[i] += share;
+      if constexpr (with_gradient)
+        for (int j = 0; j < D; ++j)
+          vy[i][j] += share * y[j];
+      if constexpr (with_change)
+        change[i] += w * load(motion.change[i] + a);
+    }
+  }
+  for (int i = 0; i < D; ++i) {
+    total.v[i] = v[i];
+    if constexpr (with_change)
+      total.change[i] = change[i];
+    if constexpr (with_gradient)
+      for (int j = 0; j < D; ++j)
+        total.vy[i][j] = vy[i][j];
+  }
+}
+
+/// `change` and `L` are found only if asked for.
+template <bool with_change, bool with_gradient, int D, int N>
+Seen<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int count) noexcept
+{
+  StencilSums<D, with_change, with_gradient> of[pack_size];
+  for (int lane = 0; lane < pack_size; ++lane)
+    if (lane < count)
+      sweep(motion, weights, lane, of[lane]);
+    else
+      of[lane] = of[count - 1];
+  const auto total = [&](auto&& entry) __attribute__((always_inline))
+  {
+    return sums(entry(of[0]), entry(of[1]), entry(of[2]), entry(of[3]));
+  };
+
+  Seen<D> seen;
+  for (int i = 0; i < D; ++i) {
+    seen.v[i] = total([&](const auto& one) { return one.v[i]; });
+    if constexpr (with_change)
+      seen.change[i] = total([&](const auto& one) { return one.change[i]; });
+    if constexpr (with_gradient) {
+      const Pack sv = seen.v[i];
+      Pack vy[D];
+      seen.v[i] *= weights.value;
+      for (int j = 0; j < D; ++j) {
+        vy[j] = total([&](const auto& one) { return one.vy[i][j]; });
+        seen.v[i] -= vy[j] * weights.slope[j];
+      }
+      for (int j = 0; j < D; ++j) {
+        seen.L[i][j] = -sv * weights.shift[j];
+        for (int k = 0; k < D; ++k)
+          seen.L[i][j] += vy[k] * weights.H(k, j);
+      }
+    }
+  }
+  return seen;
+}
+
+/// APIC's affine field B D^-1 with B = sum w v (x) r, D = sum w r (x) r, r = x_v - x_p.  D is indefinite near the boundary of a
+/// mesh where weights turn negative, and singular on nodes; there the kernel's own gradient L takes its place.
+template <int D, int N>
+Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion, const Weights<D, N>& weights, int lane, const Vec<D>& x,
+                  const Mat<D>& L) noexcept
+{
+  NodeWeights<D, N> plain;
+  weights.spell_out(lane, plain);
+  Mat<D> B = Mat<D>::Zero(), moment = Mat<D>::Zero();
+  Real spread = 0;  // sum |w| r^2, the scale of `moment`
+  for (int a = 0; a < cell.size; ++a) {
+    Vec<D> r, v;
+    for (int i = 0; i < D; ++i) {
+      r[i] = cell.x[i][a] - (x[i] - cell.origin[i]);
+      v[i] = motion.v[i][a];
+    }
+    B += plain.w[a] * v * r.transpose();
+    moment += plain.w[a] * r * r.transpose();
+    spread += std::abs(plain.w[a]) * r.squaredNorm();
+  }
+  constexpr Real least_share = 1e-2;  // of the mean second moment: below, B D^-1 amplifies round-off and sign errors
+  bool sound = spread > 0;
+  for (int k = 1; k <= D; ++k)  // positive definite with room: leading minors against powers of the scale
+    sound = sound && moment.topLeftCorner(k, k).determinant() > std::pow(least_share * spread / D, k);
+  return sound ? Mat<D>(B * moment.inverse()) : L;
+}
+
+/// The cell at hand, its particles' weights, and the sums of a run.  Lives on the stack of a thread; see ThroughHats for its twin.
+template <int D, Kernel<D> K>
+class ThroughWeights {
+ public:
+  using Sum = NodeSum<D>;
+  using Motion = NodeMotion<D>;
+  static constexpr bool has_apic = true;
+
+  explicit ThroughWeights(const K& kernel) : kernel_(kernel) {}
+  void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
+  template <class S>
+  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  {
+    kernel_.evaluate(cell_, x, bunch.count, weights_);
+  }
+
+  void clear() noexcept { sums_.clear(cell_.padded_size); }
+  template <bool affine, bool loaded, bool forces, class S>
+  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&x)[D], const ParticleColumn<Mat<D>>& fields) noexcept
+  {
+    const bool exact = forces && pairs_force_with_slopes();
+    const Tension<D> tension = forces && !exact ? tension_of(particles, bunch, weights_) : Tension<D>{};
+    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, tension, sums_);
+    if (exact)
+      deposit_exact_force(particles, bunch, x);
+  }
+  template <bool affine, bool loaded, bool forces>
+  void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
+  {
+    sums_.add_to(rows, slots, lightest);
+  }
+
+  void read(const std::vector<NodeMotion<D>>& nodes) noexcept { motion_.read(nodes, cell_.nodes, cell_.padded_size); }
+  template <bool with_change, bool with_gradient, class S>
+  Seen<D> see(const BunchOf<S>& bunch) const noexcept
+  {
+    return talus::see<with_change, with_gradient>(motion_, weights_, bunch.count);
+  }
+  Mat<D> apic_field(int lane, const Vec<D>& x, const Mat<D>& L) const noexcept
+  {
+    return talus::apic_field(cell_, motion_, weights_, lane, x, L);
+  }
+
+ private:
+  bool pairs_force_with_slopes() const noexcept
+  {
+    if constexpr (HasSlopesOfValues<K, D>)
+      return kernel_.pairs_force_with_slopes();
+    else
+      return false;
+  }
+  template <class S>
+  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const BunchOf<S>& bunch,
+                           [[maybe_unused]] const Pack (&x)[D]) noexcept
+  {
+    if constexpr (HasSlopesOfValues<K, D>)
+      for (int lane = 0; lane < bunch.count; ++lane) {
+        alignas(64) Real slopes[D][K::max_nodes];
+        kernel_.slopes_of_values(cell_, x, lane, weights_, slopes);
+        deposit_force(particles, bunch, lane, slopes, weights_.padded_size[lane], sums_);
+      }
+  }
+
+  const K& kernel_;
+  typename K::Cell cell_;
+  Weights<D, K::max_nodes> weights_;
+  CellSums<D, K::max_nodes> sums_;
+  CellMotion<D, K::max_nodes> motion_;
+};
+
+}  // namespace talus

@@ -1,0 +1,146 @@
+#pragma once
+// The solver's side of a kernel with a node part: particles see the hats of their cell, operators stand between hats and unknowns.
+#include "kernels/node_operators.hpp"
+#include "solver/state/nodes.hpp"
+#include "solver/state/owned_nodes.hpp"
+
+namespace talus {
+
+template <int D>
+struct Hats {
+  std::vector<HatSum<D>> sum;
+  std::vector<HatMotion<D>> motion;
+  std::vector<std::uint8_t> late;  ///< of one of several ranks: hats that read nodes of others
+  void find_late(const Mesh<D>& mesh, const OwnNodes& own)
+  {
+    late.resize(sum.size());
+    for (Index n = 0; n < mesh.n_nodes(); ++n)
+      late[static_cast<std::size_t>(n)] = std::ranges::all_of(mesh.ring_of_node()[n], [&](Index m) { return own.has(m); }) ? 0 : 1;
+  }
+};
+
+/// Hats -> unknowns, the transpose of the way back:
+///
+///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
+///
+/// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
+/// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  `by_hats_around`: the mass of a node is to be measured by theirs.
+template <int D>
+void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<HatSum<D>>& hats,
+             bool by_hats_around, std::vector<NodeSum<D>>& sum)
+{
+  for_each_node(std::span(sum), [&](Index v) {
+    NodeSum<D> total;
+    if (!own.has(v))
+      return total;
+    Real around = 0;
+    int ring = 0;
+    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
+      const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
+      ++ring;
+      around += hat.mass;
+      if (!hat.is_seen())
+        return;
+      total.mass += S * hat.mass;
+      total.gross += static_cast<float>(std::abs(S)) * hat.gross;
+      total.lightest = std::min(total.lightest, hat.lightest);
+      total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
+      total.force += S * hat.force - hat.tension * gradient;
+    });
+    if (by_hats_around)
+      total.gross = static_cast<float>(around / ring);
+    return total;
+  });
+}
+
+/// The same for momentum alone.
+template <int D>
+void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<HatSum<D>>& hats,
+                      std::vector<NodeSum<D>>& sum)
+{
+  parallel_for(operators.n_nodes(), [&](Index v) {
+    if (!own.has(v))
+      return;
+    Vec<D> momentum = Vec<D>::Zero();
+    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
+      const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
+      if (hat.is_seen())
+        momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
+    });
+    sum[static_cast<std::size_t>(v)].momentum = momentum;
+  });
+}
+
+/// f(n, hat) for the hats that particles see, in parallel; what f leaves in `hat` is read.  Those that read nodes of other ranks have to wait until
+/// arrive() returns.
+template <int D, class Arrive, class F>
+void for_each_seen_hat(Hats<D>& hats, Arrive&& arrive, F&& f)
+{
+  for (const bool late : {false, true}) {
+    if (late)
+      arrive();
+    if (late && hats.late.empty())
+      break;
+    parallel_for(static_cast<Index>(hats.sum.size()), [&](Index n) {
+      const auto i = static_cast<std::size_t>(n);
+      if (hats.sum[i].is_seen() && (hats.late.empty() || (hats.late[i] != 0) == late))
+        f(n, hats.motion[i]);
+    });
+  }
+}
+
+/// The part of accelerations of the unknowns that particles feel, handed back to the unknowns: M^-1 S^T m S a.  S hardly sees
+/// checkerboards of the unknowns: what is left of them moves no particle, and must not count where a body is to come to rest.
+/// arrive(): accelerations of nodes of other ranks.
+template <int D, class Arrive>
+void feel(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, Hats<D>& hats, std::vector<Vec<D>>& a)
+{
+  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& hat) {
+    hat.change.setZero();
+    operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { hat.change += S * a[static_cast<std::size_t>(v)]; });
+  });
+  for_each_node(std::span(a), [&](Index v) {
+    Real mass = 0;
+    Vec<D> sum = Vec<D>::Zero();
+    if (!own.has(v))
+      return sum;
+    operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
+      const Real share = S * hats.sum[static_cast<std::size_t>(n)].mass;
+      mass += share;
+      sum += share * hats.motion[static_cast<std::size_t>(n)].change;
+    });
+    return mass > 0 ? Vec<D>(sum / mass) : Vec<D>(Vec<D>::Zero());
+  });
+}
+
+/// Unknowns -> hats that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
+/// arrive(): the motion of nodes of other ranks.
+template <int D, class Arrive>
+void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive, Hats<D>& hats)
+{
+  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& row) {
+    HatMotion<D> hat;
+    operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
+      const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
+      hat.v += S * node.v;
+      hat.change += S * node.change;
+      hat.L += node.v * gradient.transpose();
+    });
+    row = hat;
+  });
+}
+
+/// The gradient of remapped velocities; the step's own velocity goes to `change`.
+template <int D, class Arrive>
+void spread_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive, Hats<D>& hats)
+{
+  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& hat) {
+    Mat<D> L = Mat<D>::Zero();
+    operators.for_each_in_row(
+        n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });
+    hat.change = hat.v;
+    hat.L = L;
+  });
+}
+
+}  // namespace talus

@@ -1,0 +1,235 @@
+#pragma once
+// How particles of a cell reach the hats of its vertices, for a kernel with a node part: four particles side by side.
+#include "kernels/linear.hpp"
+#include "solver/state/particle_pack.hpp"
+#include "solver/transfer/projected_nodes.hpp"
+
+namespace talus {
+
+/// Barycentric coordinates of four particles, one vertex per pack; zero in lanes beyond `count`.
+template <int D>
+struct Shares {
+  Pack of[D + 1];
+};
+template <int D>
+[[gnu::always_inline]] inline Shares<D> shares_of(const Real (&slope)[D][pack_size], const Vec<D>& centroid, const Pack (&x)[D],
+                                                  int count) noexcept
+{
+  Pack there{};
+  for (int lane = 0; lane < count; ++lane)
+    there[lane] = 1;
+  Shares<D> shares;
+  for (int a = 0; a <= D; ++a) {
+    Pack share = broadcast(1.0 / (D + 1));
+    for (int d = 0; d < D; ++d)
+      share += slope[d][a] * (x[d] - centroid[d]);
+    shares.of[a] = share * there;
+  }
+  return shares;
+}
+
+/// Sums over the particles of a run, on each vertex of their cell, of up to `most` quantities times its share.
+template <int D, int most>
+struct CornerSums {
+  alignas(64) Real of[D + 1][padded(most)];
+
+  void clear() noexcept { std::fill_n(of[0], (D + 1) * padded(most), 0.0); }
+  /// The first n quantities of four particles, one per lane; overwrites them.  Four quantities of one particle a pack while they are
+  /// summed: the sums stay in registers, whatever cells the lanes are from, and nothing is left to be added up across lanes.
+  template <int n>
+  [[gnu::always_inline]] inline void add(const Shares<D>& shares, Pack (&quantities)[padded(n)]) noexcept
+  {
+    constexpr int packs = padded(n) / pack_size;
+    for (int k = 0; k < packs; ++k) {
+      Pack* const four = quantities + k * pack_size;
+      transpose(four[0], four[1], four[2], four[3]);
+    }
+    for (int a = 0; a <= D; ++a) {
+      Pack sums[packs];
+      for (int k = 0; k < packs; ++k)
+        sums[k] = load(of[a] + k * pack_size);
+      for (int lane = 0; lane < pack_size; ++lane) {
+        const Pack share = broadcast(shares.of[a][lane]);
+        for (int k = 0; k < packs; ++k)
+          sums[k] += share * quantities[k * pack_size + lane];
+      }
+      for (int k = 0; k < packs; ++k)
+        store(of[a] + k * pack_size, sums[k]);
+    }
+  }
+};
+
+/// V sigma of four particles.
+template <int D, class S>
+[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, Pack* to) noexcept
+{
+  const Pack volume = bunch.load(particles.volume).of;
+  const Sym3Of<Lanes> stress = bunch.load(particles.stress);
+  for (int i = 0; i < D; ++i)
+    for (int j = i; j < D; ++j)
+      to[Symmetric<D>::place(i, j)] = volume * stress[Symmetric<3>::place(i, j)].of;
+}
+
+/// What particles of a run deposit, in this order: momentum, m A if `affine`, mass and V sigma if `forces`, load if `loaded`.
+template <int D, bool affine, bool loaded, bool forces>
+struct Deposit {
+  static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + (forces ? 1 : 0),
+                       load = tension + (forces ? Symmetric<D>::size : 0), size = load + (loaded ? D : 0);
+};
+template <int D>
+using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
+
+/// Adds a bunch, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
+template <bool affine, bool loaded, bool forces, int D, class S>
+[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const ParticleColumn<Mat<D>>& fields,
+                                           const Pack (&x)[D], const Shares<D>& shares, HatSums<D>& sums) noexcept
+{
+  using Of = Deposit<D, affine, loaded, forces>;
+  Pack quantities[padded(Of::size)]{};
+  const Pack m = bunch.load(particles.mass).of;
+  const VecOf<D> v = bunch.load(particles.v);
+  for (int i = 0; i < D; ++i)
+    quantities[i] = v[i].of;
+  if constexpr (affine) {
+    const MatOf<D> A = bunch.load(fields);
+    for (int j = 0; j < D; ++j)
+      for (int i = 0; i < D; ++i) {
+        quantities[i] -= A(i, j).of * x[j];
+        quantities[Of::field + j * D + i] = m * A(i, j).of;
+      }
+  }
+  for (int i = 0; i < D; ++i)
+    quantities[i] *= m;
+  if constexpr (forces) {
+    quantities[Of::mass] = m;
+    tension_of(particles, bunch, quantities + Of::tension);
+  }
+  if constexpr (loaded) {
+    const VecOf<D> f = bunch.load(particles.applied);
+    for (int i = 0; i < D; ++i)
+      quantities[Of::load + i] = f[i].of;
+  }
+  sums.template add<Of::size>(shares, quantities);
+}
+
+/// Sums of a run -> rows of its block.  `arms`: centres of the hats about the origin of the cell [m].
+template <bool affine, bool loaded, bool forces, int D>
+void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
+            float lightest) noexcept
+{
+  using Of = Deposit<D, affine, loaded, forces>;
+  for (std::size_t a = 0; a <= D; ++a) {
+    HatSum<D>& row = rows[slots[a]];
+    const Real* const of = sums.of[a];
+    row.lightest = std::min(row.lightest, lightest);
+    row.momentum += Eigen::Map<const Vec<D>>(of);
+    if constexpr (affine) {
+      const Eigen::Map<const Mat<D>> K(of + Of::field);
+      row.affine += K;
+      row.momentum += K * arms[a];
+    }
+    if constexpr (forces) {
+      row.mass += of[Of::mass];
+      row.gross += static_cast<float>(of[Of::mass]);
+      for (int k = 0; k < Symmetric<D>::size; ++k)
+        row.tension.entry[k] += of[Of::tension + k];
+    }
+    if constexpr (loaded)
+      row.force += Eigen::Map<const Vec<D>>(of + Of::load);
+  }
+}
+
+/// What four particles see of the hats of their cell.
+template <bool with_change, int D>
+[[gnu::always_inline]] inline void see_velocity(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares,
+                                                Seen<D>& seen) noexcept
+{
+  for (int i = 0; i < D; ++i) {
+    seen.v[i] = seen.change[i] = Pack{};
+    for (int a = 0; a <= D; ++a) {
+      seen.v[i] += shares.of[a] * hats[static_cast<std::size_t>(a)].v[i];
+      if constexpr (with_change)
+        seen.change[i] += shares.of[a] * hats[static_cast<std::size_t>(a)].change[i];
+    }
+  }
+}
+template <int D>
+[[gnu::always_inline]] inline void see_gradient(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares,
+                                                Seen<D>& seen) noexcept
+{
+  for (int i = 0; i < D; ++i)
+    for (int j = 0; j < D; ++j) {
+      seen.L[i][j] = Pack{};
+      for (int a = 0; a <= D; ++a)
+        seen.L[i][j] += shares.of[a] * hats[static_cast<std::size_t>(a)].L(i, j);
+    }
+}
+
+/// The motion of the hats of a cell.
+template <int D>
+std::array<HatMotion<D>, D + 1> hats_of(const std::vector<HatMotion<D>>& hats, std::span<const Index> nodes) noexcept
+{
+  std::array<HatMotion<D>, D + 1> here;
+  for (std::size_t a = 0; a <= D; ++a)
+    here[a] = hats[static_cast<std::size_t>(nodes[a])];
+  return here;
+}
+
+/// The cell at hand, its particles' barycentric coordinates, and the sums of a run.  Lives on the stack of a thread.
+template <int D, Kernel<D> K>
+class ThroughHats {
+ public:
+  using Sum = HatSum<D>;
+  using Motion = HatMotion<D>;
+  static constexpr bool has_apic = false;
+
+  explicit ThroughHats(const K& kernel) : kernel_(kernel) {}
+  void enter(const Mesh<D>& mesh, Index c) noexcept
+  {
+    kernel_.open(mesh, c, cell_);
+    for (std::size_t a = 0; a <= D; ++a)
+      arms_[a] = kernel_.node_part().centre(cell_.nodes[a]) - cell_.origin;
+  }
+  template <class S>
+  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  {
+    shares_ = shares_of<D>(cell_.dw, cell_.origin, x, bunch.count);
+  }
+
+  void clear() noexcept { sums_.clear(); }
+  template <bool affine, bool loaded, bool forces, class S>
+  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&)[D], const ParticleColumn<Mat<D>>& fields) noexcept
+  {
+    Pack x[D]{};  // sum B c: the place where values are read is the one about which they are handed on
+    for (int a = 0; a <= D; ++a)
+      for (int d = 0; d < D; ++d)
+        x[d] += shares_.of[a] * arms_[static_cast<std::size_t>(a)][d];
+    talus::deposit<affine, loaded, forces>(particles, bunch, fields, x, shares_, sums_);
+  }
+  template <bool affine, bool loaded, bool forces>
+  void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
+  {
+    talus::add_to<affine, loaded, forces>(sums_, arms_, rows, slots, lightest);
+  }
+
+  void read(const std::vector<HatMotion<D>>& hats) noexcept { motion_ = hats_of(hats, cell_.nodes); }
+  template <bool with_change, bool with_gradient, class S>
+  Seen<D> see(const BunchOf<S>&) const noexcept
+  {
+    Seen<D> seen;
+    see_velocity<with_change>(motion_, shares_, seen);
+    if constexpr (with_gradient)
+      see_gradient(motion_, shares_, seen);
+    return seen;
+  }
+
+ private:
+  const K& kernel_;
+  typename K::Cell cell_;
+  std::array<Vec<D>, D + 1> arms_;  ///< centres of the hats about the origin [m]
+  Shares<D> shares_;
+  HatSums<D> sums_;
+  std::array<HatMotion<D>, D + 1> motion_;
+};
+
+}  // namespace talus

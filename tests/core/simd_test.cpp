@@ -1,0 +1,161 @@
+// Numbers of several particles: functions as exact as those of one number, choices, lanes that mind their own business, rows and lanes.
+#include "core/simd.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <random>
+
+#include "core/tensor.hpp"
+
+namespace talus::lanes_test {
+namespace {
+
+/// Units of the last place between f of lanes and its exact value, the worst of random arguments sign * 10^[low, high].
+template <class F, class Exact>
+Real worst_error(F&& f, Exact&& exact, Real low, Real high, bool negative)
+{
+  std::mt19937 bits(1);
+  std::uniform_real_distribution<Real> power(low, high);
+  Real worst = 0;
+  for (int n = 0; n < 20000; ++n) {
+    const Lanes x = in_each_lane([&](int) { return (negative ? -1 : 1) * std::pow(10, power(bits)); });
+    const Lanes y = f(x);
+    for (int i = 0; i < pack_size; ++i) {
+      const auto right = static_cast<Real>(exact(static_cast<long double>(x[i])));
+      const Real unit = std::nextafter(std::abs(right), HUGE_VAL) - std::abs(right);
+      worst = std::max(worst, std::abs(y[i] - right) / unit);
+    }
+  }
+  return worst;
+}
+
+TEST(Lanes, LogarithmAndExponentialKeepTheLastDigits)
+{
+  const auto log_of = [](const Lanes& x) { return log(x); };
+  const auto exp_of = [](const Lanes& x) { return exp(x); };
+  EXPECT_LE(worst_error(
+                log_of, [](long double x) { return std::log(x); }, -300, 300, false),
+            2);
+  for (const bool negative : {false, true})
+    EXPECT_LE(worst_error(
+                  exp_of, [](long double x) { return std::exp(x); }, -10, 2.8, negative),
+              2);
+}
+
+TEST(Lanes, DifferencesFromOneKeepTheDigitsOfSmallNumbers)
+{
+  const auto log_of = [](const Lanes& x) { return log1p(x); };
+  const auto exp_of = [](const Lanes& x) { return expm1(x); };
+  const auto exact_log = [](long double x) { return std::log1p(x); };
+  const auto exact_exp = [](long double x) { return std::expm1(x); };
+  for (const bool negative : {false, true}) {
+    EXPECT_LE(worst_error(log_of, exact_log, -300, -1.001, negative), 3);
+    EXPECT_LE(worst_error(exp_of, exact_exp, -300, -1.001, negative), 3);
+    EXPECT_LE(worst_error(log_of, exact_log, -20, negative ? -0.001 : 300, negative), 5);
+    EXPECT_LE(worst_error(exp_of, exact_exp, -20, 2.8, negative), 5);
+  }
+}
+
+TEST(Lanes, PowersKeepAllButTheLastDigits)
+{
+  for (const Real n : {-7.0, -0.3, 0.26, 1.03, 6.0}) {
+    const auto of = [&](const Lanes& x) { return pow(x, n); };
+    const auto exact = [&](long double x) { return std::pow(x, static_cast<long double>(n)); };
+    EXPECT_LE(worst_error(of, exact, -6, 1, false), 4 + 2 * std::abs(n) * 6 * std::log(10)) << n;
+  }
+  EXPECT_EQ(pow(Lanes(0), 0.3)[1], 0);
+}
+
+TEST(Lanes, OddNumbersStayInTheirLane)
+{
+  const Real nan = std::nan("");
+  const Lanes x = Pack{nan, -2, HUGE_VAL, 0.5};
+  for (const auto& y : {log(x), log1p(x)}) {
+    EXPECT_TRUE(std::isnan(y[0]));
+    EXPECT_TRUE(std::isnan(y[1]));
+    EXPECT_EQ(y[2], HUGE_VAL);
+    EXPECT_TRUE(std::isfinite(y[3]));
+  }
+  for (const auto& y : {exp(x), expm1(x)}) {
+    EXPECT_TRUE(std::isnan(y[0]));
+    EXPECT_EQ(y[2], HUGE_VAL);
+    EXPECT_TRUE(std::isfinite(y[1]) && std::isfinite(y[3]));
+  }
+  EXPECT_EQ(log1p(Lanes(-1))[0], -HUGE_VAL);
+  const Lanes::Mask finite = isfinite(x);
+  EXPECT_FALSE(finite[0] || finite[2]);
+  EXPECT_TRUE(finite[1] && finite[3]);
+}
+
+TEST(Lanes, ChoicesAreMadeInEveryLaneAlone)
+{
+  const Lanes a = Pack{1, 2, 3, 4};
+  const Lanes::Mask large = a > 2;
+  const Lanes chosen = where(large, a, -a);
+  for (int i = 0; i < pack_size; ++i)
+    EXPECT_EQ(chosen[i], i < 2 ? -(i + 1) : i + 1);
+  EXPECT_TRUE(somewhere(large) && somewhere(!large) && !everywhere(large));
+  EXPECT_TRUE(everywhere(large || a <= 2) && !somewhere(large && a <= 2));
+  EXPECT_FALSE(somewhere(a > std::nan("")));
+}
+
+const Lanes some = Pack{0.25, -1, 4, 1e-300};
+
+TEST(Lanes, EveryLaneComputesAsANumberDoes)
+{
+  const Lanes other = Pack{3, 0.5, -2, 7};
+  for (int i = 0; i < pack_size; ++i) {
+    EXPECT_EQ((some + other)[i], some[i] + other[i]);
+    EXPECT_EQ((some - 2)[i], some[i] - 2);
+    EXPECT_EQ((some * other)[i], some[i] * other[i]);
+    EXPECT_EQ((1 / other)[i], 1 / other[i]);
+    EXPECT_EQ((-some)[i], -some[i]);
+    EXPECT_EQ(abs(some)[i], std::abs(some[i]));
+    EXPECT_EQ(max(some, other)[i], std::max(some[i], other[i]));
+    EXPECT_EQ(min(some, other)[i], std::min(some[i], other[i]));
+    EXPECT_EQ(sqrt(abs(some))[i], std::sqrt(std::abs(some[i])));
+    EXPECT_EQ((some < other)[i], some[i] < other[i]);
+    EXPECT_EQ(where(some >= other, some, 9)[i], some[i] >= other[i] ? some[i] : 9);
+  }
+  EXPECT_EQ(sum(some.of), (0.25 - 1) + (4 + 1e-300));
+}
+
+TEST(Lanes, AreNumbersOfTensors)
+{
+  const Mat3 a{{1, 2, 3}, {0, 4, -1}, {5, 1, 2}}, b{{0.5, 0, 1}, {1, 1, 0}, {-2, 3, 1}};
+  const Mat3Of<Lanes> product = a.cast<Lanes>() * b.cast<Lanes>();
+  EXPECT_EQ(lane_of(product, 2), Mat3(a * b));
+  EXPECT_EQ(product.determinant()[1], Mat3(a * b).determinant());
+  EXPECT_EQ(lane_of(unpack(pack(Mat3Of<Lanes>(product + product.transpose()))), 0), Mat3(a * b + (a * b).transpose()));
+}
+
+template <int n>
+void rows_there_and_back()
+{
+  Real from[pack_size][n], to[pack_size][n]{};
+  std::iota(&from[0][0], &from[0][0] + pack_size * n, 1.0);
+  Pack columns[n];
+  load_rows<n>({from[0], from[1], from[2], from[3]}, columns);
+  for (int k = 0; k < n; ++k)
+    for (int lane = 0; lane < pack_size; ++lane)
+      ASSERT_EQ(columns[k][lane], from[lane][k]);
+  store_rows<n>(columns, {to[0], to[1], to[2], to[3]}, 3);
+  for (int k = 0; k < n; ++k) {
+    for (int lane = 0; lane < 3; ++lane)
+      ASSERT_EQ(to[lane][k], from[lane][k]);
+    ASSERT_EQ(to[3][k], 0) << "a row beyond the count was written";
+  }
+}
+
+TEST(Lanes, RowsBecomeLanesAndLanesRows)
+{
+  rows_there_and_back<2>();
+  rows_there_and_back<3>();
+  rows_there_and_back<4>();
+  rows_there_and_back<6>();
+  rows_there_and_back<9>();
+}
+
+}  // namespace
+}  // namespace talus::lanes_test

@@ -1,0 +1,247 @@
+// What walls do to a node: velocities, impulses and their moments, and the work, by the formulas of one mass that is pushed.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "tests/solver/boundary/nodes_in_a_square.hpp"
+
+namespace talus::testing::wall_nodes_test {
+namespace {
+
+constexpr Real rounding = 1e-13;
+
+Wall<2> wall(WallKind kind, const Vec<2>& velocity = Vec<2>::Zero(), Real friction = 0)
+{
+  Wall<2> w;
+  w.name = "wall";
+  w.kind = kind;
+  w.velocity = velocity;
+  w.friction = friction;
+  return w;
+}
+
+/// The unit square in two by two, with walls on its sides; one node has a mass of its own and moves.
+struct Square : NodesInASquare {
+  static constexpr Real mass = 2;
+  static constexpr Kick kick{0.2, 0.6};
+  Square() : NodesInASquare(1, kick.length()) {}
+  void hold(const std::string& side, const Wall<2>& w)
+  {
+    if (w.kind == WallKind::fixed || w.kind == WallKind::velocity)
+      walls.add(w, mesh, *mesh.node_set(side));
+    else
+      walls.add(w, mesh, *mesh.facet_set(side));
+  }
+  /// The motion of a node that came with v - change, went on with v, and then met the walls.
+  NodeMotion<2> meet(const Vec<2>& place, const Vec<2>& v, const Vec<2>& change)
+  {
+    const NodeMotion<2>& motion = set(place, mass, {v, change});
+    walls.apply(kick, nodes, work);
+    walls.keep_impulses();
+    return motion;
+  }
+  const Wall<2>& first() const { return walls.walls().front(); }
+};
+
+void expect_near(const Vec<2>& a, const Vec<2>& b) { EXPECT_LT((a - b).norm(), rounding) << a.transpose() << " is not " << b.transpose(); }
+
+/// Twice as fast every second.
+Table growing()
+{
+  Table table;
+  table.points = {{0, 0}, {10, 10}};
+  return table;
+}
+
+TEST(NodesAtWalls, AMovingWallGivesItsVelocityAndKeepsItsImpulse)
+{
+  Square square;
+  Wall<2> moving = wall(WallKind::velocity, {3, 1});
+  moving.table = growing();
+  square.hold("x_min", moving);
+  square.walls.settle();
+  const Vec<2> v(1, 0.5), change(0.5, -0.25), old = v - change;
+  const NodeMotion<2> now = square.meet({0, 0.5}, v, change);
+  const Vec<2> end = 0.6 * Vec<2>(3, 1), impulse = 2 * (end - v), mean = 0.4 * Vec<2>(3, 1);
+  expect_near(now.v, end);
+  expect_near(now.change, end - old);
+  expect_near(square.first().impulse, impulse);
+  EXPECT_NEAR(square.first().angular[2], -0.5 * impulse[0], rounding);
+  const WallWork work = square.work.value();
+  EXPECT_NEAR(work.turned[2], -0.5 * impulse[0], rounding);
+  EXPECT_EQ(work.friction, 0);
+  EXPECT_NEAR(work.moved, impulse.dot(mean), rounding);
+  EXPECT_NEAR(work.arrival, impulse.dot(0.5 * (old + end)) - impulse.dot(mean), rounding);
+  EXPECT_EQ(work.waves, 0);
+
+  square.meet({0, 0.5}, v, change);
+  expect_near(square.first().impulse, 2 * impulse);
+}
+
+TEST(NodesAtWalls, TheFirstOfTwoMovingWallsCounts)
+{
+  for (const bool turned : {false, true}) {
+    Square square;
+    square.hold(turned ? "y_min" : "x_min", wall(WallKind::velocity, {3, 1}));
+    square.hold(turned ? "x_min" : "y_min", wall(WallKind::velocity, {7, 2}));
+    square.walls.settle();
+    expect_near(square.meet({0, 0}, {1, 1}, {0, 0}).v, {3, 1});
+    EXPECT_EQ(square.walls.holder_of(static_cast<Index>(square.node({0, 0}))), 0);
+    EXPECT_EQ(square.walls.holder_of(static_cast<Index>(square.node({1, 1}))), none);
+  }
+}
+
+TEST(NodesAtWalls, ARollerTakesTheKineticEnergyOfTheNormalVelocity)
+{
+  Square square;
+  square.hold("y_min", wall(WallKind::roller));
+  square.walls.settle();
+  const Vec<2> v(1, -3), change(0.5, -1);
+  const NodeMotion<2> now = square.meet({0.5, 0}, v, change);
+  expect_near(now.v, {1, 0});
+  expect_near(now.change, {0.5, 2});
+  expect_near(square.first().impulse, {0, 6});
+  EXPECT_NEAR(square.first().angular[2], 0.5 * 6, rounding);
+  const WallWork work = square.work.value();
+  EXPECT_EQ(work.friction, 0);
+  EXPECT_EQ(work.moved, 0);
+  EXPECT_NEAR(work.arrival, 6 * 0.5 * (-2 + 0), rounding);
+}
+
+TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
+{
+  Square square;
+  square.hold("y_min", wall(WallKind::friction, {0, 0}, 0.25));
+  square.walls.settle();
+  const Vec<2> v(2, -4), change(1, -1), old = v - change;
+  const NodeMotion<2> now = square.meet({0.5, 0}, v, change);
+  expect_near(now.v, {1, 0});  // 2 - 0.25 * 4
+  expect_near(square.first().impulse, {-2, 8});
+  EXPECT_NEAR(square.first().angular[2], 0.5 * 8, rounding);
+  const WallWork work = square.work.value();
+  EXPECT_NEAR(work.friction, -2 * 0.5 * (old[0] + 1), rounding);
+  EXPECT_EQ(work.moved, 0);
+  EXPECT_NEAR(work.arrival, 8 * 0.5 * (old[1] + 0), rounding);
+
+  // it rubs now, so that what is remapped is replaced by the step's own
+  const std::size_t n = square.node({0.5, 0});
+  square.nodes.motion[n] = {{5, 6}, {7, 8}};
+  square.walls.hold(0, square.nodes.motion);
+  expect_near(square.nodes.motion[n].v, {7, 8});
+}
+
+TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
+{
+  Square square;
+  square.hold("y_min", wall(WallKind::friction, {0, 0}, 0.5));
+  square.walls.settle();
+  expect_near(square.meet({0.5, 0}, {1, -4}, {0, 0}).v, {0, 0});
+  expect_near(square.first().impulse, {-2, 8});
+  expect_near(square.meet({0.5, 0}, {1, 4}, {0, 0}).v, {1, 4});
+  expect_near(square.first().impulse, {-2, 8});
+
+  // it does not rub any more: held back from going in, not from leaving
+  const std::size_t n = square.node({0.5, 0});
+  square.nodes.motion[n] = {{5, -6}, {7, 8}};
+  square.walls.hold(0, square.nodes.motion);
+  expect_near(square.nodes.motion[n].v, {5, 0});
+  square.nodes.motion[n] = {{5, 6}, {7, 8}};
+  square.walls.hold(0, square.nodes.motion);
+  expect_near(square.nodes.motion[n].v, {5, 6});
+}
+
+TEST(NodesAtWalls, ARollerAndAFrictionWallInACornerBothHold)
+{
+  Square square;
+  square.hold("x_min", wall(WallKind::roller));
+  square.hold("y_min", wall(WallKind::friction, {0, 0}, 0.25));
+  square.walls.settle();
+  const NodeMotion<2> now = square.meet({0, 0}, {-3, -4}, {0, 0});
+  expect_near(now.v, {0, 0});
+  expect_near(square.walls.walls()[0].impulse, {6, 0});
+  expect_near(square.walls.walls()[1].impulse, {0, 8});
+  expect_near(square.walls.held(static_cast<Index>(square.node({0, 0})), 0, {5, -6}), {0, 0});
+  expect_near(square.walls.held(static_cast<Index>(square.node({0, 0})), 0, {5, 6}), {0, 6});
+  expect_near(square.walls.held(static_cast<Index>(square.node({1, 1})), 0, {5, -6}), {5, -6});
+}
+
+/// Two facets of a floor that bends by an angle: the node between has one normal or two.
+Vec<2> after_a_bend(Real degrees, const Vec<2>& v)
+{
+  MeshData<2> data = box<2>({-1, 0}, {1, 1}, {2, 1});
+  for (Vec<2>& x : data.nodes)
+    if (x[0] > 0.5 && x[1] < 0.5)
+      x[1] = -std::tan(degrees * std::numbers::pi / 180);
+  const Mesh<2> mesh(std::move(data));
+  Walls<2> walls;
+  walls.add(wall(WallKind::roller), mesh, *mesh.facet_set("y_min"));
+  walls.settle();
+  for (Index n = 0; n < mesh.n_nodes(); ++n)
+    if (mesh.node(n).norm() < 1e-9)
+      return walls.held(n, 0, v);
+  return v;
+}
+
+TEST(NodesAtWalls, FacetsOfASmoothSurfaceShareTheirMeanNormalUpToThirtyDegrees)
+{
+  const Vec<2> v(2, 3);
+  const Real angle = 29.5 * std::numbers::pi / 180, length = 1 / std::cos(angle);
+  const Vec<2> mean = Vec<2>(-length * std::sin(angle), -1 - length * std::cos(angle)).normalized();  // by the areas 1 and `length`
+  expect_near(after_a_bend(29.5, v), v - v.dot(mean) * mean);
+  expect_near(after_a_bend(30.5, v), {0, 0});
+}
+
+TEST(NodesAtWalls, ClosedAreFacetsOfPlanesAndThoseWhoseNodesAreAllHeld)
+{
+  const auto places = [](const Square& square) {
+    std::vector<std::pair<Real, Real>> sorted;
+    for (const Facet facet : square.walls.closed_facets(square.mesh)) {
+      Vec<2> middle = Vec<2>::Zero();
+      for (const Index n : square.mesh.nodes_of(facet))
+        middle += square.mesh.node(n) / 2;
+      sorted.emplace_back(middle[0], middle[1]);
+    }
+    std::sort(sorted.begin(), sorted.end());
+    return sorted;
+  };
+  using Places = std::vector<std::pair<Real, Real>>;
+  Square square;
+  square.hold("x_min", wall(WallKind::fixed));
+  square.walls.settle();
+  EXPECT_EQ(places(square), (Places{{0, 0.25}, {0, 0.75}}));
+  Square other;
+  other.hold("x_min", wall(WallKind::velocity));
+  other.hold("y_min", wall(WallKind::roller));
+  other.walls.settle();
+  EXPECT_EQ(places(other), (Places{{0, 0.25}, {0, 0.75}, {0.25, 0}, {0.75, 0}}));
+}
+
+TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
+{
+  Square square;
+  square.hold("x_min", wall(WallKind::velocity, {3, 1}));
+  square.walls.settle();
+  const std::size_t n = square.node({0, 0.5}), unseen = square.node({0, 1});
+  std::vector<HatSum<2>> sums(square.nodes.sum.size());
+  std::vector<HatMotion<2>> hats(sums.size());
+  sums[n].mass = 5, sums[n].lightest = 1;
+  hats[n].v = {1, 1};
+  square.walls.apply(Square::kick, sums, hats, square.work);
+  square.walls.keep_impulses();
+  expect_near(hats[n].v, {3, 1});
+  expect_near(hats[n].change, {2, 0});
+  expect_near(hats[unseen].v, {0, 0});
+  expect_near(square.first().impulse, {10, 0});
+
+  NodeMotion<2> slave{{2, 1}, {0, 0}};
+  square.walls.apply(static_cast<Index>(n), Square::kick, 4, slave, square.work);
+  square.walls.keep_impulses();
+  expect_near(slave.v, {3, 1});
+  expect_near(square.first().impulse, {14, 0});
+  NodeMotion<2> free{{2, 1}, {0, 0}};
+  square.walls.apply(static_cast<Index>(square.node({1, 1})), Square::kick, 4, free, square.work);
+  expect_near(free.v, {2, 1});
+}
+
+}  // namespace
+}  // namespace talus::testing::wall_nodes_test

@@ -1,0 +1,198 @@
+// Loads on particles and on facets of the mesh, by the formulas of each force, its moment and its work.
+#include "solver/loads/loads.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::testing::loads_test {
+namespace {
+
+constexpr Real rounding = 1e-12;
+
+Table growing()
+{
+  Table table;
+  table.points = {{0, 0}, {10, 10}};
+  return table;
+}
+
+/// The unit square, two by two, full of particles.
+Model<2, Linear<2>> square(int per_cell = 3)
+{
+  Model<2, Linear<2>> m{Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {2, 2}))};
+  add_body<2>(m, "square", rubber(1e5, 0.3, 1000), per_cell, [](const Vec<2>&) { return true; });
+  return m;
+}
+
+void expect_near(const Vec<2>& a, const Vec<2>& b) { EXPECT_LT((a - b).norm(), rounding) << a.transpose() << " is not " << b.transpose(); }
+
+Real turning(const Vec<2>& x, const Vec<2>& f) { return x[0] * f[1] - x[1] * f[0]; }
+
+TEST(Loads, GravityIsScaledByItsTableAndTheRamp)
+{
+  const Gravity<2> gravity{{3, -8}, growing()};
+  EXPECT_EQ(gravity(4, 0.25), (Vec<2>(3, -8)));
+  EXPECT_EQ(gravity(8, 0.25), (Vec<2>(6, -16)));
+}
+
+TEST(Loads, AreOnParticlesIfTheyAreOfPlaceOrCarried)
+{
+  Loads<2> loads;
+  EXPECT_FALSE(loads.any_on_particles());
+  loads.on_mesh.emplace_back();
+  EXPECT_FALSE(loads.any_on_particles());
+  loads.on_particles.emplace_back();
+  EXPECT_TRUE(loads.any_on_particles());
+  loads.of_place.emplace_back();
+  EXPECT_TRUE(loads.any_on_particles());
+  loads.on_particles.clear();
+  EXPECT_TRUE(loads.any_on_particles());
+}
+
+/// Areas go to the particles behind each facet alike; a traction acts per initial area, a pressure on the surface as it is by Nanson's formula.
+TEST(Loads, CarriedTractionsFollowTheDeformationOfTheirParticles)
+{
+  auto m = square();
+  ParticleTraction<2> carried = carried_by_particles(m.mesh, *m.mesh.facet_set("y_max"), m.particles);
+  ASSERT_EQ(carried.id.size(), 6u) << "three in each of the two cells below";
+  for (const Vec<2>& area : carried.area)
+    expect_near(area, {0, 0.5 / 3});
+  carried.traction = {7, 5}, carried.pressure = 11, carried.table = growing();
+  m.loads.on_particles.push_back(carried);
+  make_ready(m);
+  Mat3 F = Mat3::Identity();
+  F.topLeftCorner<2, 2>() << 1.5, 0.25, 0.5, 2;
+  set_each(m.particles.F, [&](std::size_t) { return F; });
+  ExactSums<Push<2>> total;
+  apply(m.loads, 4.0, 0.5, m.followed, m.order, m.particles, total);
+
+  const Vec<2> surface(-0.5 * 0.5 / 3, 1.5 * 0.5 / 3);  // across (1.5, 0.5), what a tangent becomes
+  const Vec<2> force = 0.5 * 4 * (0.5 / 3 * Vec<2>(7, 5) - 11 * surface);
+  Vec<2> linear = Vec<2>::Zero();
+  Real angular = 0, sizes = 0;
+  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    const bool carries = std::find(carried.id.begin(), carried.id.end(), m.particles.id[p]) != carried.id.end();
+    const Vec<2> here = carries ? force : Vec<2>(0, 0);
+    expect_near(m.particles.applied[p], here);
+    linear += here, angular += turning(m.particles.x[p], here), sizes += here.norm();
+  }
+  const Push<2> sum = total.value();
+  expect_near(sum.linear, linear);
+  EXPECT_NEAR(sum.angular[2], angular, rounding);
+  EXPECT_NEAR(sum.size, sizes, rounding);
+
+  // what is moved works, against where it was
+  const Vec<2> way(0.01, -0.03);
+  for (Vec<2>& x : m.particles.x)
+    x += way;
+  ExactSums<Real> work;
+  add_work(m.order, m.particles, work);
+  EXPECT_NEAR(work.value(), 6 * force.dot(way), rounding);
+}
+
+TEST(Loads, TwoTractionsOfOneParticleAddUp)
+{
+  auto m = square();
+  for (int times = 0; times < 2; ++times) {
+    m.loads.on_particles.push_back(carried_by_particles(m.mesh, *m.mesh.facet_set("y_max"), m.particles));
+    m.loads.on_particles.back().traction = {0, times + 1.0};
+  }
+  make_ready(m);
+  ExactSums<Push<2>> total;
+  apply(m.loads, 0.0, 1.0, m.followed, m.order, m.particles, total);
+  expect_near(total.value().linear, {0, 3});
+}
+
+/// More particles than are worked on at a time, at places that are not those of the start.
+TEST(Loads, ForcesOfPlaceAreTheMassTimesTheAccelerationThere)
+{
+  for (const bool at_start : {false, true}) {
+    Model<2, Linear<2>> m{unit_box<2>(10, 0)};
+    add_body<2>(m, "square", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>&) { return true; });
+    const auto acceleration = [](const Vec<2>& x, Real time) { return Vec<2>(x[1] * time, 2 - x[0]); };
+    BodyForce<2> of_place;
+    of_place.at_start = at_start;
+    of_place.acceleration = [&](std::span<const Vec<2>> places, Real time, std::span<Vec<2>> accelerations) {
+      EXPECT_LE(places.size(), 256u);
+      for (std::size_t i = 0; i < places.size(); ++i)
+        accelerations[i] = acceleration(places[i], time);
+    };
+    m.loads.of_place = {of_place, of_place};
+    if (at_start)
+      m.particles.x0 = m.particles.x;
+    make_ready(m);
+    const std::vector<Vec<2>> start(m.particles.x.begin(), m.particles.x.end());
+    ASSERT_EQ(start.size(), 600u);
+    for (Vec<2>& x : m.particles.x)
+      x += Vec<2>(0.01, 0.02);
+    ExactSums<Push<2>> total;
+    apply(m.loads, 3.0, 0.5, m.followed, m.order, m.particles, total);
+    Vec<2> sum = Vec<2>::Zero();
+    for (std::size_t p = 0; p < start.size(); ++p) {
+      const Vec<2> place = at_start ? start[p] : Vec<2>(m.particles.x[p]);
+      const Vec<2> force = 2 * 0.5 * m.particles.mass[p] * acceleration(place, 3);  // of two such loads
+      expect_near(m.particles.applied[p], force);
+      sum += force;
+    }
+    EXPECT_LT((total.value().linear - sum).norm(), 1e-9);
+  }
+}
+
+TEST(Loads, TractionsOfTheMeshPushNodesThatHaveMassAndWorkAtTheirMeanVelocity)
+{
+  const Mesh<2> mesh(box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {2, 2}));
+  Loads<2> loads;
+  loads.on_mesh.push_back(carried_by_mesh(mesh, *mesh.facet_set("y_max")));
+  MeshTraction<2>& load = loads.on_mesh.front();
+  ASSERT_EQ(load.node.size(), 3u);
+  EXPECT_TRUE(std::is_sorted(load.node.begin(), load.node.end()));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Real x = mesh.node(load.node[k])[0], share = x > 0 && x < 1 ? 0.5 : 0.25;
+    expect_near(load.area[k], {0, share});
+    EXPECT_NEAR(load.measure[k], share, rounding);
+  }
+  load.traction = {7, 5}, load.pressure = 11, load.table = growing();
+  const auto force = [&](std::size_t k) { return Vec<2>(0.5 * 4 * (load.measure[k] * Vec<2>(7, 5) - 11 * load.area[k])); };
+
+  const OwnNodes own = all_nodes(mesh);
+  Nodes<2> nodes;
+  nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+  nodes.motion.resize(nodes.sum.size());
+  nodes.kick = 0.25;
+  Push<2> expected;
+  Real work = 0;
+  for (std::size_t k = 0; k < 2; ++k) {  // the last one has no mass
+    const auto n = static_cast<std::size_t>(load.node[k]);
+    nodes.sum[n].mass = 3;
+    nodes.sum[n].force = {100, 200};
+    nodes.motion[n] = {Vec<2>(2, 3 + static_cast<Real>(k)), Vec<2>(1, -4)};
+    expected += Push<2>::at(mesh.node(load.node[k]), force(k));
+    work += 0.25 * force(k).dot(Vec<2>(1.5, 5 + static_cast<Real>(k)));  // between (1, 7 + k) and (2, 3 + k)
+  }
+  ExactSums<Push<2>> total;
+  apply(loads, 4.0, 0.5, mesh, own, std::span(nodes.sum), total);
+  for (std::size_t k = 0; k < 3; ++k)
+    expect_near(nodes.sum[static_cast<std::size_t>(load.node[k])].force, k < 2 ? Vec<2>(Vec<2>(100, 200) + force(k)) : Vec<2>(0, 0));
+  expect_near(total.value().linear, expected.linear);
+  EXPECT_NEAR(total.value().angular[2], expected.angular[2], rounding);
+
+  ExactSums<Real> done;
+  add_work(loads, 4.0, 0.5, own, nodes, done);
+  EXPECT_NEAR(done.value(), work, rounding);
+
+  // nodes of another rank are pushed here too, and counted there
+  OwnNodes others = own;
+  others.owned.assign(others.owned.size(), 0);
+  ExactSums<Push<2>> nothing;
+  ExactSums<Real> no_work;
+  const Vec<2> before = nodes.sum[static_cast<std::size_t>(load.node[0])].force;
+  apply(loads, 4.0, 0.5, mesh, others, std::span(nodes.sum), nothing);
+  add_work(loads, 4.0, 0.5, others, nodes, no_work);
+  expect_near(nodes.sum[static_cast<std::size_t>(load.node[0])].force, before + force(0));
+  EXPECT_EQ(nothing.value().size, 0);
+  EXPECT_EQ(no_work.value(), 0);
+}
+
+}  // namespace
+}  // namespace talus::testing::loads_test

@@ -1,0 +1,116 @@
+// Rows of nodes and hats: how they add up and when they count as seen; the share of PIC.
+#include <gtest/gtest.h>
+
+#include "solver/state/nodes.hpp"
+#include "solver/state/transfer.hpp"
+
+namespace talus::node_rows_test {
+namespace {
+
+NodeSum<2> row(Real mass, float lightest, float gross, const Vec<2>& momentum, const Vec<2>& force)
+{
+  NodeSum<2> sum;
+  sum.mass = mass, sum.lightest = lightest, sum.gross = gross, sum.momentum = momentum, sum.force = force;
+  return sum;
+}
+
+TEST(NodeRows, AddUpEntryByEntryAndKeepTheLightestParticle)
+{
+  for (const bool turned : {false, true}) {
+    NodeSum<2> a = row(1, 7, 2, {3, 4}, {5, 6});
+    NodeSum<2> b = row(10, 3, 20, {30, 40}, {50, 60});
+    if (turned)
+      std::swap(a, b);
+    a += b;
+    EXPECT_EQ(a.mass, 11);
+    EXPECT_EQ(a.lightest, 3);
+    EXPECT_EQ(a.gross, 22);
+    EXPECT_EQ(a.momentum, Vec<2>(33, 44));
+    EXPECT_EQ(a.force, Vec<2>(55, 66));
+  }
+}
+
+TEST(NodeRows, HandOnTheirMomentumAlone)
+{
+  NodeSum<2> a = row(1, 7, 2, {3, 4}, {5, 6});
+  EXPECT_TRUE(a.has_momentum());
+  a.add_momentum(row(10, 3, 20, {30, 40}, {50, 60}));
+  EXPECT_EQ(a.momentum, Vec<2>(33, 44));
+  EXPECT_EQ(a.mass, 1);
+  EXPECT_EQ(a.lightest, 7);
+  a.clear_momentum();
+  EXPECT_FALSE(a.has_momentum());
+  EXPECT_EQ(a.force, Vec<2>(5, 6));
+}
+
+TEST(NodeRows, AreSeenOnceAParticleIsNear)
+{
+  NodeSum<2> sum;
+  EXPECT_FALSE(sum.is_seen());
+  sum.lightest = 1;
+  EXPECT_TRUE(sum.is_seen());
+  NodeMotion<2> motion;
+  EXPECT_FALSE(motion.is_seen());
+  motion.v = {0, 1e-300};
+  EXPECT_TRUE(motion.is_seen());
+  motion = {{0, 0}, {-1, 0}};
+  EXPECT_TRUE(motion.is_seen());
+  motion = {{0, 0}, {0, -0.0}};
+  EXPECT_TRUE(motion.is_seen()) << "any bit of it";
+}
+
+TEST(NodeRows, OfHatsHaveMomentumIfTheyHaveAnAffineField)
+{
+  HatSum<2> hat, other;
+  EXPECT_FALSE(hat.has_momentum());
+  other.momentum = {1, 2};
+  EXPECT_TRUE(other.has_momentum());
+  other.momentum.setZero();
+  other.affine << 1, 2, 3, 4;
+  EXPECT_TRUE(other.has_momentum());
+  other.momentum = {5, 6};
+  hat.add_momentum(other), hat.add_momentum(other);
+  EXPECT_EQ(hat.momentum, Vec<2>(10, 12));
+  EXPECT_EQ(hat.affine, 2 * other.affine);
+  EXPECT_EQ(hat.momentum_about({1, -1}), Vec<2>(10 - 2, 12 - 2));
+  other.tension.entry[0] = 7, other.tension.entry[2] = 8;
+  hat += other;
+  hat += other;
+  EXPECT_EQ(hat.affine, 4 * other.affine);
+  EXPECT_EQ(hat.tension.entry[0], 14);
+  EXPECT_EQ(hat.tension.entry[2], 16);
+  hat.clear_momentum();
+  EXPECT_FALSE(hat.has_momentum());
+}
+
+TEST(Transfer, TheShareOfPicIsTheStepByItsTimeAndAtMostOne)
+{
+  Transfer transfer;
+  EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0);
+  transfer.pic_damping_time = 2;
+  EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0.25);
+  EXPECT_EQ(transfer.pic_share(3, 0.125), 1);
+  transfer.pic_damping_time.reset();
+  transfer.pic_damping_crossings = 16;
+  EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0.25);
+  EXPECT_EQ(transfer.pic_share(3, 0.125), 1);
+  EXPECT_EQ(transfer.pic_share(0.5, 0), 0) << "not known";
+}
+
+TEST(Transfer, KindsOfSchemes)
+{
+  const auto of = [](Scheme scheme, bool musl) {
+    return Transfer{.scheme = scheme, .musl = musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  };
+  EXPECT_TRUE(Transfer{}.musl);
+  for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip})
+    for (const bool musl : {false, true}) {
+      const Transfer transfer = of(scheme, musl);
+      EXPECT_EQ(transfer.affine(), scheme != Scheme::flip);
+      EXPECT_EQ(transfer.increments(), scheme == Scheme::flip || scheme == Scheme::aflip);
+      EXPECT_EQ(transfer.own_affine_field(), scheme == Scheme::apic || (musl && scheme != Scheme::flip));
+    }
+}
+
+}  // namespace
+}  // namespace talus::node_rows_test
