@@ -7,7 +7,7 @@
 
 namespace talus {
 
-std::string to_string(const Where& where)
+std::string to_string(const SourceLocation& where)
 {
   if (where.line == 0)
     return where.file;

@@ -7,14 +7,14 @@
 namespace talus {
 
 /// Where something was asked for: a place in a scene or mesh file.  Lines and columns count from one; zero means unknown.
-struct Where {
+struct SourceLocation {
   std::string file;
   int line = 0;
   int column = 0;
   std::string path;  ///< the key, such as `materials[1] "clay".friction_angle`
 };
 /// "scenes/slope.yaml:23:21", or as much of it as is known.
-std::string to_string(const Where& where);
+std::string to_string(const SourceLocation& where);
 
 class Error : public std::runtime_error {
  public:
@@ -23,7 +23,7 @@ class Error : public std::runtime_error {
 
 /// One thing that is wrong with the input.
 struct Problem {
-  Where where;
+  SourceLocation where;
   std::string message;
   std::string source_line;  ///< text of the line, empty if unknown
 };
@@ -32,7 +32,7 @@ struct Problem {
 class SceneErrors : public Error {
  public:
   explicit SceneErrors(std::vector<Problem> problems);
-  SceneErrors(const Where& where, const std::string& message) : SceneErrors(std::vector<Problem>{{where, message, {}}}) {}
+  SceneErrors(const SourceLocation& where, const std::string& message) : SceneErrors(std::vector<Problem>{{where, message, {}}}) {}
   const std::vector<Problem>& problems() const noexcept { return problems_; }
 
  private:

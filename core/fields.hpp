@@ -153,7 +153,7 @@ constexpr auto history(std::string_view key, Value Owner::*member, std::string_v
 }
 
 template <class Owner, class Value>
-constexpr auto kept(std::string_view key, Value Owner::*member)
+constexpr auto saved(std::string_view key, Value Owner::*member)
 {
   return Kept<Owner, Value>{key, member};
 }

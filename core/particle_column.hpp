@@ -13,7 +13,7 @@ namespace talus {
 
 /// In which numbers particles are kept.  What is worked out from them is worked out in double either way.
 enum class Precision : std::uint8_t { full, single };
-constexpr auto words(Precision) { return std::array<std::string_view, 2>{"double", "single"}; }
+constexpr auto enum_names(Precision) { return std::array<std::string_view, 2>{"double", "single"}; }
 
 namespace detail {
 template <class S, class Value>

@@ -16,16 +16,16 @@ enum class Trouble : std::uint8_t {
   no_answer,   ///< the law returned no finite stress
 };
 
-class Health {
+class ParticleErrors {
  public:
   struct Finding {
     std::int64_t id;
     Trouble trouble;
   };
 
-  Health() = default;
-  Health(const Health& other) noexcept : worst_(other.worst_.load()) {}
-  Health& operator=(const Health& other) noexcept
+  ParticleErrors() = default;
+  ParticleErrors(const ParticleErrors& other) noexcept : worst_(other.worst_.load()) {}
+  ParticleErrors& operator=(const ParticleErrors& other) noexcept
   {
     worst_ = other.worst_.load();
     return *this;

@@ -15,9 +15,9 @@ namespace talus {
 struct Body {
   std::string name;
   Index begin, end;
-  Where where;  ///< the scene line that made it
+  SourceLocation where;  ///< the scene line that made it
   Index size() const noexcept { return end - begin; }
-  static constexpr auto fields() { return std::tuple{kept("begin", &Body::begin), kept("end", &Body::end)}; }
+  static constexpr auto fields() { return std::tuple{saved("begin", &Body::begin), saved("end", &Body::end)}; }
 };
 
 /// All particles.  The columns in the second group are empty unless the scene needs them.  Places and volumes stay in double whatever the
@@ -74,15 +74,15 @@ struct Particles {
  private:
   /// plain(name, unit, column) for columns that are always kept alike, kept(...) for those that the precision concerns.
   template <class Self, class Plain, class Kept>
-  static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& kept)
+  static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& saved)
   {
-    plain("id", "-", self.id), plain("cell", "-", self.cell), plain("position", "m", self.x), kept("velocity", "m/s", self.v),
-        kept("velocity_gradient", "1/s", self.L);
-    kept("deformation_gradient", "-", self.F), kept("stress", "Pa", self.stress), kept("mass", "kg", self.mass),
+    plain("id", "-", self.id), plain("cell", "-", self.cell), plain("position", "m", self.x), saved("velocity", "m/s", self.v),
+        saved("velocity_gradient", "1/s", self.L);
+    saved("deformation_gradient", "-", self.F), saved("stress", "Pa", self.stress), saved("mass", "kg", self.mass),
         plain("volume0", "m^D", self.volume0), plain("volume", "m^D", self.volume);
-    kept("affine", "1/s", self.C), plain("start", "m", self.x0), kept("applied", "N", self.applied),
+    saved("affine", "1/s", self.C), plain("start", "m", self.x0), saved("applied", "N", self.applied),
         plain("applied_at", "J", self.applied_at);
-    plain("volume_ratio", "-", self.volume_ratio), kept("viscous_pressure", "Pa", self.viscous), kept("pore_pressure", "Pa", self.pore);
+    plain("volume_ratio", "-", self.volume_ratio), saved("viscous_pressure", "Pa", self.viscous), saved("pore_pressure", "Pa", self.pore);
   }
 };
 

@@ -83,7 +83,7 @@ static_assert(pack_size == 4);
 
 /// The same number of several particles, one per lane.  What is written for a Real works for Lanes if it has no `if` about values:
 /// `where` takes their place, and `somewhere` and `everywhere` ask about all lanes at once.
-struct Lanes {
+struct SimdReal {
   Pack of;
   /// Which lanes something holds for.
   struct Mask {
@@ -96,35 +96,35 @@ struct Lanes {
   };
 
   // cppcheck-suppress uninitMemberVar ; as that of a Real is
-  Lanes() = default;
-  Lanes(Real all) noexcept : of{all, all, all, all} {}  // NOLINT(google-explicit-constructor): a number is a number in every lane
-  Lanes(const Pack& each) noexcept : of(each) {}        // NOLINT(google-explicit-constructor)
+  SimdReal() = default;
+  SimdReal(Real all) noexcept : of{all, all, all, all} {}  // NOLINT(google-explicit-constructor): a number is a number in every lane
+  SimdReal(const Pack& each) noexcept : of(each) {}        // NOLINT(google-explicit-constructor)
   Real operator[](int lane) const noexcept { return of[lane]; }
   void set(int lane, Real to) noexcept { of[lane] = to; }
 
-  Lanes& operator+=(const Lanes& b) noexcept { return of += b.of, *this; }
-  Lanes& operator-=(const Lanes& b) noexcept { return of -= b.of, *this; }
-  Lanes& operator*=(const Lanes& b) noexcept { return of *= b.of, *this; }
-  Lanes& operator/=(const Lanes& b) noexcept { return of /= b.of, *this; }
-  friend Lanes operator+(const Lanes& a, const Lanes& b) noexcept { return a.of + b.of; }
-  friend Lanes operator-(const Lanes& a, const Lanes& b) noexcept { return a.of - b.of; }
-  friend Lanes operator*(const Lanes& a, const Lanes& b) noexcept { return a.of * b.of; }
-  friend Lanes operator/(const Lanes& a, const Lanes& b) noexcept { return a.of / b.of; }
-  friend Lanes operator-(const Lanes& a) noexcept { return -a.of; }
-  friend Mask operator<(const Lanes& a, const Lanes& b) noexcept { return {a.of < b.of}; }
-  friend Mask operator>(const Lanes& a, const Lanes& b) noexcept { return {a.of > b.of}; }
-  friend Mask operator<=(const Lanes& a, const Lanes& b) noexcept { return {a.of <= b.of}; }
-  friend Mask operator>=(const Lanes& a, const Lanes& b) noexcept { return {a.of >= b.of}; }
-  friend Mask operator==(const Lanes& a, const Lanes& b) noexcept { return {a.of == b.of}; }
+  SimdReal& operator+=(const SimdReal& b) noexcept { return of += b.of, *this; }
+  SimdReal& operator-=(const SimdReal& b) noexcept { return of -= b.of, *this; }
+  SimdReal& operator*=(const SimdReal& b) noexcept { return of *= b.of, *this; }
+  SimdReal& operator/=(const SimdReal& b) noexcept { return of /= b.of, *this; }
+  friend SimdReal operator+(const SimdReal& a, const SimdReal& b) noexcept { return a.of + b.of; }
+  friend SimdReal operator-(const SimdReal& a, const SimdReal& b) noexcept { return a.of - b.of; }
+  friend SimdReal operator*(const SimdReal& a, const SimdReal& b) noexcept { return a.of * b.of; }
+  friend SimdReal operator/(const SimdReal& a, const SimdReal& b) noexcept { return a.of / b.of; }
+  friend SimdReal operator-(const SimdReal& a) noexcept { return -a.of; }
+  friend Mask operator<(const SimdReal& a, const SimdReal& b) noexcept { return {a.of < b.of}; }
+  friend Mask operator>(const SimdReal& a, const SimdReal& b) noexcept { return {a.of > b.of}; }
+  friend Mask operator<=(const SimdReal& a, const SimdReal& b) noexcept { return {a.of <= b.of}; }
+  friend Mask operator>=(const SimdReal& a, const SimdReal& b) noexcept { return {a.of >= b.of}; }
+  friend Mask operator==(const SimdReal& a, const SimdReal& b) noexcept { return {a.of == b.of}; }
 };
 
 /// `a` where the condition holds, else `b`; both are worked out.
-inline Lanes where(const Lanes::Mask& condition, const Lanes& a, const Lanes& b) noexcept { return condition.of ? a.of : b.of; }
+inline SimdReal where(const SimdReal::Mask& condition, const SimdReal& a, const SimdReal& b) noexcept { return condition.of ? a.of : b.of; }
 inline Real where(bool condition, Real a, Real b) noexcept { return condition ? a : b; }
-inline bool somewhere(const Lanes::Mask& mask) noexcept { return ((mask.of[0] | mask.of[1]) | (mask.of[2] | mask.of[3])) != 0; }
-inline bool everywhere(const Lanes::Mask& mask) noexcept { return ((mask.of[0] & mask.of[1]) & (mask.of[2] & mask.of[3])) != 0; }
-inline bool somewhere(bool condition) noexcept { return condition; }
-inline bool everywhere(bool condition) noexcept { return condition; }
+inline bool any_of(const SimdReal::Mask& mask) noexcept { return ((mask.of[0] | mask.of[1]) | (mask.of[2] | mask.of[3])) != 0; }
+inline bool all_of(const SimdReal::Mask& mask) noexcept { return ((mask.of[0] & mask.of[1]) & (mask.of[2] & mask.of[3])) != 0; }
+inline bool any_of(bool condition) noexcept { return condition; }
+inline bool all_of(bool condition) noexcept { return condition; }
 /// bool for a Real, Lanes::Mask for Lanes.
 template <class T>
 using MaskOf = decltype(std::declval<T>() > std::declval<T>());
@@ -140,7 +140,7 @@ Sym3Of<T> where(const MaskOf<T>& condition, const Sym3Of<T>& a, const Sym3Of<T>&
 
 /// f(lane) of every lane: for what has no form of its own in packs.
 template <class F>
-Lanes in_each_lane(F&& f) noexcept
+SimdReal in_each_lane(F&& f) noexcept
 {
   return Pack{f(0), f(1), f(2), f(3)};
 }
@@ -148,77 +148,77 @@ Lanes in_each_lane(F&& f) noexcept
 namespace detail {
 /// f(array) by Eigen's vectorised functions.
 template <class F>
-Lanes by_array(const Lanes& a, F&& f) noexcept
+SimdReal by_array(const SimdReal& a, F&& f) noexcept
 {
   using Array = Eigen::Array<Real, pack_size, 1>;
   Array x;
   std::memcpy(x.data(), &a.of, sizeof(Pack));
   const Array y = f(x);
-  Lanes result;
+  SimdReal result;
   std::memcpy(&result.of, y.data(), sizeof(Pack));
   return result;
 }
 }  // namespace detail
 
 // Found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, within 2 units of the last place.
-inline Lanes sqrt(const Lanes& a) noexcept
+inline SimdReal sqrt(const SimdReal& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.sqrt(); });
 }
-inline Lanes abs(const Lanes& a) noexcept { return a.of < 0 ? -a.of : a.of; }
-inline Lanes max(const Lanes& a, const Lanes& b) noexcept { return a.of < b.of ? b.of : a.of; }
-inline Lanes min(const Lanes& a, const Lanes& b) noexcept { return b.of < a.of ? b.of : a.of; }
-inline Lanes::Mask isfinite(const Lanes& a) noexcept { return abs(a) <= std::numeric_limits<Real>::max(); }
-inline Lanes log(const Lanes& a) noexcept
+inline SimdReal abs(const SimdReal& a) noexcept { return a.of < 0 ? -a.of : a.of; }
+inline SimdReal max(const SimdReal& a, const SimdReal& b) noexcept { return a.of < b.of ? b.of : a.of; }
+inline SimdReal min(const SimdReal& a, const SimdReal& b) noexcept { return b.of < a.of ? b.of : a.of; }
+inline SimdReal::Mask isfinite(const SimdReal& a) noexcept { return abs(a) <= std::numeric_limits<Real>::max(); }
+inline SimdReal log(const SimdReal& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.log(); });
 }
-inline Lanes exp(const Lanes& a) noexcept
+inline SimdReal exp(const SimdReal& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.exp(); });
 }
 /// a^n of a > 0, to 2 |n ln a| units of the last place, what two of the logarithm come to; 0 of a = 0 with n > 0.
-inline Lanes pow(const Lanes& a, Real n) noexcept { return where(a == 0 && Lanes(n) > 0, 0, exp(n * log(a))); }
+inline SimdReal pow(const SimdReal& a, Real n) noexcept { return where(a == 0 && SimdReal(n) > 0, 0, exp(n * log(a))); }
 
 /// ln(1 + a), of small a to the last digits.
-inline Lanes log1p(const Lanes& a) noexcept
+inline SimdReal log1p(const SimdReal& a) noexcept
 {
   // 2 artanh(s): the first term that the series leaves out is below 0.0527^16 / 17 of the first.
   constexpr Real near = 0.1;
-  if (everywhere(abs(a) <= near)) {
-    const Lanes s = a / (2 + a), s2 = s * s;
-    Lanes sum = 1.0 / 15;
+  if (all_of(abs(a) <= near)) {
+    const SimdReal s = a / (2 + a), s2 = s * s;
+    SimdReal sum = 1.0 / 15;
     for (int k = 13; k >= 3; k -= 2)
       sum = 1.0 / k + sum * s2;
     return 2 * s + 2 * s * (s2 * sum);
   }
   // What rounding of 1 + a does to the logarithm it does to the denominator as well.       [Kahan; Higham 2002, ch. 1.14.1]
-  const Lanes u = 1 + a, rounded = u - 1;
+  const SimdReal u = 1 + a, rounded = u - 1;
   return where(rounded == 0 || !isfinite(u), where(u < 0, std::numeric_limits<Real>::quiet_NaN(), a), log(u) * (a / rounded));
 }
 /// exp(a) - 1, of small a to the last digits.
-inline Lanes expm1(const Lanes& a) noexcept
+inline SimdReal expm1(const SimdReal& a) noexcept
 {
   // The first term that the series leaves out is below 0.1^11 / 12! of the first.
   constexpr Real near = 0.1;
-  if (everywhere(abs(a) <= near)) {
-    Lanes sum = 1;
+  if (all_of(abs(a) <= near)) {
+    SimdReal sum = 1;
     for (int k = 11; k >= 3; --k)
       sum = 1 + sum * a * (1.0 / k);
     return a + a * (0.5 * a * sum);
   }
   // As above; beyond the middle range exp(a) alone is as good.
-  const Lanes u = exp(a), rounded = u - 1;
+  const SimdReal u = exp(a), rounded = u - 1;
   return where(abs(a) < 1, where(rounded == 0, a, rounded * (a / log(u))), rounded);
 }
 
 }  // namespace talus
 
 template <>
-struct Eigen::NumTraits<talus::Lanes> : Eigen::GenericNumTraits<talus::Lanes> {
-  using Real = talus::Lanes;
-  using NonInteger = talus::Lanes;
-  using Literal = talus::Lanes;
+struct Eigen::NumTraits<talus::SimdReal> : Eigen::GenericNumTraits<talus::SimdReal> {
+  using Real = talus::SimdReal;
+  using NonInteger = talus::SimdReal;
+  using Literal = talus::SimdReal;
   // NOLINTNEXTLINE(readability-identifier-naming): Eigen's names
   enum { IsComplex = 0, IsInteger = 0, IsSigned = 1, RequireInitialization = 0, ReadCost = 1, AddCost = 1, MulCost = 1 };
 };
@@ -227,7 +227,7 @@ namespace talus {
 
 /// The tensor of one lane.
 template <int R, int C>
-Eigen::Matrix<Real, R, C, Eigen::DontAlign> lane_of(const Eigen::Matrix<Lanes, R, C, Eigen::DontAlign>& all, int lane) noexcept
+Eigen::Matrix<Real, R, C, Eigen::DontAlign> lane_of(const Eigen::Matrix<SimdReal, R, C, Eigen::DontAlign>& all, int lane) noexcept
 {
   Eigen::Matrix<Real, R, C, Eigen::DontAlign> one;
   for (int k = 0; k < R * C; ++k)

@@ -43,7 +43,7 @@ class Projected {
   {
     hats_.evaluate(cell, x, count, out);
   }
-  const NodeOperators<D>& node_part() const noexcept { return node_part_; }
+  const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
   /// Nodes that have no positive weights which keep linear fields, and are treated as corners (maxent), ascending.
   std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }
 
@@ -58,6 +58,6 @@ class Projected {
 
 extern template class Projected<2>;
 extern template class Projected<3>;
-static_assert(Kernel<Projected<2>, 2> && Kernel<Projected<3>, 3> && HasNodePart<Projected<2>, 2> && HasNodePart<Projected<3>, 3>);
+static_assert(Kernel<Projected<2>, 2> && Kernel<Projected<3>, 3> && HasNodeOperators<Projected<2>, 2> && HasNodeOperators<Projected<3>, 3>);
 
 }  // namespace talus

@@ -6,7 +6,7 @@
 namespace talus {
 
 enum class ValueStencil : std::uint8_t { maxent, l2, mls };
-constexpr std::array<std::string_view, 3> words(ValueStencil) { return {"maxent", "l2", "mls"}; }
+constexpr std::array<std::string_view, 3> enum_names(ValueStencil) { return {"maxent", "l2", "mls"}; }
 
 /// What a scene may choose of the kernel `projected`.
 struct ProjectedOptions {

@@ -6,7 +6,7 @@
 namespace talus {
 
 enum class UmlsGradient : std::uint8_t { estimate, exact_force };
-constexpr std::array<std::string_view, 2> words(UmlsGradient) { return {"estimate", "exact_force"}; }
+constexpr std::array<std::string_view, 2> enum_names(UmlsGradient) { return {"estimate", "exact_force"}; }
 
 /// What a scene may choose of the kernel `umls`.
 struct UmlsOptions {

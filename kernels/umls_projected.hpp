@@ -40,7 +40,7 @@ class UmlsProjected {
   {
     values_.evaluate(cell, x, count, out);
   }
-  const NodeOperators<D>& node_part() const noexcept { return node_part_; }
+  const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
 
  private:
   Umls<D> values_;

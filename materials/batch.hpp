@@ -21,7 +21,7 @@ struct Batch {
   typename L::Constants constants{};  ///< of `law`: to be renewed when its parameters change
   Index begin{}, end{};
   Rows<State> history{};
-  Where where{};
+  SourceLocation where{};
   std::string name{};
   std::optional<BulkViscosity> viscosity{};
   bool averages_volume = false;  ///< F-bar through nodes
@@ -33,7 +33,7 @@ struct Batch {
   Mat3 update(Index i, const Increment& in) noexcept { return law.update(in, history[static_cast<std::size_t>(i)], constants); }
   /// The same of several particles, one per lane; those beyond `count` repeat the last one and are not changed.  Where the law is not
   /// written for lanes, one after the other.
-  Mat3Of<Lanes> update(const Index (&i)[pack_size], int count, const IncrementOf<Lanes>& in) noexcept
+  Mat3Of<SimdReal> update(const Index (&i)[pack_size], int count, const IncrementOf<SimdReal>& in) noexcept
   {
     StateRows<State> rows{{}, count};
     for (int lane = 0; lane < pack_size; ++lane)
@@ -51,12 +51,12 @@ struct Batch {
     else
       return law.wave_speed(F, constants);
   }
-  Lanes wave_speed(const Index (&i)[pack_size], int count, const Mat3Of<Lanes>& F) const noexcept
+  SimdReal wave_speed(const Index (&i)[pack_size], int count, const Mat3Of<SimdReal>& F) const noexcept
   {
     if constexpr (LawInLanes<L>) {
       return law.wave_speed(F, constants);
     } else {
-      Lanes speed = 1;
+      SimdReal speed = 1;
       for (int lane = 0; lane < count; ++lane)
         speed.set(lane, wave_speed(i[lane], lane_of(F, lane)));
       return speed;
@@ -77,7 +77,7 @@ void begin_anew(Index begin, Index end, Batch<L>& batch)
 
 /// A body at rest.
 template <class L>
-Batch<L> make_batch(L law, Index begin, Index end, std::string name, Where where = {})
+Batch<L> make_batch(L law, Index begin, Index end, std::string name, SourceLocation where = {})
 {
   const auto constants = law.constants();
   Batch<L> batch{.law = std::move(law), .constants = constants, .where = std::move(where), .name = std::move(name)};
@@ -106,7 +106,7 @@ using AnyBatch = variant_of<decltype(detail::all_kinds(Laws{})), Batch>;
 
 /// The batch of a law as a scene gives it, of the kind that its parameters ask for.
 template <class L>
-AnyBatch make_any_batch(const L& law, Index begin, Index end, const std::string& name, const Where& where = {})
+AnyBatch make_any_batch(const L& law, Index begin, Index end, const std::string& name, const SourceLocation& where = {})
 {
   if constexpr (requires { law.kind(); })
     return std::visit([&](const auto& kind) { return AnyBatch(make_batch(kind, begin, end, name, where)); }, law.kind());

@@ -27,7 +27,7 @@ struct Corotated : Elasticity {
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
     const T J = in.F.determinant();
-    if (!everywhere(J > 0))
+    if (!all_of(J > 0))
       return no_answer_somewhere(*this, in, state, c);
     const Real lambda = c.lambda, mu = c.shear;
     const Mat3Of<T> kirchhoff = 2 * mu * (in.F - polar_rotation(in.F)) * in.F.transpose() + T(lambda * J * (J - 1)) * Mat3Of<T>::Identity();

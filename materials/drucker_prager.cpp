@@ -55,7 +55,7 @@ struct ReturnMap {
     const T discriminant = b * b - 4 * a * excess;
     const auto solved = b > 0 && discriminant >= 0;
     T m = where(solved, 2 * excess / (where(solved, b, 1) + sqrt(max(discriminant, T(0)))), never);
-    if (!everywhere(m <= left))
+    if (!all_of(m <= left))
       m = where(m <= left, m, (trial.tau + c.residual.q * trial.mean - c.residual.k) / (c.shear + c.bulk * c.residual.q * c.q_psi));
     return {trial.mean - c.bulk * c.q_psi * m, trial.tau - c.shear * m, m, 0};
   }
@@ -79,9 +79,9 @@ struct ReturnMap {
   {
     using std::min;
     Point<T> end = trial;
-    if (const auto sheared = trial.tau + start.q * trial.mean - start.k > 0; somewhere(sheared))
+    if (const auto sheared = trial.tau + start.q * trial.mean - start.k > 0; any_of(sheared))
       end = where(sheared, to_cone(trial), trial);
-    if (const auto opens = end.mean > min(cutoff, tip(cone_after(end.multiplier))); somewhere(opens))
+    if (const auto opens = end.mean > min(cutoff, tip(cone_after(end.multiplier))); any_of(opens))
       end = where(opens, to_opening(trial, cutoff), end);
     return end;
   }
@@ -141,7 +141,7 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const T volume_strain = 0.5 * trace(twice_strain);
   const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
   Point<T> trial{c.bulk * volume_strain, c.shear * sqrt(T(2 * squared_norm(shear_strain))), 0, 0};
-  if (!everywhere(J > 0 && isfinite(T(trial.mean + trial.tau))))
+  if (!all_of(J > 0 && isfinite(T(trial.mean + trial.tau))))
     return no_answer_somewhere(*this, in, state, c);
   const T per_volume = 1 / J;
   if (in.elastic) {
@@ -156,9 +156,9 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const ReturnMap<T> map{c, plastic_strain};
   const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
-  const T kept = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // no 0 / 0 beside the others
-  if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; somewhere(changed)) {
-    const Sym3Of<T> left = expm1(scale_and_shift(2 * kept, shear_strain, end.mean * (2 / (3 * c.bulk))));
+  const T saved = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // no 0 / 0 beside the others
+  if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; any_of(changed)) {
+    const Sym3Of<T> left = expm1(scale_and_shift(2 * saved, shear_strain, end.mean * (2 / (3 * c.bulk))));
     put(state, &State::elastic_left, where(changed, left, b));
     put(state, &State::plastic_strain, T(plastic_strain + end.multiplier * (1 / sqrt3)));
     const T work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
@@ -168,10 +168,10 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   } else {
     put(state, &State::elastic_left, b);
   }
-  return unpack(scale_and_shift(2 * c.shear * kept * per_volume, shear_strain, end.mean * per_volume));
+  return unpack(scale_and_shift(2 * c.shear * saved * per_volume, shear_strain, end.mean * per_volume));
 }
 template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<Lanes> DruckerPrager::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> DruckerPrager::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
 
 void DruckerPrager::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -195,7 +195,7 @@ T DruckerPrager::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexce
   return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
 }
 template Real DruckerPrager::wave_speed(const Mat3&, const Constants&) const noexcept;
-template Lanes DruckerPrager::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
+template SimdReal DruckerPrager::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void DruckerPrager::check(std::vector<std::string>& problems) const
 {

@@ -14,7 +14,7 @@ namespace talus {
 /// Which cone stands for a Mohr-Coulomb soil: through its corners of triaxial compression (outer) or extension (inner), or with
 /// its strength in plane strain.
 enum class ConeMatch : std::uint8_t { outer, inner, plane_strain };
-constexpr auto words(ConeMatch) { return std::array<std::string_view, 3>{"outer", "inner", "plane_strain"}; }
+constexpr auto enum_names(ConeMatch) { return std::array<std::string_view, 3>{"outer", "inner", "plane_strain"}; }
 
 /// Yield where tau + q s = k with tau = sqrt(J2) and s = tr/3 (tension positive) of the Kirchhoff stress.
 template <class T>

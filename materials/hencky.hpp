@@ -27,7 +27,7 @@ struct Hencky : Elasticity {
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
     const T J = in.F.determinant();
-    return everywhere(J > 0) ? Mat3Of<T>(kirchhoff(in.F, c) * T(1 / J)) : no_answer_somewhere(*this, in, state, c);
+    return all_of(J > 0) ? Mat3Of<T>(kirchhoff(in.F, c) * T(1 / J)) : no_answer_somewhere(*this, in, state, c);
   }
 
   /// Along a principal axis n rho_0 c^2 = lambda + 2 mu - J stress_nn; across, from n towards m, mu r ln(r) / (r - 1) with r = b_n / b_m,

@@ -74,7 +74,7 @@ struct HerschelBulkley : WeaklyCompressible {
   {
     using std::sqrt;
     const T J = in.F.determinant();
-    if (!everywhere(J > 0))
+    if (!all_of(J > 0))
       return no_answer_somewhere(*this, in, state, c);
     const Sym3Of<T> D = rate_of_deformation(in);
     const Sym3Of<T> shear = add_diagonal(D, -trace(D) / 3);

@@ -43,7 +43,7 @@ struct SlowStrength {
     const T heat = homologous(metal, temperature, c);
     const T gain = metal.hardening_coefficient * hardening(plastic_strain), cold = metal.yield_stress + gain;
     T lost = 0, lost_slope = 0;
-    if (const auto warm = heat > 0; somewhere(warm)) {
+    if (const auto warm = heat > 0; any_of(warm)) {
       lost = where(warm, softening(heat), 0);
       lost_slope = where(warm && heat < 1, metal.thermal_exponent * lost / above_nothing(heat) * c.range_inverse, 0);
     }
@@ -79,7 +79,7 @@ struct JohnsonCookReturn {
     using std::log;
     const T rate = relative * x;
     const auto fast = rate > 1;
-    if (!somewhere(fast))
+    if (!any_of(fast))
       return {1, 0};
     return {where(fast, 1 + metal.rate_coefficient * log(rate), 1), where(fast, metal.rate_coefficient / above_nothing(x), 0)};
   }
@@ -148,7 +148,7 @@ T JohnsonCookDamage::fracture_strain(const std::type_identity_t<T>& triaxiality,
   return where(by_pressure > 0 && by_rate > 0 && by_heat > 0, max(T(by_pressure * by_rate * by_heat), T(least)), least);
 }
 template Real JohnsonCookDamage::fracture_strain<Real>(const Real&, const Real&, const Real&) const noexcept;
-template Lanes JohnsonCookDamage::fracture_strain<Lanes>(const Lanes&, const Lanes&, const Lanes&) const noexcept;
+template SimdReal JohnsonCookDamage::fracture_strain<SimdReal>(const SimdReal&, const SimdReal&, const SimdReal&) const noexcept;
 
 JohnsonCookMetal::Constants JohnsonCookMetal::constants() const noexcept
 {
@@ -180,17 +180,17 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
   using std::expm1, std::max, std::min;
   const T J = in.F.determinant();
   const ElasticTrial<T> trial(in, memory.elastic_left);
-  if (!everywhere(J > 0 && trial.is_finite()))
+  if (!all_of(J > 0 && trial.is_finite()))
     return {};
   const auto failed_before = memory.damage >= 1;
   const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear, growth = growth_of(in);
   const Real relative = c.rate_inverse / in.dt;
   const T temperature = started(memory.temperature);
   PlasticFlow<T> flow{.mises = where(failed_before, 0, mises)};
-  if (!in.elastic && !everywhere(failed_before)) {
+  if (!in.elastic && !all_of(failed_before)) {
     const SlowStrength<T> slow(*this, c, memory.plastic_strain, temperature);
     const Strength<T> start = slow(memory.plastic_strain, temperature);
-    if (const auto flows = !failed_before && mises > start.value; somewhere(flows)) {
+    if (const auto flows = !failed_before && mises > start.value; any_of(flows)) {
       JohnsonCookReturn<T> map{*this, c, slow, start, J, J / growth, mises, stiffness, memory.plastic_strain, temperature, relative};
       const PlasticFlow<T> found = map.flow(in.stress, flows);
       flow = {where(flows, found.strain, 0), where(flows, found.mises, flow.mises), where(flows, found.work, 0)};
@@ -209,12 +209,12 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
     pressure = step->pressure(*c.curve, compression);
   }
 
-  if (const auto flowing = flow.strain > 0; damage && memory.keeps_damage && somewhere(flowing)) {
+  if (const auto flowing = flow.strain > 0; damage && memory.keeps_damage && any_of(flowing)) {
     const T triaxiality = -pressure / above_nothing(flow.mises);
     const T strain = damage->fracture_strain<T>(triaxiality, relative * flow.strain, homologous(*this, memory.temperature, c));
     memory.damage = where(flowing, min(T(memory.damage + flow.strain / strain), T(1)), memory.damage);
   }
-  if (const auto failed = memory.damage >= 1; somewhere(failed)) {
+  if (const auto failed = memory.damage >= 1; any_of(failed)) {
     const auto released = [&](const T& cauchy, Real modulus) -> T { return J * cauchy * J * cauchy / (2 * modulus); };
     const T all = released(flow.mises, 3 * c.shear) + released(min(pressure, T(0)), c.bulk);
     memory.plastic_work += where(failed && !failed_before, all, 0);
@@ -224,13 +224,14 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
   if (step)
     memory.energy = step->energy(pressure);
 
-  const T kept = where(mises > 0, flow.mises / above_nothing(mises), 1);
-  const auto changed = kept < 1;
-  memory.elastic_left = somewhere(changed) ? where(changed, trial.left_with(kept), trial.left) : trial.left;
-  return unpack(scale_and_shift(2 * c.shear * kept / J, trial.shear_strain, -pressure));
+  const T saved = where(mises > 0, flow.mises / above_nothing(mises), 1);
+  const auto changed = saved < 1;
+  memory.elastic_left = any_of(changed) ? where(changed, trial.left_with(saved), trial.left) : trial.left;
+  return unpack(scale_and_shift(2 * c.shear * saved / J, trial.shear_strain, -pressure));
 }
 template std::optional<Mat3> JohnsonCookMetal::update(const Increment&, Memory<Real>&, const Constants&) const noexcept;
-template std::optional<Mat3Of<Lanes>> JohnsonCookMetal::update(const IncrementOf<Lanes>&, Memory<Lanes>&, const Constants&) const noexcept;
+template std::optional<Mat3Of<SimdReal>> JohnsonCookMetal::update(const IncrementOf<SimdReal>&, Memory<SimdReal>&,
+                                                                  const Constants&) const noexcept;
 
 void JohnsonCookMetal::prestress(const Mat3& stress, Sym3& elastic_left) const noexcept
 {
@@ -254,7 +255,7 @@ T JohnsonCookMetal::wave_speed(const Mat3Of<T>& F, const Constants& c) const noe
   return sqrt(T((volume * volume * c.curve->stiffness<T>(1 - J) + shear * (1 + (1 + c.curve->gamma) * shortening)) / density));
 }
 template Real JohnsonCookMetal::wave_speed(const Mat3&, const Constants&) const noexcept;
-template Lanes JohnsonCookMetal::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
+template SimdReal JohnsonCookMetal::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void JohnsonCookMetal::check(std::vector<std::string>& problems) const
 {

@@ -48,7 +48,7 @@ struct StateRows {
 };
 /// What a law for T changes.
 template <class T, class State>
-using StateOf = std::conditional_t<std::is_same_v<T, Lanes>, StateRows<State>, State>;
+using StateOf = std::conditional_t<std::is_same_v<T, SimdReal>, StateRows<State>, State>;
 
 /// One variable of a history, for a law that is written once for Real and Lanes.
 template <class State, class Owner>
@@ -62,14 +62,14 @@ Sym3 get(const State& state, Sym3 Owner::*member) noexcept
   return state.*member;
 }
 template <class State, class Owner>
-Lanes get(const StateRows<State>& rows, Real Owner::*member) noexcept
+SimdReal get(const StateRows<State>& rows, Real Owner::*member) noexcept
 {
   return in_each_lane([&](int i) { return rows.row[i]->*member; });
 }
 template <class State, class Owner>
-Sym3Of<Lanes> get(const StateRows<State>& rows, Sym3 Owner::*member) noexcept
+Sym3Of<SimdReal> get(const StateRows<State>& rows, Sym3 Owner::*member) noexcept
 {
-  Sym3Of<Lanes> all;
+  Sym3Of<SimdReal> all;
   for (int k = 0; k < 6; ++k)
     all[k] = in_each_lane([&](int i) { return (rows.row[i]->*member)[k]; });
   return all;
@@ -93,12 +93,12 @@ void for_each_lane(int count, F&& f) noexcept
 }
 }  // namespace detail
 template <class State, class Owner>
-void put(StateRows<State>& rows, Real Owner::*member, const Lanes& value) noexcept
+void put(StateRows<State>& rows, Real Owner::*member, const SimdReal& value) noexcept
 {
   detail::for_each_lane(rows.count, [&](int i) { rows.row[i]->*member = value[i]; });
 }
 template <class State, class Owner>
-void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<Lanes>& value) noexcept
+void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<SimdReal>& value) noexcept
 {
   detail::for_each_lane(rows.count, [&](int i) {
     for (int k = 0; k < 6; ++k)
@@ -138,9 +138,9 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
 
 /// A law that answers for several particles at once.
 template <class L>
-concept LawInLanes = requires(const L law, const IncrementOf<Lanes>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
-  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<Lanes>>;
-  { law.wave_speed(in.F, constants) } noexcept -> std::same_as<Lanes>;
+concept LawInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
+  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
+  { law.wave_speed(in.F, constants) } noexcept -> std::same_as<SimdReal>;
 };
 // clang-format on
 
@@ -153,10 +153,10 @@ Mat3Of<T> no_answer() noexcept
 
 /// The answers of several particles one after the other, for laws and states that are not worth lanes.  Lanes beyond `count` are zero.
 template <class L>
-Mat3Of<Lanes> update_one_by_one(const L& law, const IncrementOf<Lanes>& in, const StateRows<typename L::State>& rows,
-                                const typename L::Constants& constants) noexcept
+Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
+                                   const typename L::Constants& constants) noexcept
 {
-  Mat3Of<Lanes> stress = Mat3Of<Lanes>::Zero();
+  Mat3Of<SimdReal> stress = Mat3Of<SimdReal>::Zero();
   for (int lane = 0; lane < rows.count; ++lane) {
     const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
     const Mat3 after = law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic}, *rows.row[lane], constants);
@@ -173,8 +173,8 @@ Mat3 no_answer_somewhere(const L&, const Increment&, const typename L::State&, c
   return no_answer();
 }
 template <class L>
-Mat3Of<Lanes> no_answer_somewhere(const L& law, const IncrementOf<Lanes>& in, const StateRows<typename L::State>& rows,
-                                  const typename L::Constants& constants) noexcept
+Mat3Of<SimdReal> no_answer_somewhere(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
+                                     const typename L::Constants& constants) noexcept
 {
   return update_one_by_one(law, in, rows, constants);
 }

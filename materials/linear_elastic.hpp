@@ -29,7 +29,7 @@ struct LinearElastic : Elasticity {
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
-    if (!everywhere(in.F.determinant() > 0))
+    if (!all_of(in.F.determinant() > 0))
       return no_answer_somewhere(*this, in, state, c);
     const Real lambda = c.lambda, mu = c.shear;
     const Mat3Of<T> H = in.dt * in.L;

@@ -30,7 +30,7 @@ struct LinearFirstPiola : Elasticity {
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Moduli& c) const noexcept
   {
     const T J = in.F.determinant();
-    if (!everywhere(J > 0))
+    if (!all_of(J > 0))
       return no_answer_somewhere(*this, in, state, c);
     const Real lambda = c.lambda, mu = c.shear;
     const Mat3Of<T> G = in.F - Mat3Of<T>::Identity();

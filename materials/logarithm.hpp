@@ -127,9 +127,9 @@ inline Sym3 expm1_by_axes(const Sym3& E) noexcept
 }
 /// f of the tensor in every lane.
 template <class F>
-Sym3Of<Lanes> tensor_in_each_lane(const Sym3Of<Lanes>& all, F&& f) noexcept
+Sym3Of<SimdReal> tensor_in_each_lane(const Sym3Of<SimdReal>& all, F&& f) noexcept
 {
-  Sym3Of<Lanes> result;
+  Sym3Of<SimdReal> result;
   for (int lane = 0; lane < pack_size; ++lane) {
     Sym3 one;
     for (int k = 0; k < 6; ++k)
@@ -140,8 +140,8 @@ Sym3Of<Lanes> tensor_in_each_lane(const Sym3Of<Lanes>& all, F&& f) noexcept
   }
   return result;
 }
-inline Sym3Of<Lanes> log1p_by_axes(const Sym3Of<Lanes>& B) noexcept;
-inline Sym3Of<Lanes> expm1_by_axes(const Sym3Of<Lanes>& E) noexcept;
+inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept;
+inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept;
 
 }  // namespace detail
 
@@ -156,10 +156,10 @@ Sym3Of<typename Expression::Scalar> log1p(const Eigen::MatrixBase<Expression>& e
   const T scale = 1 / (1 + mean);
   const Sym3Of<T> X = scale_and_shift(scale, B, -mean * scale);
   const T size = squared_norm(X);
-  if (!everywhere(mean > -1 && size <= series_radius * series_radius))
+  if (!all_of(mean > -1 && size <= series_radius * series_radius))
     return detail::log1p_by_axes(B);
   const T volumetric = log1p(mean);
-  if (everywhere(size <= short_series_radius * short_series_radius))
+  if (all_of(size <= short_series_radius * short_series_radius))
     return add_diagonal(detail::trace_free_series<8>(X, detail::logarithm_series), volumetric);
   return add_diagonal(detail::trace_free_series<14>(X, detail::logarithm_series), volumetric);
 }
@@ -174,21 +174,21 @@ Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& e
   const T mean = trace(E) * (1.0 / 3);
   const Sym3Of<T> X = add_diagonal(E, -mean);
   const T size = squared_norm(X);
-  if (!everywhere(size <= series_radius * series_radius))
+  if (!all_of(size <= series_radius * series_radius))
     return detail::expm1_by_axes(E);
   const T volumetric = expm1(mean);
-  if (everywhere(size <= short_series_radius * short_series_radius))
+  if (all_of(size <= short_series_radius * short_series_radius))
     return scale_and_shift(1 + volumetric, detail::trace_free_series<6>(X, detail::exponential_series), volumetric);
   return scale_and_shift(1 + volumetric, detail::trace_free_series<9>(X, detail::exponential_series), volumetric);
 }
 
 namespace detail {
 // Where one lane is beyond the series every lane is asked alone: it may be within.
-inline Sym3Of<Lanes> log1p_by_axes(const Sym3Of<Lanes>& B) noexcept
+inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept
 {
   return tensor_in_each_lane(B, [](const Sym3& one) { return log1p(one); });
 }
-inline Sym3Of<Lanes> expm1_by_axes(const Sym3Of<Lanes>& E) noexcept
+inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept
 {
   return tensor_in_each_lane(E, [](const Sym3& one) { return expm1(one); });
 }
@@ -210,7 +210,7 @@ Mat3Of<T> polar_rotation(const Mat3Of<T>& F) noexcept
     const Mat3Of<T> next = 0.5 * (scale * R + T(1 / scale) * inverse);
     const T change = (next - R).squaredNorm();
     R = next;
-    if (!somewhere(change > 3 * rounding * rounding))
+    if (!any_of(change > 3 * rounding * rounding))
       break;
   }
   return R;

@@ -30,7 +30,7 @@ Real excess(Real s1, Real s3, const ShearStrength& strength) noexcept
 }
 
 /// Where a return ends: principal stresses in falling order [Pa].
-struct Landing {
+struct StressReturn {
   Vec3 stress;
   Real dilation = 0;   ///< volume of the flow on the planes [-], told only where the material opens
   bool opens = false;  ///< the rest of the volume that the return takes away is kept open
@@ -61,7 +61,7 @@ struct Surface {
 
   /// To the apex: the flow takes all shear, and as much volume as it has to.  Of the combinations of flow vectors with a given deviator
   /// that of two neighbouring planes has the least volume, 2 sin_psi times the sum of multipliers.
-  Landing to_apex(const Vec3& trial) const noexcept
+  StressReturn to_apex(const Vec3& trial) const noexcept
   {
     if (!(strength.sine > 0))  // no apex, but no shear either if there is no cohesion, up to rounding
       return {Vec3::Constant(trial.mean())};
@@ -70,7 +70,7 @@ struct Surface {
     return {Vec3::Constant(apex(strength)), 2 * sin_psi * multiplier, true};
   }
 
-  Landing to_planes(const Vec3& trial) const noexcept
+  StressReturn to_planes(const Vec3& trial) const noexcept
   {
     const Pair plane = along(trial[0], trial[2], 1, 1);
     const Real s2 = trial[1] - 2 * lambda() * sin_psi * plane.multiplier;
@@ -84,7 +84,7 @@ struct Surface {
   }
 
   /// By cracks across one, two or three directions, each as if the stress were uniaxial strain.
-  Landing to_cutoff(const Vec3& trial) const noexcept
+  StressReturn to_cutoff(const Vec3& trial) const noexcept
   {
     const Real across_one = lambda() / (lambda() + 2 * shear), across_two = lambda() / (2 * (lambda() + shear));
     Vec3 s = trial - across_one * (trial[0] - cutoff) * Vec3::Ones();
@@ -99,7 +99,7 @@ struct Surface {
   }
 
   /// Where crack and plane are both active: s1 and s3 are given, s2 follows the flow until it meets one of them.
-  Landing to_both(const Vec3& trial) const noexcept
+  StressReturn to_both(const Vec3& trial) const noexcept
   {
     const Real s3 = (cutoff * (1 + strength.sine) - 2 * strength.cohesive) / (1 - strength.sine);
     const Real fall1 = trial[0] - cutoff, fall3 = trial[2] - s3, volumetric = 2 * lambda() * sin_psi;
@@ -111,9 +111,9 @@ struct Surface {
     return {{cutoff, std::clamp(s2, s3, cutoff), s3}, 2 * sin_psi * std::max(plane, Real{0})};
   }
 
-  Landing operator()(const Vec3& trial) const noexcept
+  StressReturn operator()(const Vec3& trial) const noexcept
   {
-    Landing end{trial};
+    StressReturn end{trial};
     if (excess(trial[0], trial[2], strength) > 0)
       end = to_planes(trial);
     if (!(end.stress[0] > cutoff) || cutoff >= apex(strength))
@@ -129,19 +129,19 @@ struct SofteningReturn {
   const Vec3& trial;
   bool closing;  ///< what is open fills, so the mean stress stays at or below zero
 
-  Landing land(const ShearStrength& strength) const noexcept
+  StressReturn land(const ShearStrength& strength) const noexcept
   {
-    const Landing end = Surface{c.bulk, c.shear, strength, c.sin_psi, c.cutoff}(trial);
+    const StressReturn end = Surface{c.bulk, c.shear, strength, c.sin_psi, c.cutoff}(trial);
     if (!closing || end.stress.sum() <= 0)
       return end;
     const Vec3 flat = trial.array() - trial.mean();
-    Landing kept = Surface{0, c.shear, strength, c.sin_psi, c.cutoff}(flat);
-    kept.opens = true;
-    return kept;
+    StressReturn saved = Surface{0, c.shear, strength, c.sin_psi, c.cutoff}(flat);
+    saved.opens = true;
+    return saved;
   }
 
   /// sqrt(2/3 e:e) of the plastic strain.
-  Real plastic_strain(const Landing& end) const noexcept
+  Real plastic_strain(const StressReturn& end) const noexcept
   {
     const Vec3 gone = trial - end.stress;
     return (gone.array() - gone.mean()).matrix().norm() / (std::numbers::sqrt2 * square_root_of_3 * c.shear);
@@ -150,9 +150,9 @@ struct SofteningReturn {
   /// The landing with the strength that it leaves, and its plastic strain: 0 = g(x) = start + plastic_strain - x by secants from the
   /// landing at the strength before, with every fourth step a bisection.  g is nearly linear; where it has no root before the softening
   /// ends the strength drops to residual at once.
-  std::pair<Landing, Real> softened(const Landing& before, Real start) const noexcept
+  std::pair<StressReturn, Real> softened(const StressReturn& before, Real start) const noexcept
   {
-    Landing end = land(c.residual);
+    StressReturn end = land(c.residual);
     Real low = start, high = start + plastic_strain(end);
     if (high >= c.softening_strain)
       return {end, high};
@@ -254,7 +254,7 @@ Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) 
   const Eigen::SelfAdjointEigenSolver<Mat3> axes = principal_axes(trial);
   const Vec3 start = mean + 2 * c.shear * axes.eigenvalues().reverse().array();
   const SofteningReturn map{c, start, closing};
-  Landing end = map.land(strength);
+  StressReturn end = map.land(strength);
   if (c.softening_strain < infinite && end.stress != start)
     std::tie(end, state.plastic_strain) = map.softened(end, state.plastic_strain);
   else

@@ -27,7 +27,7 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
   const T volume_strain = 0.5 * trace(twice_strain);
   const Sym3Of<T> shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
   const T tau = c.shear * sqrt(T(2 * squared_norm(shear_strain)));
-  if (!everywhere(J > 0 && isfinite(T(volume_strain + tau))))
+  if (!all_of(J > 0 && isfinite(T(volume_strain + tau))))
     return no_answer_somewhere(*this, in, state, c);
   if (in.elastic) {
     put(state, &State::elastic_left, b);
@@ -44,7 +44,7 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
   // Plastic shear m of the step: (tau - mu_s p - G m) (m + a) = (mu_2 - mu_s) p m, a the shear of the step at which I = I_0.
   T m = 0;
   const T excess = tau - static_friction * p;
-  if (const auto flows = excess > 0; somewhere(flows)) {
+  if (const auto flows = excess > 0; any_of(flows)) {
     const T a = in.dt * c.rate_scale * sqrt(T(p / J));
     const T linear = c.shear * a + (limiting_friction - static_friction) * p - excess;
     const T root = sqrt(T(linear * linear + 4 * c.shear * excess * a));
@@ -52,17 +52,17 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
     m = where(flows, where(far, 2 * excess * a / where(far, linear + root, 1), (root - linear) / (2 * c.shear)), 0);
   }
   const auto slid = m > 0;
-  const T kept = where(slid, max(T(1 - c.shear * m / where(slid, tau, 1)), T(0)), 1);
+  const T saved = where(slid, max(T(1 - c.shear * m / where(slid, tau, 1)), T(0)), 1);
   Sym3Of<T> left = b;
-  if (const auto changed = m > 0 || closing || p == 0; somewhere(changed))
-    left = where(changed, expm1(scale_and_shift(2 * kept, shear_strain, p * (-2 / (3 * c.bulk)))), b);
+  if (const auto changed = m > 0 || closing || p == 0; any_of(changed))
+    left = where(changed, expm1(scale_and_shift(2 * saved, shear_strain, p * (-2 / (3 * c.bulk)))), b);
   put(state, &State::elastic_left, left);
   put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + m * std::numbers::inv_sqrt3));
-  put(state, &State::plastic_work, T(get(state, &State::plastic_work) + kept * tau * m));
-  return unpack(scale_and_shift(2 * c.shear * kept / J, shear_strain, -p / J));
+  put(state, &State::plastic_work, T(get(state, &State::plastic_work) + saved * tau * m));
+  return unpack(scale_and_shift(2 * c.shear * saved / J, shear_strain, -p / J));
 }
 template Mat3 MuI::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<Lanes> MuI::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> MuI::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
 
 void MuI::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -85,7 +85,7 @@ T MuI::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
   return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
 }
 template Real MuI::wave_speed(const Mat3&, const Constants&) const noexcept;
-template Lanes MuI::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
+template SimdReal MuI::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void MuI::check(std::vector<std::string>& problems) const
 {

@@ -28,7 +28,7 @@ struct NeoHookean : Elasticity {
   {
     using std::log;
     const T J = in.F.determinant();
-    if (!somewhere(J > 0))
+    if (!any_of(J > 0))
       return no_answer<T>();
     const T per_volume = 1 / where(J > 0, J, T(std::numeric_limits<Real>::quiet_NaN())), shear = c.shear * per_volume;
     Mat3Of<T> stress = shear * (in.F * in.F.transpose());

@@ -32,7 +32,7 @@ struct Newtonian : WeaklyCompressible {
   {
     using std::min;
     const T J = in.F.determinant();
-    if (!everywhere(J > 0))
+    if (!all_of(J > 0))
       return no_answer_somewhere(*this, in, state, c);
     const Sym3Of<T> D = rate_of_deformation(in);
     const T growth = trace(D), p = pressure<T>(J, in.elastic);

@@ -33,7 +33,7 @@ struct ElasticTrial {
     return isfinite(T(volume_strain + shear));
   }
   /// Elastic left Cauchy-Green tensor minus identity with the share `kept` of the shear strain.
-  Sym3Of<T> left_with(const T& kept) const noexcept { return expm1(scale_and_shift(2 * kept, shear_strain, volume_strain * (2.0 / 3))); }
+  Sym3Of<T> left_with(const T& saved) const noexcept { return expm1(scale_and_shift(2 * saved, shear_strain, volume_strain * (2.0 / 3))); }
 };
 
 /// Elastic left Cauchy-Green tensor minus identity that belongs to the Kirchhoff stress deviator `s` and a logarithmic volume strain.
@@ -71,11 +71,11 @@ class PowerNear {
     // The first terms that the binomial series leave out are below 0.001^6 and 0.02^8 for exponents below 1.
     const T r = (x - at_) * inverse_, size = abs(r) * max(exponent_, Real{1});
     const auto same = x == at_;
-    if (everywhere(same))
+    if (all_of(same))
       return value_;
-    if (everywhere(same || size <= 0.001))
+    if (all_of(same || size <= 0.001))
       return where(same, value_, value_ * series<5>(r));
-    if (everywhere(same || size <= 0.02))
+    if (all_of(same || size <= 0.02))
       return where(same, value_, value_ * series<7>(r));
     return where(same, value_, power(x));
   }
@@ -85,7 +85,7 @@ class PowerNear {
   {
     using std::pow;
     const auto some = x > 0;  // metal that has not flown, and is not warm, is common
-    return somewhere(some) ? where(some, pow(x, exponent_), 0) : T(0);
+    return any_of(some) ? where(some, pow(x, exponent_), 0) : T(0);
   }
   /// (1 + r)^n
   template <int terms>

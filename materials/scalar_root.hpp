@@ -34,11 +34,11 @@ T positive_root(F&& f, std::type_identity_t<T> high, const std::type_identity_t<
     return where(low > 0, sqrt(low) * sqrt(high), high * down);
   };
   T x = guess;
-  if (const auto bad = !(guess > 0 && guess <= high); somewhere(bad))
+  if (const auto bad = !(guess > 0 && guess <= high); any_of(bad))
     x = where(bad, middle(bad), x);
   T root = x;
   auto open = looking;
-  for (int i = 0; i < enough && somewhere(open); ++i) {
+  for (int i = 0; i < enough && any_of(open); ++i) {
     const ValueAndSlopeOf<T> at = f(x);
     const auto above = at.value > 0;
     low = where(open && above, x, low);
@@ -49,12 +49,12 @@ T positive_root(F&& f, std::type_identity_t<T> high, const std::type_identity_t<
     const auto last = fine && abs(change) <= last_step * newton;
     root = where(open, where(exact, x, where(last, min(newton, high), x)), root);
     open = open && !exact && !last;
-    if (!somewhere(open))
+    if (!any_of(open))
       break;
     const auto halved = open && !fine;
     T next = newton;
     step = where(open, abs(change), step);
-    if (somewhere(halved)) {
+    if (any_of(halved)) {
       next = where(halved, middle(halved), next);
       step = where(halved, 2 * (high - low), step);
       root = where(halved, next, root);

@@ -68,9 +68,9 @@ struct VonMisesReturn {
 
 /// Cauchy stress with the share `kept` of the shear.
 template <class T>
-Mat3Of<T> stress_with(const ElasticTrial<T>& trial, const T& J, const T& kept, const VonMises::Constants& c) noexcept
+Mat3Of<T> stress_with(const ElasticTrial<T>& trial, const T& J, const T& saved, const VonMises::Constants& c) noexcept
 {
-  return unpack(scale_and_shift(2 * c.shear * kept / J, trial.shear_strain, c.bulk * trial.volume_strain / J));
+  return unpack(scale_and_shift(2 * c.shear * saved / J, trial.shear_strain, c.bulk * trial.volume_strain / J));
 }
 
 }  // namespace
@@ -106,29 +106,29 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
 {
   const T J = in.F.determinant();
   const ElasticTrial<T> trial(in, get(state, &State::elastic_left));
-  if (!everywhere(J > 0 && trial.is_finite()))
+  if (!all_of(J > 0 && trial.is_finite()))
     return no_answer_somewhere(*this, in, state, c);
   const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // Cauchy stress by equivalent strain: J stays in the return
   const T plastic_strain = get(state, &State::plastic_strain);
   const Hardening<T> slow(*this, plastic_strain);
   const ValueAndSlopeOf<T> start = slow(plastic_strain);
   const auto yields = mises > start.value;
-  if (in.elastic || !somewhere(yields)) {
+  if (in.elastic || !any_of(yields)) {
     put(state, &State::elastic_left, trial.left);
     return stress_with(trial, J, T(1), c);
   }
   const VonMisesReturn<T> map{*this, slow, start, mises, stiffness, plastic_strain, c.rate_inverse / in.dt, c.rate_power};
   const T root = c.closed_form ? T((mises - start.value) / (stiffness + hardening_modulus)) : map.plastic_increment(in.stress, yields);
-  const T x = where(yields, root, 0), end = mises - stiffness * x, kept = where(yields, end / above_nothing(mises), 1);
-  put(state, &State::elastic_left, where(yields, trial.left_with(kept), trial.left));
+  const T x = where(yields, root, 0), end = mises - stiffness * x, saved = where(yields, end / above_nothing(mises), 1);
+  put(state, &State::elastic_left, where(yields, trial.left_with(saved), trial.left));
   put(state, &State::plastic_strain, T(plastic_strain + x));
   // Trapezoidal in the Kirchhoff stress, exact for linear hardening: the strength before and after the step, at the rate of the step.
   const T work = 0.5 * x * J * (map.rate_factor(x).value * start.value / growth_of(in) + end);
   put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
-  return stress_with(trial, J, kept, c);
+  return stress_with(trial, J, saved, c);
 }
 template Mat3 VonMises::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<Lanes> VonMises::update(const IncrementOf<Lanes>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> VonMises::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
 
 void VonMises::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -148,6 +148,6 @@ T VonMises::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
   return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
 }
 template Real VonMises::wave_speed(const Mat3&, const Constants&) const noexcept;
-template Lanes VonMises::wave_speed(const Mat3Of<Lanes>&, const Constants&) const noexcept;
+template SimdReal VonMises::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 }  // namespace talus

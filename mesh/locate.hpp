@@ -31,7 +31,10 @@ class Locator {
     Real least;                              ///< a point with all coordinates above this lies in no other cell
     bool deep(const Vec<D>& x) const noexcept { return all_above_least<Real>(x); }
     /// Of several points at once.
-    Lanes::Mask deep_each(const Eigen::Matrix<Lanes, D, 1, Eigen::DontAlign>& x) const noexcept { return all_above_least<Lanes>(x); }
+    SimdReal::Mask deep_each(const Eigen::Matrix<SimdReal, D, 1, Eigen::DontAlign>& x) const noexcept
+    {
+      return all_above_least<SimdReal>(x);
+    }
 
    private:
     friend class Locator;

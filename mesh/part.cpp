@@ -53,13 +53,13 @@ Index place_in(std::span<const Index> list, Index number) noexcept
 
 }  // namespace
 
-Index Share::local_cell(Index whole) const noexcept
+Index Subdomain::local_cell(Index whole) const noexcept
 {
   const Index b = place_in(block, whole / block_cells);
   return b == none ? none : b * block_cells + whole % block_cells;
 }
 
-Index Share::local_node(Index whole) const noexcept { return place_in(node, whole); }
+Index Subdomain::local_node(Index whole) const noexcept { return place_in(node, whole); }
 
 template <int D>
 Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, int rings)

@@ -11,7 +11,7 @@ namespace talus {
 
 /// Whose the blocks and nodes of a mesh are that one of several ranks holds a part of, and what number they have in the whole.  A rank that is
 /// alone needs none of it: all lists are empty.
-struct Share {
+struct Subdomain {
   std::vector<Index> block;                ///< local block -> block of the whole mesh, ascending
   std::vector<int> rank_of_block;          ///< of each local block
   std::vector<Index> node;                 ///< local node -> node of the whole mesh, ascending
@@ -40,7 +40,7 @@ struct Share {
 template <int D>
 struct Part {
   Mesh<D> mesh;
-  Share share;
+  Subdomain share;
 };
 
 /// Holds the blocks of `rank` and every block with a cell within `rings` rings of one of their cells: ring 1 shares a node with them,

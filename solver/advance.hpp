@@ -24,25 +24,25 @@ class StopWatch {
 };
 
 template <int D, Kernel<D> K>
-void find_places(Model<D, K>& m);
+void locate_particles(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void sum_on_nodes(Model<D, K>& m);
+void assemble_nodes(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void settle(Model<D, K>& m);
+void damp_towards_rest(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void show_to_particles(Model<D, K>& m, const Kick& kick);
+void project_to_particles(Model<D, K>& m, const Kick& kick);
 template <int D, Kernel<D> K, class Then>
 void remap(Model<D, K>& m, Real mid, Real dt, Then&& then);
 template <int D, Kernel<D> K>
-void respond(Model<D, K>& m, Index body, Index block, Real dt);
+void update_stress_block(Model<D, K>& m, Index body, Index block, Real dt);
 template <int D, Kernel<D> K>
-void respond_as_bodies(Model<D, K>& m, Real dt);
+void update_stress_bodies(Model<D, K>& m, Real dt);
 template <int D, Kernel<D> K>
-bool all_well(Model<D, K>& m);
+bool particles_valid(Model<D, K>& m);
 template <int D, Kernel<D> K>
 void count(Model<D, K>& m);
 template <int D, Kernel<D> K>
-void close_books(Model<D, K>& m);
+void update_balances(Model<D, K>& m);
 
 /// One step of length dt [s] from t = m.clock.time on: a leap-frog.  Places, stress and all loads are those of t; forces act from the time
 /// of the old velocities, t - m.clock.lag, to that of the new ones, t + dt/2, for which walls and waves prescribe theirs; with these
@@ -55,32 +55,32 @@ void advance(Model<D, K>& m, Real dt)
   const Kick kick{time - m.clock.lag, time + dt / 2};
   const Vec<D> gravity = m.loads.gravity(time, ramp);
 
-  m.tally.clear();
-  find_places(m);  //  1
-  if (!all_well(m))
+  m.sums.clear();
+  locate_particles(m);  //  1
+  if (!particles_valid(m))
     return;
-  apply(m.loads, time, ramp, m.followed, m.order, m.particles, m.tally.on_particles);  //  2
+  apply(m.loads, time, ramp, m.followed, m.order, m.particles, m.sums.on_particles);  //  2
   watch.lap(m.timings.locate);
 
   scatter(m);  //  3
   watch.lap(m.timings.scatter);
 
-  sum_on_nodes(m);  //  4
-  apply(m.loads, time, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.tally.on_mesh);
-  m.slaves.lump(m.mesh, m.own, m.nodes);              //  5
-  integrate(gravity, m.clock.lag + dt / 2, m.nodes);  //  6
-  m.walls.give_way(kick.to, dt, *m.ranks, m.nodes);   //  7
-  m.walls.apply(kick, m.nodes, m.tally.at_nodes);     //  7
+  assemble_nodes(m);  //  4
+  apply(m.loads, time, ramp, m.mesh, m.own, std::span(m.nodes.sum), m.sums.on_mesh);
+  m.small_mass_nodes.lump(m.mesh, m.own, m.nodes);         //  5
+  integrate(gravity, m.clock.lag + dt / 2, m.nodes);       //  6
+  m.walls.apply_dashpots(kick.to, dt, *m.ranks, m.nodes);  //  7
+  m.walls.apply(kick, m.nodes, m.sums.at_nodes);           //  7
   if (m.stage.seeks_rest)
-    settle(m);
-  m.slaves.follow(m.mesh, m.own, kick, m.walls, m.nodes.motion, m.tally.beyond_nodes);  //  8
+    damp_towards_rest(m);
+  m.small_mass_nodes.extrapolate(m.mesh, m.own, kick, m.walls, m.nodes.motion, m.sums.beyond_nodes);  //  8
   m.copies.motion.send(m.nodes.motion, Whole{});
   count(m);
-  add_work(m.loads, time, ramp, m.own, m.nodes, m.tally.work_on_mesh);
+  add_work(m.loads, time, ramp, m.own, m.nodes, m.sums.work_on_mesh);
   watch.lap(m.timings.nodes);
 
-  show_to_particles(m, kick);  //  9
-  const auto stress = [&](Index body, Index block) { respond(m, body, block, dt); };
+  project_to_particles(m, kick);  //  9
+  const auto stress = [&](Index body, Index block) { update_stress_block(m, body, block, dt); };
   m.stress_sums.assign(m.order.first.size(), {});
   if (m.transfer.musl) {
     gather_and_return_momentum(m, dt);  // 10
@@ -88,9 +88,9 @@ void advance(Model<D, K>& m, Real dt)
   } else {
     gather(m, dt, stress);  // 10, 12
   }
-  add_work(m.order, m.particles, m.tally.work_on_particles);
-  respond_as_bodies(m, dt);
-  close_books(m);
+  add_work(m.order, m.particles, m.sums.work_on_particles);
+  update_stress_bodies(m, dt);
+  update_balances(m);
   watch.lap(m.timings.gather);  // its share of stresses is told apart by respond_as_bodies()
 
   m.clock = {.step = m.clock.step + 1, .time = time + dt, .dt = dt, .lag = dt / 2};
@@ -98,22 +98,22 @@ void advance(Model<D, K>& m, Real dt)
 
 /// Cells, ranks and rows of the particles.
 template <int D, Kernel<D> K>
-void find_places(Model<D, K>& m)
+void locate_particles(Model<D, K>& m)
 {
-  bool changed = relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.tally, m.health);
+  bool changed = relocate(m.mesh, m.locator, m.exits, m.bodies, m.materials, m.particles, m.order, m.sums, m.health);
   changed |= m.migration(m.share, m.bodies, m.materials, m.particles, m.order);
-  changed |= follow_order(m.bodies, m.materials, m.particles, m.order);
+  changed |= sort_by_cell(m.bodies, m.materials, m.particles, m.order);
   if (changed)
-    follow_rows(m);
+    update_tracked_rows(m);
 }
 
 /// Rows of blocks -> nodes; with a node part, hats stand between.
 template <int D, Kernel<D> K>
-void sum_on_nodes(Model<D, K>& m)
+void assemble_nodes(Model<D, K>& m)
 {
-  if constexpr (HasNodePart<K, D>) {
-    assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.hats.sum);
-    collect(m.kernel.node_part(), m.mesh, m.own, m.hats.sum, !HasOwnValues<K, D>, m.nodes.sum);
+  if constexpr (HasNodeOperators<K, D>) {
+    assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.projected.sum);
+    project_sums(m.kernel.node_operators(), m.mesh, m.own, m.projected.sum, !HasOwnValues<K, D>, m.nodes.sum);
   } else {
     assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.nodes.sum);
   }
@@ -121,13 +121,13 @@ void sum_on_nodes(Model<D, K>& m)
 
 /// Local damping, by what particles feel of the net acceleration: all of it but where operators stand between nodes and values.
 template <int D, Kernel<D> K>
-void settle(Model<D, K>& m)
+void damp_towards_rest(Model<D, K>& m)
 {
   find_net_acceleration(m.nodes);
-  if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>) {
+  if constexpr (HasNodeOperators<K, D> && !HasOwnValues<K, D>) {
     m.copies.felt.send(m.nodes.felt, Numbers{});
-    feel(
-        m.kernel.node_part(), m.own, [&] { m.copies.felt.take(m.nodes.felt, Numbers{}); }, m.hats, m.nodes.felt);
+    filter_acceleration(
+        m.kernel.node_operators(), m.own, [&] { m.copies.felt.take(m.nodes.felt, Numbers{}); }, m.projected, m.nodes.felt);
   }
   if (m.stage.damping > 0)
     damp(m.stage.damping, m.nodes);
@@ -135,13 +135,13 @@ void settle(Model<D, K>& m)
 
 /// Motion of the nodes -> what particles read: the same, or hats, on which walls act once more where their values mix those of nodes.
 template <int D, Kernel<D> K>
-void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] const Kick& kick)
+void project_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] const Kick& kick)
 {
-  if constexpr (HasNodePart<K, D>) {
-    spread(
-        m.kernel.node_part(), m.nodes.motion, [&] { m.copies.motion.take(m.nodes.motion, Whole{}); }, m.hats);
+  if constexpr (HasNodeOperators<K, D>) {
+    project_motion(
+        m.kernel.node_operators(), m.nodes.motion, [&] { m.copies.motion.take(m.nodes.motion, Whole{}); }, m.projected);
     if constexpr (!HasOwnValues<K, D>)
-      m.walls.apply(kick, m.hats.sum, m.hats.motion, m.tally.beyond_nodes);
+      m.walls.apply(kick, m.projected.sum, m.projected.motion, m.sums.beyond_nodes);
   }
 }
 
@@ -150,27 +150,27 @@ void show_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] const K
 template <int D, Kernel<D> K, class Then>
 void remap(Model<D, K>& m, Real mid, Real dt, Then&& then)
 {
-  if constexpr (HasNodePart<K, D>) {
-    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.copies.sums, m.hats.sum);
-    collect_momentum(m.kernel.node_part(), m.mesh, m.own, m.hats.sum, m.nodes.sum);
+  if constexpr (HasNodeOperators<K, D>) {
+    assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.copies.sums, m.projected.sum);
+    project_momentum(m.kernel.node_operators(), m.mesh, m.own, m.projected.sum, m.nodes.sum);
   } else {
     assemble<MomentumAlone>(m.blocks, m.own, m.halo, m.copies.sums, m.nodes.sum);
   }
-  m.slaves.lump_momentum(m.mesh, m.own, m.nodes);
+  m.small_mass_nodes.lump_momentum(m.mesh, m.own, m.nodes);
   parallel_for(static_cast<Index>(m.remapped.size()), [&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     const Vec<D> v = m.nodes.active[i] ? Vec<D>(m.nodes.sum[i].momentum / m.nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
     m.remapped[i] = {v, m.nodes.motion[i].v};
   });
   m.walls.hold(mid, m.remapped);
-  m.slaves.follow_velocity(m.mesh, m.own, m.walls, mid, m.remapped);
+  m.small_mass_nodes.extrapolate_velocity(m.mesh, m.own, m.walls, mid, m.remapped);
   m.copies.motion.send(m.remapped, Whole{});
-  add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.remap, [&](Index n) { return remap_work(m.nodes, m.remapped, n); });
+  add_ranges(std::span<const IndexRange>(m.own.of_block), m.sums.remap, [&](Index n) { return remap_work(m.nodes, m.remapped, n); });
   const auto arrive = [&] { m.copies.motion.take(m.remapped, Whole{}); };
-  if constexpr (HasNodePart<K, D>) {
-    spread_gradient(m.kernel.node_part(), m.remapped, arrive, m.hats);
+  if constexpr (HasNodeOperators<K, D>) {
+    project_gradient(m.kernel.node_operators(), m.remapped, arrive, m.projected);
     gather_gradient(
-        m, m.hats.motion, [] {}, dt, then);
+        m, m.projected.motion, [] {}, dt, then);
   } else {
     gather_gradient(m, m.remapped, arrive, dt, then);
   }
@@ -178,7 +178,7 @@ void remap(Model<D, K>& m, Real mid, Real dt, Then&& then)
 
 /// Stress of the particles of a body in a block, unless their law must know those of other blocks first.
 template <int D, Kernel<D> K>
-void respond(Model<D, K>& m, Index body, Index block, Real dt)
+void update_stress_block(Model<D, K>& m, Index body, Index block, Real dt)
 {
   AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
   if (const auto rows = m.order.rows(body, block); !rows.empty() && !averages_volume(material))
@@ -205,7 +205,7 @@ bool averages_with_earlier(const Model<D, K>& m, Index body, std::vector<Index>&
 
 /// What is of a body as a whole: volumes averaged before the stress, heat after it; and what the particles report.
 template <int D, Kernel<D> K>
-void respond_as_bodies(Model<D, K>& m, Real dt)
+void update_stress_bodies(Model<D, K>& m, Real dt)
 {
   for (Index body = 0; body < m.n_bodies(); ++body) {
     AnyBatch& material = m.materials[static_cast<std::size_t>(body)];
@@ -222,7 +222,7 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
   }
   StressSums most;
   for (const StressSums& sums : m.stress_sums) {
-    m.tally.internal.add(sums.work);
+    m.sums.internal.add(sums.work);
     most.take_extremes(sums);
   }
   m.crossing = most.crossing;
@@ -233,13 +233,13 @@ void respond_as_bodies(Model<D, K>& m, Real dt)
 
 /// Before anything is changed that could not be undone.
 template <int D, Kernel<D> K>
-bool all_well(Model<D, K>& m)
+bool particles_valid(Model<D, K>& m)
 {
   m.health.take(m.ranks->min(m.health.word()));
   if (!m.health.worst())
     return true;
-  m.ranks->sum(m.tally.departed);
-  book(m.tally.departed.value(), m.mass, m.energy);
+  m.ranks->sum(m.sums.departed);
+  book(m.sums.departed.value(), m.mass, m.energy);
   return false;
 }
 
@@ -247,35 +247,35 @@ bool all_well(Model<D, K>& m)
 template <int D, Kernel<D> K>
 void count(Model<D, K>& m)
 {
-  add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.nodes,
+  add_ranges(std::span<const IndexRange>(m.own.of_block), m.sums.nodes,
              [&](Index n) { return node_work(m.stage.damping, m.mesh, m.nodes, n); });
-  add_ranges(std::span<const IndexRange>(m.own.of_block), m.tally.balance,
+  add_ranges(std::span<const IndexRange>(m.own.of_block), m.sums.balance,
              [&](Index n) { return balance_at(m.stage.seeks_rest, m.nodes, n); });
 }
 
 /// The sums of the step, of all ranks, into the ledgers; the length of the next one and the state of health.
 template <int D, Kernel<D> K>
-void close_books(Model<D, K>& m)
+void update_balances(Model<D, K>& m)
 {
   const Vec<D>& gravity = m.nodes.gravity;
   const Real kick = m.nodes.kick;
-  Tally<D>& t = m.tally;
+  StepSums<D>& t = m.sums;
   t.particles.add(static_cast<Real>(m.particles.size()));
   m.ranks->sum(t.digits, t.departed, t.on_particles, t.on_mesh, t.at_nodes, t.beyond_nodes, t.nodes, t.balance, t.work_on_mesh,
                t.work_on_particles, t.internal, t.remap, t.particles, m.walls.pushed());
   m.walls.keep_impulses();
-  std::array<Real, 3> extremes{m.crossing, -m.watched.speed, -t.held_most};
+  std::array<Real, 3> extremes{m.crossing, -m.watched.speed, -t.largest_set_back};
   std::int64_t health = m.health.word();
   m.ranks->least(extremes, health);
   m.health.take(health);
 
   book(t.departed.value(), m.mass, m.energy);
   const NodeWork<D> work = t.nodes.value();
-  const WallWork walls = t.at_nodes.value(), beyond = t.beyond_nodes.value();
-  const Push<D> tractions = t.on_particles.value() + t.on_mesh.value();
+  const BoundaryWork walls = t.at_nodes.value(), beyond = t.beyond_nodes.value();
+  const ForceAndMoment<D> tractions = t.on_particles.value() + t.on_mesh.value();
   m.mass.on_nodes = work.mass;
-  m.mass.held_most = std::max(m.mass.held_most, -extremes[2]);
-  m.momentum.loads += Push<D>::of(kick * work.mass * gravity, kick * moment<D>(work.first_moment, gravity)) + kick * tractions;
+  m.mass.largest_set_back = std::max(m.mass.largest_set_back, -extremes[2]);
+  m.momentum.loads += ForceAndMoment<D>::of(kick * work.mass * gravity, kick * moment<D>(work.first_moment, gravity)) + kick * tractions;
   m.momentum.damping += work.damped;
   m.momentum.on_nodes += work.turned + beyond.turned;
   m.energy.gravity += work.gravity;

@@ -8,24 +8,24 @@ namespace detail {
 /// v_p and, if asked for, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme keeps its own.
 /// With `musl` L is found later, from remapped velocities.
 template <bool increments, bool with_gradient, bool musl, int D, class Through_, class S>
-Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const BunchOf<S>& bunch, Particles<D>& particles) noexcept
+Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const ParticlePackOf<S>& pack, Particles<D>& particles) noexcept
 {
-  const Seen<D> seen = through.template see<increments, with_gradient>(bunch);
+  const Seen<D> seen = through.template see<increments, with_gradient>(pack);
   VecOf<D> v = vector_of(seen.v);
   if constexpr (increments)
-    v = Lanes(1 - pic) * (bunch.load(particles.v) + vector_of(seen.change)) + Lanes(pic) * v;
-  bunch.store(v, particles.v);
+    v = SimdReal(1 - pic) * (pack.load(particles.v) + vector_of(seen.change)) + SimdReal(pic) * v;
+  pack.store(v, particles.v);
   if constexpr (with_gradient) {
     const MatOf<D> L = matrix_of(seen.L);
-    bunch.store(L, musl ? particles.C : particles.L);
+    pack.store(L, musl ? particles.C : particles.L);
     if (scheme == Scheme::apic) {
       if constexpr (Through_::has_apic)
-        for (int lane = 0; lane < bunch.count; ++lane) {
-          const std::size_t p = bunch.p[lane];
+        for (int lane = 0; lane < pack.count; ++lane) {
+          const std::size_t p = pack.p[lane];
           particles.C.set(p, through.apic_field(lane, particles.x[p], lane_of(L, lane)));
         }
       else
-        bunch.store(L, particles.C);
+        pack.store(L, particles.C);
     }
   }
   return seen;
@@ -33,9 +33,9 @@ Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const Bu
 
 /// x <- x + dt v
 template <int D, class S>
-void move(const BunchOf<S>& bunch, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
+void move(const ParticlePackOf<S>& pack, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
 {
-  bunch.store(VecOf<D>(vector_of(x) + Lanes(dt) * vector_of(v)), particles.x);
+  pack.store(VecOf<D>(vector_of(x) + SimdReal(dt) * vector_of(v)), particles.x);
 }
 
 /// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read; ask(p) before, see RowsAhead; then
@@ -62,7 +62,7 @@ void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typen
 template <int D, Kernel<D> K>
 void take_motion([[maybe_unused]] Model<D, K>& m)
 {
-  if constexpr (!HasNodePart<K, D>)
+  if constexpr (!HasNodeOperators<K, D>)
     m.copies.motion.take(m.nodes.motion, Whole{});
 }
 
@@ -74,12 +74,12 @@ void gather(Model<D, K>& m, Real dt, Then&& then)
       m.halo, [&] { take_motion(m); },
       [&](Index b) {
         for_each_reading_run(
-            m, b, m.motion(), [&](std::size_t p) { AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.L); },
+            m, b, m.motion(), [&](std::size_t p) { Prefetch<S>::row(p, m.particles.x, m.particles.v, m.particles.L); },
             [&](Index, std::span<const Index> run, auto& through) {
-              for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
-                through.place(bunch, x);
-                const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, bunch, m.particles);
-                move(bunch, x, seen.v, dt, m.particles);
+              for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+                through.place(pack, x);
+                const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, pack, m.particles);
+                move(pack, x, seen.v, dt, m.particles);
               });
             },
             [&](Index body) { then(body, b); });
@@ -97,13 +97,13 @@ void gather_and_return_momentum(Model<D, K>& m, Real dt)
     const auto rows = m.blocks.rows(b);
     std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
     for_each_reading_run(
-        m, b, m.motion(), [&](std::size_t p) { AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields()); },
+        m, b, m.motion(), [&](std::size_t p) { Prefetch<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields()); },
         [&](Index c, std::span<const Index> run, auto& through) {
           through.clear();
-          for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
-            through.place(bunch, x);
-            take_velocity<increments, affine, true>(through, m.transfer.scheme, pic, bunch, m.particles);
-            through.template deposit<affine, false, false>(m.particles, bunch, x, m.particles.affine_fields());
+          for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+            through.place(pack, x);
+            take_velocity<increments, affine, true>(through, m.transfer.scheme, pic, pack, m.particles);
+            through.template deposit<affine, false, false>(m.particles, pack, x, m.particles.affine_fields());
           });
           through.template add_to<affine, false, false>(rows, m.blocks.slots(c), NodeSum<D>::unseen);
         },
@@ -147,13 +147,13 @@ void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::M
   in_numbers_of(m.particles, [&]<class S>(S) {
     for_each_reading_block(m.halo, arrive, [&](Index b) {
       detail::for_each_reading_run(
-          m, b, remapped, [&](std::size_t p) { AskFor<S>::row(p, m.particles.L); },
+          m, b, remapped, [&](std::size_t p) { Prefetch<S>::row(p, m.particles.L); },
           [&](Index, std::span<const Index> run, auto& through) {
-            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
-              through.place(bunch, x);
-              const Seen<D> seen = through.template see<true, true>(bunch);
-              bunch.store(matrix_of(seen.L), m.particles.L);
-              detail::move(bunch, x, seen.change, dt, m.particles);
+            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+              through.place(pack, x);
+              const Seen<D> seen = through.template see<true, true>(pack);
+              pack.store(matrix_of(seen.L), m.particles.L);
+              detail::move(pack, x, seen.change, dt, m.particles);
             });
           },
           [&](Index body) { then(body, b); });

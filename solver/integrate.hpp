@@ -76,7 +76,7 @@ NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, 
   if (damping > 0 && !nodes.bound[i]) {
     const Vec<D> brake = nodes.kick * sum.mass * damping_of<D>(nodes.felt[i], v_old, damping);
     work.damping = brake.dot(v_mid);
-    work.damped = Push<D>::at(mesh.node(n), brake);
+    work.damped = ForceAndMoment<D>::at(mesh.node(n), brake);
   }
   return work;
 }

@@ -27,7 +27,7 @@ struct Clock {
   Real lag = 0;           ///< by how much velocities are behind `time` [s]: half a step, or nothing where they have just been given
   static constexpr auto fields()
   {
-    return std::tuple{kept("step", &Clock::step), kept("time", &Clock::time), kept("dt", &Clock::dt), kept("lag", &Clock::lag)};
+    return std::tuple{saved("step", &Clock::step), saved("time", &Clock::time), saved("dt", &Clock::dt), saved("lag", &Clock::lag)};
   }
 };
 
@@ -48,19 +48,19 @@ struct StageState {
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? ramp_at(ramp_shape, (time - begin) / ramp_time) : Real{1}; }
   static constexpr auto fields()
   {
-    return std::tuple{kept("number", &StageState::number),
-                      kept("first_step", &StageState::first_step),
-                      kept("balanced", &StageState::balanced),
-                      kept("damping", &StageState::damping),
-                      kept("altitude", &StageState::altitude),
-                      kept("pull", &StageState::pull),
-                      kept("begin", &StageState::begin),
-                      kept("ramp_time", &StageState::ramp_time),
-                      kept("elastic", &StageState::elastic),
-                      kept("seeks_rest", &StageState::seeks_rest),
-                      kept("done", &StageState::done),
-                      kept("first_residual", &StageState::first_residual),
-                      kept("ramp_shape", &StageState::ramp_shape)};
+    return std::tuple{saved("number", &StageState::number),
+                      saved("first_step", &StageState::first_step),
+                      saved("balanced", &StageState::balanced),
+                      saved("damping", &StageState::damping),
+                      saved("altitude", &StageState::altitude),
+                      saved("pull", &StageState::pull),
+                      saved("begin", &StageState::begin),
+                      saved("ramp_time", &StageState::ramp_time),
+                      saved("elastic", &StageState::elastic),
+                      saved("seeks_rest", &StageState::seeks_rest),
+                      saved("done", &StageState::done),
+                      saved("first_residual", &StageState::first_residual),
+                      saved("ramp_shape", &StageState::ramp_shape)};
   }
 };
 
@@ -70,23 +70,23 @@ struct Timings {
   Real particle_steps{};
   static constexpr auto fields()
   {
-    return std::tuple{kept("locate", &Timings::locate),
-                      kept("scatter", &Timings::scatter),
-                      kept("nodes", &Timings::nodes),
-                      kept("gather", &Timings::gather),
-                      kept("stress", &Timings::stress),
-                      kept("output", &Timings::output),
-                      kept("particle_steps", &Timings::particle_steps)};
+    return std::tuple{saved("locate", &Timings::locate),
+                      saved("scatter", &Timings::scatter),
+                      saved("nodes", &Timings::nodes),
+                      saved("gather", &Timings::gather),
+                      saved("stress", &Timings::stress),
+                      saved("output", &Timings::output),
+                      saved("particle_steps", &Timings::particle_steps)};
   }
 };
 
 /// The way of a kernel's particles to the nodes and back; what they deposit is its `Sum`, what they read its `Motion`.
 template <int D, Kernel<D> K>
-using Through = std::conditional_t<HasOwnValues<K, D>, ThroughBoth<D, K>,
-                                   std::conditional_t<HasNodePart<K, D>, ThroughHats<D, K>, ThroughWeights<D, K>>>;
+using Through = std::conditional_t<HasOwnValues<K, D>, MixedTransfer<D, K>,
+                                   std::conditional_t<HasNodeOperators<K, D>, ProjectedTransfer<D, K>, DirectTransfer<D, K>>>;
 
 /// What no state may pass; see guards.hpp.
-struct Guards {
+struct RunLimits {
   Real speed = std::numeric_limits<Real>::infinity();  ///< of any particle [m/s]
   Real gain = std::numeric_limits<Real>::infinity();   ///< energy that nothing worked for, over the largest term
   Real mass = 1e-9;                                    ///< between particles and nodes, over all of it
@@ -121,7 +121,7 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
 }
 
 /// What the guards have seen since the start of the run.
-struct Watched {
+struct LimitMonitor {
   Real speed{};                        ///< of the fastest particle in the last step [m/s]
   Real fastest{};                      ///< the same, in any step
   Real gain{}, mass{};                 ///< largest, as in Guards
@@ -129,9 +129,10 @@ struct Watched {
   std::string failure;                 ///< of particles that were deleted for it, the last one
   static constexpr auto fields()
   {
-    return std::tuple{kept("speed", &Watched::speed),    kept("fastest", &Watched::fastest),   kept("gain", &Watched::gain),
-                      kept("mass", &Watched::mass),      kept("speeding", &Watched::speeding), kept("gaining", &Watched::gaining),
-                      kept("failure", &Watched::failure)};
+    return std::tuple{saved("speed", &LimitMonitor::speed),       saved("fastest", &LimitMonitor::fastest),
+                      saved("gain", &LimitMonitor::gain),         saved("mass", &LimitMonitor::mass),
+                      saved("speeding", &LimitMonitor::speeding), saved("gaining", &LimitMonitor::gaining),
+                      saved("failure", &LimitMonitor::failure)};
   }
 };
 
@@ -140,10 +141,10 @@ struct Watched {
 inline constexpr int rings_held = 3;
 
 /// What is to be known here of nodes that other ranks own.
-struct Copies {
-  Letters sums;    ///< of hats, where unknowns of own nodes collect from them
-  Letters motion;  ///< that own particles read, or the hats that they read
-  Letters felt;    ///< accelerations, where hats stand between
+struct GhostNodes {
+  HaloExchange sums;    ///< of hats, where unknowns of own nodes collect from them
+  HaloExchange motion;  ///< that own particles read, or the hats that they read
+  HaloExchange felt;    ///< accelerations, where hats stand between
 };
 
 template <int D, Kernel<D> K>
@@ -153,10 +154,10 @@ struct Model {
   K kernel;
   BlockRows<D, typename Through<D, K>::Sum> blocks;
 
-  Exchange* ranks = &one_rank();  ///< that share the run
-  Share share;
+  Communicator* ranks = &one_rank();  ///< that share the run
+  Subdomain share;
   Halo<typename Through<D, K>::Sum> halo;
-  Copies copies;
+  GhostNodes copies;
   Migration<D> migration;
   OwnNodes own;
 
@@ -168,20 +169,20 @@ struct Model {
   FollowedRows followed;  ///< particles that carry tractions
 
   Nodes<D> nodes;
-  Hats<D> hats;                         ///< if the kernel has a node part
+  ProjectedNodes<D> projected;          ///< if the kernel has a node part
   std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, the step's own in `change`
-  Slaves<D> slaves;
+  SmallMassNodes<D> small_mass_nodes;
   std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
   std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
   std::vector<Real> averaged;           ///< volume ratios of average_volume(), scratch
   std::vector<Index> averaged_bodies;   ///< bodies that average_volume() takes as one, scratch
   std::vector<StressSums> stress_sums;  ///< of the particles of each body in each block, scratch
 
-  Tally<D> tally;  ///< of the step at hand
+  StepSums<D> sums;  ///< of the step at hand
   Transfer transfer;
   Loads<D> loads;
   Water water;
-  Walls<D> walls;
+  BoundaryConditions<D> walls;
   Exits exits;
   Clock clock;
   StageState stage;
@@ -190,9 +191,9 @@ struct Model {
   MomentumLedger<D> momentum;
   Real residual = 0;  ///< of the last step: unbalanced nodal force over loads
   Real crossing = 0;  ///< shortest time in which a wave crosses the cell of a particle [s]; the stable step is a share of it
-  Guards guards;
-  Watched watched;
-  Health health;
+  RunLimits guards;
+  LimitMonitor watched;
+  ParticleErrors health;
   Timings timings;
 
   explicit Model(Mesh<D> m, const Options<K>& options = {})
@@ -206,40 +207,42 @@ struct Model {
     nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
     nodes.motion.resize(nodes.sum.size());
     nodes.active.resize(nodes.sum.size());
-    if constexpr (HasNodePart<K, D>) {
-      hats.sum.resize(nodes.sum.size());
-      hats.motion.resize(nodes.sum.size());
+    if constexpr (HasNodeOperators<K, D>) {
+      projected.sum.resize(nodes.sum.size());
+      projected.motion.resize(nodes.sum.size());
     }
   }
   /// Becomes that of one of several ranks, its mesh being their part of a larger one.  Every rank has to join.
-  void join(Exchange& others, Share part)
+  void join(Communicator& others, Subdomain part)
   {
     ranks = &others;
     share = std::move(part);
     halo = Halo(*ranks, mesh, share, blocks);
     migration = Migration<D>(*ranks, share);
     own = own_nodes(mesh, share);
-    slaves = Slaves<D>(*ranks, mesh, share, own);
-    const auto copy = [&](Topic topic, const std::vector<std::uint8_t>& wanted) { return copies_of_nodes(*ranks, share, topic, wanted); };
+    small_mass_nodes = SmallMassNodes<D>(*ranks, mesh, share, own);
+    const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
+      return copies_of_nodes(*ranks, share, topic, wanted);
+    };
     std::vector<std::uint8_t> read = nodes_read(share, blocks);
-    if constexpr (HasNodePart<K, D>) {
+    if constexpr (HasNodeOperators<K, D>) {
       std::vector<std::uint8_t> collected = spread_by_rings(mesh, own.owned, 1);
       for (std::size_t n = 0; n < read.size(); ++n)
         collected[n] |= read[n];
-      copies.sums = copy(Topic::sums, collected);
-      copies.motion = copy(Topic::motion, spread_by_rings(mesh, read, 1));
-      copies.felt = copy(Topic::felt, spread_by_rings(mesh, own.owned, 2));
-      hats.find_late(mesh, own);
+      copies.sums = copy(MessageTag::sums, collected);
+      copies.motion = copy(MessageTag::motion, spread_by_rings(mesh, read, 1));
+      copies.felt = copy(MessageTag::felt, spread_by_rings(mesh, own.owned, 2));
+      projected.find_late(mesh, own);
     } else {
-      copies.motion = copy(Topic::motion, read);
+      copies.motion = copy(MessageTag::motion, read);
     }
   }
   Index n_bodies() const noexcept { return static_cast<Index>(bodies.size()); }
   /// What particles read.
   const std::vector<typename Through<D, K>::Motion>& motion() const noexcept
   {
-    if constexpr (HasNodePart<K, D>)
-      return hats.motion;
+    if constexpr (HasNodeOperators<K, D>)
+      return projected.motion;
     else
       return nodes.motion;
   }
@@ -262,7 +265,7 @@ inline constexpr Real least_share_of_hats = 0.2;
 
 /// What goes by rows, after these have changed: where those stand who are followed; scratch.
 template <int D, Kernel<D> K>
-void follow_rows(Model<D, K>& m)
+void update_tracked_rows(Model<D, K>& m)
 {
   m.averaged_bodies.reserve(m.bodies.size());
   if (m.stars)
@@ -284,7 +287,7 @@ template <int D, Kernel<D> K>
 void take_rows(Model<D, K>& m)
 {
   sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
-  follow_rows(m);
+  update_tracked_rows(m);
   if (!m.share.alone())
     m.migration.agree_on_columns(m.particles);
 }
@@ -344,7 +347,7 @@ void make_ready(Model<D, K>& m, std::span<const std::vector<AnyBatch>> to_come =
     m.remapped.resize(m.nodes.sum.size());
   m.followed = FollowedRows(ids_of(m.loads.on_particles));
   bind_walls(m);
-  m.nodes.least_share_of_gross = HasNodePart<K, D> && !HasOwnValues<K, D> ? least_share_of_hats : least_share_of_cells;
+  m.nodes.least_share_of_gross = HasNodeOperators<K, D> && !HasOwnValues<K, D> ? least_share_of_hats : least_share_of_cells;
   m.nodes.least_share = m.kernel.claims().non_negative ? least_share : least_share_of_signed_weights;
   take_rows(m);
   m.mass.start = totals(m).mass;

@@ -38,9 +38,9 @@ template <int D, Kernel<D> K>
 Real energy_gain(const Model<D, K>& m, Real kinetic)
 {
   const EnergyLedger e = m.energy.at_velocities();
-  const Real put_in = e.gravity + e.loads + e.walls + e.arrival + e.friction + e.damping;
+  const Real insert_particles = e.gravity + e.loads + e.walls + e.arrival + e.friction + e.damping;
   const Real largest = std::max(m.guards.least_energy, e.largest_term(kinetic));
-  return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - put_in) / largest : 0;
+  return largest > 0 ? (kinetic + e.carried_away - e.kinetic_start + e.internal - insert_particles) / largest : 0;
 }
 
 enum class Look : std::uint8_t { between_steps, at_end_of_stage };
@@ -53,8 +53,8 @@ std::optional<std::string> fault(Model<D, K>& m, Look look)
   constexpr int steps_between_sums = 10;
   if (m.clock.step == m.stage.first_step)
     return std::nullopt;  // no step yet: it was looked at when the stage before ended
-  const Guards& limit = m.guards;
-  Watched& seen = m.watched;
+  const RunLimits& limit = m.guards;
+  LimitMonitor& seen = m.watched;
   seen.fastest = std::max(seen.fastest, seen.speed);
   if (seen.speed > limit.speed) {
     ++seen.speeding;

@@ -7,16 +7,16 @@
 namespace talus {
 
 template <int D>
-struct Frame {
+struct RunView {
   const Mesh<D>& mesh;
-  const Share& share;  ///< whose its blocks and nodes are
+  const Subdomain& share;  ///< whose its blocks and nodes are
   const Particles<D>& particles;
   const std::vector<Body>& bodies;
   const std::vector<AnyBatch>& materials;
   const CellOrder& order;
-  Exchange* ranks;  ///< that share the run
+  Communicator* ranks;  ///< that share the run
   const Nodes<D>& nodes;
-  const Walls<D>& walls;
+  const BoundaryConditions<D>& walls;
   const Loads<D>& loads;
   const Clock& clock;
   const StageState& stage;
@@ -25,8 +25,8 @@ struct Frame {
   const EnergyLedger& energy;  ///< since the beginning of the stage
   const MassLedger<D>& mass;
   const MomentumLedger<D>& momentum;
-  const Watched& watched;
-  const Guards& guards;
+  const LimitMonitor& watched;
+  const RunLimits& guards;
   const Timings& timings;
   Real residual, crossing;
   std::int64_t migrated;          ///< particles that came to this rank or left it so far
@@ -44,7 +44,7 @@ std::int64_t count_nodes_as_corners([[maybe_unused]] const Model<D, K>& m)
 }
 
 template <int D, Kernel<D> K>
-Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
+RunView<D> frame_of(const Model<D, K>& m, const Stage& stage)
 {
   return {.mesh = m.mesh,
           .share = m.share,
@@ -74,7 +74,7 @@ Frame<D> frame_of(const Model<D, K>& m, const Stage& stage)
 
 /// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.
 template <int D>
-Real bytes_per_particle(const Frame<D>& frame)
+Real bytes_per_particle(const RunView<D>& frame)
 {
   std::size_t bytes = 0;
   frame.particles.for_each_column(

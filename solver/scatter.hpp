@@ -25,8 +25,8 @@ void scatter(Model<D, K>& m)
     Through<D, K> through(m.kernel);
     bool occupied = false;
     const auto ask = [&](std::size_t p) {
-      AskFor<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields(), m.particles.stress, m.particles.mass,
-                     m.particles.volume);
+      Prefetch<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields(), m.particles.stress, m.particles.mass,
+                       m.particles.volume);
     };
     for (Index body = 0; body < m.n_bodies(); ++body)
       for_each_run(
@@ -36,9 +36,9 @@ void scatter(Model<D, K>& m)
               std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
             through.enter(m.mesh, c);
             through.clear();
-            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const BunchOf<S>& bunch, const Pack(&x)[D]) {
-              through.place(bunch, x);
-              through.template deposit<affine, loaded, true>(m.particles, bunch, x, m.particles.affine_fields());
+            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+              through.place(pack, x);
+              through.template deposit<affine, loaded, true>(m.particles, pack, x, m.particles.affine_fields());
             });
             through.template add_to<affine, loaded, true>(rows, m.blocks.slots(c), lightest_of<S>(m.particles, run));
           },

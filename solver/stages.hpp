@@ -21,7 +21,7 @@ struct Stage {
   std::vector<StartStress> start_stress{};   ///< of each body; empty: they begin with the stress that they have
   std::vector<Index> start_stress_bodies{};  ///< that begin with it, by their numbers; none: all
   bool reset_displacement = false;
-  Where where;
+  SourceLocation where;
 };
 
 struct StepLimits {
@@ -41,26 +41,26 @@ struct StageResult {
   Real first_residual{};              ///< of its first step: how far the state that it began with was from balance
   static constexpr auto fields()
   {
-    return std::tuple{kept("name", &StageResult::name),
-                      kept("kind", &StageResult::kind),
-                      kept("start", &StageResult::start),
-                      kept("end", &StageResult::end),
-                      kept("steps", &StageResult::steps),
-                      kept("residual", &StageResult::residual),
-                      kept("energy", &StageResult::energy),
-                      kept("kinetic_end", &StageResult::kinetic_end),
-                      kept("plastic_end", &StageResult::plastic_end),
-                      kept("first_residual", &StageResult::first_residual)};
+    return std::tuple{saved("name", &StageResult::name),
+                      saved("kind", &StageResult::kind),
+                      saved("start", &StageResult::start),
+                      saved("end", &StageResult::end),
+                      saved("steps", &StageResult::steps),
+                      saved("residual", &StageResult::residual),
+                      saved("energy", &StageResult::energy),
+                      saved("kinetic_end", &StageResult::kinetic_end),
+                      saved("plastic_end", &StageResult::plastic_end),
+                      saved("first_residual", &StageResult::first_residual)};
   }
 };
 
 /// What the loop tells whoever watches; the watcher may look at the model and not touch it.  Before a step all is told of the one before:
 /// what is kept of the model then is all that the steps to come depend on.  So it is where the run gives up, unless a step itself failed.
-enum class Moment : std::uint8_t { stage_begins, step_begins, step_done, stage_done, given_up };
+enum class RunEvent : std::uint8_t { stage_begins, step_begins, step_done, stage_done, given_up };
 
 /// The worst that particles report of themselves, in words.
 template <int D, Kernel<D> K>
-std::string describe(const Model<D, K>& m, const Health::Finding& finding)
+std::string describe(const Model<D, K>& m, const ParticleErrors::Finding& finding)
 {
   const auto at = std::find(m.particles.id.begin(), m.particles.id.end(), finding.id);
   if (at == m.particles.id.end())
@@ -91,11 +91,11 @@ void stop_if_unwell(Model<D, K>& m, bool step_is_done)
   std::string what = m.ranks->first(describe(m, *finding));
   const bool may_go = step_is_done && m.guards.failed > 0;
   if (may_go) {
-    ExactSums<Departed<D>> departed;
+    ExactSums<RemovedParticles<D>> departed;
     remove_failed(m.mesh, m.bodies, m.materials, m.particles, m.order, departed);
     m.ranks->sum(departed);
     book(departed.value(), m.mass, m.energy);
-    follow_rows(m);
+    update_tracked_rows(m);
     m.health.clear();
     m.watched.failure = what;
     if (m.mass.failed <= m.guards.failed * m.mass.start)
@@ -142,7 +142,7 @@ void begin_stage(Model<D, K>& m, const Stage& stage, Index number)
               .largest_before = m.energy.largest_term(kinetic),
               .largest_seen = std::max(m.energy.largest_seen, m.energy.largest_term(kinetic))};
   m.crossing = m.ranks->min(shortest_crossing(m.mesh, m.materials, m.particles));
-  ExactSums<Push<D>> total;
+  ExactSums<ForceAndMoment<D>> total;
   apply(m.loads, time, m.stage.ramp(time), m.followed, m.order, m.particles, total);
   m.stage.altitude = m.ranks->min(least_altitude(m.mesh, m.particles));
   m.stage.pull = m.ranks->max(largest_pull(m.particles));
@@ -174,10 +174,10 @@ std::optional<std::string> obstacle(Model<D, K>& m, const StepLimits& limits)
 /// RunError naming step and time; before it the state, which is whole, is shown as it was `before` it was looked at: a run that goes on from
 /// there looks again, and counts once what it sees.
 template <int D, Kernel<D> K, class Watch>
-[[noreturn]] void give_up(Model<D, K>& m, const Watched& before, Watch&& watch, const std::string& why)
+[[noreturn]] void abort_run(Model<D, K>& m, const LimitMonitor& before, Watch&& watch, const std::string& why)
 {
   m.watched = before;
-  watch(m, Moment::given_up);
+  watch(m, RunEvent::given_up);
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.clock.step, m.clock.time, why));
 }
 
@@ -232,10 +232,10 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   constexpr int steps_in_balance = 20;  // an oscillation passes through balance; this many steps in a row do not
   const Real begin = m.stage.begin, end = begin + stage.duration;
   while (m.clock.time < end * (1 - 1e-14) && m.stage.balanced < steps_in_balance) {
-    watch(m, Moment::step_begins);
-    const Watched before = m.watched;
+    watch(m, RunEvent::step_begins);
+    const LimitMonitor before = m.watched;
     if (const auto why = obstacle(m, limits))
-      give_up(m, before, watch, *why);
+      abort_run(m, before, watch, *why);
     const Real wanted = wanted_step(m, limits), left = end - m.clock.time;
     const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
     const std::int64_t step = m.clock.step;
@@ -246,11 +246,11 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
     // Energies of all particles are added up only where the rest is as it should be.
     const bool may_rest = stage.residual && m.clock.time >= begin + stage.ramp && m.residual < *stage.residual;
     m.stage.balanced = may_rest && rest_conditions(m, stage).met() ? m.stage.balanced + 1 : 0;
-    watch(m, Moment::step_done);
+    watch(m, RunEvent::step_done);
   }
-  const Watched before = m.watched;
+  const LimitMonitor before = m.watched;
   if (const auto why = fault(m, Look::at_end_of_stage))
-    give_up(m, before, watch, *why);
+    abort_run(m, before, watch, *why);
   const Totals<D> now = totals(m);
   const StageResult result{stage.name,
                            stage.kind,
@@ -263,13 +263,13 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
                            plastic_work(m),
                            m.stage.first_residual};
   if (stage.residual && m.stage.balanced < steps_in_balance)
-    give_up(m, before, watch,
-            fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: {}; give it more duration or damping", stage.name,
-                        stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration,
-                        why_not_at_rest(rest_conditions(m, stage), m.stage.balanced, steps_in_balance)));
+    abort_run(m, before, watch,
+              fmt::format("stage \"{}\"{} did not come to rest within {:.6g} s: {}; give it more duration or damping", stage.name,
+                          stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", stage.duration,
+                          why_not_at_rest(rest_conditions(m, stage), m.stage.balanced, steps_in_balance)));
   if (stage.residual) {
     m.energy.set_to_rest = now.kinetic;
-    m.momentum.rest += Push<D>::of(-now.momentum, -now.angular);
+    m.momentum.rest += ForceAndMoment<D>::of(-now.momentum, -now.angular);
     m.particles.v.assign(m.particles.v.size(), Vec<D>::Zero());
     m.clock.lag = 0;
     for (auto* affine : {&m.particles.L, &m.particles.C})
@@ -278,7 +278,7 @@ StageResult finish_stage(Model<D, K>& m, const Stage& stage, const StepLimits& l
   if (stage.reset_displacement && !m.particles.x0.empty())
     m.particles.x0 = m.particles.x;
   m.stage.done = true;
-  watch(m, Moment::stage_done);
+  watch(m, RunEvent::stage_done);
   return result;
 }
 
@@ -287,7 +287,7 @@ template <int D, Kernel<D> K, class Watch>
 StageResult run_stage(Model<D, K>& m, const Stage& stage, const StepLimits& limits, Watch&& watch, Index number = 0)
 {
   begin_stage(m, stage, number);
-  watch(m, Moment::stage_begins);
+  watch(m, RunEvent::stage_begins);
   return finish_stage(m, stage, limits, watch);
 }
 

@@ -11,13 +11,13 @@ struct State {
   Particles<D>& particles;
   std::vector<Body>& bodies;
   std::vector<AnyBatch>& materials;
-  Walls<D>& walls;
+  BoundaryConditions<D>& walls;
   Clock& clock;
   StageState& stage;
   EnergyLedger& energy;
   MassLedger<D>& mass;
   MomentumLedger<D>& momentum;
-  Watched& watched;
+  LimitMonitor& watched;
   Timings& timings;
   Real &residual, &crossing;
 };
@@ -45,7 +45,7 @@ template <int D, Kernel<D> K>
 void adopt_state(Model<D, K>& m)
 {
   if (!m.share.alone())
-    take_own_particles(*m.ranks, m.share, m.bodies, m.materials, m.particles);
+    receive_owned_particles(*m.ranks, m.share, m.bodies, m.materials, m.particles);
   take_rows(m);
 }
 
@@ -55,13 +55,13 @@ struct LooseState {
   Particles<D> particles;
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
-  Walls<D> walls;
+  BoundaryConditions<D> walls;
   Clock clock;
   StageState stage;
   EnergyLedger energy;
   MassLedger<D> mass;
   MomentumLedger<D> momentum;
-  Watched watched;
+  LimitMonitor watched;
   Timings timings;
   Real residual = 0, crossing = 0;
 };

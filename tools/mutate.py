@@ -57,11 +57,13 @@ OF_THE_PROGRAM = "AccountsByHand.*:Run.*:Stages.*:Restart.*-*Nightly*"
 GROUPS = {
     "laws": Group(("materials/*.cpp", "materials/*.hpp"), (("talus_materials_tests", ALL),)),
     "kernels": Group(("kernels/*.cpp", "kernels/*.hpp"), (("talus_kernels_tests", ALL), ("talus_solver_tests", ALL))),
-    "transfers": Group(("solver/scatter.hpp", "solver/gather.hpp", "solver/through_*.hpp", "solver/transfer/projected_nodes.hpp", "solver/transfer/deposit.hpp",
-                        "solver/state/nodes.hpp", "solver/state/transfer.hpp", "solver/slaves.*"),
+    "transfers": Group(("solver/scatter.hpp", "solver/gather.hpp", "solver/transfer/*.hpp", "solver/state/nodes.hpp", "solver/state/transfer.hpp",
+                        "solver/boundary/small_mass_nodes.*"),
                        (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
-    "walls": Group(("solver/walls.*", "solver/loads.*"), (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
-    "balances": Group(("solver/state/ledger.hpp", "solver/state/step_sums.hpp", "solver/state/sums.hpp", "app/accounts.*"),
+    "walls": Group(("solver/boundary/boundary_conditions.*", "solver/loads/loads.*"),
+                   (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
+    "balances": Group(("solver/state/ledger.hpp", "solver/state/node_work.hpp", "solver/state/step_sums.hpp", "solver/state/sums.hpp",
+                       "app/observers/accounts.*"),
                      (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
 }
 

@@ -215,7 +215,7 @@ class CommandLine {
     drive->add_option("file", drive_.file, "material and paths (.yaml); with --test a scene")->type_name(scene_value)->required();
     drive->add_option("--out", drive_.out, "write the table to this .csv; default the screen, and with --test nowhere");
     drive->add_option("--set", drive_.set, set_help);
-    constexpr auto tests = words(Laboratory{});
+    constexpr auto tests = enum_names(Laboratory{});
     CLI::Option* test = drive->add_option("--test", drive_.test, or_list(std::vector<std::string>(tests.begin(), tests.end())));
     test->type_name(one_of(std::vector<std::string>(tests.begin(), tests.end())));
     const auto of_test = [&](const char* name, auto& value, const char* help) { return drive->add_option(name, value, help)->needs(test); };

@@ -55,7 +55,7 @@ std::string csv_of(const PointTable& table, const std::vector<MeasuredColumn>& c
 }
 
 /// One particle of a law as a scene or a test file gives it.
-AnyBatch one_particle(const AnyLaw& law, const std::string& name, const Where& where)
+AnyBatch one_particle(const AnyLaw& law, const std::string& name, const SourceLocation& where)
 {
   return std::visit([&](const auto& typed) { return make_any_batch(typed, 0, 1, name, where); }, law);
 }
@@ -73,7 +73,7 @@ void drive_along_paths(const DriveOptions& options)
 
 Laboratory test_named(const std::string& name)
 {
-  const auto known = words(Laboratory{});
+  const auto known = enum_names(Laboratory{});
   const auto found = std::find(known.begin(), known.end(), name);
   if (found == known.end())
     throw Error(fmt::format("unknown test \"{}\"{}", name, suggestion(name, std::vector<std::string>(known.begin(), known.end()))));
@@ -88,7 +88,7 @@ const MaterialSpec& material_named(const Scene& scene, const std::optional<std::
     if (name ? material.name == *name : scene.materials.size() == 1)
       return material;
   }
-  Where where = scene.materials.front().where;
+  SourceLocation where = scene.materials.front().where;
   where.path = "materials";
   if (!name)
     throw SceneErrors(where, fmt::format("--material is needed where there are several: {}", or_list(known)));

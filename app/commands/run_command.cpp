@@ -92,34 +92,34 @@ class Run {
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     StopWatch of_step;
-    Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
-                           Real seconds = 0;
-                           of_step.lap(seconds);
-                           if (moment == Moment::step_done)
-                             thread_choice_.took(seconds);
-                           recorder.watch(frame, moment);
-                           if (moment == Moment::step_begins) {
-                             checkpoints.see(frame, recorder);
-                             set_threads(thread_choice_.next());
-                             of_step = {};
-                           }
-                           if (moment == Moment::given_up)
-                             checkpoints.write(frame, recorder);
-                         },
-                         [&](const Frame<D>& frame, const StageResult& result) {
-                           recorder.stage_done(result);
-                           checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
-                         }};
+    RunCallbacks<D> audience{[&](const RunView<D>& frame, RunEvent moment) {
+                               Real seconds = 0;
+                               of_step.lap(seconds);
+                               if (moment == RunEvent::step_done)
+                                 thread_choice_.took(seconds);
+                               recorder.watch(frame, moment);
+                               if (moment == RunEvent::step_begins) {
+                                 checkpoints.see(frame, recorder);
+                                 set_threads(thread_choice_.next());
+                                 of_step = {};
+                               }
+                               if (moment == RunEvent::given_up)
+                                 checkpoints.write(frame, recorder);
+                             },
+                             [&](const RunView<D>& frame, const StageResult& result) {
+                               recorder.stage_done(result);
+                               checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
+                             }};
     fs::path taken;
     const auto laws = setup.laws;
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
-    audience.changed = [&](const Frame<D>& frame, const Stage& stage, const StageNews& news) {
+    audience.changed = [&](const RunView<D>& frame, const Stage& stage, const StageReport& news) {
       recorder.changed(tell(frame, stage, news));
     };
     if (from_)
       audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
-    audience.ready = [&](const Frame<D>& frame) {
+    audience.ready = [&](const RunView<D>& frame) {
       summary_.nodes_as_corners = world().sum(frame.nodes_as_corners);
       check_disk_space(folder_, frame, scene_.outputs, time_left(frame));
       world().together([&] { prepare(frame); });
@@ -147,7 +147,7 @@ class Run {
     const StopRequests requests;  // until the summary is written
     try {
       std::optional<FloatingPointTraps> traps(std::in_place);
-      simulate(scene_, std::move(mesh), std::move(setup), audience, moves_of_shares(mesh_digest, traps));
+      simulate(scene_, std::move(mesh), std::move(setup), audience, load_balancing_of(mesh_digest, traps));
       finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {
       const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), shell_word(folder_));
@@ -180,7 +180,7 @@ class Run {
   }
   std::string strict_message() const { return fmt::format("{} (strict); the results are complete", fmt::join(failed_accounts_, "; ")); }
 
-  bool is_over(const Frame<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
+  bool is_over(const RunView<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
 
   RunIdentity identity_of(std::uint64_t mesh_digest, const Setup<D>& setup) const
   {
@@ -257,7 +257,7 @@ class Run {
   }
 
   /// Of all stages [s], at most.
-  Real time_left(const Frame<D>& frame) const
+  Real time_left(const RunView<D>& frame) const
   {
     Real time = from_ ? 0 - frame.clock.time : 0;
     for (const Stage& stage : stages_)
@@ -266,7 +266,7 @@ class Run {
   }
 
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".
-  void prepare(const Frame<D>& frame)
+  void prepare(const RunView<D>& frame)
   {
     if (from_)
       edits_ = find_edits(from_->identity().scene_file, from_->folder(), from_->identity().scene_text, from_->identity().set);
@@ -299,7 +299,7 @@ class Run {
   }
 
   /// Summary, mesh and state at the start; a mesh that is there is that of the run, or what the user has made of it.
-  void write_first_files(const fs::path& place, const Frame<D>& frame) const
+  void write_first_files(const fs::path& place, const RunView<D>& frame) const
   {
     write_summary(place / "summary.json", summary_);
     const Mesh<D>& mesh = whole_ ? *whole_ : frame.mesh;
@@ -316,7 +316,7 @@ class Run {
       });
   }
 
-  void go_on(const Frame<D>& frame, const fs::path& taken, Recorder<D>& recorder)
+  void go_on(const RunView<D>& frame, const fs::path& taken, Recorder<D>& recorder)
   {
     resumed_after_ = frame.clock.step;
     std::vector<std::string> news = edits_;
@@ -340,7 +340,7 @@ class Run {
   }
 
   /// What a stage has changed; returns it as lines for the summary.
-  std::vector<std::string> tell(const Frame<D>& frame, const Stage& stage, const StageNews& news)
+  std::vector<std::string> tell(const RunView<D>& frame, const Stage& stage, const StageReport& news)
   {
     const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", frame.clock.time, stage.name);
     std::vector<std::string> lines;
@@ -359,7 +359,7 @@ class Run {
     return lines;
   }
 
-  Moves<D> moves_of_shares(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
+  LoadBalancing<D> load_balancing_of(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
   {
     const auto whole_mesh = [this, mesh_digest, &traps] {
       traps.reset();  // whoever makes meshes is not looked at
@@ -374,10 +374,10 @@ class Run {
       if (world().is_root())
         say(stderr, "warning: {}\n", summary_.warnings.back());
     };
-    return {options_.rebalance, whole_mesh, mesh_seconds_, [this](const SharesMoved& by) { note(by); }, stayed};
+    return {options_.rebalance, whole_mesh, mesh_seconds_, [this](const Rebalanced& by) { note(by); }, stayed};
   }
 
-  void note(const SharesMoved& by)
+  void note(const Rebalanced& by)
   {
     ++rebalances_;
     rebalancing_ += by.seconds;
@@ -397,7 +397,7 @@ class Run {
     Real steps = 0;
     watch_.lap(steps);
     RunSummary summary = summary_;
-    summary.threads = thread_choice_.kept();
+    summary.threads = thread_choice_.saved();
     summary.status = status;
     summary.message = message;
     summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};

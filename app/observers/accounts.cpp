@@ -16,12 +16,12 @@ namespace {
 
 /// Momentum of the particles; the moduli are those of each.
 template <int D>
-Push<D> momentum_of(const Frame<D>& frame)
+ForceAndMoment<D> momentum_of(const RunView<D>& frame)
 {
   const Particles<D>& particles = frame.particles;
-  return sum_particles<Push<D>>(frame.order, *frame.ranks, [&](Index row) {
+  return sum_particles<ForceAndMoment<D>>(frame.order, *frame.ranks, [&](Index row) {
     const auto p = static_cast<std::size_t>(row);
-    return Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+    return ForceAndMoment<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
   });
 }
 
@@ -46,9 +46,9 @@ Real MomentumNow<D>::angular_loss() const noexcept
 }
 
 template <int D>
-void Accounts<D>::see(const Frame<D>& frame, Moment moment)
+void BalanceHistory<D>::see(const RunView<D>& frame, RunEvent moment)
 {
-  if (moment == Moment::stage_begins) {
+  if (moment == RunEvent::stage_begins) {
     if (!begun_) {
       kinetic_begin_ = totals(frame).kinetic;
       plastic_begin_ = frame.energy.plastic_start;
@@ -68,7 +68,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
     begun_ = true;
     taken_out_ = 0;
   }
-  if (moment == Moment::stage_done) {
+  if (moment == RunEvent::stage_done) {
     taken_out_ = frame.energy.set_to_rest;
     kinetic_end_ = totals(frame).kinetic + taken_out_;
     plastic_end_ = plastic_work(frame);
@@ -77,7 +77,7 @@ void Accounts<D>::see(const Frame<D>& frame, Moment moment)
 }
 
 template <int D>
-EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
+EnergyNow BalanceHistory<D>::energy(const RunView<D>& frame) const
 {
   const EnergyLedger e = frame.energy.at_velocities();
   EnergyNow now;
@@ -100,12 +100,12 @@ EnergyNow Accounts<D>::energy(const Frame<D>& frame) const
 }
 
 template <int D>
-MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
+MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& frame) const
 {
   const MomentumLedger<D>& given = frame.momentum;
-  Push<D> in_steps = given.loads + given.damping;
+  ForceAndMoment<D> in_steps = given.loads + given.damping;
   for (const Wall<D>& wall : frame.walls.walls())
-    in_steps += Push<D>::of(wall.impulse, wall.angular);
+    in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
   MomentumNow<D> now{start_, momentum_of(frame), in_steps + given.rest + given.changes + -1 * frame.mass.carried_away};
   if (frame.particles.precision() == Precision::single)
     now.most_linear_defect = 1e-5;
@@ -116,7 +116,7 @@ MomentumNow<D> Accounts<D>::momentum(const Frame<D>& frame) const
 
 template struct MomentumNow<2>;
 template struct MomentumNow<3>;
-template class Accounts<2>;
-template class Accounts<3>;
+template class BalanceHistory<2>;
+template class BalanceHistory<3>;
 
 }  // namespace talus

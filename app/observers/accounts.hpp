@@ -19,20 +19,20 @@ struct EnergyNow {
 
   static constexpr auto fields()
   {
-    return std::tuple{kept("kinetic_start", &EnergyNow::kinetic_start),
-                      kept("kinetic", &EnergyNow::kinetic),
-                      kept("strain", &EnergyNow::strain),
-                      kept("plastic", &EnergyNow::plastic),
-                      kept("friction", &EnergyNow::friction),
-                      kept("damping", &EnergyNow::damping),
-                      kept("carried_away", &EnergyNow::carried_away),
-                      kept("gravity", &EnergyNow::gravity),
-                      kept("loads", &EnergyNow::loads),
-                      kept("walls", &EnergyNow::walls),
-                      kept("waves", &EnergyNow::waves),
-                      kept("transfer", &EnergyNow::transfer),
-                      kept("defect", &EnergyNow::defect),
-                      kept("size", &EnergyNow::size)};
+    return std::tuple{saved("kinetic_start", &EnergyNow::kinetic_start),
+                      saved("kinetic", &EnergyNow::kinetic),
+                      saved("strain", &EnergyNow::strain),
+                      saved("plastic", &EnergyNow::plastic),
+                      saved("friction", &EnergyNow::friction),
+                      saved("damping", &EnergyNow::damping),
+                      saved("carried_away", &EnergyNow::carried_away),
+                      saved("gravity", &EnergyNow::gravity),
+                      saved("loads", &EnergyNow::loads),
+                      saved("walls", &EnergyNow::walls),
+                      saved("waves", &EnergyNow::waves),
+                      saved("transfer", &EnergyNow::transfer),
+                      saved("defect", &EnergyNow::defect),
+                      saved("size", &EnergyNow::size)};
   }
 
   Real dissipated() const noexcept { return plastic + friction + damping; }
@@ -45,14 +45,14 @@ inline Real share(Real part, Real whole) noexcept { return whole > 0 ? std::abs(
 /// Momentum and its moment about the origin since the start of the run [kg m/s], [kg m^2/s].
 template <int D>
 struct MomentumNow {
-  Push<D> start, end, given;   ///< given: by loads, walls, damping, and taken by what left; their moduli added up
-  Vec3 forces = Vec3::Zero();  ///< moment of internal forces on the nodes, of which a body knows none [N m s]
-  Vec3 lost = Vec3::Zero();    ///< moment of momentum that particles and nodes lost between them [kg m^2/s]
+  ForceAndMoment<D> start, end, given;  ///< given: by loads, walls, damping, and taken by what left; their moduli added up
+  Vec3 forces = Vec3::Zero();           ///< moment of internal forces on the nodes, of which a body knows none [N m s]
+  Vec3 lost = Vec3::Zero();             ///< moment of momentum that particles and nodes lost between them [kg m^2/s]
   static constexpr auto fields()
   {
-    return std::tuple{kept("start", &MomentumNow::start), kept("end", &MomentumNow::end),
-                      kept("given", &MomentumNow::given), kept("forces", &MomentumNow::forces),
-                      kept("lost", &MomentumNow::lost),   kept("most_linear_defect", &MomentumNow::most_linear_defect)};
+    return std::tuple{saved("start", &MomentumNow::start), saved("end", &MomentumNow::end),
+                      saved("given", &MomentumNow::given), saved("forces", &MomentumNow::forces),
+                      saved("lost", &MomentumNow::lost),   saved("most_linear_defect", &MomentumNow::most_linear_defect)};
   }
 
   /// What cannot be explained, over all momentum there was and was given: round-off, of the precision in which particles are kept.
@@ -66,25 +66,25 @@ struct MomentumNow {
 
 /// Told of every moment of a run.
 template <int D>
-class Accounts {
+class BalanceHistory {
  public:
-  void see(const Frame<D>& frame, Moment moment);
+  void see(const RunView<D>& frame, RunEvent moment);
 
-  EnergyNow energy(const Frame<D>& frame) const;
-  MomentumNow<D> momentum(const Frame<D>& frame) const;
+  EnergyNow energy(const RunView<D>& frame) const;
+  MomentumNow<D> momentum(const RunView<D>& frame) const;
   static constexpr auto fields()
   {
-    return std::tuple{kept("before", &Accounts::before_),
-                      kept("kinetic_begin", &Accounts::kinetic_begin_),
-                      kept("plastic_begin", &Accounts::plastic_begin_),
-                      kept("transfer_before", &Accounts::transfer_before_),
-                      kept("kinetic_end", &Accounts::kinetic_end_),
-                      kept("plastic_end", &Accounts::plastic_end_),
-                      kept("taken_out", &Accounts::taken_out_),
-                      kept("taken_out_before", &Accounts::taken_out_before_),
-                      kept("stage", &Accounts::stage_),
-                      kept("begun", &Accounts::begun_),
-                      kept("start", &Accounts::start_)};
+    return std::tuple{saved("before", &BalanceHistory::before_),
+                      saved("kinetic_begin", &BalanceHistory::kinetic_begin_),
+                      saved("plastic_begin", &BalanceHistory::plastic_begin_),
+                      saved("transfer_before", &BalanceHistory::transfer_before_),
+                      saved("kinetic_end", &BalanceHistory::kinetic_end_),
+                      saved("plastic_end", &BalanceHistory::plastic_end_),
+                      saved("taken_out", &BalanceHistory::taken_out_),
+                      saved("taken_out_before", &BalanceHistory::taken_out_before_),
+                      saved("stage", &BalanceHistory::stage_),
+                      saved("begun", &BalanceHistory::begun_),
+                      saved("start", &BalanceHistory::start_)};
   }
 
  private:
@@ -94,12 +94,12 @@ class Accounts {
   Real taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;
   bool begun_ = false;
-  Push<D> start_;  // momentum at the start of the run
+  ForceAndMoment<D> start_;  // momentum at the start of the run
 };
 
 extern template struct MomentumNow<2>;
 extern template struct MomentumNow<3>;
-extern template class Accounts<2>;
-extern template class Accounts<3>;
+extern template class BalanceHistory<2>;
+extern template class BalanceHistory<3>;
 
 }  // namespace talus

@@ -7,7 +7,7 @@ namespace talus {
 namespace {
 
 template <int D>
-BodySums<D> sums_of_body(const Frame<D>& frame, Index body)
+BodySums<D> sums_of_body(const RunView<D>& frame, Index body)
 {
   const Particles<D>& particles = frame.particles;
   ExactSums<BodySums<D>> sum;
@@ -24,15 +24,15 @@ BodySums<D> sums_of_body(const Frame<D>& frame, Index body)
 }  // namespace
 
 template <int D>
-void BodyForces<D>::see(const Frame<D>& frame, Moment moment)
+void BodyForces<D>::see(const RunView<D>& frame, RunEvent moment)
 {
-  if (!wanted_ || moment == Moment::step_begins || moment == Moment::given_up)
+  if (!wanted_ || moment == RunEvent::step_begins || moment == RunEvent::given_up)
     return;
   std::vector<BodySums<D>> now;
   for (std::size_t b = 0; b < frame.bodies.size(); ++b)
     now.push_back(sums_of_body(frame, static_cast<Index>(b)));
   impulses_.resize(now.size());
-  if (moment == Moment::step_done)
+  if (moment == RunEvent::step_done)
     add_step(frame, now);
   sums_ = std::move(now);
   deleted_ = frame.mass.carried_away.linear;
@@ -40,7 +40,7 @@ void BodyForces<D>::see(const Frame<D>& frame, Moment moment)
 }
 
 template <int D>
-void BodyForces<D>::add_step(const Frame<D>& frame, const std::vector<BodySums<D>>& now)
+void BodyForces<D>::add_step(const RunView<D>& frame, const std::vector<BodySums<D>>& now)
 {
   const Vec<D> gravity = frame.nodes.gravity;
   const Real kick = frame.nodes.kick;

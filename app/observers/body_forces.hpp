@@ -12,8 +12,8 @@ struct BodySums {
   Vec<D> load = Vec<D>::Zero();      ///< forces that its particles carried in the last step: tractions and body forces [N]
   static constexpr auto fields()
   {
-    return std::tuple{kept("mass", &BodySums::mass), kept("kinetic", &BodySums::kinetic), kept("momentum", &BodySums::momentum),
-                      kept("load", &BodySums::load)};
+    return std::tuple{saved("mass", &BodySums::mass), saved("kinetic", &BodySums::kinetic), saved("momentum", &BodySums::momentum),
+                      saved("load", &BodySums::load)};
   }
   BodySums& operator+=(const BodySums& other) noexcept
   {
@@ -27,7 +27,7 @@ template <int D>
 struct BodyImpulse {
   Vec<D> given = Vec<D>::Zero();  ///< [N s]
   Real unknown{};                 ///< steps that are not in it, because what left the mesh in them cannot be shared out among bodies
-  static constexpr auto fields() { return std::tuple{kept("given", &BodyImpulse::given), kept("unknown", &BodyImpulse::unknown)}; }
+  static constexpr auto fields() { return std::tuple{saved("given", &BodyImpulse::given), saved("unknown", &BodyImpulse::unknown)}; }
 };
 
 /// Follows the momentum of every body through each step.  All bodies share one velocity at a node, so there is no contact force to look up; but
@@ -43,7 +43,7 @@ class BodyForces {
  public:
   explicit BodyForces(bool wanted) noexcept : wanted_(wanted) {}
   /// Called at every event of a run, on every rank.
-  void see(const Frame<D>& frame, Moment moment);
+  void see(const RunView<D>& frame, RunEvent moment);
 
   /// Of each body, at the last event.
   const std::vector<BodySums<D>>& sums() const noexcept { return sums_; }
@@ -52,12 +52,12 @@ class BodyForces {
   bool fits(std::size_t bodies) const noexcept { return sums_.size() == (wanted_ ? bodies : 0) && impulses_.size() == sums_.size(); }
   static constexpr auto fields()
   {
-    return std::tuple{kept("sums", &BodyForces::sums_), kept("impulses", &BodyForces::impulses_), kept("deleted", &BodyForces::deleted_),
-                      kept("failed", &BodyForces::failed_)};
+    return std::tuple{saved("sums", &BodyForces::sums_), saved("impulses", &BodyForces::impulses_), saved("deleted", &BodyForces::deleted_),
+                      saved("failed", &BodyForces::failed_)};
   }
 
  private:
-  void add_step(const Frame<D>& frame, const std::vector<BodySums<D>>& now);
+  void add_step(const RunView<D>& frame, const std::vector<BodySums<D>>& now);
 
   bool wanted_;
   std::vector<BodySums<D>> sums_;

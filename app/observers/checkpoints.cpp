@@ -97,7 +97,7 @@ void must(bool holds, const char* what)
 void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
 {
   std::int64_t count = 0;
-  recall(arrays, below(list, "count"), count);
+  load(arrays, below(list, "count"), count);
   must(std::cmp_equal(count, n), what);
 }
 
@@ -107,7 +107,7 @@ template <int D>
 std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
                           Particles<D>& particles)
 {
-  recall(arrays, "bodies", bodies);
+  load(arrays, "bodies", bodies);
   Index end = 0;
   for (const Body& body : bodies) {
     must(body.begin == end && body.end >= end, "bodies");
@@ -133,7 +133,7 @@ std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::v
 
 /// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
 template <int D>
-void check_fit(const State<D>& state, const std::vector<bool>& columns, std::int64_t n_particles, const StateLimits& limits)
+void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::int64_t n_particles, const StateLimits& limits)
 {
   const Particles<D>& particles = state.particles;
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
@@ -179,7 +179,7 @@ bool Checkpoints<D>::due(const Clock& clock) const
 }
 
 template <int D>
-void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
+void Checkpoints<D>::see(const RunView<D>& frame, const Recorder<D>& recorder)
 {
   if (!at_)
     at_ = frame.clock;
@@ -203,38 +203,38 @@ void Checkpoints<D>::see(const Frame<D>& frame, const Recorder<D>& recorder)
 }
 
 template <int D>
-void Checkpoints<D>::see_end_of_stage(const Frame<D>& frame, const Recorder<D>& recorder, Index n_stages)
+void Checkpoints<D>::see_end_of_stage(const RunView<D>& frame, const Recorder<D>& recorder, Index n_stages)
 {
   if (spec_.at_end && frame.stage_number + 1 == n_stages)
     write(frame, recorder);
 }
 
 template <int D>
-void Checkpoints<D>::write(const Frame<D>& frame, const Recorder<D>& recorder)
+void Checkpoints<D>::write(const RunView<D>& frame, const Recorder<D>& recorder)
 {
   const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
   frame.ranks->together([&] {
     require_results(folder_);
     recorder.flush();  // what the checkpoint says is written is on the disk before it
   });
-  on_slices(frame, [&](const Frame<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
+  on_slices(frame, [&](const RunView<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
     std::vector<SharedArray> arrays;
     share_columns("particles", slice.particles, rows, arrays);
     for (std::size_t b = 0; b < bodies.size(); ++b)
       share_history(history_of(b), slice.materials[b], rows_of_body(bodies[b], slice.bodies[b], rows), arrays);
     write_arrays(*frame.ranks, file, arrays, [&](ArrayWriter& rest) {
-      keep(rest, "format", written_format);
-      keep(rest, "run", identity_);
+      save(rest, "format", written_format);
+      save(rest, "run", identity_);
       for_each_part(slice, [&](const std::string& name, const auto& part) {
         using Part = std::decay_t<decltype(part)>;
         if constexpr (std::is_same_v<Part, std::vector<Body>>)
-          keep(rest, name, bodies);
+          save(rest, name, bodies);
         else if constexpr (!std::is_same_v<Part, Particles<D>>)
-          keep(rest, name, part);
+          save(rest, name, part);
       });
       for (std::size_t b = 0; b < bodies.size(); ++b)
-        keep(rest, below("laws/name", b), std::string(law_name(slice.materials[b])));
-      keep(rest, "recorder", recorder);
+        save(rest, below("laws/name", b), std::string(law_name(slice.materials[b])));
+      save(rest, "recorder", recorder);
     });
   });
   last_ = file;
@@ -301,14 +301,14 @@ CheckpointList::CheckpointList(const fs::path& at)
     try {
       const ArrayReader arrays(file);
       std::int64_t written_in = 0;
-      recall(arrays, "format", written_in);
-      recall(arrays, "run/version", identity_.version);
+      load(arrays, "format", written_in);
+      load(arrays, "run/version", identity_.version);
       if (written_in != written_format)
         throw EnvironmentError(fmt::format("{} was written by version {} in format {}; this program knows format {}", file.string(),
                                            identity_.version, written_in, written_format));
-      recall(arrays, "run", identity_);
-      recall(arrays, "clock", clock_);
-      recall(arrays, "stage", stage_);
+      load(arrays, "run", identity_);
+      load(arrays, "clock", clock_);
+      load(arrays, "stage", stage_);
       return;
     } catch (const EnvironmentError& e) {
       reasons += fmt::format("{}{}", reasons.empty() ? "" : "; ", e.what());
@@ -349,7 +349,7 @@ try {
 template <int D>
 fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
 {
-  Exchange& ranks = world();
+  Communicator& ranks = world();
   const auto columns = filled_columns(state.particles);
   const auto read_all = [&](const ArrayReader& arrays) {
     check_count(arrays, "bodies", state.bodies.size(), "bodies");
@@ -357,24 +357,24 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
     for_each_part(state, [&](const std::string& name, auto& part) {
       using Part = std::decay_t<decltype(part)>;
       if constexpr (!std::is_same_v<Part, std::vector<Body>> && !std::is_same_v<Part, Particles<D>>)
-        recall(arrays, name, part);
+        load(arrays, name, part);
     });
     take_laws_of(state.stage, limits.laws, state.materials);
     const std::int64_t n = recall_slice(arrays, ranks.rank(), ranks.size(), state.bodies, state.materials, state.particles);
-    check_fit(state, columns, n, limits);
+    check_sizes(state, columns, n, limits);
     std::vector<std::string> faults;
-    find_faults(state.clock, faults);
-    find_faults(state.stage, state.clock, faults);
-    find_faults(state.energy, faults);
-    find_faults(state.particles, state.bodies, state.materials, faults);
+    find_invalid(state.clock, faults);
+    find_invalid(state.stage, state.clock, faults);
+    find_invalid(state.energy, faults);
+    find_invalid(state.particles, state.bodies, state.materials, faults);
     refuse_if_any(faults);
-    recall(arrays, "recorder", recorder);
+    load(arrays, "recorder", recorder);
     if (!state.walls.fits() || !recorder.fits(state.walls.walls().size(), state.bodies.size(), limits.particles))
       throw EnvironmentError("the walls, bodies or points of the checkpoint do not fit the scene");
   };
   const auto [from, reasons] = newest([&](const fs::path& file) {
     // Each rank looks at its slice; what one of them finds wrong is wrong for all.
-    ranks.agree(Exchange::caught([&] { check_in(file, [&] { read_all(ArrayReader(file)); }); }));
+    ranks.agree(Communicator::caught([&] { check_in(file, [&] { read_all(ArrayReader(file)); }); }));
     if (const auto twice = ranks.alone() ? std::nullopt : doubled_id(ranks, state.particles.id))
       throw EnvironmentError(fmt::format("{}: there is more than one particle {}", file.string(), *twice));
   });
@@ -384,21 +384,21 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
 }
 
 template <int D>
-CheckpointList::Read CheckpointList::read(KeptBodies<D>& kept) const
+CheckpointList::Read CheckpointList::read(KeptBodies<D>& saved) const
 {
   return newest([&](const fs::path& file) {
     check_in(file, [&] {
       const ArrayReader arrays(file);
-      check_count(arrays, "bodies", kept.bodies.size(), "bodies");
-      recall(arrays, "clock", kept.clock);
-      recall(arrays, "stage", kept.stage);
-      recall(arrays, "energy", kept.energy);
-      take_laws_of(kept.stage, kept.laws, kept.materials);
-      recall_slice(arrays, 0, 1, kept.bodies, kept.materials, kept.particles);
+      check_count(arrays, "bodies", saved.bodies.size(), "bodies");
+      load(arrays, "clock", saved.clock);
+      load(arrays, "stage", saved.stage);
+      load(arrays, "energy", saved.energy);
+      take_laws_of(saved.stage, saved.laws, saved.materials);
+      recall_slice(arrays, 0, 1, saved.bodies, saved.materials, saved.particles);
       std::vector<std::string> faults;
-      find_faults(kept.clock, faults);
-      find_faults(kept.energy, faults);
-      find_faults(kept.particles, kept.bodies, kept.materials, faults);
+      find_invalid(saved.clock, faults);
+      find_invalid(saved.energy, faults);
+      find_invalid(saved.particles, saved.bodies, saved.materials, faults);
       refuse_if_any(faults);
     });
   });

@@ -20,17 +20,17 @@ struct RunIdentity {
   std::string initial;          ///< checkpoint of another run that it began with, if it did
   static constexpr auto fields()
   {
-    return std::tuple{kept("version", &RunIdentity::version),
-                      kept("commit", &RunIdentity::commit),
-                      kept("compiler", &RunIdentity::compiler),
-                      kept("build", &RunIdentity::build),
-                      kept("scene_file", &RunIdentity::scene_file),
-                      kept("scene", &RunIdentity::scene_text),
-                      kept("set", &RunIdentity::set),
-                      kept("quick", &RunIdentity::quick),
-                      kept("mesh", &RunIdentity::mesh),
-                      kept("from_files", &RunIdentity::from_files),
-                      kept("initial", &RunIdentity::initial)};
+    return std::tuple{saved("version", &RunIdentity::version),
+                      saved("commit", &RunIdentity::commit),
+                      saved("compiler", &RunIdentity::compiler),
+                      saved("build", &RunIdentity::build),
+                      saved("scene_file", &RunIdentity::scene_file),
+                      saved("scene", &RunIdentity::scene_text),
+                      saved("set", &RunIdentity::set),
+                      saved("quick", &RunIdentity::quick),
+                      saved("mesh", &RunIdentity::mesh),
+                      saved("from_files", &RunIdentity::from_files),
+                      saved("initial", &RunIdentity::initial)};
   }
 };
 
@@ -43,11 +43,11 @@ class Checkpoints {
 
   /// Before each step: writes one if it is due.  Stopped after writing one because of a signal, or where steps are done `until` which the
   /// run was to go.  EnvironmentError: it could not be written; older ones are left as they are.
-  void see(const Frame<D>& frame, const Recorder<D>& recorder);
+  void see(const RunView<D>& frame, const Recorder<D>& recorder);
   /// After a stage, the recorder knowing its result: writes one at the end of the run if the scene wants it.
-  void see_end_of_stage(const Frame<D>& frame, const Recorder<D>& recorder, Index n_stages);
+  void see_end_of_stage(const RunView<D>& frame, const Recorder<D>& recorder, Index n_stages);
   /// Writes one now.  EnvironmentError.
-  void write(const Frame<D>& frame, const Recorder<D>& recorder);
+  void write(const RunView<D>& frame, const Recorder<D>& recorder);
   /// The last one written, empty if there is none, and the steps done then.
   const std::filesystem::path& last() const noexcept { return last_; }
   std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
@@ -109,7 +109,7 @@ class CheckpointList {
   /// The bodies of the newest state that is whole.  Their number, the laws and the precision of the particles must be there already.
   /// EnvironmentError: none is whole, or they are others.
   template <int D>
-  Read read(KeptBodies<D>& kept) const;
+  Read read(KeptBodies<D>& saved) const;
 
  private:
   /// f(file) for the newest one for which it throws no EnvironmentError.

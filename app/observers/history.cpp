@@ -23,7 +23,7 @@ void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& 
 
 /// The value that a share of the mass does not exceed, from value and mass of particles of all ranks.  NaN where there are none, and on ranks
 /// beside the root.
-Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Exchange& ranks)
+Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Communicator& ranks)
 {
   std::vector<std::pair<Real, Real>> all;
   for (const std::vector<Vec<2>>& of_rank : gather_rows<Vec<2>>(ranks, here))
@@ -72,7 +72,7 @@ Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, con
 }  // namespace
 
 template <int D>
-std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks)
 {
   const Vec<D> at = Eigen::Map<const Vec<D>>(spec.at.data());
   constexpr auto nobody = std::numeric_limits<std::int64_t>::max();
@@ -93,7 +93,7 @@ std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std:
 }
 
 template <int D>
-Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks)
 {
   const auto axis = static_cast<Index>(spec.direction) / 2;
   const Real sign = static_cast<Index>(spec.direction) % 2 == 0 ? 1 : -1;
@@ -103,7 +103,7 @@ Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particl
 }
 
 template <int D>
-Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks)
+Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks)
 {
   std::vector<Vec<2>> here;  // length of displacement, mass
   for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({(particles.x[p] - particles.x0[p]).norm(), particles.mass[p]}); });
@@ -111,7 +111,7 @@ Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particl
 }
 
 template <int D>
-std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, const Frame<D>& start)
+std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, const RunView<D>& start)
 {
   std::vector<CsvColumn> all = common_columns(D);
   const auto add = [&](const std::vector<CsvColumn>& more) { all.insert(all.end(), more.begin(), more.end()); };
@@ -131,7 +131,7 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 }
 
 template <int D>
-HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start) : spec_(std::move(spec))
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start) : spec_(std::move(spec))
 {
   start.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
   state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
@@ -142,14 +142,14 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
 }
 
 template <int D>
-HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state)
+HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& now, HistoryState<D> state)
     : spec_(std::move(spec)), state_(std::move(state))
 {
   now.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.clock.time)); });
 }
 
 template <int D>
-void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts, const BodyForces<D>& forces)
+void HistoryWriter<D>::append(const RunView<D>& frame, const BalanceHistory<D>& accounts, const BodyForces<D>& forces)
 {
   const Totals<D> sums = totals(frame);
   const Clock& clock = frame.clock;
@@ -187,7 +187,7 @@ void HistoryWriter<D>::append(const Frame<D>& frame, const Accounts<D>& accounts
 }
 
 template <int D>
-void HistoryWriter<D>::add_body(const Frame<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
+void HistoryWriter<D>::add_body(const RunView<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
 {
   const auto named = std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const Body& body) { return body.name == spec_.bodies[k]; });
   const auto b = static_cast<std::size_t>(named - frame.bodies.begin());
@@ -210,7 +210,7 @@ void HistoryWriter<D>::add_body(const Frame<D>& frame, const BodyForces<D>& forc
 
 /// Its mean push since the row before, where the line of that push crosses the wall, and on how much of the wall there is mass now.
 template <int D>
-void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
+void HistoryWriter<D>::add_wall(const RunView<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
 {
   const auto walls = frame.walls.walls();
   const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall<D>& one) { return one.name == spec.on; });
@@ -240,7 +240,7 @@ void HistoryWriter<D>::add_wall(const Frame<D>& frame, const WallSpec& spec, Rea
 }
 
 template <int D>
-void HistoryWriter<D>::follow_anew(const std::string& body, const Frame<D>& now)
+void HistoryWriter<D>::follow_anew(const std::string& body, const RunView<D>& now)
 {
   for (std::size_t k = 0; k < spec_.points.size(); ++k)
     if (spec_.points[k].body == body)
@@ -248,7 +248,7 @@ void HistoryWriter<D>::follow_anew(const std::string& body, const Frame<D>& now)
 }
 
 template <int D>
-void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
+void HistoryWriter<D>::add_point(const RunView<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
 {
   std::vector<Real> here;
   const bool is_there = at != none && (point_spec.body.empty() || frame.bodies[body_of(frame.bodies, at)].name == point_spec.body);
@@ -269,12 +269,12 @@ void HistoryWriter<D>::add_point(const Frame<D>& frame, const PointSpec& point_s
 
 template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
 template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
-template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
-template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
-template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
-template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
-template Real moved<2>(const MovedSpec&, const std::vector<Body>&, const Particles<2>&, Exchange&);
-template Real moved<3>(const MovedSpec&, const std::vector<Body>&, const Particles<3>&, Exchange&);
+template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&, Communicator&);
+template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Communicator&);
+template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Communicator&);
+template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&, Communicator&);
+template Real moved<2>(const MovedSpec&, const std::vector<Body>&, const Particles<2>&, Communicator&);
+template Real moved<3>(const MovedSpec&, const std::vector<Body>&, const Particles<3>&, Communicator&);
 template class HistoryWriter<2>;
 template class HistoryWriter<3>;
 

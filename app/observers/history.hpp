@@ -10,16 +10,16 @@ namespace talus {
 /// Id of the particle of `spec.body` (any, if empty) that is nearest to `spec.at`; of several equally near the lowest.  Every rank has to ask.
 template <int D>
 std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles,
-                              Exchange& ranks = one_rank());
+                              Communicator& ranks = one_rank());
 
 /// Coordinate [m] that a share of the mass does not pass, looking along the direction of `spec`.  NaN without particles.  Of all ranks, on the
 /// root; every rank has to ask.
 template <int D>
-Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
+Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks = one_rank());
 
 /// Length of displacement [m] that a share of the mass does not exceed, alike.
 template <int D>
-Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Exchange& ranks = one_rank());
+Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks = one_rank());
 
 /// The facets that a wall of the history stands on: the second wall on a group is called GROUP_2.
 template <int D>
@@ -35,8 +35,8 @@ struct HistoryState {
   Real time = 0;                       ///< of the row before [s]
   static constexpr auto fields()
   {
-    return std::tuple{kept("followed", &HistoryState::followed), kept("impulse", &HistoryState::impulse),
-                      kept("angular", &HistoryState::angular), kept("given", &HistoryState::given), kept("time", &HistoryState::time)};
+    return std::tuple{saved("followed", &HistoryState::followed), saved("impulse", &HistoryState::impulse),
+                      saved("angular", &HistoryState::angular), saved("given", &HistoryState::given), saved("time", &HistoryState::time)};
   }
 };
 
@@ -45,22 +45,22 @@ struct HistoryState {
 template <int D>
 class HistoryWriter {
  public:
-  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& start);
+  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start);
   /// Goes on in a file that is there, behind the time of `now`.
-  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const Frame<D>& now, HistoryState<D> state);
+  HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
   /// Points of this body follow the particle that is nearest now.
-  void follow_anew(const std::string& body, const Frame<D>& now);
-  void append(const Frame<D>& frame, const Accounts<D>& accounts, const BodyForces<D>& forces);
+  void follow_anew(const std::string& body, const RunView<D>& now);
+  void append(const RunView<D>& frame, const BalanceHistory<D>& accounts, const BodyForces<D>& forces);
   void flush() const { file_->flush(); }                          ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
-  static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const Frame<D>& start);
+  static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const RunView<D>& start);
 
  private:
   /// Of a body: its sums, and the mean force on it; no force where that is not known of a step.
-  void add_body(const Frame<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
-  void add_wall(const Frame<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
-  static void add_point(const Frame<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
+  void add_body(const RunView<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
+  void add_wall(const RunView<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
+  static void add_point(const RunView<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;

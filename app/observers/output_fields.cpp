@@ -46,7 +46,7 @@ Column tensors(std::string_view name, std::string_view unit, std::span<const Ind
 }
 
 template <int D>
-Column history_column(const Frame<D>& frame, std::span<const Index> rows, std::string_view name)
+Column history_column(const RunView<D>& frame, std::span<const Index> rows, std::string_view name)
 {
   Column column{std::string(name), 1, {}, ""};
   const auto each = [&](auto&& f) {
@@ -84,7 +84,7 @@ std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
 }
 
 template <int D>
-Column particle_column(const Frame<D>& frame, std::span<const Index> rows, std::string_view name)
+Column particle_column(const RunView<D>& frame, std::span<const Index> rows, std::string_view name)
 {
   const Particles<D>& p = frame.particles;
   if (name == "velocity")
@@ -124,7 +124,7 @@ Column particle_column(const Frame<D>& frame, std::span<const Index> rows, std::
 }
 
 template <int D>
-Column node_column(const Frame<D>& frame, std::string_view name)
+Column node_column(const RunView<D>& frame, std::string_view name)
 {
   const Nodes<D>& nodes = frame.nodes;
   std::vector<Index> rows(nodes.sum.size());
@@ -164,10 +164,10 @@ std::vector<Real> positions(const Particles<D>& particles, std::span<const Index
   return places;
 }
 
-template Column particle_column<2>(const Frame<2>&, std::span<const Index>, std::string_view);
-template Column particle_column<3>(const Frame<3>&, std::span<const Index>, std::string_view);
-template Column node_column<2>(const Frame<2>&, std::string_view);
-template Column node_column<3>(const Frame<3>&, std::string_view);
+template Column particle_column<2>(const RunView<2>&, std::span<const Index>, std::string_view);
+template Column particle_column<3>(const RunView<3>&, std::span<const Index>, std::string_view);
+template Column node_column<2>(const RunView<2>&, std::string_view);
+template Column node_column<3>(const RunView<3>&, std::string_view);
 template std::vector<Index> rows_by_id<2>(const Particles<2>&);
 template std::vector<Index> rows_by_id<3>(const Particles<3>&);
 template std::vector<Real> positions<2>(const Particles<2>&, std::span<const Index>);

@@ -22,7 +22,7 @@ struct SortedIds {
   std::vector<std::size_t> received;            ///< from each rank
 };
 
-SortedIds sort_ids(Exchange& ranks, std::span<const std::int64_t> ids)
+SortedIds sort_ids(Communicator& ranks, std::span<const std::int64_t> ids)
 {
   const std::int64_t most = ranks.max(ids.empty() ? std::int64_t{0} : *std::max_element(ids.begin(), ids.end()));
   const Real share = static_cast<Real>(ranks.size()) / (static_cast<Real>(most) + 1);
@@ -48,7 +48,7 @@ SortedIds sort_ids(Exchange& ranks, std::span<const std::int64_t> ids)
 }
 
 /// The number that each row has among the rows of all ranks in the order of ids.
-std::vector<std::int64_t> numbers_by_id(Exchange& ranks, std::span<const std::int64_t> ids)
+std::vector<std::int64_t> numbers_by_id(Communicator& ranks, std::span<const std::int64_t> ids)
 {
   const SortedIds sorted = sort_ids(ranks, ids);
   const auto counts = of_all_ranks(ranks, static_cast<std::int64_t>(sorted.here.size()));
@@ -68,7 +68,7 @@ std::vector<std::int64_t> numbers_by_id(Exchange& ranks, std::span<const std::in
 
 /// Gives items, `width` values each, to the ranks whose slice their number is in; what is of this rank, in the order of numbers.
 template <class T>
-std::vector<T> dealt(Exchange& ranks, const Slices& slices, std::span<const Index> number, std::span<const T> values, std::size_t width)
+std::vector<T> dealt(Communicator& ranks, const Slices& slices, std::span<const Index> number, std::span<const T> values, std::size_t width)
 {
   std::vector<std::vector<Index>> numbers(static_cast<std::size_t>(ranks.size()));
   std::vector<std::vector<T>> items(numbers.size());
@@ -89,14 +89,14 @@ std::vector<T> dealt(Exchange& ranks, const Slices& slices, std::span<const Inde
 }
 
 template <int D>
-Slices slices_of_nodes(const Frame<D>& frame, std::int64_t piece)
+Slices slices_of_nodes(const RunView<D>& frame, std::int64_t piece)
 {
   return {frame.share.alone() ? frame.mesh.n_nodes() : frame.share.whole_nodes, frame.ranks->size(), piece};
 }
 
 }  // namespace
 
-std::optional<std::int64_t> doubled_id(Exchange& ranks, std::span<const std::int64_t> ids)
+std::optional<std::int64_t> doubled_id(Communicator& ranks, std::span<const std::int64_t> ids)
 {
   const SortedIds sorted = sort_ids(ranks, ids);
   const auto twice = std::adjacent_find(sorted.here.begin(), sorted.here.end(),
@@ -107,9 +107,9 @@ std::optional<std::int64_t> doubled_id(Exchange& ranks, std::span<const std::int
 }
 
 template <int D>
-ParticleSlice<D> slice_of_particles(const Frame<D>& frame, std::int64_t piece)
+ParticleSlice<D> slice_of_particles(const RunView<D>& frame, std::int64_t piece)
 {
-  Exchange& ranks = *frame.ranks;
+  Communicator& ranks = *frame.ranks;
   const std::vector<std::int64_t> number = numbers_by_id(ranks, frame.particles.id);
   const Slices slices{ranks.sum(static_cast<std::int64_t>(number.size())), ranks.size(), piece};
   std::vector<int> rank_of_row;
@@ -120,7 +120,7 @@ ParticleSlice<D> slice_of_particles(const Frame<D>& frame, std::int64_t piece)
   if (!frame.share.alone())
     for (Index& cell : slice.particles.cell)
       cell = frame.share.whole_cell(cell);
-  deal_out(ranks, rank_of_row, slice.bodies, slice.materials, slice.particles);
+  redistribute(ranks, rank_of_row, slice.bodies, slice.materials, slice.particles);
   std::vector<std::int64_t> sizes;
   for (const Body& body : frame.bodies)
     sizes.push_back(body.size());
@@ -134,10 +134,10 @@ ParticleSlice<D> slice_of_particles(const Frame<D>& frame, std::int64_t piece)
 }
 
 template <int D>
-MeshSlice slice_of_mesh(const Frame<D>& frame, std::int64_t piece)
+MeshSlice slice_of_mesh(const RunView<D>& frame, std::int64_t piece)
 {
-  Exchange& ranks = *frame.ranks;
-  const Share& share = frame.share;
+  Communicator& ranks = *frame.ranks;
+  const Subdomain& share = frame.share;
   const Mesh<D>& mesh = frame.mesh;
   const Slices nodes = slices_of_nodes(frame, piece);
   const Slices cells{share.alone() ? mesh.n_cells() : share.whole_cells, ranks.size(), piece};
@@ -163,7 +163,7 @@ MeshSlice slice_of_mesh(const Frame<D>& frame, std::int64_t piece)
 }
 
 template <int D>
-Column slice_of_column(const Frame<D>& frame, Column held, std::int64_t piece)
+Column slice_of_column(const RunView<D>& frame, Column held, std::int64_t piece)
 {
   if (frame.share.alone())
     return held;
@@ -180,11 +180,11 @@ Column slice_of_column(const Frame<D>& frame, Column held, std::int64_t piece)
   return held;
 }
 
-template ParticleSlice<2> slice_of_particles<2>(const Frame<2>&, std::int64_t);
-template ParticleSlice<3> slice_of_particles<3>(const Frame<3>&, std::int64_t);
-template MeshSlice slice_of_mesh<2>(const Frame<2>&, std::int64_t);
-template MeshSlice slice_of_mesh<3>(const Frame<3>&, std::int64_t);
-template Column slice_of_column<2>(const Frame<2>&, Column, std::int64_t);
-template Column slice_of_column<3>(const Frame<3>&, Column, std::int64_t);
+template ParticleSlice<2> slice_of_particles<2>(const RunView<2>&, std::int64_t);
+template ParticleSlice<3> slice_of_particles<3>(const RunView<3>&, std::int64_t);
+template MeshSlice slice_of_mesh<2>(const RunView<2>&, std::int64_t);
+template MeshSlice slice_of_mesh<3>(const RunView<3>&, std::int64_t);
+template Column slice_of_column<2>(const RunView<2>&, Column, std::int64_t);
+template Column slice_of_column<3>(const RunView<3>&, Column, std::int64_t);
 
 }  // namespace talus

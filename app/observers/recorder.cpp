@@ -40,7 +40,7 @@ struct Content {
 };
 
 template <int D>
-BodySummary summary_of(const Frame<D>& frame, std::size_t b)
+BodySummary summary_of(const RunView<D>& frame, std::size_t b)
 {
   const Body& body = frame.bodies[b];
   ExactSums<Content> sum;
@@ -56,9 +56,9 @@ BodySummary summary_of(const Frame<D>& frame, std::size_t b)
 
 /// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.
 template <int D>
-RanksSummary ranks_of(const Frame<D>& frame, const Traffic& begin, std::int64_t step_begin)
+RanksSummary ranks_of(const RunView<D>& frame, const Traffic& begin, std::int64_t step_begin)
 {
-  Exchange& ranks = *frame.ranks;
+  Communicator& ranks = *frame.ranks;
   RanksSummary summary{.count = ranks.size()};
   if (ranks.alone())
     return summary;
@@ -99,7 +99,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
 {}
 
 template <int D>
-void Recorder<D>::open(const Frame<D>& frame)
+void Recorder<D>::open(const RunView<D>& frame)
 {
   traffic_begin_ = frame.ranks->traffic();
   bytes_per_particle_ = talus::bytes_per_particle(frame);
@@ -114,7 +114,7 @@ void Recorder<D>::open(const Frame<D>& frame)
 
 /// Bodies that were not there before.
 template <int D>
-void Recorder<D>::welcome(const Frame<D>& frame)
+void Recorder<D>::welcome(const RunView<D>& frame)
 {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (bodies_[b].particles > 0)
@@ -142,7 +142,7 @@ void Recorder<D>::name_lists()
 }
 
 template <int D>
-void Recorder<D>::go_on(const Frame<D>& frame)
+void Recorder<D>::go_on(const RunView<D>& frame)
 {
   traffic_begin_ = frame.ranks->traffic(), step_begin_ = frame.clock.step;
   if (outputs_.history)
@@ -152,7 +152,7 @@ void Recorder<D>::go_on(const Frame<D>& frame)
 }
 
 template <int D>
-std::vector<std::string> Recorder<D>::resume(const Frame<D>& frame)
+std::vector<std::string> Recorder<D>::resume(const RunView<D>& frame)
 {
   go_on(frame);
   std::vector<std::string> missing;
@@ -161,7 +161,7 @@ std::vector<std::string> Recorder<D>::resume(const Frame<D>& frame)
 }
 
 template <int D>
-std::vector<std::string> Recorder<D>::drop_later(const Frame<D>& frame)
+std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& frame)
 {
   std::vector<std::string> missing;
   for (const std::string& file : files())
@@ -193,7 +193,7 @@ std::vector<std::string> Recorder<D>::drop_later(const Frame<D>& frame)
 }
 
 template <int D>
-void Recorder<D>::begin_again(const Frame<D>& frame)
+void Recorder<D>::begin_again(const RunView<D>& frame)
 {
   go_on(frame);
   elsewhere_ = {static_cast<std::int64_t>(files_.size()), particle_files_, mesh_files_, frame.clock.time};
@@ -223,32 +223,32 @@ void Recorder<D>::flush() const
 }
 
 template <int D>
-void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
+void Recorder<D>::watch(const RunView<D>& frame, RunEvent moment)
 {
-  if (moment == Moment::step_begins || moment == Moment::given_up)
+  if (moment == RunEvent::step_begins || moment == RunEvent::given_up)
     return;
   accounts_.see(frame, moment);
   body_forces_.see(frame, moment);
-  const bool first = moment == Moment::stage_begins && frame.stage_number == 0;
+  const bool first = moment == RunEvent::stage_begins && frame.stage_number == 0;
   if (first)
     open(frame);
-  else if (moment == Moment::stage_begins)
+  else if (moment == RunEvent::stage_begins)
     welcome(frame);
-  if (moment == Moment::stage_begins)
+  if (moment == RunEvent::stage_begins)
     stage_start_ = frame.clock.time;
-  if (moment == Moment::stage_begins && outputs_.runout && !runout_.has_begun() && frame.stage_name != "geostatic") {
+  if (moment == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && frame.stage_name != "geostatic") {
     runout_.begin(frame);
     name("runout.csv");
   }
-  if (moment == Moment::step_done)
+  if (moment == RunEvent::step_done)
     progress_.step(done_before_ + frame.clock.time - stage_start_,
                    done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(frame.stage_number))),
                    frame.clock, frame.stage_name, frame.timings.particle_steps);
 
   StopWatch watch;
-  if (first || moment != Moment::stage_begins)  // the beginning of a later stage is the end of the one before
-    write(frame, moment == Moment::stage_done);
-  write_runout(frame, moment == Moment::stage_done);
+  if (first || moment != RunEvent::stage_begins)  // the beginning of a later stage is the end of the one before
+    write(frame, moment == RunEvent::stage_done);
+  write_runout(frame, moment == RunEvent::stage_done);
   watch.lap(output_seconds_);
 
   warn(frame);
@@ -256,7 +256,7 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
   last_.timings = frame.timings;
   last_.mass = frame.mass;
   last_.watched = frame.watched;
-  if (moment != Moment::stage_done)
+  if (moment != RunEvent::stage_done)
     return;
   done_before_ += frame.clock.time - stage_start_;  // a stage that seeks rest may end before its time
   last_.mass_there = totals(frame).mass;
@@ -267,11 +267,11 @@ void Recorder<D>::watch(const Frame<D>& frame, Moment moment)
 
 /// Of what the guards see and let pass, the first time.
 template <int D>
-void Recorder<D>::warn(const Frame<D>& frame) const
+void Recorder<D>::warn(const RunView<D>& frame) const
 {
   if (!frame.ranks->is_root())
     return;
-  const Watched &now = frame.watched, &before = last_.watched;
+  const LimitMonitor &now = frame.watched, &before = last_.watched;
   const auto warning = [&](const std::string& what) {
     say(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
   };
@@ -285,7 +285,7 @@ void Recorder<D>::warn(const Frame<D>& frame) const
 }
 
 template <int D>
-void Recorder<D>::write(const Frame<D>& frame, bool last)
+void Recorder<D>::write(const RunView<D>& frame, bool last)
 {
   const Real time = frame.clock.time;
   const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
@@ -305,10 +305,10 @@ void Recorder<D>::write(const Frame<D>& frame, bool last)
 }
 
 template <int D>
-void Recorder<D>::write_particles_file(const Frame<D>& frame)
+void Recorder<D>::write_particles_file(const RunView<D>& frame)
 {
   const auto file = particle_file(particle_files_++);
-  on_slices(frame, [&](const Frame<D>& slice, const std::vector<Body>&, const Slice& of_file) {
+  on_slices(frame, [&](const RunView<D>& slice, const std::vector<Body>&, const Slice& of_file) {
     const auto rows = rows_by_id(slice.particles);
     std::vector<Column> columns;
     for (const std::string& name : particle_fields_of(outputs_))
@@ -326,7 +326,7 @@ void Recorder<D>::write_particles_file(const Frame<D>& frame)
 }
 
 template <int D>
-void Recorder<D>::write_mesh_file(const Frame<D>& frame)
+void Recorder<D>::write_mesh_file(const RunView<D>& frame)
 {
   std::vector<Column> columns;
   for (const std::string& name : outputs_.mesh->fields_wanted)
@@ -339,7 +339,7 @@ void Recorder<D>::write_mesh_file(const Frame<D>& frame)
 }
 
 template <int D>
-void Recorder<D>::write_runout(const Frame<D>& frame, bool last)
+void Recorder<D>::write_runout(const RunView<D>& frame, bool last)
 {
   if (!runout_.has_begun())
     return;

@@ -20,26 +20,26 @@ struct LastSeen {
   Timings timings;
   MassLedger<D> mass;
   Real mass_there{};  ///< of the particles [kg]
-  Watched watched;
+  LimitMonitor watched;
   EnergyNow energy;
   MomentumNow<D> momentum;
   static constexpr auto fields()
   {
-    return std::tuple{kept("clock", &LastSeen::clock),           kept("timings", &LastSeen::timings), kept("mass", &LastSeen::mass),
-                      kept("mass_there", &LastSeen::mass_there), kept("watched", &LastSeen::watched), kept("energy", &LastSeen::energy),
-                      kept("momentum", &LastSeen::momentum)};
+    return std::tuple{saved("clock", &LastSeen::clock),           saved("timings", &LastSeen::timings), saved("mass", &LastSeen::mass),
+                      saved("mass_there", &LastSeen::mass_there), saved("watched", &LastSeen::watched), saved("energy", &LastSeen::energy),
+                      saved("momentum", &LastSeen::momentum)};
   }
 };
 
 /// What a run that goes on in a folder of its own has left in the folder that it comes from.
-struct Elsewhere {
+struct FilesOfEarlierRun {
   std::int64_t files = 0;  ///< the first ones of all
   int particle_files = 0, mesh_files = 0;
   Real time = -1;  ///< rows of the history up to then [s]
   static constexpr auto fields()
   {
-    return std::tuple{kept("files", &Elsewhere::files), kept("particle_files", &Elsewhere::particle_files),
-                      kept("mesh_files", &Elsewhere::mesh_files), kept("time", &Elsewhere::time)};
+    return std::tuple{saved("files", &FilesOfEarlierRun::files), saved("particle_files", &FilesOfEarlierRun::particle_files),
+                      saved("mesh_files", &FilesOfEarlierRun::mesh_files), saved("time", &FilesOfEarlierRun::time)};
   }
 };
 
@@ -49,14 +49,14 @@ class Recorder {
   /// `outputs` and the stages must outlive the recorder.  `made_by` is told in each file for ParaView.
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
-  void watch(const Frame<D>& frame, Moment moment);
+  void watch(const RunView<D>& frame, RunEvent moment);
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
   /// the frame is dropped.  Says in words what should be there and is not, on the root.
-  std::vector<std::string> resume(const Frame<D>& frame);
+  std::vector<std::string> resume(const RunView<D>& frame);
   /// Whether fields() that were taken over may be those of a run with so many walls and bodies, and particles at the start.
   bool fits(std::size_t walls, std::size_t bodies, Index particles) const;
   /// Goes on from such a state with files of its own, in another folder.
-  void begin_again(const Frame<D>& frame);
+  void begin_again(const RunView<D>& frame);
   /// What has been written is on the disk when it returns.
   void flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
@@ -76,42 +76,42 @@ class Recorder {
   const Runout<D>& runout() const noexcept { return runout_; }
   static constexpr auto fields()
   {
-    return std::tuple{kept("accounts", &Recorder::accounts_),
-                      kept("body_forces", &Recorder::body_forces_),
-                      kept("particle_times", &Recorder::particle_times_),
-                      kept("mesh_times", &Recorder::mesh_times_),
-                      kept("history_times", &Recorder::history_times_),
-                      kept("particle_files", &Recorder::particle_files_),
-                      kept("mesh_files", &Recorder::mesh_files_),
-                      kept("particle_time", &Recorder::particle_time_),
-                      kept("mesh_time", &Recorder::mesh_time_),
-                      kept("history_time", &Recorder::history_time_),
-                      kept("history_state", &Recorder::history_state_),
-                      kept("stage_start", &Recorder::stage_start_),
-                      kept("done_before", &Recorder::done_before_),
-                      kept("last", &Recorder::last_),
-                      kept("stages", &Recorder::stages_),
-                      kept("changes", &Recorder::changes_),
-                      kept("files", &Recorder::files_),
-                      kept("elsewhere", &Recorder::elsewhere_),
-                      kept("last_output", &Recorder::last_output_),
-                      kept("bodies", &Recorder::bodies_),
-                      kept("runout", &Recorder::runout_),
-                      kept("output_seconds", &Recorder::output_seconds_),
-                      kept("bytes_per_particle", &Recorder::bytes_per_particle_)};
+    return std::tuple{saved("accounts", &Recorder::accounts_),
+                      saved("body_forces", &Recorder::body_forces_),
+                      saved("particle_times", &Recorder::particle_times_),
+                      saved("mesh_times", &Recorder::mesh_times_),
+                      saved("history_times", &Recorder::history_times_),
+                      saved("particle_files", &Recorder::particle_files_),
+                      saved("mesh_files", &Recorder::mesh_files_),
+                      saved("particle_time", &Recorder::particle_time_),
+                      saved("mesh_time", &Recorder::mesh_time_),
+                      saved("history_time", &Recorder::history_time_),
+                      saved("history_state", &Recorder::history_state_),
+                      saved("stage_start", &Recorder::stage_start_),
+                      saved("done_before", &Recorder::done_before_),
+                      saved("last", &Recorder::last_),
+                      saved("stages", &Recorder::stages_),
+                      saved("changes", &Recorder::changes_),
+                      saved("files", &Recorder::files_),
+                      saved("elsewhere", &Recorder::elsewhere_),
+                      saved("last_output", &Recorder::last_output_),
+                      saved("bodies", &Recorder::bodies_),
+                      saved("runout", &Recorder::runout_),
+                      saved("output_seconds", &Recorder::output_seconds_),
+                      saved("bytes_per_particle", &Recorder::bytes_per_particle_)};
   }
 
  private:
-  void open(const Frame<D>& frame);
-  void welcome(const Frame<D>& frame);
-  void go_on(const Frame<D>& frame);
-  std::vector<std::string> drop_later(const Frame<D>& frame);
+  void open(const RunView<D>& frame);
+  void welcome(const RunView<D>& frame);
+  void go_on(const RunView<D>& frame);
+  std::vector<std::string> drop_later(const RunView<D>& frame);
   void name_lists();
-  void warn(const Frame<D>& frame) const;
-  void write(const Frame<D>& frame, bool last);
-  void write_particles_file(const Frame<D>& frame);
-  void write_mesh_file(const Frame<D>& frame);
-  void write_runout(const Frame<D>& frame, bool last);
+  void warn(const RunView<D>& frame) const;
+  void write(const RunView<D>& frame, bool last);
+  void write_particles_file(const RunView<D>& frame);
+  void write_mesh_file(const RunView<D>& frame);
+  void write_runout(const RunView<D>& frame, bool last);
   void name(const std::string& file);
   std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
@@ -120,7 +120,7 @@ class Recorder {
   std::string made_by_;
   const OutputSpec& outputs_;
   const std::vector<Stage>& stage_list_;
-  Accounts<D> accounts_;
+  BalanceHistory<D> accounts_;
   BodyForces<D> body_forces_;
   Progress progress_;
   Schedule particle_times_, mesh_times_, history_times_;
@@ -137,7 +137,7 @@ class Recorder {
   std::vector<StageResult> stages_;
   std::vector<std::string> changes_;
   std::vector<std::string> files_;
-  Elsewhere elsewhere_;
+  FilesOfEarlierRun elsewhere_;
   std::string last_output_;  // relative as well
   std::vector<BodySummary> bodies_;
   Runout<D> runout_;

@@ -38,7 +38,7 @@ struct NodeSizes {
 
 /// Mean size of the cells of the whole mesh [m].
 template <int D>
-Real mean_size(const Frame<D>& frame)
+Real mean_size(const RunView<D>& frame)
 {
   ExactSums<NodeSizes> sum;
   for (Index n = 0; n < frame.mesh.n_nodes(); ++n)
@@ -64,11 +64,11 @@ void for_each_cell_of(const Mesh<D>& mesh, Facet facet, const PlanGrid& grid, co
   const auto first = [](Real at, Real begin, Real d, Index n) {
     return static_cast<Index>(std::clamp(std::floor((at - begin) / d - 0.5), Real{0}, static_cast<Real>(n - 1)));
   };
-  const auto elevation = [&](const Vec3& x) { return axes.sign * x[axes.upright]; };
+  const auto elevation = [&](const Vec3& x) { return axes.sign * x[axes.vertical]; };
   const Vec<2> a = plan(corner[0]), ab = plan(corner[1]) - a, ac = D == 2 ? Vec<2>(0, 1) : Vec<2>(plan(corner[D - 1]) - a);
   const Real area = ab[0] * ac[1] - ab[1] * ac[0];
   if (area == 0)
-    return;                   // upright
+    return;                   // vertical
   constexpr Real rim = 1e-9;  // of the facet: centres on an edge belong to both sides
   for (Index row = D == 2 ? 0 : first(low[1], grid.south, grid.dy, grid.rows);
        row <= (D == 2 ? 0 : std::min(grid.rows - 1, first(high[1], grid.south, grid.dy, grid.rows) + 1)); ++row)
@@ -111,9 +111,10 @@ PlanAxes plan_axes(const Vec<D>& gravity)
 {
   PlanAxes axes;
   axes.up = gravity.norm() > 0 ? Vec3(-in_space<D>(gravity).normalized()) : D == 2 ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ());
-  axes.up.cwiseAbs().maxCoeff(&axes.upright);
-  axes.sign = axes.up[axes.upright] < 0 ? -1 : 1;
-  axes.plan = D == 2 ? std::array<Index, 2>{1 - axes.upright, none} : std::array<Index, 2>{(axes.upright + 1) % 3, (axes.upright + 2) % 3};
+  axes.up.cwiseAbs().maxCoeff(&axes.vertical);
+  axes.sign = axes.up[axes.vertical] < 0 ? -1 : 1;
+  axes.plan =
+      D == 2 ? std::array<Index, 2>{1 - axes.vertical, none} : std::array<Index, 2>{(axes.vertical + 1) % 3, (axes.vertical + 2) % 3};
   return axes;
 }
 
@@ -143,7 +144,7 @@ Runout<D>::Runout(fs::path folder, const std::optional<RunoutSpec>& spec)
 
 /// What follows from the mesh and the spec.
 template <int D>
-void Runout<D>::lay_out(const Frame<D>& frame)
+void Runout<D>::lay_out(const RunView<D>& frame)
 {
   axes_ = plan_axes<D>(frame.loads.gravity.acceleration);
   map_ = frame.mesh.map();
@@ -174,7 +175,7 @@ std::array<Real, 2> Runout<D>::on_plan(const Vec3& x) const
 /// What the ranks have found in each cell, as pick(a, b) of what two of them have; NaN is nothing.  On the root.
 template <int D>
 template <class Pick>
-std::vector<Real> Runout<D>::joined(Exchange& ranks, const std::vector<Real>& here, Pick&& pick) const
+std::vector<Real> Runout<D>::joined(Communicator& ranks, const std::vector<Real>& here, Pick&& pick) const
 {
   if (ranks.alone())
     return here;
@@ -193,7 +194,7 @@ std::vector<Real> Runout<D>::joined(Exchange& ranks, const std::vector<Real>& he
 
 /// How high particles reach over each cell, whether they have moved or not.
 template <int D>
-std::vector<Real> Runout<D>::tops(const Frame<D>& frame) const
+std::vector<Real> Runout<D>::tops(const RunView<D>& frame) const
 {
   std::vector<Real> top(grid_.size(), no_value);
   std::vector<CellShare> shares;
@@ -209,7 +210,7 @@ std::vector<Real> Runout<D>::tops(const Frame<D>& frame) const
 }
 
 template <int D>
-void Runout<D>::begin(const Frame<D>& frame)
+void Runout<D>::begin(const RunView<D>& frame)
 {
   lay_out(frame);
   begun_ = true;
@@ -239,7 +240,7 @@ void Runout<D>::begin(const Frame<D>& frame)
 }
 
 template <int D>
-void Runout<D>::go_on(const Frame<D>& frame)
+void Runout<D>::go_on(const RunView<D>& frame)
 {
   if (!begun_)
     return;
@@ -267,7 +268,7 @@ void Runout<D>::flush() const
 }
 
 template <int D>
-std::vector<typename Runout<D>::Moved> Runout<D>::gather_moved(const Frame<D>& frame) const
+std::vector<typename Runout<D>::Moved> Runout<D>::gather_moved(const RunView<D>& frame) const
 {
   const auto among = [](const std::vector<std::string>& names, const Body& body) {
     return std::find(names.begin(), names.end(), body.name) != names.end();
@@ -372,7 +373,7 @@ bool Runout<D>::at_rest() const
 }
 
 template <int D>
-void Runout<D>::look(const Frame<D>& frame, bool with_frame)
+void Runout<D>::look(const RunView<D>& frame, bool with_frame)
 {
   const std::vector<Moved> moved = gather_moved(frame);
   std::vector<Real> top = tops(frame);
@@ -396,7 +397,7 @@ void Runout<D>::look(const Frame<D>& frame, bool with_frame)
 }
 
 template <int D>
-std::vector<std::string> Runout<D>::see(const Frame<D>& frame, bool last)
+std::vector<std::string> Runout<D>::see(const RunView<D>& frame, bool last)
 {
   const Real since_start = frame.clock.time - start_;
   const bool due = times_.due(since_start), frame_due = frame_times_.due(since_start);
@@ -508,7 +509,7 @@ void walk(const std::vector<std::array<Real, 2>>& corners, Real step, std::vecto
 }  // namespace
 
 template <int D>
-std::vector<std::string> Runout<D>::write_maps(const Frame<D>& frame)
+std::vector<std::string> Runout<D>::write_maps(const RunView<D>& frame)
 {
   std::vector<std::string> files;
   const auto write_section = [&](const std::string& name, const std::vector<std::array<Real, 2>>& places,

@@ -17,7 +17,7 @@ namespace talus {
 /// Which way is up, and which axes make up the plan, so that east, north and up are right-handed.
 struct PlanAxes {
   Vec3 up;                    ///< against gravity, of unit length
-  Index upright;              ///< the axis nearest to it
+  Index vertical;             ///< the axis nearest to it
   Real sign;                  ///< of `up` along that axis
   std::array<Index, 2> plan;  ///< 2-D: only the first
 };
@@ -42,21 +42,21 @@ struct RunoutNumbers {
   static constexpr auto fields()
   {
     using N = RunoutNumbers;
-    return std::tuple{kept("volume", &N::volume),
-                      kept("area", &N::area),
-                      kept("mean", &N::mean),
-                      kept("thickest", &N::thickest),
-                      kept("fastest", &N::fastest),
-                      kept("mean_speed", &N::mean_speed),
-                      kept("bulk", &N::bulk),
-                      kept("kinetic", &N::kinetic),
-                      kept("front", &N::front),
-                      kept("height", &N::height),
-                      kept("length", &N::length),
-                      kept("centre", &N::centre),
-                      kept("centre_height", &N::centre_height),
-                      kept("centre_length", &N::centre_length),
-                      kept("entrained", &N::entrained)};
+    return std::tuple{saved("volume", &N::volume),
+                      saved("area", &N::area),
+                      saved("mean", &N::mean),
+                      saved("thickest", &N::thickest),
+                      saved("fastest", &N::fastest),
+                      saved("mean_speed", &N::mean_speed),
+                      saved("bulk", &N::bulk),
+                      saved("kinetic", &N::kinetic),
+                      saved("front", &N::front),
+                      saved("height", &N::height),
+                      saved("length", &N::length),
+                      saved("centre", &N::centre),
+                      saved("centre_height", &N::centre_height),
+                      saved("centre_length", &N::centre_length),
+                      saved("entrained", &N::entrained)};
   }
 };
 
@@ -69,15 +69,15 @@ class Runout {
   Runout(std::filesystem::path folder, const std::optional<RunoutSpec>& spec);
 
   /// From the beginning of the first stage that is not geostatic on.  Every rank has to ask, here and below.
-  void begin(const Frame<D>& frame);
+  void begin(const RunView<D>& frame);
   bool has_begun() const noexcept { return begun_; }
   /// A look, if one is due or it is the last of a stage, and a frame where these are wanted.  Returns the files of frames that it wrote.
-  std::vector<std::string> see(const Frame<D>& frame, bool last);
+  std::vector<std::string> see(const RunView<D>& frame, bool last);
   /// The maps and sections as of the last look; their files, relative to the folder.
-  std::vector<std::string> write_maps(const Frame<D>& frame);
+  std::vector<std::string> write_maps(const RunView<D>& frame);
 
   /// Goes on with the files of a run whose state has been taken over.
-  void go_on(const Frame<D>& frame);
+  void go_on(const RunView<D>& frame);
   /// On the root: frames that are later than the state are removed; whether runout.csv has all that had been written.
   bool drop_later() const;
   void flush() const;
@@ -86,27 +86,27 @@ class Runout {
 
   static constexpr auto fields()
   {
-    return std::tuple{kept("begun", &Runout::begun_),
-                      kept("start", &Runout::start_),
-                      kept("times", &Runout::times_),
-                      kept("frame_times", &Runout::frame_times_),
-                      kept("frames", &Runout::frames_),
-                      kept("time", &Runout::time_),
-                      kept("now", &Runout::now_),
-                      kept("fastest", &Runout::fastest_),
-                      kept("thickest", &Runout::thickest_),
-                      kept("still_since", &Runout::still_since_),
-                      kept("ground", &Runout::ground_),
-                      kept("base", &Runout::base_),
-                      kept("surface", &Runout::surface_),
-                      kept("surface_max", &Runout::surface_max_),
-                      kept("thickness", &Runout::thickness_),
-                      kept("thickness_max", &Runout::thickness_max_),
-                      kept("speed_max", &Runout::speed_max_),
-                      kept("intensity_max", &Runout::intensity_max_),
-                      kept("arrival", &Runout::arrival_),
-                      kept("source", &Runout::source_),
-                      kept("erosion", &Runout::erosion_)};
+    return std::tuple{saved("begun", &Runout::begun_),
+                      saved("start", &Runout::start_),
+                      saved("times", &Runout::times_),
+                      saved("frame_times", &Runout::frame_times_),
+                      saved("frames", &Runout::frames_),
+                      saved("time", &Runout::time_),
+                      saved("now", &Runout::now_),
+                      saved("fastest", &Runout::fastest_),
+                      saved("thickest", &Runout::thickest_),
+                      saved("still_since", &Runout::still_since_),
+                      saved("ground", &Runout::ground_),
+                      saved("base", &Runout::base_),
+                      saved("surface", &Runout::surface_),
+                      saved("surface_max", &Runout::surface_max_),
+                      saved("thickness", &Runout::thickness_),
+                      saved("thickness_max", &Runout::thickness_max_),
+                      saved("speed_max", &Runout::speed_max_),
+                      saved("intensity_max", &Runout::intensity_max_),
+                      saved("arrival", &Runout::arrival_),
+                      saved("source", &Runout::source_),
+                      saved("erosion", &Runout::erosion_)};
   }
 
  private:
@@ -116,17 +116,17 @@ class Runout {
     MapKind kind;
     std::vector<Real> values;
   };
-  void lay_out(const Frame<D>& frame);
-  void look(const Frame<D>& frame, bool with_frame);
-  std::vector<Moved> gather_moved(const Frame<D>& frame) const;
+  void lay_out(const RunView<D>& frame);
+  void look(const RunView<D>& frame, bool with_frame);
+  std::vector<Moved> gather_moved(const RunView<D>& frame) const;
   template <class Pick>
-  std::vector<Real> joined(Exchange& ranks, const std::vector<Real>& here, Pick&& pick) const;
-  std::vector<Real> tops(const Frame<D>& frame) const;
+  std::vector<Real> joined(Communicator& ranks, const std::vector<Real>& here, Pick&& pick) const;
+  std::vector<Real> tops(const RunView<D>& frame) const;
   void count_on_cells(const std::vector<Moved>& moved, Real since_start);
   void count_altogether(const std::vector<Moved>& moved);
   bool at_rest() const;
   std::array<Real, 2> on_plan(const Vec3& x) const;
-  Real elevation(const Vec3& x) const { return axes_.sign * x[axes_.upright]; }
+  Real elevation(const Vec3& x) const { return axes_.sign * x[axes_.vertical]; }
   std::vector<CsvColumn> columns() const, columns_of_file() const;
   std::vector<Real> row(Real time) const;
   std::array<Real, 2> on_map(const std::array<Real, 2>& place) const;

@@ -20,7 +20,7 @@ class Schedule {
     next_ = std::floor(time / every_ + round_off) + 1;
     return true;
   }
-  static constexpr auto fields() { return std::tuple{kept("next", &Schedule::next_)}; }
+  static constexpr auto fields() { return std::tuple{saved("next", &Schedule::next_)}; }
 
  private:
   Real every_;

@@ -85,7 +85,7 @@ class Inspection {
 
 }  // namespace
 
-void find_faults(const Clock& clock, std::vector<std::string>& faults)
+void find_invalid(const Clock& clock, std::vector<std::string>& faults)
 {
   if (clock.step < 0)
     faults.push_back(fmt::format("clock/step is {}, not a number from 0 on", clock.step));
@@ -94,7 +94,7 @@ void find_faults(const Clock& clock, std::vector<std::string>& faults)
   must_not_be_negative("clock/lag", clock.lag, faults);
 }
 
-void find_faults(const StageState& stage, const Clock& now, std::vector<std::string>& faults)
+void find_invalid(const StageState& stage, const Clock& now, std::vector<std::string>& faults)
 {
   must_not_be_negative("stage/begin", stage.begin, faults);
   must_not_be_negative("stage/ramp_time", stage.ramp_time, faults);
@@ -109,7 +109,7 @@ void find_faults(const StageState& stage, const Clock& now, std::vector<std::str
                                  stage.begin, now.step, now.time));
 }
 
-void find_faults(const EnergyLedger& energy, std::vector<std::string>& faults)
+void find_invalid(const EnergyLedger& energy, std::vector<std::string>& faults)
 {
   for_each_field<EnergyLedger>([&](const auto& field) {
     if (const Real value = energy.*field.member; !std::isfinite(value))
@@ -118,8 +118,8 @@ void find_faults(const EnergyLedger& energy, std::vector<std::string>& faults)
 }
 
 template <int D>
-void find_faults(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
-                 std::vector<std::string>& faults)
+void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
+                  std::vector<std::string>& faults)
 {
   const std::size_t before = faults.size();
   Inspection<D> inspection(particles, bodies, faults);
@@ -140,7 +140,7 @@ void find_faults(const Particles<D>& particles, const std::vector<Body>& bodies,
   inspection.positive("det F", "", [&](std::size_t p) { return particles.F[p].determinant(); });
 }
 
-template void find_faults<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
-template void find_faults<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
+template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
+template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
 
 }  // namespace talus

@@ -9,16 +9,18 @@
 namespace talus {
 
 /// Adds to `faults`, in words, what no sound run has.
-void find_faults(const Clock& clock, std::vector<std::string>& faults);
-void find_faults(const StageState& stage, const Clock& now, std::vector<std::string>& faults);
+void find_invalid(const Clock& clock, std::vector<std::string>& faults);
+void find_invalid(const StageState& stage, const Clock& now, std::vector<std::string>& faults);
 /// Errors are measured by the largest of these.
-void find_faults(const EnergyLedger& energy, std::vector<std::string>& faults);
+void find_invalid(const EnergyLedger& energy, std::vector<std::string>& faults);
 /// Of each fault the first particle.  Bodies, histories and the rows of columns fit together.
 template <int D>
-void find_faults(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
-                 std::vector<std::string>& faults);
+void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
+                  std::vector<std::string>& faults);
 
-extern template void find_faults<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
-extern template void find_faults<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
+extern template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&,
+                                     std::vector<std::string>&);
+extern template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&,
+                                     std::vector<std::string>&);
 
 }  // namespace talus

@@ -42,19 +42,19 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
   }
   std::vector<Timed> timed(whole.size());
   StopWatch watch;
-  Audience<D> audience{[&](const Frame<D>& frame, Moment moment) {
-                         if (moment != Moment::step_done && moment != Moment::step_begins)
-                           return;
-                         Real seconds = 0;
-                         watch.lap(seconds);
-                         const bool counts = frame.clock.step - frame.stage.first_step > trial_warm_up;
-                         if (moment == Moment::step_begins || !counts)
-                           return;
-                         Timed& stage = timed[static_cast<std::size_t>(frame.stage_number)];
-                         stage.seconds.push_back(seconds);
-                         stage.time += frame.clock.dt;
-                       },
-                       [](const Frame<D>&, const StageResult&) {}};
+  RunCallbacks<D> audience{[&](const RunView<D>& frame, RunEvent moment) {
+                             if (moment != RunEvent::step_done && moment != RunEvent::step_begins)
+                               return;
+                             Real seconds = 0;
+                             watch.lap(seconds);
+                             const bool counts = frame.clock.step - frame.stage.first_step > trial_warm_up;
+                             if (moment == RunEvent::step_begins || !counts)
+                               return;
+                             Timed& stage = timed[static_cast<std::size_t>(frame.stage_number)];
+                             stage.seconds.push_back(seconds);
+                             stage.time += frame.clock.dt;
+                           },
+                           [](const RunView<D>&, const StageResult&) {}};
   std::optional<std::string> trouble;
   try {
     simulate(scene, std::move(mesh), std::move(setup), audience);

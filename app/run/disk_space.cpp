@@ -37,7 +37,7 @@ std::string megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / 1e6)
 }  // namespace
 
 template <int D>
-FileSizes file_sizes(const Frame<D>& frame, const OutputSpec& outputs)
+FileSizes file_sizes(const RunView<D>& frame, const OutputSpec& outputs)
 {
   FileSizes sizes;
   const auto particles = static_cast<Real>(frame.ranks->sum(static_cast<std::int64_t>(frame.particles.size())));
@@ -100,16 +100,16 @@ void compare_with_free_space(const std::filesystem::path& folder, const FileSize
 }  // namespace
 
 template <int D>
-void check_disk_space(const std::filesystem::path& folder, const Frame<D>& frame, const OutputSpec& outputs, Real time_left)
+void check_disk_space(const std::filesystem::path& folder, const RunView<D>& frame, const OutputSpec& outputs, Real time_left)
 {
   const FileSizes one = file_sizes(frame, outputs);
   const bool begins = frame.clock.step == 0;  // then it takes the place of the results that are there, whose room counts as free
   frame.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left, begins); });
 }
 
-template FileSizes file_sizes<2>(const Frame<2>&, const OutputSpec&);
-template FileSizes file_sizes<3>(const Frame<3>&, const OutputSpec&);
-template void check_disk_space<2>(const std::filesystem::path&, const Frame<2>&, const OutputSpec&, Real);
-template void check_disk_space<3>(const std::filesystem::path&, const Frame<3>&, const OutputSpec&, Real);
+template FileSizes file_sizes<2>(const RunView<2>&, const OutputSpec&);
+template FileSizes file_sizes<3>(const RunView<3>&, const OutputSpec&);
+template void check_disk_space<2>(const std::filesystem::path&, const RunView<2>&, const OutputSpec&, Real);
+template void check_disk_space<3>(const std::filesystem::path&, const RunView<3>&, const OutputSpec&, Real);
 
 }  // namespace talus

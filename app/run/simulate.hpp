@@ -11,19 +11,20 @@ namespace talus {
 
 /// Who watches a run.
 template <int D>
-struct Audience {
-  std::function<void(const Frame<D>&, Moment)> watch;
-  std::function<void(const Frame<D>&, const StageResult&)> stage_done;
+struct RunCallbacks {
+  std::function<void(const RunView<D>&, RunEvent)> watch;
+  std::function<void(const RunView<D>&, const StageResult&)> stage_done;
   /// If set: puts the state of an earlier run in the place of that at the start.
   std::function<void(const State<D>&)> take_over = {};
   /// Told what a stage has changed, before it begins.
-  std::function<void(const Frame<D>&, const Stage&, const StageNews&)> changed = [](const Frame<D>&, const Stage&, const StageNews&) {};
+  std::function<void(const RunView<D>&, const Stage&, const StageReport&)> changed = [](const RunView<D>&, const Stage&,
+                                                                                        const StageReport&) {};
   /// Told when all is there that the run needs, before anything is done.
-  std::function<void(const Frame<D>&)> ready = [](const Frame<D>&) {};
+  std::function<void(const RunView<D>&)> ready = [](const RunView<D>&) {};
 };
 
 /// Ranks have shared the run out anew.
-struct SharesMoved {
+struct Rebalanced {
   Clock clock;             ///< at the time
   Real before{}, after{};  ///< work of the busiest rank over the mean
   Real seconds{};          ///< that it took
@@ -31,11 +32,11 @@ struct SharesMoved {
 
 /// How several ranks go on sharing a run, whose results do not depend on it.
 template <int D>
-struct Moves {
+struct LoadBalancing {
   std::optional<std::int64_t> every = 0;                    ///< shares move after so many steps; 0: never; nothing: when it pays
   std::function<Mesh<D>()> whole_mesh = {};                 ///< the same as at the start; what it throws leaves the shares as they are
   Real mesh_seconds = 0;                                    ///< that this takes, about
-  std::function<void(const SharesMoved&)> moved = {};       ///< told of each time
+  std::function<void(const Rebalanced&)> moved = {};        ///< told of each time
   std::function<void(const std::string& why)> stayed = {};  ///< told that they cannot move, and will not any more
 };
 
@@ -63,7 +64,7 @@ Real first_step(const Mesh<D>& mesh, const Setup<D>& setup);
 
 /// Runs all stages, or those that are left.  SceneErrors: the kernel refuses the mesh.  RunError: a stage failed; the state before is what the audience saw.
 template <int D>
-void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience, const Moves<D>& moves = {});
+void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves = {});
 
 /// Builds the model and lets it go.
 template <int D>
@@ -71,8 +72,8 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup);
 
 extern template Real first_step<2>(const Mesh<2>&, const Setup<2>&);
 extern template Real first_step<3>(const Mesh<3>&, const Setup<3>&);
-extern template void simulate<2>(const Scene&, Mesh<2>, Setup<2>, const Audience<2>&, const Moves<2>&);
-extern template void simulate<3>(const Scene&, Mesh<3>, Setup<3>, const Audience<3>&, const Moves<3>&);
+extern template void simulate<2>(const Scene&, Mesh<2>, Setup<2>, const RunCallbacks<2>&, const LoadBalancing<2>&);
+extern template void simulate<3>(const Scene&, Mesh<3>, Setup<3>, const RunCallbacks<3>&, const LoadBalancing<3>&);
 extern template Estimate estimate<2>(const Scene&, Mesh<2>, Setup<2>);
 extern template Estimate estimate<3>(const Scene&, Mesh<3>, Setup<3>);
 

@@ -4,7 +4,7 @@
 namespace talus {
 
 template Real first_step<2>(const Mesh<2>&, const Setup<2>&);
-template void simulate<2>(const Scene&, Mesh<2>, Setup<2>, const Audience<2>&, const Moves<2>&);
+template void simulate<2>(const Scene&, Mesh<2>, Setup<2>, const RunCallbacks<2>&, const LoadBalancing<2>&);
 template Estimate estimate<2>(const Scene&, Mesh<2>, Setup<2>);
 
 }  // namespace talus

@@ -4,7 +4,7 @@
 namespace talus {
 
 template Real first_step<3>(const Mesh<3>&, const Setup<3>&);
-template void simulate<3>(const Scene&, Mesh<3>, Setup<3>, const Audience<3>&, const Moves<3>&);
+template void simulate<3>(const Scene&, Mesh<3>, Setup<3>, const RunCallbacks<3>&, const LoadBalancing<3>&);
 template Estimate estimate<3>(const Scene&, Mesh<3>, Setup<3>);
 
 }  // namespace talus

@@ -50,7 +50,7 @@ Model<D, K> build(const Scene& scene, Part<D> part, Setup<D> setup)
   Options<K> options;
   options_of(scene, options);
   std::optional<Model<D, K>> built;
-  world().agree(Exchange::caught([&] {
+  world().agree(Communicator::caught([&] {
     try {
       built.emplace(std::move(part.mesh), options);
     } catch (const std::invalid_argument& e) {
@@ -83,7 +83,7 @@ Model<D, K> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   Part<D> part{std::move(mesh), {}};
   if (!world().alone()) {
     part = part_of(part.mesh, particles_in_blocks(setup.particles.cell, part.mesh.n_cells()));
-    take_own_particles(world(), part.share, setup.bodies, setup.materials, setup.particles);
+    receive_owned_particles(world(), part.share, setup.bodies, setup.materials, setup.particles);
     restrict_to(part.share, setup);
   }
   return build<D, K>(scene, std::move(part), std::move(setup));
@@ -121,14 +121,14 @@ Setup<D> without_particles(Setup<D>& setup)
 }
 
 /// Thrown before a step, for ranks to share their work out anew: the state is that of a checkpoint then.
-struct SharesAreDue {};
+struct RebalanceRequest {};
 
 /// All stages on one model, or on several, one after the other, where ranks share their work out anew: as if the run was stopped and went on,
 /// but for what has been seen of it.
 template <int D, Kernel<D> K>
 class Simulation {
  public:
-  Simulation(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience, const Moves<D>& moves)
+  Simulation(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves)
       : scene_(scene),
         audience_(audience),
         moves_(moves),
@@ -167,7 +167,7 @@ class Simulation {
  private:
   bool may_move() const { return !world().alone() && moves_.every != 0; }
   const Stage& stage_at_hand() const { return stages_[static_cast<std::size_t>(model_->stage.number)]; }
-  Frame<D> frame() const { return frame_of(*model_, stage_at_hand()); }
+  RunView<D> frame() const { return frame_of(*model_, stage_at_hand()); }
 
   /// All that the stage of that number changes between two steps.
   void enter(Index number)
@@ -175,7 +175,7 @@ class Simulation {
     const auto n = static_cast<std::size_t>(number);
     if (n >= changes_.size() || !changes_[n].any())
       return;
-    const StageNews news = talus::enter(*model_, changes_[n], laws_[n], stages_[n]);
+    const StageReport news = talus::enter(*model_, changes_[n], laws_[n], stages_[n]);
     audience_.changed(frame(), stages_[n], news);
   }
 
@@ -203,16 +203,16 @@ class Simulation {
 
   std::optional<StageResult> run_until_shares_move(std::optional<Index> begins)
   {
-    const auto watch = [&](const Model<D, K>&, Moment moment) {
-      if (moment == Moment::step_begins && should_move())
-        throw SharesAreDue();
+    const auto watch = [&](const Model<D, K>&, RunEvent moment) {
+      if (moment == RunEvent::step_begins && should_move())
+        throw RebalanceRequest();
       audience_.watch(frame(), moment);
     };
     try {
       if (begins)
         return run_stage(*model_, stages_[static_cast<std::size_t>(*begins)], limits_, watch, *begins);
       return finish_stage(*model_, stage_at_hand(), limits_, watch);
-    } catch (const SharesAreDue&) {
+    } catch (const RebalanceRequest&) {
       return std::nullopt;
     }
   }
@@ -276,7 +276,7 @@ class Simulation {
     const auto weights = particles_in_blocks(model_->particles.cell, model_->share.whole_cells);
     std::optional<Part<D>> made;
     try {
-      world().agree(Exchange::caught([&] { made = part_of(moves_.whole_mesh(), weights); }));
+      world().agree(Communicator::caught([&] { made = part_of(moves_.whole_mesh(), weights); }));
     } catch (const Error& e) {
       return stay(e.what());
     } catch (const std::bad_alloc&) {
@@ -284,9 +284,9 @@ class Simulation {
     }
     Part<D>& part = *made;
     const auto costs = costs_of_blocks(weights, part.share.whole_cells);
-    SharesMoved told{.clock = model_->clock,
-                     .before = imbalance(costs, model_->share.rank_of_whole_block, world().size()),
-                     .after = imbalance(costs, part.share.rank_of_whole_block, world().size())};
+    Rebalanced told{.clock = model_->clock,
+                    .before = imbalance(costs, model_->share.rank_of_whole_block, world().size()),
+                    .after = imbalance(costs, part.share.rank_of_whole_block, world().size())};
     const std::int64_t migrated = model_->migration.moved();
     LooseState<D> state = take_out(state_of(*model_));
     model_.reset();
@@ -307,13 +307,13 @@ class Simulation {
   {
     for (Index& cell : model_->particles.cell)
       cell = model_->share.local_cell(cell);
-    rule_->give_up();
+    rule_->abort_run();
     moves_.stayed(why);
   }
 
   const Scene& scene_;
-  const Audience<D>& audience_;
-  const Moves<D>& moves_;
+  const RunCallbacks<D>& audience_;
+  const LoadBalancing<D>& moves_;
   std::vector<Stage> stages_;
   std::vector<StageChange<D>> changes_;
   std::vector<std::vector<AnyBatch>> laws_;
@@ -321,14 +321,14 @@ class Simulation {
   Setup<D> rest_;  // of the whole mesh, where shares may move
   std::optional<Model<D, K>> model_;
   Real build_seconds_ = 0;
-  std::optional<MoveRule> rule_;
+  std::optional<RebalancePolicy> rule_;
   std::int64_t looked_at_ = 0;  // steps done at the last look
   Real seconds_then_ = 0;       // in steps
   Index own_cells_ = 0;
 };
 
 template <int D>
-void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const Audience<D>& audience, const Moves<D>& moves)
+void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves)
 {
   with_kernel<D>(scene.kernel, [&]<class K>() { Simulation<D, K>(scene, std::move(mesh), std::move(setup), audience, moves)(); });
 }
@@ -348,14 +348,14 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     cost.mesh_bytes = static_cast<std::int64_t>(m.mesh.nodes().size_bytes() + m.mesh.cells().size_bytes()) +
                       m.mesh.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(m.mesh.cells_of_node().item) +
                       bytes(m.mesh.ring_of_node().item);
-    cost.node_bytes =
-        bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.hats.sum) + bytes(m.hats.motion) + bytes(m.blocks.row) + bytes(m.blocks.slot);
-    if constexpr (HasNodePart<K, D>)
-      cost.node_bytes += static_cast<std::int64_t>(m.kernel.node_part().size_bytes());
+    cost.node_bytes = bytes(m.nodes.sum) + bytes(m.nodes.motion) + bytes(m.projected.sum) + bytes(m.projected.motion) +
+                      bytes(m.blocks.row) + bytes(m.blocks.slot);
+    if constexpr (HasNodeOperators<K, D>)
+      cost.node_bytes += static_cast<std::int64_t>(m.kernel.node_operators().size_bytes());
     cost.shared_nodes = find_shared_nodes<D>(m.mesh, m.particles, m.bodies, [&m](Index c, std::vector<Index>& nodes) {
       for (const Index n : m.kernel.stencil(m.mesh, c))
-        if constexpr (HasNodePart<K, D> && !HasOwnValues<K, D>)
-          m.kernel.node_part().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
+        if constexpr (HasNodeOperators<K, D> && !HasOwnValues<K, D>)
+          m.kernel.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
             if (S != 0)
               nodes.push_back(v);
           });

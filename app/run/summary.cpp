@@ -184,9 +184,9 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.message = message_before_the_end;
   s.dimension = scene.dimension;
   s.kernel = scene.kernel;
-  s.transfer = fmt::format("{}{}", words(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
+  s.transfer = fmt::format("{}{}", enum_names(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
                            setup.transfer.musl ? ", musl" : "");
-  s.precision = words(scene.precision)[static_cast<std::size_t>(scene.precision)];
+  s.precision = enum_names(scene.precision)[static_cast<std::size_t>(scene.precision)];
   s.ranks.count = world().size();
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();
@@ -252,8 +252,8 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
     s.warnings.push_back(fmt::format("{} particles of {:.3g} kg failed and were deleted; the last: {}", last.mass.failed_count,
                                      last.mass.failed, last.watched.failure));
   if (last.mass.held_count > 0)
-    s.warnings.push_back(
-        fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count, last.mass.held_most));
+    s.warnings.push_back(fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count,
+                                     last.mass.largest_set_back));
 }
 
 template <int D>

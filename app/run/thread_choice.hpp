@@ -24,7 +24,7 @@ class ThreadChoice {
   ThreadChoice();
   /// `first` to begin with; at least `least`, at most `most`.
   ThreadChoice(int first, int least, int most);
-  int kept() const noexcept { return kept_; }
+  int saved() const noexcept { return kept_; }
   /// For the step that begins.
   int next() const noexcept { return trying_ ? tried_[turn_ % tried_.size()] : kept_; }
   /// How long it took [s].

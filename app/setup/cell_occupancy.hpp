@@ -11,11 +11,11 @@ namespace talus {
 
 /// Which cells have material, on any rank, where bodies are placed.  Every rank has to ask.
 template <int D>
-class Filled {
+class CellOccupancy {
  public:
   /// By the bodies that are `there`, by their names.
   template <class There>
-  Filled(const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies, Exchange& ranks, There&& there)
+  CellOccupancy(const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies, Communicator& ranks, There&& there)
       : mesh_(mesh), filled_(static_cast<std::size_t>(mesh.n_cells() / cells_in_word + 1), 0)
   {
     for (const Body& body : bodies)
@@ -28,7 +28,7 @@ class Filled {
   bool operator()(Index cell) const { return (filled_[word_of(cell)] & bit_of(cell)) != 0; }
   /// Facets of a group inside the mesh belong to the side that has material, if only one has; where neither has, to that which material
   /// reaches first, from cell to cell and not through the group: so it comes to an obstacle from outside.
-  std::vector<Facet> seen_from_material(std::vector<Facet> facets) const
+  std::vector<Facet> orient_facets(std::vector<Facet> facets) const
   {
     std::vector<Index> way;  // found when it is needed
     for (Facet& facet : facets) {

@@ -20,7 +20,7 @@ struct Waves {
 };
 
 template <int D>
-Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
+Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 {
   const Particles<D>& particles = setup.particles;
   CellOrder order;
@@ -44,7 +44,7 @@ Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
 
 /// What loads and walls can make of a particle within the mesh [m/s]; infinite where that cannot be told.
 template <int D>
-Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
+Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 {
   if (!setup.loads.of_place.empty())
     return std::numeric_limits<Real>::infinity();
@@ -75,30 +75,30 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
 }  // namespace
 
 template <int D>
-Guards guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks)
+RunLimits guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 {
   constexpr Real far_beyond = 10;
   constexpr Real least_strain = 1e-6;  // waves of less are not looked at
-  const WatchSpec& spec = scene.watch;
+  const LimitsSpec& spec = scene.watch;
   const Waves waves = waves_in(mesh, setup, ranks);
   Real start = 0;
   for (Index row = 0; row < setup.particles.size(); ++row)
     start = std::max(start, setup.particles.v[static_cast<std::size_t>(row)].norm());
   start = ranks.max(start);
-  Guards guards;
-  if (spec.on_speed != OnAlarm::ignore)
+  RunLimits guards;
+  if (spec.on_speed != LimitAction::ignore)
     guards.speed = spec.speed.value_or(far_beyond * (waves.fastest + start + driven_speed(mesh, setup, ranks)));
-  if (spec.on_energy_gain != OnAlarm::ignore)
+  if (spec.on_energy_gain != LimitAction::ignore)
     guards.gain = spec.energy_gain;
   if (spec.on_failure == OnFailure::remove)
     guards.failed = spec.failed_mass;
-  guards.speed_stops = spec.on_speed == OnAlarm::stop;
-  guards.gain_stops = spec.on_energy_gain == OnAlarm::stop;
+  guards.speed_stops = spec.on_speed == LimitAction::stop;
+  guards.gain_stops = spec.on_energy_gain == LimitAction::stop;
   guards.least_energy = least_strain * least_strain * waves.energy;
   return guards;
 }
 
-template Guards guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Exchange&);
-template Guards guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Exchange&);
+template RunLimits guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&);
+template RunLimits guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&);
 
 }  // namespace talus

@@ -29,7 +29,8 @@ Index number_of(const std::string& name, const std::vector<std::string>& names)
 }
 
 /// Which body there becomes which body of the scene.
-std::vector<Index> match_bodies(const Scene& scene, const std::vector<std::string>& there, const std::string& run, Complaints& complaints)
+std::vector<Index> match_bodies(const Scene& scene, const std::vector<std::string>& there, const std::string& run,
+                                SceneErrorCollector& complaints)
 {
   std::vector<Index> source(scene.bodies.size(), none);
   const auto mine = names_of(scene.bodies);
@@ -75,12 +76,12 @@ try {
 template <int D>
 KeptBodies<D> bodies_of(const Scene& scene)
 {
-  KeptBodies<D> kept;
-  kept.particles.keep_in(scene.precision);
+  KeptBodies<D> saved;
+  saved.particles.keep_in(scene.precision);
   for (const BodySpec& body : scene.bodies)
-    kept.bodies.push_back({body.name, 0, 0, body.where});
-  kept.laws = laws_of_stages(scene);
-  return kept;
+    saved.bodies.push_back({body.name, 0, 0, body.where});
+  saved.laws = laws_of_stages(scene);
+  return saved;
 }
 
 /// Whether the state is the one that a stage ended with, or a later stage began with.
@@ -114,11 +115,11 @@ void warn(const Scene& scene, const RunIdentity& identity, const CheckpointList:
 }  // namespace
 
 template <int D>
-std::optional<InitialState<D>> find_initial_state(const Scene& scene, Complaints& complaints, std::vector<std::string>& warnings)
+std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& complaints, std::vector<std::string>& warnings)
 {
   if (!scene.initial)
     return std::nullopt;
-  const Where& where = scene.initial->where;
+  const SourceLocation& where = scene.initial->where;
   try {
     const CheckpointList list((folder_of(scene) / scene.initial->from).lexically_normal());
     const RunIdentity& identity = list.identity();
@@ -160,7 +161,7 @@ void carry_history(const AnyBatch& from, std::span<const Index> rows, AnyBatch& 
 }
 
 template <int D>
-Real settle_stress(const Body& body, std::string_view law_there, Real dt, Exchange& ranks, AnyBatch& material, Particles<D>& particles)
+Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, AnyBatch& material, Particles<D>& particles)
 {
   constexpr Real round_off = 1e-6;  // stresses in single precision
   const auto compare = [&](bool take_over) {
@@ -179,9 +180,9 @@ Real settle_stress(const Body& body, std::string_view law_there, Real dt, Exchan
   return fit.apart / fit.largest;
 }
 
-template Real settle_stress<2>(const Body&, std::string_view, Real, Exchange&, AnyBatch&, Particles<2>&);
-template Real settle_stress<3>(const Body&, std::string_view, Real, Exchange&, AnyBatch&, Particles<3>&);
-template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, Complaints&, std::vector<std::string>&);
-template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, Complaints&, std::vector<std::string>&);
+template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, AnyBatch&, Particles<2>&);
+template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, AnyBatch&, Particles<3>&);
+template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
+template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
 
 }  // namespace talus

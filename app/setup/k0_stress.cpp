@@ -44,7 +44,7 @@ Mat3 matrix_of(const UniformStressSpec& s)
 
 }  // namespace
 
-std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, Complaints& complaints)
+std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, SceneErrorCollector& complaints)
 {
   std::vector<StartStress> all;
   for (const BodySpec& body : scene.bodies) {

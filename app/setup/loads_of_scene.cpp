@@ -12,7 +12,7 @@ namespace {
 
 /// What each rank has found behind facets, its own particles, becomes that of all.  Every rank has to ask.
 template <int D>
-void join(Exchange& ranks, ParticleTraction<D>& load)
+void join(Communicator& ranks, ParticleTraction<D>& load)
 {
   struct Loaded {
     std::int64_t id;
@@ -45,8 +45,8 @@ void join(Exchange& ranks, ParticleTraction<D>& load)
 template <int D>
 class LoadBuilder {
  public:
-  LoadBuilder(const Mesh<D>& mesh, const Filled<D>& has_particles, const Filled<D>& at_start, Exchange& ranks, Complaints& complaints,
-              Setup<D>& setup)
+  LoadBuilder(const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start, Communicator& ranks,
+              SceneErrorCollector& complaints, Setup<D>& setup)
       : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), complaints_(complaints), setup_(setup)
   {}
 
@@ -82,7 +82,7 @@ class LoadBuilder {
     const auto found = mesh_.facet_set(spec.on);
     if (!found)
       return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
-    const std::vector<Facet> facets = at_start_.seen_from_material(*found);
+    const std::vector<Facet> facets = at_start_.orient_facets(*found);
     Real area = 0, loaded = 0;
     for (const Facet& facet : facets) {
       area += mesh_.area_vector(facet).norm();
@@ -115,24 +115,26 @@ class LoadBuilder {
   }
 
   const Mesh<D>& mesh_;
-  const Filled<D>&has_particles_, &at_start_;
-  Exchange& ranks_;
-  Complaints& complaints_;
+  const CellOccupancy<D>&has_particles_, &at_start_;
+  Communicator& ranks_;
+  SceneErrorCollector& complaints_;
   Setup<D>& setup_;
 };
 
 }  // namespace
 
 template <int D>
-void add_loads(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, const Filled<D>& at_start, Exchange& ranks,
-               Complaints& complaints, Setup<D>& setup)
+void add_loads(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start,
+               Communicator& ranks, SceneErrorCollector& complaints, Setup<D>& setup)
 {
   LoadBuilder<D> builder(mesh, has_particles, at_start, ranks, complaints, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(builder, load);
 }
 
-template void add_loads<2>(const Scene&, const Mesh<2>&, const Filled<2>&, const Filled<2>&, Exchange&, Complaints&, Setup<2>&);
-template void add_loads<3>(const Scene&, const Mesh<3>&, const Filled<3>&, const Filled<3>&, Exchange&, Complaints&, Setup<3>&);
+template void add_loads<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, const CellOccupancy<2>&, Communicator&,
+                           SceneErrorCollector&, Setup<2>&);
+template void add_loads<3>(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, const CellOccupancy<3>&, Communicator&,
+                           SceneErrorCollector&, Setup<3>&);
 
 }  // namespace talus

@@ -8,10 +8,12 @@ namespace talus {
 
 /// `has_particles`: of all bodies, those as well that appear later; `at_start`: of the others.  Every rank has to ask.
 template <int D>
-void add_loads(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, const Filled<D>& at_start, Exchange& ranks,
-               Complaints& complaints, Setup<D>& setup);
+void add_loads(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start,
+               Communicator& ranks, SceneErrorCollector& complaints, Setup<D>& setup);
 
-extern template void add_loads<2>(const Scene&, const Mesh<2>&, const Filled<2>&, const Filled<2>&, Exchange&, Complaints&, Setup<2>&);
-extern template void add_loads<3>(const Scene&, const Mesh<3>&, const Filled<3>&, const Filled<3>&, Exchange&, Complaints&, Setup<3>&);
+extern template void add_loads<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, const CellOccupancy<2>&, Communicator&,
+                                  SceneErrorCollector&, Setup<2>&);
+extern template void add_loads<3>(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, const CellOccupancy<3>&, Communicator&,
+                                  SceneErrorCollector&, Setup<3>&);
 
 }  // namespace talus

@@ -24,7 +24,7 @@ Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes
   for (const std::string& change : changes)
     if (!is_free(change))
       problems.push_back(
-          {Where{"--set " + change, 0, 0, ""},
+          {SourceLocation{"--set " + change, 0, 0, ""},
            "a run that goes on can change only what stands in time, watch and outputs.checkpoint, duration and residual of stages, "
            "on_exit and strict",
            ""});
@@ -44,7 +44,7 @@ void check_durations(const CheckpointList& from, const std::vector<Stage>& stage
     if (!of_time && !of_stage)
       continue;
     const auto number = of_time ? 0 : static_cast<Index>(std::strtol(change.c_str() + std::string_view("stages[").size(), nullptr, 10));
-    const Where where{"--set " + change, 0, 0, ""};
+    const SourceLocation where{"--set " + change, 0, 0, ""};
     if (number < now.number || (number == now.number && now.done))
       problems.push_back(
           {where,

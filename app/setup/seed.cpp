@@ -35,7 +35,7 @@ struct Standing {
   std::int64_t before, all;  ///< of lower ranks; of all
 };
 
-Standing standing_of(std::int64_t here, Exchange& ranks)
+Standing standing_of(std::int64_t here, Communicator& ranks)
 {
   const std::vector<std::int64_t> counts = of_all_ranks(ranks, here);
   const auto mine = counts.begin() + ranks.rank();
@@ -46,7 +46,7 @@ Standing standing_of(std::int64_t here, Exchange& ranks)
 template <int D>
 class Seeder {
  public:
-  Seeder(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints)
+  Seeder(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& complaints)
       : scene_(scene), mesh_(mesh), ranks_(ranks), mine_(cells_to_fill(mesh, ranks)), complaints_(complaints)
   {
     seeds_.particles.keep_in(scene.precision);  // while they are none: never more memory than the run needs
@@ -388,9 +388,9 @@ class Seeder {
 
   const Scene& scene_;
   const Mesh<D>& mesh_;
-  Exchange& ranks_;
+  Communicator& ranks_;
   IndexRange mine_;  // cells
-  Complaints& complaints_;
+  SceneErrorCollector& complaints_;
   Seeds<D> seeds_;
   std::vector<Taken> taken_;
 };
@@ -398,7 +398,7 @@ class Seeder {
 }  // namespace
 
 template <int D>
-IndexRange cells_to_fill(const Mesh<D>& mesh, const Exchange& ranks)
+IndexRange cells_to_fill(const Mesh<D>& mesh, const Communicator& ranks)
 {
   const std::int64_t blocks = blocks_of(mesh.n_cells());
   const auto begin_of = [&](int rank) {
@@ -408,7 +408,8 @@ IndexRange cells_to_fill(const Mesh<D>& mesh, const Exchange& ranks)
 }
 
 template <int D>
-Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints, std::vector<std::string>& warnings)
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& complaints,
+              std::vector<std::string>& warnings)
 {
   Seeder<D> seeder(scene, mesh, ranks, complaints);
   auto initial = find_initial_state<D>(scene, complaints, warnings);
@@ -425,9 +426,9 @@ Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complain
   return seeds;
 }
 
-template IndexRange cells_to_fill<2>(const Mesh<2>&, const Exchange&);
-template IndexRange cells_to_fill<3>(const Mesh<3>&, const Exchange&);
-template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Exchange&, Complaints&, std::vector<std::string>&);
-template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Exchange&, Complaints&, std::vector<std::string>&);
+template IndexRange cells_to_fill<2>(const Mesh<2>&, const Communicator&);
+template IndexRange cells_to_fill<3>(const Mesh<3>&, const Communicator&);
+template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Communicator&, SceneErrorCollector&, std::vector<std::string>&);
+template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Communicator&, SceneErrorCollector&, std::vector<std::string>&);
 
 }  // namespace talus

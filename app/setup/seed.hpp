@@ -20,7 +20,7 @@ struct Seeds {
 
 /// Cells [begin, end) that this rank fills: an even share of the blocks along the curve.
 template <int D>
-IndexRange cells_to_fill(const Mesh<D>& mesh, const Exchange& ranks);
+IndexRange cells_to_fill(const Mesh<D>& mesh, const Communicator& ranks);
 
 /// Each cell of a body holds particles at symmetric points of equal weight; a shape keeps those whose centre it contains.
 /// Other bodies take the particles of another run, in the order of their ids there, and what they remember.
@@ -30,11 +30,12 @@ IndexRange cells_to_fill(const Mesh<D>& mesh, const Exchange& ranks);
 /// Every rank has to ask, with the same scene and mesh: each gets the particles in its cells_to_fill(), with the ids that they would have if one
 /// rank filled all, and complains and warns in the same words.
 template <int D>
-Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Complaints& complaints, std::vector<std::string>& warnings);
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& complaints,
+              std::vector<std::string>& warnings);
 
-extern template IndexRange cells_to_fill<2>(const Mesh<2>&, const Exchange&);
-extern template IndexRange cells_to_fill<3>(const Mesh<3>&, const Exchange&);
-extern template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Exchange&, Complaints&, std::vector<std::string>&);
-extern template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Exchange&, Complaints&, std::vector<std::string>&);
+extern template IndexRange cells_to_fill<2>(const Mesh<2>&, const Communicator&);
+extern template IndexRange cells_to_fill<3>(const Mesh<3>&, const Communicator&);
+extern template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Communicator&, SceneErrorCollector&, std::vector<std::string>&);
+extern template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Communicator&, SceneErrorCollector&, std::vector<std::string>&);
 
 }  // namespace talus

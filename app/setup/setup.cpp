@@ -79,7 +79,7 @@ bool wants_displacement(const OutputSpec& outputs)
 
 /// A table that no drained body reaches down to is hardly meant.  Every rank has to ask.
 template <int D>
-void warn_if_dry(const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
 {
   const std::vector<std::uint8_t>& drained = setup.water.drained;
   if (std::none_of(drained.begin(), drained.end(), [](std::uint8_t is) { return is != 0; }))
@@ -93,7 +93,7 @@ void warn_if_dry(const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
 }
 
 /// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
-void check_picture(const Scene& scene, Complaints& complaints)
+void check_picture(const Scene& scene, SceneErrorCollector& complaints)
 {
   if (!scene.outputs.particles)
     return;
@@ -110,7 +110,7 @@ void check_picture(const Scene& scene, Complaints& complaints)
 
 /// Sections that leave the mesh, walls of the history that have no area.
 template <int D>
-void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, Complaints& complaints)
+void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, SceneErrorCollector& complaints)
 {
   if (const auto& history = scene.outputs.history)
     for (const WallSpec& wall : history->walls)
@@ -134,9 +134,9 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
 }  // namespace
 
 template <int D>
-Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
+Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
 {
-  Complaints complaints(scene);
+  SceneErrorCollector complaints(scene);
   Setup<D> setup;
   setup.warnings = mesh.notes();
   Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
@@ -147,9 +147,9 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   setup.origin = std::move(seeds.origin);
   setup.lag = seeds.lag;
   setup.largest_before = seeds.largest_before;
-  const Filled<D> has_particles(mesh, setup.particles, setup.bodies, ranks, [](const std::string&) { return true; });
-  const Filled<D> at_start(mesh, setup.particles, setup.bodies, ranks,
-                           [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
+  const CellOccupancy<D> has_particles(mesh, setup.particles, setup.bodies, ranks, [](const std::string&) { return true; });
+  const CellOccupancy<D> at_start(mesh, setup.particles, setup.bodies, ranks,
+                                  [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
   add_walls(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.walls);
   add_loads(scene, mesh, has_particles, at_start, ranks, complaints, setup);
@@ -163,7 +163,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
   check_room(scene, mesh, setup, ranks, complaints);
   check_picture(scene, complaints);
   check_outputs<D>(scene, mesh, setup.loads.gravity.acceleration, complaints);
-  ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
+  ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
 
   setup.transfer = transfer_of(scene.transfer);
   setup.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
@@ -181,7 +181,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks)
 }
 
 template <int D>
-void restrict_to(const Share& share, Setup<D>& setup)
+void restrict_to(const Subdomain& share, Setup<D>& setup)
 {
   setup.walls.restrict_to(share);
   restrict_to(share, setup.water);
@@ -189,9 +189,9 @@ void restrict_to(const Share& share, Setup<D>& setup)
     restrict_to(share, load);
 }
 
-template void restrict_to<2>(const Share&, Setup<2>&);
-template void restrict_to<3>(const Share&, Setup<3>&);
-template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
-template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
+template void restrict_to<2>(const Subdomain&, Setup<2>&);
+template void restrict_to<3>(const Subdomain&, Setup<3>&);
+template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Communicator&);
+template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Communicator&);
 
 }  // namespace talus

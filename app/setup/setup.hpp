@@ -15,7 +15,7 @@ struct Setup {
   Index n_particles = 0;   ///< of all bodies, on all ranks
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
-  Walls<D> walls;
+  BoundaryConditions<D> walls;
   Loads<D> loads;
   Water water;
   Transfer transfer;
@@ -24,7 +24,7 @@ struct Setup {
   std::vector<StageChange<D>> changes;      ///< of each stage
   std::vector<std::vector<AnyBatch>> laws;  ///< of all bodies in each stage, without particles
   StepLimits limits;
-  Guards guards;
+  RunLimits guards;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;       ///< worth knowing before a run, such as how strong a record is
   std::optional<OriginSummary> origin;  ///< of bodies that come from another run
@@ -39,11 +39,11 @@ struct Setup {
 /// Every rank has to ask, with the same mesh.  Each gets the particles in an even share of the blocks of cells; all else is of the whole mesh and
 /// of all particles, and the same on all ranks, and so is what is thrown.
 template <int D>
-Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks = one_rank());
+Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks = one_rank());
 
 /// Leaves what concerns the cells and nodes of one of several ranks, in the numbers of its part.  Particles are not looked at.
 template <int D>
-void restrict_to(const Share& share, Setup<D>& setup);
+void restrict_to(const Subdomain& share, Setup<D>& setup);
 
 /// Numbers of a scene as a vector; zero where there are none.
 template <int D>
@@ -64,9 +64,9 @@ void take_threads(std::optional<int> asked, const Scene& scene);
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);
 
-extern template void restrict_to<2>(const Share&, Setup<2>&);
-extern template void restrict_to<3>(const Share&, Setup<3>&);
-extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Exchange&);
-extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Exchange&);
+extern template void restrict_to<2>(const Subdomain&, Setup<2>&);
+extern template void restrict_to<3>(const Subdomain&, Setup<3>&);
+extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Communicator&);
+extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Communicator&);
 
 }  // namespace talus

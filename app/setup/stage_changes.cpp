@@ -12,10 +12,10 @@ namespace {
 
 /// All that is in some rows, of all ranks.  Every rank has to ask.
 template <int D>
-Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Index begin,
-                       Index end, Exchange& ranks)
+RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles,
+                               Index begin, Index end, Communicator& ranks)
 {
-  ExactSums<Departed<D>> sum;
+  ExactSums<RemovedParticles<D>> sum;
   for (Index row = begin; row < end; ++row)
     sum.add(content_of(bodies, materials, particles, row));
   ranks.sum(sum);
@@ -23,7 +23,7 @@ Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBat
 }
 
 template <int D>
-std::string in_words(const Departed<D>& content)
+std::string in_words(const RemovedParticles<D>& content)
 {
   return fmt::format("{} particles, {:.6g} kg", static_cast<std::int64_t>(content.count), content.mass);
 }
@@ -42,12 +42,12 @@ void drop_viscosity(const Body& body, Particles<D>& particles)
 }  // namespace
 
 template <int D>
-void vanish(const std::vector<Index>& bodies, const State<D>& state, Exchange& ranks, StageNews& news)
+void vanish(const std::vector<Index>& bodies, const State<D>& state, Communicator& ranks, StageReport& news)
 {
-  const Crowd<D> gone = take_out_bodies(std::span(bodies), state.bodies, state.materials, state.particles);
+  const ParticleSet<D> gone = extract_bodies(std::span(bodies), state.bodies, state.materials, state.particles);
   for (const Index b : bodies) {
     const Body& body = gone.bodies[static_cast<std::size_t>(b)];
-    const Departed<D> content = content_of(gone.bodies, gone.materials, gone.particles, body.begin, body.end, ranks);
+    const RemovedParticles<D> content = content_of(gone.bodies, gone.materials, gone.particles, body.begin, body.end, ranks);
     state.mass.taken += content.mass, state.mass.taken_count += static_cast<Index>(content.count);
     state.momentum.changes += -1 * content.momentum;
     news.told.push_back(fmt::format("body \"{}\" vanishes: {}", body.name, in_words(content)));
@@ -55,7 +55,8 @@ void vanish(const std::vector<Index>& bodies, const State<D>& state, Exchange& r
 }
 
 template <int D>
-void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Exchange& ranks, StageNews& news)
+void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Communicator& ranks,
+           StageReport& news)
 {
   constexpr Real worth_a_word = 0.01;
   Particles<D>& particles = state.particles;
@@ -72,12 +73,12 @@ void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, c
     if (has_bulk_viscosity(before) && !has_bulk_viscosity(material))
       drop_viscosity(body, particles);
     if (const Real heavier = density(material) / density(before); heavier != 1) {
-      const Departed<D> then = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
+      const RemovedParticles<D> then = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
       parallel_for(body.size(), [&](Index i) {
         const auto p = static_cast<std::size_t>(body.begin + i);
         particles.mass.set(p, heavier * particles.mass[p]);
       });
-      const Departed<D> now = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
+      const RemovedParticles<D> now = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
       (heavier > 1 ? state.mass.placed : state.mass.taken) += std::abs(now.mass - then.mass);
       state.momentum.changes += now.momentum + -1 * then.momentum;
     }
@@ -92,8 +93,8 @@ void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, c
 }
 
 template <int D>
-void appear(const std::vector<Index>& bodies, Crowd<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
-            const State<D>& state, Exchange& ranks, StageNews& news)
+void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
+            const State<D>& state, Communicator& ranks, StageReport& news)
 {
   const auto all = [](Index) { return true; };
   CellOrder order_of_coming;
@@ -108,21 +109,21 @@ void appear(const std::vector<Index>& bodies, Crowd<D> coming, const Mesh<D>& me
                                  stage.where.line > 0 ? fmt::format(" ({})", to_string(stage.where)) : "", body.name, describe(taken)));
     if (taken.cells > 0)
       news.warnings.push_back(fmt::format("body \"{}\" appears although {}", body.name, describe(taken)));
-    const Departed<D> content = content_of(coming.bodies, coming.materials, coming.particles, body.begin, body.end, ranks);
+    const RemovedParticles<D> content = content_of(coming.bodies, coming.materials, coming.particles, body.begin, body.end, ranks);
     state.mass.placed += content.mass, state.mass.placed_count += static_cast<Index>(content.count);
     state.momentum.changes += content.momentum;
     news.told.push_back(fmt::format("body \"{}\" appears: {}", body.name, in_words(content)));
   }
-  put_in(std::move(coming), state.bodies, state.materials, state.particles);
+  insert_particles(std::move(coming), state.bodies, state.materials, state.particles);
 }
 
-template void vanish<2>(const std::vector<Index>&, const State<2>&, Exchange&, StageNews&);
-template void vanish<3>(const std::vector<Index>&, const State<3>&, Exchange&, StageNews&);
-template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Exchange&, StageNews&);
-template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Exchange&, StageNews&);
-template void appear<2>(const std::vector<Index>&, Crowd<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&, Exchange&,
-                        StageNews&);
-template void appear<3>(const std::vector<Index>&, Crowd<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&, Exchange&,
-                        StageNews&);
+template void vanish<2>(const std::vector<Index>&, const State<2>&, Communicator&, StageReport&);
+template void vanish<3>(const std::vector<Index>&, const State<3>&, Communicator&, StageReport&);
+template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Communicator&, StageReport&);
+template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Communicator&, StageReport&);
+template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&,
+                        Communicator&, StageReport&);
+template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&,
+                        Communicator&, StageReport&);
 
 }  // namespace talus

@@ -15,16 +15,16 @@ struct Renewal {
 template <int D>
 struct StageChange {
   std::vector<Index> appear, vanish;  ///< bodies
-  Crowd<D> coming;                    ///< particles of those that appear, in cells of the whole mesh: a share of them on each rank
+  ParticleSet<D> coming;              ///< particles of those that appear, in cells of the whole mesh: a share of them on each rank
   std::vector<Renewal> renew;
-  std::optional<Walls<D>> walls;           ///< that act from here on, of the whole mesh; none: those of the stage before
+  std::optional<BoundaryConditions<D>> walls;  ///< that act from here on, of the whole mesh; none: those of the stage before
   std::optional<std::vector<Real>> table;  ///< of the water from here on, at the nodes of the whole mesh; none: that of the stage before
   std::vector<std::string> told;           ///< of walls and water, in words
   bool any() const noexcept { return !appear.empty() || !vanish.empty() || !renew.empty() || walls || table; }
 };
 
 /// What has been done, a line for each body.
-struct StageNews {
+struct StageReport {
   std::vector<std::string> told, warnings;
 };
 
@@ -41,18 +41,19 @@ std::string describe(const Overlap<D>& overlap)
 
 /// The verbs; each books mass and momentum.  Every rank has to ask.
 template <int D>
-void vanish(const std::vector<Index>& bodies, const State<D>& state, Exchange& ranks, StageNews& news);
+void vanish(const std::vector<Index>& bodies, const State<D>& state, Communicator& ranks, StageReport& news);
 /// The bodies keep their stress as in app/setup/initial.hpp.  `laws` are those of all bodies in the stage.
 template <int D>
-void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Exchange& ranks, StageNews& news);
+void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Communicator& ranks,
+           StageReport& news);
 /// RunError naming `stage`: the place is taken.  Cells are those of this rank's mesh; `order` is that of the particles that are there.
 template <int D>
-void appear(const std::vector<Index>& bodies, Crowd<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
-            const State<D>& state, Exchange& ranks, StageNews& news);
+void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
+            const State<D>& state, Communicator& ranks, StageReport& news);
 
 /// The walls of a stage, of the whole mesh, take the place of those that acted; what is kept of these stays.
 template <int D, Kernel<D> K>
-void take_walls(Model<D, K>& m, Walls<D> walls)
+void take_walls(Model<D, K>& m, BoundaryConditions<D> walls)
 {
   if (!m.share.alone())
     walls.restrict_to(m.share);
@@ -70,9 +71,9 @@ void take_table(Model<D, K>& m, const std::vector<Real>& table)
 
 /// Does all that the stage changes, between two steps, before the stage begins.  What comes is moved out of `change`.
 template <int D, Kernel<D> K>
-StageNews enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
+StageReport enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
 {
-  StageNews news{.told = change.told, .warnings = {}};
+  StageReport news{.told = change.told, .warnings = {}};
   const State<D> state = state_of(m);
   if (!change.vanish.empty()) {
     vanish(change.vanish, state, *m.ranks, news);
@@ -81,9 +82,9 @@ StageNews enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch
   if (!change.renew.empty())
     renew(change.renew, laws, state, *m.ranks, news);
   if (!change.appear.empty()) {
-    Crowd<D> coming = std::exchange(change.coming, {});
+    ParticleSet<D> coming = std::exchange(change.coming, {});
     if (!m.share.alone())
-      take_own_particles(*m.ranks, m.share, coming.bodies, coming.materials, coming.particles);
+      receive_owned_particles(*m.ranks, m.share, coming.bodies, coming.materials, coming.particles);
     fill_columns(m.columns, coming.particles);
     appear(change.appear, std::move(coming), m.mesh, m.order, stage, state, *m.ranks, news);
     take_rows(m);
@@ -95,13 +96,13 @@ StageNews enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch
   return news;
 }
 
-extern template void vanish<2>(const std::vector<Index>&, const State<2>&, Exchange&, StageNews&);
-extern template void vanish<3>(const std::vector<Index>&, const State<3>&, Exchange&, StageNews&);
-extern template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Exchange&, StageNews&);
-extern template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Exchange&, StageNews&);
-extern template void appear<2>(const std::vector<Index>&, Crowd<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&,
-                               Exchange&, StageNews&);
-extern template void appear<3>(const std::vector<Index>&, Crowd<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&,
-                               Exchange&, StageNews&);
+extern template void vanish<2>(const std::vector<Index>&, const State<2>&, Communicator&, StageReport&);
+extern template void vanish<3>(const std::vector<Index>&, const State<3>&, Communicator&, StageReport&);
+extern template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Communicator&, StageReport&);
+extern template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Communicator&, StageReport&);
+extern template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&,
+                               Communicator&, StageReport&);
+extern template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&,
+                               Communicator&, StageReport&);
 
 }  // namespace talus

@@ -75,7 +75,7 @@ std::string moved_table(const Mesh<D>& mesh, const std::vector<Real>& before, co
 }  // namespace
 
 template <int D>
-void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
+void set_stages(const Scene& scene, SceneErrorCollector& complaints, Setup<D>& setup)
 {
   if (scene.stages.empty())
     setup.stages.push_back({.name = "run", .duration = scene.time.end, .where = scene.time.where});
@@ -100,7 +100,7 @@ void set_stages(const Scene& scene, Complaints& complaints, Setup<D>& setup)
   }
 }
 
-void check_laws(const Scene& scene, Complaints& complaints)
+void check_laws(const Scene& scene, SceneErrorCollector& complaints)
 {
   const auto body_of = [&](const std::string& name) {
     return std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) { return body.name == name; });
@@ -131,7 +131,7 @@ void check_laws(const Scene& scene, Complaints& complaints)
 }
 
 template <int D>
-void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Exchange& ranks, Complaints& complaints)
+void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks, SceneErrorCollector& complaints)
 {
   CellOrder order;
   for (std::size_t s = 1; s < scene.stages.size(); ++s)
@@ -151,7 +151,7 @@ void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, 
 }
 
 template <int D>
-void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup<D>& setup)
+void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
 {
   const std::size_t n = setup.stages.size();
   setup.changes.resize(n);
@@ -165,7 +165,7 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
   const bool tables_differ =
       std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
   const auto names = wall_names(scene.boundaries);
-  Complaints complaints(scene);
+  SceneErrorCollector complaints(scene);
   for (std::size_t s = 1; s < n; ++s) {
     StageChange<D>& change = setup.changes[s];
     change.appear = numbers_of(said(s).appear, setup.bodies);
@@ -178,7 +178,7 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
     if (!walls_differ && !said(s).water)
       continue;
     const auto there = [&](const std::string& body) { return presence_of(body, scene.stages).in(static_cast<Index>(s)); };
-    const Filled<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
+    const CellOccupancy<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
     if (said(s).water) {
       change.table = table_of_stage(
           scene, *said(s).water, mesh, [&](Index cell) { return filled(cell); }, complaints, setup.warnings);
@@ -194,7 +194,7 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
         change.told.push_back(fmt::format("wall \"{}\" {}", names[w], acts ? "acts from here on" : "is gone"));
     }
   }
-  ranks.agree(Exchange::caught([&] { complaints.throw_if_any(); }));
+  ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
   for (std::size_t s = 1; s < n; ++s)
     if (!setup.changes[s].appear.empty()) {
       Water water = setup.water;
@@ -203,14 +203,14 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Exchange& ranks, Setup
     }
   for (std::size_t s = 1; s < n; ++s)
     if (!setup.changes[s].appear.empty())
-      setup.changes[s].coming = take_out_bodies<D>(setup.changes[s].appear, setup.bodies, setup.materials, setup.particles);
+      setup.changes[s].coming = extract_bodies<D>(setup.changes[s].appear, setup.bodies, setup.materials, setup.particles);
 }
 
-template void set_stages<2>(const Scene&, Complaints&, Setup<2>&);
-template void set_stages<3>(const Scene&, Complaints&, Setup<3>&);
-template void check_room<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Exchange&, Complaints&);
-template void check_room<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Exchange&, Complaints&);
-template void set_changes<2>(const Scene&, const Mesh<2>&, Exchange&, Setup<2>&);
-template void set_changes<3>(const Scene&, const Mesh<3>&, Exchange&, Setup<3>&);
+template void set_stages<2>(const Scene&, SceneErrorCollector&, Setup<2>&);
+template void set_stages<3>(const Scene&, SceneErrorCollector&, Setup<3>&);
+template void check_room<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&, SceneErrorCollector&);
+template void check_room<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&, SceneErrorCollector&);
+template void set_changes<2>(const Scene&, const Mesh<2>&, Communicator&, Setup<2>&);
+template void set_changes<3>(const Scene&, const Mesh<3>&, Communicator&, Setup<3>&);
 
 }  // namespace talus

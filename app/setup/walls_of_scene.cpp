@@ -12,8 +12,8 @@ template <int D>
 class WallBuilder {
  public:
   /// `first`: of the first stage, in which what is worth a word is told.
-  WallBuilder(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, const std::string& stage,
-              bool first, Complaints& complaints, Setup<D>& setup, Walls<D>& walls)
+  WallBuilder(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks, const std::string& stage,
+              bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& walls)
       : folder_(folder_of(scene)),
         mesh_(mesh),
         has_particles_(has_particles),
@@ -57,12 +57,12 @@ class WallBuilder {
     const auto found = mesh_.facet_set(spec.on);
     if (!found)
       return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
-    const std::vector<Facet> facets = has_particles_.seen_from_material(*found);
-    constexpr Real upright = 0.01;  // cosine between a facet's normal and the upright
+    const std::vector<Facet> facets = has_particles_.orient_facets(*found);
+    constexpr Real vertical = 0.01;  // cosine between a facet's normal and the upright
     Index lowest = none;
     for (const Facet facet : facets) {
       const Vec<D> area = mesh_.area_vector(facet);
-      if (std::abs(area.dot(up_)) > upright * area.norm())
+      if (std::abs(area.dot(up_)) > vertical * area.norm())
         return complaints_.add(spec.where, "on", fmt::format("the facets of \"{}\" are not all upright", spec.on));
       for (const Index n : mesh_.nodes_of(facet))
         if (lowest == none || mesh_.node(n).dot(up_) < mesh_.node(lowest).dot(up_))
@@ -147,7 +147,7 @@ class WallBuilder {
             "{}: {} of the {} facets of \"{}\" have material on both sides{}: a friction wall holds that on one of them, and "
             "which is not said",
             to_string(spec.where), inside, facets->size(), spec.on, stage_.empty() ? "" : fmt::format(" in stage \"{}\"", stage_)));
-      walls_.add(std::move(wall), mesh_, has_particles_.seen_from_material(*facets));
+      walls_.add(std::move(wall), mesh_, has_particles_.orient_facets(*facets));
     } else if (facets) {
       walls_.add(std::move(wall));
     } else
@@ -156,29 +156,29 @@ class WallBuilder {
 
   std::filesystem::path folder_;
   const Mesh<D>& mesh_;
-  const Filled<D>& has_particles_;
+  const CellOccupancy<D>& has_particles_;
   const std::string& stage_;
   bool first_;
   std::string name_;  // of the wall at hand
   Vec<D> up_;
-  Exchange& ranks_;
-  Complaints& complaints_;
+  Communicator& ranks_;
+  SceneErrorCollector& complaints_;
   Setup<D>& setup_;
-  Walls<D>& walls_;
+  BoundaryConditions<D>& walls_;
 };
 
 }  // namespace
 
 template <int D>
-void add_walls(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, const std::string& stage,
-               bool first, Complaints& complaints, Setup<D>& setup, Walls<D>& walls)
+void add_walls(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
+               const std::string& stage, bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& walls)
 {
   WallBuilder<D>(scene, mesh, has_particles, ranks, stage, first, complaints, setup, walls).add(scene.boundaries);
 }
 
-template void add_walls<2>(const Scene&, const Mesh<2>&, const Filled<2>&, Exchange&, const std::string&, bool, Complaints&, Setup<2>&,
-                           Walls<2>&);
-template void add_walls<3>(const Scene&, const Mesh<3>&, const Filled<3>&, Exchange&, const std::string&, bool, Complaints&, Setup<3>&,
-                           Walls<3>&);
+template void add_walls<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, Communicator&, const std::string&, bool,
+                           SceneErrorCollector&, Setup<2>&, BoundaryConditions<2>&);
+template void add_walls<3>(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, Communicator&, const std::string&, bool,
+                           SceneErrorCollector&, Setup<3>&, BoundaryConditions<3>&);
 
 }  // namespace talus

@@ -9,12 +9,12 @@ namespace talus {
 /// Adds the walls of a stage, called by its name.  Of the `first` stage it is told what is worth a word: notes and warnings of `setup`.  Every rank
 /// has to ask.
 template <int D>
-void add_walls(const Scene& scene, const Mesh<D>& mesh, const Filled<D>& has_particles, Exchange& ranks, const std::string& stage,
-               bool first, Complaints& complaints, Setup<D>& setup, Walls<D>& walls);
+void add_walls(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
+               const std::string& stage, bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& walls);
 
-extern template void add_walls<2>(const Scene&, const Mesh<2>&, const Filled<2>&, Exchange&, const std::string&, bool, Complaints&,
-                                  Setup<2>&, Walls<2>&);
-extern template void add_walls<3>(const Scene&, const Mesh<3>&, const Filled<3>&, Exchange&, const std::string&, bool, Complaints&,
-                                  Setup<3>&, Walls<3>&);
+extern template void add_walls<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, Communicator&, const std::string&, bool,
+                                  SceneErrorCollector&, Setup<2>&, BoundaryConditions<2>&);
+extern template void add_walls<3>(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, Communicator&, const std::string&, bool,
+                                  SceneErrorCollector&, Setup<3>&, BoundaryConditions<3>&);
 
 }  // namespace talus

@@ -20,7 +20,7 @@ constexpr Real steepest_axes = 0.87;
 
 /// A table that is not given by its depth, over places on the map where there is one; none if something is wrong with it.
 template <int D>
-Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, Complaints& complaints,
+Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, SceneErrorCollector& complaints,
                    std::vector<std::string>& warnings)
 {
   const bool on_map = D == 3 || (scene.mesh.terrain && scene.mesh.terrain->section);
@@ -48,17 +48,17 @@ std::string in_words(const Vec<D>& x)
 
 /// How far a table lies above the ground.
 template <int D>
-struct Flood {
+struct WaterAboveGround {
   Real area = 0, flooded = 0;       ///< of the plan [m^(D-1)]
   Real least, most;                 ///< above the ground [m]; < 0 below it
   Vec<D> deepest = Vec<D>::Zero();  ///< where it is most
 };
 
 template <int D, class Table_>
-Flood<D> flood_of(const Ground<D>& ground, const Table_& table)
+WaterAboveGround<D> flood_of(const Ground<D>& ground, const Table_& table)
 {
   constexpr Real none_yet = std::numeric_limits<Real>::infinity();
-  Flood<D> flood{.least = none_yet, .most = -none_yet};
+  WaterAboveGround<D> flood{.least = none_yet, .most = -none_yet};
   for (const auto& piece : ground.pieces()) {
     Vec<D> middle = Vec<D>::Zero();
     for (const Vec<D>& corner : piece.corners)
@@ -78,7 +78,8 @@ Flood<D> flood_of(const Ground<D>& ground, const Table_& table)
 
 /// Complains, or warns, of a table above the ground.
 template <int D>
-void judge(const Flood<D>& flood, const Where& where, Complaints& complaints, std::vector<std::string>& warnings)
+void judge(const WaterAboveGround<D>& flood, const SourceLocation& where, SceneErrorCollector& complaints,
+           std::vector<std::string>& warnings)
 {
   if (flood.flooded == 0)
     return;
@@ -97,7 +98,7 @@ void judge(const Flood<D>& flood, const Where& where, Complaints& complaints, st
 }
 
 template <int D>
-void check_gravity(const Scene& scene, Complaints& complaints)
+void check_gravity(const Scene& scene, SceneErrorCollector& complaints)
 {
   for (const LoadSpec& load : scene.loads)
     if (const auto* gravity = std::get_if<GravitySpec>(&load); gravity != nullptr && gravity->acceleration.size() == D) {
@@ -112,7 +113,7 @@ void check_gravity(const Scene& scene, Complaints& complaints)
 /// The table at the nodes; none if something is wrong with it.
 template <int D>
 std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, const std::function<bool(Index)>& filled,
-                                 Complaints& complaints, std::vector<std::string>& warnings)
+                                 SceneErrorCollector& complaints, std::vector<std::string>& warnings)
 {
   const Ground<D> ground(mesh, filled);
   const Surface given = spec.depth ? Surface() : surface_of(scene, spec, mesh, complaints, warnings);
@@ -159,7 +160,7 @@ std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, co
 
 template <int D>
 Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>& bodies, const std::function<bool(Index)>& filled,
-               Complaints& complaints, std::vector<std::string>& warnings)
+               SceneErrorCollector& complaints, std::vector<std::string>& warnings)
 {
   Water water;
   if (!scene.water)
@@ -175,7 +176,8 @@ Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>&
 
 template <int D>
 std::vector<Real> table_of_stage(const Scene& scene, const StageWaterSpec& spec, const Mesh<D>& mesh,
-                                 const std::function<bool(Index)>& filled, Complaints& complaints, std::vector<std::string>& warnings)
+                                 const std::function<bool(Index)>& filled, SceneErrorCollector& complaints,
+                                 std::vector<std::string>& warnings)
 {
   return table_at_nodes(scene, spec.table, mesh, filled, complaints, warnings);
 }
@@ -207,14 +209,14 @@ Index count_wet(const Mesh<D>& mesh, const Water& water, const Body& body, const
   });
 }
 
-template Water water_of<2>(const Scene&, const Mesh<2>&, const std::vector<Body>&, const std::function<bool(Index)>&, Complaints&,
+template Water water_of<2>(const Scene&, const Mesh<2>&, const std::vector<Body>&, const std::function<bool(Index)>&, SceneErrorCollector&,
                            std::vector<std::string>&);
-template Water water_of<3>(const Scene&, const Mesh<3>&, const std::vector<Body>&, const std::function<bool(Index)>&, Complaints&,
+template Water water_of<3>(const Scene&, const Mesh<3>&, const std::vector<Body>&, const std::function<bool(Index)>&, SceneErrorCollector&,
                            std::vector<std::string>&);
 template std::vector<Real> table_of_stage<2>(const Scene&, const StageWaterSpec&, const Mesh<2>&, const std::function<bool(Index)>&,
-                                             Complaints&, std::vector<std::string>&);
+                                             SceneErrorCollector&, std::vector<std::string>&);
 template std::vector<Real> table_of_stage<3>(const Scene&, const StageWaterSpec&, const Mesh<3>&, const std::function<bool(Index)>&,
-                                             Complaints&, std::vector<std::string>&);
+                                             SceneErrorCollector&, std::vector<std::string>&);
 template void saturate<2>(const Scene&, Index, const Mesh<2>&, const Water&, const std::vector<Body>&, Particles<2>&);
 template void saturate<3>(const Scene&, Index, const Mesh<3>&, const Water&, const std::vector<Body>&, Particles<3>&);
 template Index count_wet<2>(const Mesh<2>&, const Water&, const Body&, const Particles<2>&);

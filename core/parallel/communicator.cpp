@@ -22,7 +22,7 @@
 
 namespace talus {
 
-struct Exchange::Group {
+struct Communicator::Group {
   Group()
   {
     MPI_Comm_set_errhandler(MPI_COMM_WORLD, MPI_ERRORS_RETURN);  // which the copy inherits
@@ -37,7 +37,7 @@ struct Exchange::Group {
   bool torn = false;  ///< messages were called off: MPI_Finalize might wait for them
 };
 
-struct Talk::Requests {
+struct PendingMessages::Requests {
   struct Expected {
     int rank, bytes;
     bool at_most;
@@ -50,7 +50,7 @@ struct Talk::Requests {
 
 namespace {
 
-constexpr int gather_tag = Exchange::tags, all_to_all_tag = Exchange::tags + 1;
+constexpr int gather_tag = Communicator::tags, all_to_all_tag = Communicator::tags + 1;
 
 void check(int result, const char* call)
 {
@@ -210,15 +210,15 @@ int ranks_on_this_machine()
 
 // ---- messages between two ranks
 
-Talk::Talk() noexcept = default;
-Talk::Talk(Talk&&) noexcept = default;
-Talk& Talk::operator=(Talk&& other) noexcept
+PendingMessages::PendingMessages() noexcept = default;
+PendingMessages::PendingMessages(PendingMessages&&) noexcept = default;
+PendingMessages& PendingMessages::operator=(PendingMessages&& other) noexcept
 {
   std::swap(requests_, other.requests_);
   return *this;
 }
 
-Talk::~Talk()
+PendingMessages::~PendingMessages()
 {
   if (!requests_ || requests_->request.empty())
     return;
@@ -239,7 +239,7 @@ Talk::~Talk()
   *requests_->torn = true;
 }
 
-void Talk::wait()
+void PendingMessages::wait()
 {
   if (!requests_ || requests_->request.empty())
     return;
@@ -261,7 +261,7 @@ void Talk::wait()
   }
 }
 
-void Exchange::count(int tag, int bytes) noexcept
+void Communicator::count(int tag, int bytes) noexcept
 {
   if (tag >= tags) {  // part of a collective
     traffic_.bytes_gathered += bytes;
@@ -271,13 +271,13 @@ void Exchange::count(int tag, int bytes) noexcept
   traffic_.bytes += bytes;
 }
 
-void Exchange::start(std::span<const Parcel> out, std::span<const Parcel> in, int tag, Talk& talk)
+void Communicator::start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk)
 {
   assert(tag >= 0 && tag < tags);
   post(out, in, tag, talk);
 }
 
-void Exchange::post(std::span<const Parcel> out, std::span<const Parcel> in, int tag, Talk& talk)
+void Communicator::post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk)
 {
   if (alone()) {
     for (std::size_t i = 0; i < std::max(out.size(), in.size()); ++i) {
@@ -288,8 +288,8 @@ void Exchange::post(std::span<const Parcel> out, std::span<const Parcel> in, int
     return;
   }
   if (!talk.requests_)
-    talk.requests_ = std::make_unique<Talk::Requests>();
-  Talk::Requests& requests = *talk.requests_;
+    talk.requests_ = std::make_unique<PendingMessages::Requests>();
+  PendingMessages::Requests& requests = *talk.requests_;
   assert(requests.request.empty());  // or it has not been waited for
   requests.expected.clear();
   requests.torn = &group_->torn;
@@ -297,10 +297,10 @@ void Exchange::post(std::span<const Parcel> out, std::span<const Parcel> in, int
     for (; !bytes.empty(); bytes = bytes.subspan(std::min(piece_, bytes.size())))
       f(bytes.first(std::min(piece_, bytes.size())));
   };
-  for (const Parcel& parcel : in)
+  for (const Message& parcel : in)
     if (parcel.at_most && parcel.bytes.size() > piece_)
       throw EnvironmentError(fmt::format("a message of up to {} bytes from rank {} is too long", parcel.bytes.size(), parcel.rank));
-  for (const Parcel& parcel : in)
+  for (const Message& parcel : in)
     in_pieces(parcel.bytes, [&, rank = parcel.rank, at_most = parcel.at_most](std::span<std::byte> piece) {
       const int bytes = static_cast<int>(piece.size());
       MPI_Request one = MPI_REQUEST_NULL;
@@ -308,7 +308,7 @@ void Exchange::post(std::span<const Parcel> out, std::span<const Parcel> in, int
       requests.request.push_back(one);
       requests.expected.push_back({rank, bytes, at_most});
     });
-  for (const Parcel& parcel : out)
+  for (const Message& parcel : out)
     in_pieces(parcel.bytes, [&, rank = parcel.rank](std::span<std::byte> piece) {
       const int bytes = static_cast<int>(piece.size());
       MPI_Request one = MPI_REQUEST_NULL;
@@ -318,8 +318,8 @@ void Exchange::post(std::span<const Parcel> out, std::span<const Parcel> in, int
     });
 }
 
-std::vector<std::vector<std::byte>> Exchange::neighbours(std::span<const int> ranks, const std::vector<std::vector<std::byte>>& out,
-                                                         int tag)
+std::vector<std::vector<std::byte>> Communicator::neighbours(std::span<const int> ranks, const std::vector<std::vector<std::byte>>& out,
+                                                             int tag)
 {
   assert(ranks.size() == out.size() && tag >= 0 && tag < tags);
   if (alone()) {
@@ -328,8 +328,8 @@ std::vector<std::vector<std::byte>> Exchange::neighbours(std::span<const int> ra
     return out;
   }
   // A message of a full piece says that another follows, be it empty.
-  Talk talk;
-  talk.requests_ = std::make_unique<Talk::Requests>();
+  PendingMessages talk;
+  talk.requests_ = std::make_unique<PendingMessages::Requests>();
   talk.requests_->torn = &group_->torn;
   for (std::size_t i = 0; i < ranks.size(); ++i)
     for (std::size_t begin = 0; begin <= out[i].size(); begin += piece_) {
@@ -356,7 +356,7 @@ std::vector<std::vector<std::byte>> Exchange::neighbours(std::span<const int> ra
 
 // ---- collectives
 
-void Exchange::reduce(std::span<std::int64_t> numbers, Reduction reduction)
+void Communicator::reduce(std::span<std::int64_t> numbers, Reduction reduction)
 {
   if (alone())
     return;
@@ -370,17 +370,17 @@ void Exchange::reduce(std::span<std::int64_t> numbers, Reduction reduction)
   }
 }
 
-void Exchange::sum(std::span<std::int64_t> numbers) { reduce(numbers, Reduction::sum); }
+void Communicator::sum(std::span<std::int64_t> numbers) { reduce(numbers, Reduction::sum); }
 
-std::int64_t Exchange::min(std::int64_t number)
+std::int64_t Communicator::min(std::int64_t number)
 {
   reduce({&number, 1}, Reduction::min);
   return number;
 }
 
-Real Exchange::min(Real number) { return alone() ? number : number_of(min(ordered(number))); }
+Real Communicator::min(Real number) { return alone() ? number : number_of(min(ordered(number))); }
 
-void Exchange::least(std::span<Real> numbers, std::int64_t& word)
+void Communicator::least(std::span<Real> numbers, std::int64_t& word)
 {
   if (alone())
     return;
@@ -392,7 +392,7 @@ void Exchange::least(std::span<Real> numbers, std::int64_t& word)
   std::transform(words_.begin(), words_.end() - 1, numbers.begin(), number_of);
 }
 
-void Exchange::sum_in_use(Digits& digits)
+void Communicator::sum_in_use(Digits& digits)
 {
   constexpr auto each = static_cast<std::int64_t>(ExactSum::words);
   const std::size_t n = words_.size() / ExactSum::words;
@@ -444,7 +444,7 @@ void Exchange::sum_in_use(Digits& digits)
 }
 
 template <class Bytes>
-void Exchange::spread(Bytes& bytes, int from)
+void Communicator::spread(Bytes& bytes, int from)
 {
   if (alone())
     return;
@@ -461,10 +461,10 @@ void Exchange::spread(Bytes& bytes, int from)
   }
 }
 
-void Exchange::broadcast(std::vector<std::byte>& bytes, int from) { spread(bytes, from); }
-void Exchange::broadcast(std::string& text, int from) { spread(text, from); }
+void Communicator::broadcast(std::vector<std::byte>& bytes, int from) { spread(bytes, from); }
+void Communicator::broadcast(std::string& text, int from) { spread(text, from); }
 
-std::string Exchange::first(std::string text)
+std::string Communicator::first(std::string text)
 {
   const auto from = static_cast<int>(min(static_cast<std::int64_t>(text.empty() ? size() : rank())));
   if (from < size())
@@ -472,7 +472,7 @@ std::string Exchange::first(std::string text)
   return text;
 }
 
-std::vector<std::vector<std::byte>> Exchange::gather(std::span<const std::byte> bytes)
+std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::byte> bytes)
 {
   if (alone())
     return {{bytes.begin(), bytes.end()}};
@@ -480,19 +480,19 @@ std::vector<std::vector<std::byte>> Exchange::gather(std::span<const std::byte> 
   std::vector<std::int64_t> lengths(is_root() ? static_cast<std::size_t>(size()) : 0);
   check(MPI_Gather(&length, 1, MPI_INT64_T, lengths.data(), 1, MPI_INT64_T, 0, group_->comm), "MPI_Gather");
   std::vector<std::vector<std::byte>> all;
-  std::vector<Parcel> in;
+  std::vector<Message> in;
   for (const std::int64_t n : lengths)
     all.emplace_back(static_cast<std::size_t>(n));
   for (int r = 0; r < static_cast<int>(all.size()); ++r)
     in.push_back({r, all[static_cast<std::size_t>(r)]});
-  const Parcel mine{0, {const_cast<std::byte*>(bytes.data()), bytes.size()}};  // read only
-  Talk talk;
+  const Message mine{0, {const_cast<std::byte*>(bytes.data()), bytes.size()}};  // read only
+  PendingMessages talk;
   post({&mine, 1}, in, gather_tag, talk);
   talk.wait();
   return all;
 }
 
-std::vector<std::vector<std::byte>> Exchange::all_to_all(const std::vector<std::vector<std::byte>>& out)
+std::vector<std::vector<std::byte>> Communicator::all_to_all(const std::vector<std::vector<std::byte>>& out)
 {
   assert(out.size() == static_cast<std::size_t>(size()));
   if (alone())
@@ -502,7 +502,7 @@ std::vector<std::vector<std::byte>> Exchange::all_to_all(const std::vector<std::
     lengths_out.push_back(static_cast<std::int64_t>(bytes.size()));
   check(MPI_Alltoall(lengths_out.data(), 1, MPI_INT64_T, lengths_in.data(), 1, MPI_INT64_T, group_->comm), "MPI_Alltoall");
   std::vector<std::vector<std::byte>> in;
-  std::vector<Parcel> parcels_out, parcels_in;
+  std::vector<Message> parcels_out, parcels_in;
   for (const std::int64_t n : lengths_in)
     in.emplace_back(static_cast<std::size_t>(n));
   for (int r = 0; r < size(); ++r) {
@@ -510,19 +510,19 @@ std::vector<std::vector<std::byte>> Exchange::all_to_all(const std::vector<std::
     parcels_out.push_back({r, {const_cast<std::byte*>(out[i].data()), out[i].size()}});  // read only
     parcels_in.push_back({r, in[i]});
   }
-  Talk talk;
+  PendingMessages talk;
   post(parcels_out, parcels_in, all_to_all_tag, talk);
   talk.wait();
   return in;
 }
 
-void Exchange::barrier()
+void Communicator::barrier()
 {
   if (!alone())
     check(MPI_Barrier(group_->comm), "MPI_Barrier");
 }
 
-void Exchange::agree(const std::exception_ptr& error)
+void Communicator::agree(const std::exception_ptr& error)
 {
   const std::int64_t first = min(std::int64_t{error ? rank() : size()});
   if (first == size())
@@ -536,7 +536,7 @@ void Exchange::agree(const std::exception_ptr& error)
   throw_packed(text);
 }
 
-void Exchange::abort(int code) const noexcept
+void Communicator::abort(int code) const noexcept
 {
   std::fflush(nullptr);
   if (group_)
@@ -546,32 +546,32 @@ void Exchange::abort(int code) const noexcept
 
 // ---- beginning and end
 
-Exchange::Exchange() noexcept = default;
-Exchange::Exchange(Exchange&&) noexcept = default;
-Exchange& Exchange::operator=(Exchange&&) noexcept = default;
-Exchange::~Exchange() = default;
-Exchange::Exchange(std::unique_ptr<Group> group) noexcept : group_(std::move(group))
+Communicator::Communicator() noexcept = default;
+Communicator::Communicator(Communicator&&) noexcept = default;
+Communicator& Communicator::operator=(Communicator&&) noexcept = default;
+Communicator::~Communicator() = default;
+Communicator::Communicator(std::unique_ptr<Group> group) noexcept : group_(std::move(group))
 {
   MPI_Comm_rank(group_->comm, &rank_);
   MPI_Comm_size(group_->comm, &size_);
 }
 
-Exchange& one_rank()
+Communicator& one_rank()
 {
-  static Exchange exchange;
+  static Communicator exchange;
   return exchange;
 }
 
-Exchange& world()
+Communicator& world()
 {
-  static Exchange exchange;
+  static Communicator exchange;
   return exchange;
 }
 
 bool goes_on_as_root()
 {
   const bool is_root = world().is_root();
-  world() = Exchange();
+  world() = Communicator();
   return is_root;
 }
 
@@ -582,7 +582,7 @@ Ranks::Ranks()
   int level = MPI_THREAD_SINGLE;
   check(MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &level), "MPI_Init_thread");
   running_ = true;
-  world() = Exchange(std::make_unique<Exchange::Group>());
+  world() = Communicator(std::make_unique<Communicator::Group>());
   const int found = world().size();
   std::string wrong;
   if (level < MPI_THREAD_FUNNELED)
@@ -622,7 +622,7 @@ int Ranks::end(int code, const char* message) noexcept
   }
   if (world().group_ && world().group_->torn)
     world().abort(code);
-  world() = Exchange();
+  world() = Communicator();
   MPI_Finalize();
   return code;
 }

@@ -34,7 +34,7 @@ struct Traffic {
 /// Which digits of sums are in use that are asked for again and again: most of an ExactSum's are not, and need not be sent.  The same on all
 /// ranks, and never fewer than before.
 class Digits {
-  friend class Exchange;
+  friend class Communicator;
   struct Range {
     std::int64_t lowest, behind;  ///< words of an ExactSum; none are if the second is not the larger
   };
@@ -77,28 +77,28 @@ void read_words(std::span<ExactSums<T>> sums, std::span<const std::int64_t> from
 }
 
 /// Bytes for or from a rank.  What is sent is not changed.
-struct Parcel {
+struct Message {
   int rank;
   std::span<std::byte> bytes;
   bool at_most = false;  ///< to be received: less may come
 };
 
 /// Messages on their way, see Exchange::start.  Kept from step to step it allocates once only.
-class Talk {
+class PendingMessages {
  public:
-  Talk() noexcept;
-  Talk(Talk&&) noexcept;
-  Talk& operator=(Talk&&) noexcept;
+  PendingMessages() noexcept;
+  PendingMessages(PendingMessages&&) noexcept;
+  PendingMessages& operator=(PendingMessages&&) noexcept;
   /// Without wait(), as on the way of an exception, it gives the messages some seconds; what has not come then is called off, and the run
   /// can only end: see Ranks::end.
-  ~Talk();
+  ~PendingMessages();
 
   /// Returns when all has been received and what was sent may be overwritten.  Throws EnvironmentError, also where a message has another
   /// length than its parcel.  Nothing to wait for is nothing done.
   void wait();
 
  private:
-  friend class Exchange;
+  friend class Communicator;
   struct Requests;
   std::unique_ptr<Requests> requests_;
 };
@@ -108,12 +108,12 @@ class Talk {
 ///
 /// Collectives are those calls that every rank has to make, in the same order: all but start() and neighbours(), which concern the ranks
 /// they name, and abort().  They are for the main thread.  Where MPI fails they throw EnvironmentError, which names MPI's own function.
-class Exchange {
+class Communicator {
  public:
-  Exchange() noexcept;
-  Exchange(Exchange&&) noexcept;
-  Exchange& operator=(Exchange&&) noexcept;
-  ~Exchange();
+  Communicator() noexcept;
+  Communicator(Communicator&&) noexcept;
+  Communicator& operator=(Communicator&&) noexcept;
+  ~Communicator();
 
   int rank() const noexcept { return rank_; }
   int size() const noexcept { return size_; }
@@ -161,7 +161,7 @@ class Exchange {
   /// Posts messages of lengths that both sides know; an empty parcel is no message at all.  Both sides list the parcels between them in the
   /// same order.  The bytes must stay until talk.wait().  Messages of different tags, in [0, tags), do not mix, and those of one tag arrive
   /// in the order they were sent, so that the messages of one kind of every step may have the same.  A rank alone copies out[i] to in[i].
-  void start(std::span<const Parcel> out, std::span<const Parcel> in, int tag, Talk& talk);
+  void start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk);
   static constexpr int tags = 1000;
 
   /// Sends out[i] to ranks[i] and returns what these ranks have sent here, in the order of `ranks`: for lengths that the receiver does not
@@ -198,9 +198,9 @@ class Exchange {
 
  private:
   friend class Ranks;
-  friend class Talk;
+  friend class PendingMessages;
   struct Group;
-  explicit Exchange(std::unique_ptr<Group> group) noexcept;
+  explicit Communicator(std::unique_ptr<Group> group) noexcept;
   enum class Reduction { sum, min };
   void reduce(std::span<std::int64_t> numbers, Reduction reduction);
   template <class... Sums>
@@ -224,7 +224,7 @@ class Exchange {
   template <class Bytes>
   void spread(Bytes& bytes, int from);
   void count(int tag, int bytes) noexcept;
-  void post(std::span<const Parcel> out, std::span<const Parcel> in, int tag, Talk& talk);
+  void post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk);
 
   std::unique_ptr<Group> group_;  ///< MPI's; of a rank alone there may be none
   int rank_ = 0, size_ = 1;
@@ -247,14 +247,14 @@ std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& l
 }
 /// On the root the rows of each rank, rank by rank; elsewhere nothing.  Every rank has to ask.
 template <class T>
-std::vector<std::vector<T>> gather_rows(Exchange& ranks, std::span<const T> rows)
+std::vector<std::vector<T>> gather_rows(Communicator& ranks, std::span<const T> rows)
 {
   return rows_of<T>(ranks.gather(std::as_bytes(rows)));
 }
 
 /// Gives out[r] to rank r and returns what each rank has given.  The same.
 template <class T>
-std::vector<std::vector<T>> exchange_rows(Exchange& ranks, const std::vector<std::vector<T>>& out)
+std::vector<std::vector<T>> exchange_rows(Communicator& ranks, const std::vector<std::vector<T>>& out)
 {
   std::vector<std::vector<std::byte>> letters;
   for (const std::vector<T>& rows : out) {
@@ -265,7 +265,7 @@ std::vector<std::vector<T>> exchange_rows(Exchange& ranks, const std::vector<std
 }
 
 /// The number of each rank, on all ranks.  The same.
-inline std::vector<std::int64_t> of_all_ranks(Exchange& ranks, std::int64_t number)
+inline std::vector<std::int64_t> of_all_ranks(Communicator& ranks, std::int64_t number)
 {
   std::vector<std::int64_t> numbers(static_cast<std::size_t>(ranks.size()), 0);
   numbers[static_cast<std::size_t>(ranks.rank())] = number;
@@ -274,9 +274,9 @@ inline std::vector<std::int64_t> of_all_ranks(Exchange& ranks, std::int64_t numb
 }
 
 /// For whoever is alone, however many ranks there are.
-Exchange& one_rank();
+Communicator& one_rank();
 /// The exchange of this process: one rank alone, unless Ranks has found others.
-Exchange& world();
+Communicator& world();
 /// For what ranks do not share: true on the root, which is alone in the world from here on, false on the others, for which nothing is left but
 /// to end.  Every rank has to call it.
 bool goes_on_as_root();

@@ -12,25 +12,25 @@ constexpr Real good_enough = 0.95;
 
 }  // namespace
 
-MoveRule::MoveRule(std::optional<std::int64_t> every, std::int64_t step, Real cost) noexcept
+RebalancePolicy::RebalancePolicy(std::optional<std::int64_t> every, std::int64_t step, Real cost) noexcept
     : every_(every), cost_(cost), moved_(step), looked_(step), interval_(first_interval)
 {}
 
-bool MoveRule::looks(std::int64_t step) const noexcept
+bool RebalancePolicy::looks(std::int64_t step) const noexcept
 {
   if (every_)
     return *every_ > 0 && step - moved_ >= *every_;
   return step - looked_ >= interval_;
 }
 
-bool MoveRule::has_lost_enough(std::int64_t step, Real seconds, Real imbalance) noexcept
+bool RebalancePolicy::has_lost_enough(std::int64_t step, Real seconds, Real imbalance) noexcept
 {
   lost_ += static_cast<Real>(step - looked_) * seconds * (1 - 1 / std::max(imbalance, Real{1}));
   looked_ = step;
   return lost_ > cost_;
 }
 
-bool MoveRule::gains(Real now, Real then) noexcept
+bool RebalancePolicy::gains(Real now, Real then) noexcept
 {
   if (then <= good_enough * now)
     return true;
@@ -39,6 +39,6 @@ bool MoveRule::gains(Real now, Real then) noexcept
   return false;
 }
 
-void MoveRule::moved(std::int64_t step, Real cost) noexcept { *this = MoveRule(every_, step, cost); }
+void RebalancePolicy::moved(std::int64_t step, Real cost) noexcept { *this = RebalancePolicy(every_, step, cost); }
 
 }  // namespace talus

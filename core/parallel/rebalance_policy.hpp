@@ -10,11 +10,11 @@ namespace talus {
 /// The rule of one who hires skis and might buy them: shares move when their unevenness has cost, since they were made, what moving them
 /// costs.  So both together are never more than twice what the best would have been that knew the future.  All ranks ask and tell alike, in
 /// seconds that they have agreed on, and so come to the same answers.
-class MoveRule {
+class RebalancePolicy {
  public:
   /// `every`: move after so many steps whatever it costs; 0: never; without a number: when it pays.  `step`: steps done when the shares were
   /// made; `cost`: what that took [s].
-  MoveRule(std::optional<std::int64_t> every, std::int64_t step, Real cost) noexcept;
+  RebalancePolicy(std::optional<std::int64_t> every, std::int64_t step, Real cost) noexcept;
 
   /// Whether it is time to look at the shares, `step` steps being done.
   bool looks(std::int64_t step) const noexcept;
@@ -28,7 +28,7 @@ class MoveRule {
   /// Shares have moved, which took so long [s].
   void moved(std::int64_t step, Real cost) noexcept;
   /// They never will again.
-  void give_up() noexcept { every_ = 0; }
+  void abort_run() noexcept { every_ = 0; }
 
  private:
   std::optional<std::int64_t> every_;

@@ -30,11 +30,11 @@ struct Pieces {
   /// As they are kept; of one piece, or none, there is no more to say.
   std::vector<std::uint64_t> words() const
   {
-    std::vector<std::uint64_t> kept;
+    std::vector<std::uint64_t> saved;
     if (digests.size() > 1)
-      kept = {static_cast<std::uint64_t>(all.piece), static_cast<std::uint64_t>(all.lead)};
-    kept.insert(kept.end(), digests.begin(), digests.end());
-    return kept;
+      saved = {static_cast<std::uint64_t>(all.piece), static_cast<std::uint64_t>(all.lead)};
+    saved.insert(saved.end(), digests.begin(), digests.end());
+    return saved;
   }
   std::uint64_t digest(std::uint64_t meaning) const { return digest_of(std::as_bytes(std::span<const std::uint64_t>(words())), meaning); }
 };

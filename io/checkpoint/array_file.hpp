@@ -15,7 +15,7 @@
 
 namespace talus {
 
-class Exchange;
+class Communicator;
 
 enum class NumberKind : std::uint8_t { float64, float32, int32, int64, uint8 };
 template <class T>
@@ -69,14 +69,15 @@ class ArrayWriter {
   void close();
 
  private:
-  friend void write_arrays(Exchange&, const std::filesystem::path&, std::span<const SharedArray>, const std::function<void(ArrayWriter&)>&);
+  friend void write_arrays(Communicator&, const std::filesystem::path&, std::span<const SharedArray>,
+                           const std::function<void(ArrayWriter&)>&);
   struct Opened;
   std::unique_ptr<Opened> opened_;
 };
 
 /// Writes a file by all ranks together, as in write_together(): rest(writer) on the root, and the rows of each rank at their places.  The same
 /// bytes for any number of ranks that share out the same rows, whatever the stride.
-void write_arrays(Exchange& ranks, const std::filesystem::path& file, std::span<const SharedArray> shared,
+void write_arrays(Communicator& ranks, const std::filesystem::path& file, std::span<const SharedArray> shared,
                   const std::function<void(ArrayWriter&)>& rest);
 
 /// A file that ArrayWriter wrote.  Whatever is damaged, missing or of another kind than asked for is an EnvironmentError that names the

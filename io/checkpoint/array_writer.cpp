@@ -181,7 +181,8 @@ void ArrayWriter::close()
     opened_->refuse_write("");
 }
 
-void write_arrays(Exchange& ranks, const fs::path& file, std::span<const SharedArray> shared, const std::function<void(ArrayWriter&)>& rest)
+void write_arrays(Communicator& ranks, const fs::path& file, std::span<const SharedArray> shared,
+                  const std::function<void(ArrayWriter&)>& rest)
 {
   const LibraryCall at_work("HDF5", "writing", file.native());  // it is asked about types for the digests too
   // Digests first: the root lays out the file with them, and then everyone knows where its rows go.

@@ -41,10 +41,10 @@ inline std::string below(const std::string& path, std::size_t i) { return path +
 
 /// Writes a value below `path`.  EnvironmentError.
 template <class T>
-void keep(ArrayWriter& file, const std::string& path, const T& value)
+void save(ArrayWriter& file, const std::string& path, const T& value)
 {
   if constexpr (HasFields<T>) {
-    for_each_field<T>([&](const auto& field) { keep(file, below(path, field.key), value.*field.member); });
+    for_each_field<T>([&](const auto& field) { save(file, below(path, field.key), value.*field.member); });
   } else if constexpr (std::is_same_v<T, std::string>) {
     file.write(path, std::string_view(value));
   } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
@@ -53,7 +53,7 @@ void keep(ArrayWriter& file, const std::string& path, const T& value)
     const auto count = static_cast<std::int64_t>(value.size());
     file.write(below(path, "count"), std::span(&count, 1));
     for (std::size_t i = 0; i < value.size(); ++i)
-      keep(file, below(path, i), value[i]);
+      save(file, below(path, i), value[i]);
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
     const auto stored = static_cast<detail::Stored<T>>(value);
     file.write(path, std::span(&stored, 1));
@@ -63,22 +63,22 @@ void keep(ArrayWriter& file, const std::string& path, const T& value)
 }
 /// Reads it back.  EnvironmentError: it is not there, or of another kind.
 template <class T>
-void recall(const ArrayReader& file, const std::string& path, T& value)
+void load(const ArrayReader& file, const std::string& path, T& value)
 {
   if constexpr (HasFields<T>) {
-    for_each_field<T>([&](const auto& field) { recall(file, below(path, field.key), value.*field.member); });
+    for_each_field<T>([&](const auto& field) { load(file, below(path, field.key), value.*field.member); });
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = file.text(path);
   } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
     value = file.read<Real>(path);
   } else if constexpr (is_vector<T>) {
     std::int64_t count = 0;
-    recall(file, below(path, "count"), count);
+    load(file, below(path, "count"), count);
     const auto n = static_cast<std::size_t>(count);
     for (std::size_t i = 0; i < n; ++i) {  // one by one: nothing is allocated on the word of a file
       if (i == value.size())
         value.emplace_back();
-      recall(file, below(path, i), value[i]);
+      load(file, below(path, i), value[i]);
     }
     value.resize(n);
   } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {

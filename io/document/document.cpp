@@ -76,9 +76,9 @@ bool is_within(std::string_view path, std::string_view outer)
   return outer.empty() || path.size() == outer.size() || path[outer.size()] == '.' || path[outer.size()] == '[';
 }
 
-Where to_where(const Place& place, std::string path)
+SourceLocation to_where(const Place& place, std::string path)
 {
-  Where where{place.source == nullptr ? "" : place.source->name, place.line, place.column, std::move(path)};
+  SourceLocation where{place.source == nullptr ? "" : place.source->name, place.line, place.column, std::move(path)};
   const auto line = static_cast<std::size_t>(place.line);
   if (place.source != nullptr && line > 0 && line <= place.source->lines.size() && place.column > 0)
     where.column = 1 + count_characters(place.source->lines[line - 1].substr(0, static_cast<std::size_t>(place.column - 1)));

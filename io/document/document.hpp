@@ -97,7 +97,7 @@ std::string plain_text(const std::filesystem::path& file, const std::string& byt
 std::vector<std::string_view> lines_of(std::string_view text);
 
 /// The place in words of the error messages, with the path of keys to the value.
-Where to_where(const Place& place, std::string path);
+SourceLocation to_where(const Place& place, std::string path);
 
 /// Replaces or adds the value at a path of keys such as `bodies[0].particles_per_cell`; mappings that are missing on the way are
 /// made, entries of lists are not.  `origin` is the place of the override, for messages.

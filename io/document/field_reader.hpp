@@ -21,7 +21,7 @@ concept HasCheck = requires(const T& object, std::vector<std::string>& problems)
 template <class T>
 concept HasWhere = requires(T& object)
 {
-  object.where = Where{};
+  object.where = SourceLocation{};
 };
 
 /// One mapping while it is read.  A key that nobody asked for is an error; rules between keys are checked at the end, and only
@@ -32,7 +32,7 @@ class Mapping {
       : node_(node), path_(std::move(path)), problems_(problems), before_(problems.size())
   {}
 
-  Where where() const { return to_where(node_.place, path_); }
+  SourceLocation where() const { return to_where(node_.place, path_); }
   /// With the word for the key that stands there.
   std::string path_of(std::string_view key) const { return path_to(path_, node_.word_for(key)); }
   void complain(std::string message) { problems_.add(node_.place, path_, std::move(message)); }

@@ -30,7 +30,7 @@ std::string default_of(const T& value, const Range& range)
   } else if constexpr (std::same_as<T, std::string>) {
     return value.empty() ? "none" : value;
   } else if constexpr (std::is_enum_v<T>) {
-    return std::string(words(value)[static_cast<std::size_t>(value)]);
+    return std::string(enum_names(value)[static_cast<std::size_t>(value)]);
   } else if constexpr (IsList<T>) {
     std::vector<std::string> items;
     for (const auto& item : value)

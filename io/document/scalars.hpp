@@ -41,7 +41,7 @@ Complaint read_scalar(const Node& node, const Asked& asked, std::string& value);
 template <class Enum>
 requires std::is_enum_v<Enum> Complaint read_scalar(const Node& node, const Asked&, Enum& value)
 {
-  const auto known = words(Enum{});
+  const auto known = enum_names(Enum{});
   const auto at = std::find(known.begin(), known.end(), node.text);
   if (at == known.end())
     return "unknown word \"" + node.text + "\"" + suggestion(node.text, std::vector<std::string>(known.begin(), known.end()));

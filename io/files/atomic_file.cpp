@@ -151,7 +151,7 @@ try {
 } catch (const EnvironmentError&) {  // such as a full disk: who has more to write will say so
 }
 
-void write_together(Exchange& ranks, const fs::path& file, const std::function<void(const fs::path&)>& begin,
+void write_together(Communicator& ranks, const fs::path& file, const std::function<void(const fs::path&)>& begin,
                     const std::function<void(const PutBytes&)>& write)
 {
   std::optional<Temporary> temporary;  // of the root
@@ -162,9 +162,9 @@ void write_together(Exchange& ranks, const fs::path& file, const std::function<v
     begin(temporary->path());
   });
   std::optional<Shared> shared;
-  ranks.agree(Exchange::caught([&] { shared.emplace(temporary_of(file), file); }));
+  ranks.agree(Communicator::caught([&] { shared.emplace(temporary_of(file), file); }));
   write([&](std::uint64_t at, std::span<const std::byte> bytes) { shared->put(at, bytes); });
-  ranks.agree(Exchange::caught([&] { shared->finish(); }));
+  ranks.agree(Communicator::caught([&] { shared->finish(); }));
   shared.reset();
   ranks.together([&] { put_in_place(*temporary, file); });
 }

@@ -11,7 +11,7 @@
 
 namespace talus {
 
-class Exchange;
+class Communicator;
 
 /// Calls write(temporary) with a path in the folder of `file`, then fsync, rename to `file`, fsync of the folder.  The folder is
 /// made if it is missing.  On any failure the temporary is removed and an older `file` is left as it was; EnvironmentError names
@@ -29,7 +29,7 @@ using PutBytes = std::function<void(std::uint64_t at, std::span<const std::byte>
 
 /// As write_whole(), by all ranks: begin(temporary) on the root, which may write some of it or nothing, then write(put) on all of them, each
 /// its bytes.  What goes wrong on one every rank throws, but for what `write` itself throws.
-void write_together(Exchange& ranks, const std::filesystem::path& file,
+void write_together(Communicator& ranks, const std::filesystem::path& file,
                     const std::function<void(const std::filesystem::path& temporary)>& begin,
                     const std::function<void(const PutBytes& put)>& write);
 

@@ -14,7 +14,7 @@ struct GmshFunctions {
 struct GmshPart {
   GmshFunctions<2> in_2d;
   GmshFunctions<3> in_3d;
-  MeshData<2> (*mesh_plan)(const std::vector<Polygon>&, const std::function<Real(const Vec<2>&)>&, Real, const Where&);
+  MeshData<2> (*mesh_plan)(const std::vector<Polygon>&, const std::function<Real(const Vec<2>&)>&, Real, const SourceLocation&);
 };
 
 /// EnvironmentError: the part is not where it belongs, beside the program or its libraries, or cannot be loaded.

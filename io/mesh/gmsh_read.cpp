@@ -19,7 +19,7 @@ constexpr std::int64_t highest_tag = std::numeric_limits<std::int64_t>::max() - 
 template <int D>
 class MshReader {
  public:
-  MshReader(const std::filesystem::path& file, const Where& asked_by) : source_(file, asked_by) {}
+  MshReader(const std::filesystem::path& file, const SourceLocation& asked_by) : source_(file, asked_by) {}
 
   MeshData<D> read()
   {
@@ -324,12 +324,12 @@ class MshReader {
 }  // namespace
 
 template <int D>
-MeshData<D> read_msh(const std::filesystem::path& file, const Where& asked_by)
+MeshData<D> read_msh(const std::filesystem::path& file, const SourceLocation& asked_by)
 {
   return MshReader<D>(file, asked_by).read();
 }
 
-template MeshData<2> read_msh<2>(const std::filesystem::path&, const Where&);
-template MeshData<3> read_msh<3>(const std::filesystem::path&, const Where&);
+template MeshData<2> read_msh<2>(const std::filesystem::path&, const SourceLocation&);
+template MeshData<3> read_msh<3>(const std::filesystem::path&, const SourceLocation&);
 
 }  // namespace talus

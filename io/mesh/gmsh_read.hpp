@@ -11,9 +11,9 @@ namespace talus {
 /// sets, of lower dimension node sets.  In 2-D the nodes must share one z, which is dropped.  Nodes are in the order of the file.
 /// Throws SceneErrors at the line (ascii) or byte (binary) that is wrong, naming the place `asked_by` that wanted the mesh.
 template <int D>
-MeshData<D> read_msh(const std::filesystem::path& file, const Where& asked_by);
+MeshData<D> read_msh(const std::filesystem::path& file, const SourceLocation& asked_by);
 
-extern template MeshData<2> read_msh<2>(const std::filesystem::path&, const Where&);
-extern template MeshData<3> read_msh<3>(const std::filesystem::path&, const Where&);
+extern template MeshData<2> read_msh<2>(const std::filesystem::path&, const SourceLocation&);
+extern template MeshData<3> read_msh<3>(const std::filesystem::path&, const SourceLocation&);
 
 }  // namespace talus

@@ -306,7 +306,7 @@ MeshData<D> mesh_regions(const MeshSpec& spec)
 }
 
 MeshData<2> mesh_plan(const std::vector<Polygon>& polygons, const std::function<Real(const Vec<2>&)>& size, Real largest,
-                      const Where& where)
+                      const SourceLocation& where)
 {
   GmshSession session(where);
   return session.run([&] {

@@ -19,7 +19,7 @@ MeshData<D> mesh_regions(const MeshSpec& spec);
 
 /// Triangles of edge length size(place), no more than `largest`, in the polygons, with edges along the sides of all of them.
 MeshData<2> mesh_plan(const std::vector<Polygon>& polygons, const std::function<Real(const Vec<2>&)>& size, Real largest,
-                      const Where& where);
+                      const SourceLocation& where);
 
 extern template MeshData<2> mesh_geometry<2>(const MeshSpec&, const std::filesystem::path&);
 extern template MeshData<3> mesh_geometry<3>(const MeshSpec&, const std::filesystem::path&);

@@ -17,7 +17,7 @@ namespace {
 constexpr int delaunay = 1, hxt = 10;  // numbers of Mesh.Algorithm3D
 }  // namespace
 
-GmshSession::GmshSession(Where asked_by) : asked_by_(std::move(asked_by)), threads_(threads())
+GmshSession::GmshSession(SourceLocation asked_by) : asked_by_(std::move(asked_by)), threads_(threads())
 {
   try {
     gmsh::initialize(0, nullptr, false);  // no configuration files: they would change the mesh behind the scene's back
@@ -100,11 +100,11 @@ void GmshSession::set_sizes(const MeshSpec& spec, bool points_count)
     check_cells<D>(finer, fmt::format("size {} m in a box of refine", size), spec);
     const int field = gmsh::model::mesh::field::add("Box");
     const auto set = [&](const std::string& option, Real value) { gmsh::model::mesh::field::setNumber(field, option, value); };
-    constexpr Real everywhere = 1e22;
+    constexpr Real all_of = 1e22;
     for (std::size_t d = 0; d < 3; ++d) {
       const char axis = "XYZ"[d];
-      set(fmt::format("{}Min", axis), d < n ? within.low[d] : -everywhere);
-      set(fmt::format("{}Max", axis), d < n ? within.high[d] : everywhere);
+      set(fmt::format("{}Min", axis), d < n ? within.low[d] : -all_of);
+      set(fmt::format("{}Max", axis), d < n ? within.high[d] : all_of);
     }
     set("VIn", size);
     set("VOut", std::max(size, *spec.size));

@@ -14,7 +14,7 @@ namespace talus {
 
 class GmshSession {
  public:
-  explicit GmshSession(Where asked_by);
+  explicit GmshSession(SourceLocation asked_by);
   ~GmshSession();
   GmshSession(const GmshSession&) = delete;
   GmshSession& operator=(const GmshSession&) = delete;
@@ -53,7 +53,7 @@ class GmshSession {
 
  private:
   std::vector<std::string> errors() const;  ///< what gmsh logged as such
-  Where asked_by_;
+  SourceLocation asked_by_;
   int threads_;  ///< those of the program: gmsh sets the number for everybody
 };
 

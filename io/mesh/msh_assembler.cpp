@@ -195,14 +195,14 @@ std::vector<Index> MshAssembler<D>::unite_repeated_cells()
   std::vector<Index> first(cells_.size()), number(cells_.size());
   for (std::size_t i = 0; i < sorted.size(); ++i)
     first[sorted[i].second] = i > 0 && sorted[i].first == sorted[i - 1].first ? first[sorted[i - 1].second] : sorted[i].second;
-  Index kept = 0;
+  Index saved = 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const bool is_first = first[c] == static_cast<Index>(c);
-    number[c] = is_first ? kept : number[first[c]];
+    number[c] = is_first ? saved : number[first[c]];
     if (is_first)
-      cells_[kept++] = cells_[c];
+      cells_[saved++] = cells_[c];
   }
-  cells_.resize(static_cast<std::size_t>(kept));
+  cells_.resize(static_cast<std::size_t>(saved));
   return number;
 }
 

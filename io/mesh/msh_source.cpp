@@ -23,7 +23,7 @@ bool printable(std::string_view text)
   return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
 }
 
-std::string read_file(const std::filesystem::path& file, const Where& asked_by)
+std::string read_file(const std::filesystem::path& file, const SourceLocation& asked_by)
 {
   const auto refuse = [&](const std::string& why) { throw SceneErrors(asked_by, fmt::format("mesh file \"{}\" {}", file.string(), why)); };
   if (const auto why = not_ordinary(file))
@@ -43,7 +43,7 @@ std::string read_file(const std::filesystem::path& file, const Where& asked_by)
 
 }  // namespace
 
-MshSource::MshSource(const std::filesystem::path& file, Where asked_by)
+MshSource::MshSource(const std::filesystem::path& file, SourceLocation asked_by)
     : file_(file), asked_by_(std::move(asked_by)), bytes_(read_file(file, asked_by_))
 {}
 
@@ -51,7 +51,7 @@ void MshSource::fail(const std::string& complaint) const
 {
   const std::string asked = asked_by_.file.empty() ? "" : fmt::format(" (mesh of {})", to_string(asked_by_));
   if (binary_)
-    throw SceneErrors(Where{file_.string(), 0, 0, ""}, fmt::format("byte {}: {}{}", mark_, complaint, asked));
+    throw SceneErrors(SourceLocation{file_.string(), 0, 0, ""}, fmt::format("byte {}: {}{}", mark_, complaint, asked));
   const std::size_t before = mark_ == 0 ? std::string::npos : bytes_.rfind('\n', mark_ - 1);
   const std::size_t begin = before == std::string::npos ? 0 : before + 1;
   std::string_view line = std::string_view(bytes_).substr(begin);
@@ -59,14 +59,14 @@ void MshSource::fail(const std::string& complaint) const
   if (line.size() > 120 || !printable(line))
     line = {};
   const auto number = 1 + std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
-  const Where where{file_.string(), static_cast<int>(number), static_cast<int>(mark_ - begin) + 1, ""};
+  const SourceLocation where{file_.string(), static_cast<int>(number), static_cast<int>(mark_ - begin) + 1, ""};
   throw SceneErrors({Problem{where, complaint + asked, std::string(line)}});
 }
 
 void MshSource::fail_file(const std::string& complaint) const
 {
   const std::string asked = asked_by_.file.empty() ? "" : fmt::format(" (mesh of {})", to_string(asked_by_));
-  throw SceneErrors(Where{file_.string(), 0, 0, ""}, complaint + asked);
+  throw SceneErrors(SourceLocation{file_.string(), 0, 0, ""}, complaint + asked);
 }
 
 void MshSource::skip_blank() noexcept { at_ = std::min(bytes_.find_first_not_of(blanks, at_), bytes_.size()); }

@@ -14,7 +14,7 @@ namespace talus {
 class MshSource {
  public:
   /// Reads the whole file.  Throws SceneErrors at `asked_by` if it is missing, empty or no file.
-  MshSource(const std::filesystem::path& file, Where asked_by);
+  MshSource(const std::filesystem::path& file, SourceLocation asked_by);
 
   /// From here on count(), integer(), tag() and real() read binary numbers, with their bytes reversed or not.
   void become_binary(bool reversed) noexcept
@@ -57,7 +57,7 @@ class MshSource {
   void skip_blank() noexcept;
 
   std::filesystem::path file_;
-  Where asked_by_;
+  SourceLocation asked_by_;
   std::string bytes_;
   std::size_t at_ = 0, mark_ = 0;  ///< next byte; beginning of what was read last
   bool binary_ = false, reversed_ = false;

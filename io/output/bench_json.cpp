@@ -112,7 +112,7 @@ void write_bench(const std::filesystem::path& file, const BenchReport& report)
 
 BenchReport read_bench(const std::filesystem::path& file)
 {
-  const Where where{file.string(), 0, 0, ""};
+  const SourceLocation where{file.string(), 0, 0, ""};
   const std::string text = read_text(file);
   try {
     const OrderedJson json = OrderedJson::parse(text);

@@ -147,7 +147,7 @@ std::string to_json(const RunSummary& s)
 {
   Json json;
   json["title"] = s.title;
-  json["status"] = words(s.status)[static_cast<std::size_t>(s.status)];
+  json["status"] = enum_names(s.status)[static_cast<std::size_t>(s.status)];
   if (!s.message.empty())
     json["message"] = s.message;
   json["program"] = program(s);

@@ -13,7 +13,7 @@
 namespace talus {
 
 enum class RunStatus : std::uint8_t { done, failed, stopped };
-constexpr std::array<std::string_view, 3> words(RunStatus) { return {"done", "failed", "stopped"}; }
+constexpr std::array<std::string_view, 3> enum_names(RunStatus) { return {"done", "failed", "stopped"}; }
 
 /// A named number with its unit: work terms, qualities, wall seconds.
 struct NamedValue {
@@ -28,8 +28,8 @@ struct BodySummary {
   Real mass{};  ///< kg at the start, or when it appeared
   static constexpr auto fields()
   {
-    return std::tuple{kept("name", &BodySummary::name), kept("material", &BodySummary::material), kept("law", &BodySummary::law),
-                      kept("particles", &BodySummary::particles), kept("mass", &BodySummary::mass)};
+    return std::tuple{saved("name", &BodySummary::name), saved("material", &BodySummary::material), saved("law", &BodySummary::law),
+                      saved("particles", &BodySummary::particles), saved("mass", &BodySummary::mass)};
   }
 };
 

@@ -62,7 +62,7 @@ PackedBlocks pack_blocks(std::span<const std::byte> bytes, std::uint64_t block_b
 }
 
 /// Puts an array at its place: its header, the sizes of all blocks when packed, the blocks.  Returns where it ends.
-std::uint64_t put_array(Exchange& ranks, const PutBytes& put, std::uint64_t at, const PartOfArray& array, std::uint64_t block_bytes)
+std::uint64_t put_array(Communicator& ranks, const PutBytes& put, std::uint64_t at, const PartOfArray& array, std::uint64_t block_bytes)
 {
   const PackedBlocks mine = pack_blocks(array.bytes, block_bytes);
   const BlockHeader header{(array.of_all + block_bytes - 1) / block_bytes, block_bytes, array.of_all % block_bytes};
@@ -109,7 +109,7 @@ constexpr std::string_view vtk_type()
 /// Every rank says the same, of arrays its slice.
 class XmlFile {
  public:
-  explicit XmlFile(Exchange& ranks, std::string_view kind, std::int64_t block_bytes)
+  explicit XmlFile(Communicator& ranks, std::string_view kind, std::int64_t block_bytes)
       : ranks_(ranks), kind_(kind), block_bytes_(static_cast<std::uint64_t>(block_bytes))
   {
     line(0, fmt::format("<VTKFile type=\"{}\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
@@ -201,7 +201,7 @@ class XmlFile {
     head_ += "/>\n";
   }
 
-  Exchange& ranks_;
+  Communicator& ranks_;
   std::string_view kind_;
   std::uint64_t block_bytes_;
   std::string head_;
@@ -234,7 +234,7 @@ std::vector<Index> numbers_from(std::int64_t from, std::size_t count, Index step
 
 }  // namespace
 
-void write_particles(Exchange& ranks, const fs::path& file, Real time, const Slice& slice, std::span<const Real> positions,
+void write_particles(Communicator& ranks, const fs::path& file, Real time, const Slice& slice, std::span<const Real> positions,
                      std::span<const std::int64_t> ids, std::span<const Column> columns, const std::string& made_by)
 {
   const std::size_t n = ids.size();
@@ -275,7 +275,7 @@ void write_particles(const fs::path& file, Real time, std::span<const Real> posi
   write_particles(one_rank(), file, time, {0, static_cast<std::int64_t>(ids.size())}, positions, ids, columns, made_by);
 }
 
-void write_mesh(Exchange& ranks, const fs::path& file, Real time, const MeshSlice& mesh, std::span<const Column> node_columns,
+void write_mesh(Communicator& ranks, const fs::path& file, Real time, const MeshSlice& mesh, std::span<const Column> node_columns,
                 std::span<const Column> cell_columns, const std::string& made_by)
 {
   const auto corners_of_cell = static_cast<std::size_t>(mesh.dimension) + 1;

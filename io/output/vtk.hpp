@@ -12,7 +12,7 @@
 
 namespace talus {
 
-class Exchange;
+class Communicator;
 
 /// One field, item after item, in single precision: it is for viewing, not for restarting.
 struct Column {
@@ -30,7 +30,7 @@ void write_particles(const std::filesystem::path& file, Real time, std::span<con
                      std::span<const Column> columns, const std::string& made_by = {});
 
 /// The same file written by all ranks together, each its slice of the particles: the same bytes for any number of them.
-void write_particles(Exchange& ranks, const std::filesystem::path& file, Real time, const Slice& slice, std::span<const Real> positions,
+void write_particles(Communicator& ranks, const std::filesystem::path& file, Real time, const Slice& slice, std::span<const Real> positions,
                      std::span<const std::int64_t> ids, std::span<const Column> columns, const std::string& made_by = {});
 
 /// Writes a .vtu of the mesh with fields per node and per cell, in the numbering of `mesh`.  Errors as above.
@@ -47,8 +47,8 @@ struct MeshSlice {
   std::vector<Index> corners;   ///< dimension + 1 per cell, nodes of the whole mesh
 };
 /// The same by all ranks together.
-void write_mesh(Exchange& ranks, const std::filesystem::path& file, Real time, const MeshSlice& mesh, std::span<const Column> node_columns,
-                std::span<const Column> cell_columns, const std::string& made_by = {});
+void write_mesh(Communicator& ranks, const std::filesystem::path& file, Real time, const MeshSlice& mesh,
+                std::span<const Column> node_columns, std::span<const Column> cell_columns, const std::string& made_by = {});
 
 /// One field as a file holds it, item after item; single precision is widened without loss.
 struct StoredField {

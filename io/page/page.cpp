@@ -43,16 +43,16 @@ std::size_t Page::block_bytes() const
 PageTable table_of(const std::vector<CsvColumn>& columns, const std::vector<std::vector<Real>>& values, std::size_t most, Page& page)
 {
   const std::size_t rows = values.empty() ? 0 : values.front().size(), stride = rows / (most + 1) + 1;
-  std::vector<std::size_t> kept;
+  std::vector<std::size_t> saved;
   for (std::size_t r = 0; r < rows; r += stride)
-    kept.push_back(r);
-  if (!kept.empty() && kept.back() + 1 != rows)
-    kept.push_back(rows - 1);
+    saved.push_back(r);
+  if (!saved.empty() && saved.back() + 1 != rows)
+    saved.push_back(rows - 1);
   std::vector<float> numbers;
   for (const std::vector<Real>& column : values)
-    for (const std::size_t r : kept)
+    for (const std::size_t r : saved)
       numbers.push_back(static_cast<float>(column[r]));
-  return {columns, static_cast<std::int64_t>(kept.size()), static_cast<std::int64_t>(stride), page.add(packed(numbers))};
+  return {columns, static_cast<std::int64_t>(saved.size()), static_cast<std::int64_t>(stride), page.add(packed(numbers))};
 }
 
 std::string filled(const std::string& text, const std::filesystem::path& template_file, const Page& page)

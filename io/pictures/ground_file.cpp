@@ -32,7 +32,7 @@ std::optional<RigidGround> read_ground(const fs::path& folder, int dimension)
   if (!fs::exists(file) || !names_terrain(file))
     return std::nullopt;
   try {
-    const Where asked_by{file.string(), 0, 0, ""};
+    const SourceLocation asked_by{file.string(), 0, 0, ""};
     return dimension == 2 ? rigid_ground_of(read_msh<2>(file, asked_by)) : rigid_ground_of(read_msh<3>(file, asked_by));
   } catch (const SceneErrors& e) {
     throw EnvironmentError(e.what());

@@ -77,16 +77,16 @@ void place_camera(const Settings& settings, const std::vector<Vec3>& shape, Pict
 /// Without the particles beyond the plane.
 Cloud clipped(Cloud cloud, const Plane& plane)
 {
-  std::size_t kept = 0;
+  std::size_t saved = 0;
   for (std::size_t p = 0; p < cloud.x.size(); ++p)
     if (plane.normal.dot(cloud.x[p]) <= plane.offset) {
-      cloud.x[kept] = cloud.x[p];
-      cloud.ids[kept] = cloud.ids[p];
-      cloud.value[kept++] = cloud.value[p];
+      cloud.x[saved] = cloud.x[p];
+      cloud.ids[saved] = cloud.ids[p];
+      cloud.value[saved++] = cloud.value[p];
     }
-  cloud.x.resize(kept);
-  cloud.ids.resize(kept);
-  cloud.value.resize(kept);
+  cloud.x.resize(saved);
+  cloud.ids.resize(saved);
+  cloud.value.resize(saved);
   return cloud;
 }
 

@@ -69,9 +69,9 @@ Viewpoint viewpoint(const std::variant<Vec3, NamedView>& view, const Vec3& up)
 {
   if (const auto* towards = std::get_if<Vec3>(&view))
     return {*towards, up};
-  Index upright = 0;
-  up.cwiseAbs().maxCoeff(&upright);
-  const Vec3 right = upright == 0 ? Vec3::UnitY() : Vec3::UnitX();
+  Index vertical = 0;
+  up.cwiseAbs().maxCoeff(&vertical);
+  const Vec3 right = vertical == 0 ? Vec3::UnitY() : Vec3::UnitX();
   const Vec3 front = right.cross(up).normalized();
   switch (std::get<NamedView>(view)) {
     case NamedView::front: return {front, up};

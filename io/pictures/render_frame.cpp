@@ -31,7 +31,7 @@ void add_frame(Sheet& sheet, const Place& place, const Shown& shown, const std::
     sheet.text(text, place.left - 2 * tip, y, Side::right);
   }
   sheet.text(axes[0], (place.left + place.right) / 2, place.bottom - 7.5 * tip, Side::centre);
-  sheet.text(axes[1], 1.1 * sheet.letter(), (place.bottom + place.top) / 2, Side::centre, {.upright = true});
+  sheet.text(axes[1], 1.1 * sheet.letter(), (place.bottom + place.top) / 2, Side::centre, {.vertical = true});
 }
 
 }  // namespace talus::render

@@ -75,7 +75,7 @@ void add_colour_bar(Sheet& sheet, const Scale& scale, const std::string& label, 
   }
   const bool bare = unit_name.empty() || unit_name == "-";
   sheet.text(bare ? label : fmt::format("{} [{}]", label, unit_name), size[0] - sheet.letter(), 0.5 * (bottom + top), Side::centre,
-             {.upright = true});
+             {.vertical = true});
 }
 
 void add_length(Sheet& sheet, Real pixels_per_metre, Real longest, const std::array<Real, 2>& place)

@@ -47,7 +47,7 @@ Real Sheet::text(const std::string& words, Real x, Real y, Side side, Style styl
   font->SetFontFamilyToArial();
   font->SetFontSize(static_cast<int>(style.size * letter_));
   font->SetBold(style.bold ? 1 : 0);
-  font->SetOrientation(style.upright ? 90 : 0);
+  font->SetOrientation(style.vertical ? 90 : 0);
   font->SetColor(channels(ink).data());
   font->SetBackgroundColor(1, 1, 1);  // lines of the mesh may pass behind
   font->SetBackgroundOpacity(words.empty() ? 0 : 0.8);
@@ -58,7 +58,7 @@ Real Sheet::text(const std::string& words, Real x, Real y, Side side, Style styl
   std::array<int, 4> box{};
   constexpr int dpi = 72;  // of every vtkRenderWindow
   vtkTextRenderer::GetInstance()->GetBoundingBox(font, words, box.data(), dpi);
-  return style.upright ? box[3] - box[2] : box[1] - box[0];
+  return style.vertical ? box[3] - box[2] : box[1] - box[0];
 }
 
 }  // namespace talus::render

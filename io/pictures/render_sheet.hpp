@@ -18,7 +18,7 @@ Vec3 channels(const Colour& colour);
 enum class Side : std::uint8_t { left, centre, right };
 struct Style {
   Real size = 1;  ///< over the ordinary letter height
-  bool bold = false, upright = false;
+  bool bold = false, vertical = false;
 };
 
 /// Draws on a renderer that covers the whole window; places are pixels from its lower left.

@@ -203,7 +203,7 @@ class Manual {
   template <class T, class Value>
   Row row(const Choice<T, Value>& field, const std::type_identity_t<T>& defaults, const std::string&)
   {
-    return row_of(field.key, "word", "-", in_words(words(Value{})), need(field.need, default_of(defaults.*field.member, any)),
+    return row_of(field.key, "word", "-", in_words(enum_names(Value{})), need(field.need, default_of(defaults.*field.member, any)),
                   field.meaning);
   }
   template <class T, class Value>

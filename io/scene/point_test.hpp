@@ -11,7 +11,7 @@ namespace talus {
 /// A law and its parameters, without a name.
 struct LawSpec {
   AnyLaw law;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{alternative("law", &LawSpec::law, "constitutive law; its parameters are keys of the same mapping")};
@@ -22,7 +22,7 @@ struct PointTest {
   LawSpec material;
   std::array<Real, 6> initial_stress{};
   std::vector<PointPath> path;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{group("material", &PointTest::material, "the law"),

@@ -326,7 +326,7 @@ SceneTemplate read_template(const std::filesystem::path& file, const std::string
   constexpr std::string_view rule = "\n---\n";
   const std::size_t end = whole.find(rule);
   if (end == whole.npos)
-    throw SceneErrors(Where{file.string(), 0, 0, ""}, "a template has questions, a line \"---\", and the text of the scene");
+    throw SceneErrors(SourceLocation{file.string(), 0, 0, ""}, "a template has questions, a line \"---\", and the text of the scene");
   const std::string head = whole.substr(0, end + 1);
   SceneTemplate made{.file = file.string(), .head = {}, .body = whole.substr(end + rule.size())};
   made.first_line = static_cast<int>(std::count(head.begin(), head.end(), '\n')) + 2;

@@ -77,7 +77,7 @@ Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
     if (values.size() != 2) {
       complain(values.front(),
                fmt::format("a sample has two values, its time [s] and its value [{}]; here {} {}",
-                           words(spec.unit)[static_cast<std::size_t>(spec.unit)], values.size() == 1 ? "is" : "are", values.size()));
+                           enum_names(spec.unit)[static_cast<std::size_t>(spec.unit)], values.size() == 1 ? "is" : "are", values.size()));
       continue;
     }
     const auto t = number_in(values[0]), v = number_in(values[1]);
@@ -102,7 +102,7 @@ Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
   switch (spec.baseline) {
     case Baseline::velocity: return ends_without_velocity(std::move(record));
     case Baseline::displacement: return ends_where_it_began(std::move(record));
-    case Baseline::kept: break;
+    case Baseline::saved: break;
   }
   return record;
 }

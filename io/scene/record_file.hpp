@@ -18,17 +18,17 @@ enum class RecordUnit : std::uint8_t {
   centimetres_per_second_squared,
   g
 };
-constexpr std::array<std::string_view, 5> words(RecordUnit) { return {"m/s", "cm/s", "m/s^2", "cm/s^2", "g"}; }
+constexpr std::array<std::string_view, 5> enum_names(RecordUnit) { return {"m/s", "cm/s", "m/s^2", "cm/s^2", "g"}; }
 
-enum class Baseline : std::uint8_t { kept, velocity, displacement };
-constexpr std::array<std::string_view, 3> words(Baseline) { return {"none", "velocity", "displacement"}; }
+enum class Baseline : std::uint8_t { saved, velocity, displacement };
+constexpr std::array<std::string_view, 3> enum_names(Baseline) { return {"none", "velocity", "displacement"}; }
 
 struct RecordSpec {
   std::string file;
   RecordUnit unit{};
   Real scale = 1;
-  Baseline baseline = Baseline::kept;
-  Where where;
+  Baseline baseline = Baseline::saved;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

@@ -30,7 +30,7 @@ struct TimeSpec {
   std::optional<Real> cfl;  ///< has a value in every scene that was read
   std::optional<Real> max_step;
   Real min_step = 1e-12;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -45,13 +45,13 @@ struct TimeSpec {
 };
 
 enum class TransferScheme : std::uint8_t { flip, apic, tpic, aflip };
-constexpr std::array<std::string_view, 4> words(TransferScheme) { return {"flip", "apic", "tpic", "aflip"}; }
+constexpr std::array<std::string_view, 4> enum_names(TransferScheme) { return {"flip", "apic", "tpic", "aflip"}; }
 
 struct TransferSpec {
   TransferScheme scheme = TransferScheme::aflip;
   std::optional<bool> musl;
   std::optional<Real> pic_damping_time, pic_damping_crossings;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -68,10 +68,10 @@ struct TransferSpec {
 };
 
 enum class OnExit : std::uint8_t { stop, remove };
-constexpr std::array<std::string_view, 2> words(OnExit) { return {"stop", "delete"}; }
+constexpr std::array<std::string_view, 2> enum_names(OnExit) { return {"stop", "delete"}; }
 
 enum class Accuracy : std::uint8_t { draft, standard, fine };
-constexpr std::array<std::string_view, 3> words(Accuracy) { return {"draft", "standard", "fine"}; }
+constexpr std::array<std::string_view, 3> enum_names(Accuracy) { return {"draft", "standard", "fine"}; }
 
 struct Scene {
   std::string file;                    ///< path as given, for messages; directory of relative paths
@@ -96,10 +96,10 @@ struct Scene {
   std::vector<StageSpec> stages;
   OutputSpec outputs;
   OnExit on_exit = OnExit::stop;
-  WatchSpec watch;
+  LimitsSpec watch;
   Index threads = 0;
   bool strict = false;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

@@ -23,7 +23,7 @@ struct MaterialSpec {
   std::string name;
   std::optional<BulkViscosity> bulk_viscosity;
   AnyLaw law;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &MaterialSpec::name, any, "-", "bodies refer to it"),
@@ -42,7 +42,7 @@ struct BodySpec {
   std::optional<bool> f_bar;
   std::vector<std::string> velocity;
   std::optional<Real> saturated_density;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

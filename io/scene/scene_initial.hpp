@@ -13,12 +13,12 @@ namespace talus {
 
 /// What becomes of a quantity of particles that come from another run.
 enum class Carried : std::uint8_t { keep, zero };
-constexpr std::array<std::string_view, 2> words(Carried) { return {"keep", "zero"}; }
+constexpr std::array<std::string_view, 2> enum_names(Carried) { return {"keep", "zero"}; }
 
 /// A body of the scene and the one whose particles it takes.
 struct TakenSpec {
   std::string body, from;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("body", &TakenSpec::body, any, "-", "name of a body of this scene"),
@@ -31,7 +31,7 @@ struct InitialSpec {
   std::string from;
   std::vector<TakenSpec> bodies;
   Carried velocity = Carried::keep, displacement = Carried::zero;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("from", &InitialSpec::from, any, "-",

@@ -121,7 +121,7 @@ Json schema_of(const Range& range)
   } else if constexpr (std::same_as<T, std::string>) {
     return {{"type", Json::array({"string", "number"})}};  // YAML takes `name: 12` for a number
   } else if constexpr (std::is_enum_v<T>) {
-    return {{"enum", words(T{})}};
+    return {{"enum", enum_names(T{})}};
   } else if constexpr (std::same_as<T, Table>) {
     return schema_of<std::vector<std::array<Real, 2>>>(range);
   } else if constexpr (requires {

@@ -18,7 +18,7 @@ struct GravitySpec {
   static constexpr std::string_view name = "gravity";
   std::vector<Real> acceleration;
   Table table;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("acceleration", &GravitySpec::acceleration, any, "m/s^2", "one number per dimension"),
@@ -27,14 +27,14 @@ struct GravitySpec {
 };
 
 enum class PlaceOf : std::uint8_t { now, start };
-constexpr std::array<std::string_view, 2> words(PlaceOf) { return {"now", "start"}; }
+constexpr std::array<std::string_view, 2> enum_names(PlaceOf) { return {"now", "start"}; }
 
 /// Force per mass by formulas of place and time.
 struct BodyForceSpec {
   static constexpr std::string_view name = "body_force";
   std::vector<std::string> acceleration;
   PlaceOf place = PlaceOf::now;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -47,7 +47,7 @@ struct BodyForceSpec {
 };
 
 enum class Carrier : std::uint8_t { particles, mesh };
-constexpr std::array<std::string_view, 2> words(Carrier) { return {"particles", "mesh"}; }
+constexpr std::array<std::string_view, 2> enum_names(Carrier) { return {"particles", "mesh"}; }
 
 /// Force per area on a facet group: exactly one of traction and pressure.
 struct TractionSpec {
@@ -57,7 +57,7 @@ struct TractionSpec {
   std::optional<Real> pressure;
   Carrier carried_by = Carrier::particles;
   Table table;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -81,7 +81,7 @@ struct FixedSpec {
   static constexpr std::string_view name = "fixed";
   std::string on;
   std::vector<std::string> during;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FixedSpec::on, any, "-", "node, facet or cell group held at rest"),
@@ -93,7 +93,7 @@ struct RollerSpec {
   static constexpr std::string_view name = "roller";
   std::string on;
   std::vector<std::string> during;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &RollerSpec::on, any, "-", "facet group without normal motion; sliding is free"),
@@ -108,7 +108,7 @@ struct VelocitySpec {
   Table table;
   std::vector<std::string> during;
   std::optional<RecordSpec> record;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -130,7 +130,7 @@ struct CompliantBaseSpec {
   std::vector<Real> velocity;
   Table table;
   std::optional<RecordSpec> record;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -155,7 +155,7 @@ struct FrictionSpec {
   std::string on;
   Real coefficient{};
   std::vector<std::string> during;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FrictionSpec::on, any, "-", "facet group that acts as a wall: no penetration, free separation"),
@@ -169,7 +169,7 @@ struct FrictionSpec {
 struct FreeFieldSpec {
   static constexpr std::string_view name = "free_field";
   std::string on;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &FreeFieldSpec::on, any, "-",

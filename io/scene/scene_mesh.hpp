@@ -15,7 +15,7 @@ namespace talus {
 struct RegionSpec {
   std::string name;
   Shape shape;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &RegionSpec::name, any, "-", "name of the cells: bodies refer to it"),
@@ -27,7 +27,7 @@ struct RegionSpec {
 struct GroupSpec {
   std::string name, of = "boundary";
   std::optional<Box> within;
-  Where where;
+  SourceLocation where;
   std::vector<Real> facing = {};
   Real angle = 30;
   static constexpr auto fields()
@@ -81,7 +81,7 @@ struct MeshSpec {
   std::vector<GroupSpec> groups;
   std::optional<GridSpec> grid;
   std::optional<TerrainSpec> terrain;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),

@@ -14,7 +14,7 @@ namespace talus {
 struct ParticleOutputSpec {
   Real every{};
   std::vector<std::string> fields_wanted{"velocity", "displacement", "stress"};
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -28,7 +28,7 @@ struct ParticleOutputSpec {
 struct MeshOutputSpec {
   Real every{};
   std::vector<std::string> fields_wanted{"mass", "velocity"};
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("every", &MeshOutputSpec::every, positive, "s", "time between files"),
@@ -41,7 +41,7 @@ struct PointSpec {
   std::string name;
   std::vector<Real> at;
   std::string body;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &PointSpec::name, any, "-", "prefix of its columns"),
@@ -51,7 +51,7 @@ struct PointSpec {
 };
 
 enum class Direction : std::uint8_t { x_plus, x_minus, y_plus, y_minus, z_plus, z_minus };
-constexpr std::array<std::string_view, 6> words(Direction) { return {"+x", "-x", "+y", "-y", "+z", "-z"}; }
+constexpr std::array<std::string_view, 6> enum_names(Direction) { return {"+x", "-x", "+y", "-y", "+z", "-z"}; }
 
 /// How far the mass reaches: run-out, crest height.
 struct FrontSpec {
@@ -59,7 +59,7 @@ struct FrontSpec {
   Direction direction{};
   Real mass_share = 0.99;
   std::string body;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &FrontSpec::name, any, "-", "name of the column"),
@@ -73,7 +73,7 @@ struct FrontSpec {
 /// What bodies do to a wall.
 struct WallSpec {
   std::string on;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("on", &WallSpec::on, any, "-", "the wall, by the group of its boundary; the second on a group is GROUP_2")};
@@ -85,7 +85,7 @@ struct MovedSpec {
   std::string name;
   Real mass_share = 0.99;
   std::string body;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &MovedSpec::name, any, "-", "name of the column"),
@@ -102,7 +102,7 @@ struct HistoryOutputSpec {
   std::vector<WallSpec> walls;
   std::vector<MovedSpec> moved;
   std::vector<std::string> bodies;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

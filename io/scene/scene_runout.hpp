@@ -13,7 +13,7 @@ namespace talus {
 struct SectionSpec {
   std::string name;
   std::vector<std::vector<Real>> along;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -32,7 +32,7 @@ struct RunoutSpec {
   std::optional<Real> frames_every;
   bool csv = false;
   std::vector<SectionSpec> sections;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

@@ -19,7 +19,7 @@ namespace talus {
 /// A stress that is the same everywhere in a body [Pa].
 struct UniformStressSpec {
   Real xx{}, yy{}, zz{}, xy = 0, yz = 0, xz = 0;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -69,7 +69,7 @@ constexpr auto k0_fields()
 /// One body whose ratio differs from that of the others.
 struct K0OfBody : K0Rule {
   std::string body;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple_cat(std::tuple{required("body", &K0OfBody::body, any, "-", "name of a body")}, k0_fields<K0OfBody>());
@@ -80,7 +80,7 @@ struct K0OfBody : K0Rule {
 /// Stress at the start: vertical stress from the weight above, horizontal stress in a given ratio to it; or as it is given.
 struct K0Spec : K0Rule {
   std::vector<K0OfBody> bodies;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple_cat(k0_fields<K0Spec>(), std::tuple{optional_list("bodies", &K0Spec::bodies, "bodies with a ratio of their own")});
@@ -93,7 +93,7 @@ struct K0Spec : K0Rule {
 /// A body that goes on as another material.
 struct NewMaterialSpec {
   std::string body, material;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("body", &NewMaterialSpec::body, any, "-", "name of a body that is there in this stage"),
@@ -105,7 +105,7 @@ struct NewMaterialSpec {
 struct WeakenSpec {
   std::string body;
   Real factor{};
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -118,7 +118,7 @@ struct WeakenSpec {
 /// Another water table.
 struct StageWaterSpec {
   SurfaceSpec table;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{group("table", &StageWaterSpec::table,
@@ -153,7 +153,7 @@ struct GeostaticSpec : StageChanges {
   RampShape ramp_shape = RampShape::linear;
   bool elastic = true, reset_displacement = true;
   std::optional<K0Spec> initial_stress;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple_cat(
@@ -182,7 +182,7 @@ struct GeostaticSpec : StageChanges {
 struct RunSpec : StageChanges {
   static constexpr std::string_view name = "run";
   Real duration{}, damping = 0;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple_cat(
@@ -198,9 +198,9 @@ inline const StageChanges& changes_of(const StageSpec& stage)
 {
   return std::visit([](const auto& spec) -> const StageChanges& { return spec; }, stage);
 }
-inline const Where& where_of(const StageSpec& stage)
+inline const SourceLocation& where_of(const StageSpec& stage)
 {
-  return std::visit([](const auto& spec) -> const Where& { return spec.where; }, stage);
+  return std::visit([](const auto& spec) -> const SourceLocation& { return spec.where; }, stage);
 }
 /// As messages and results call it.
 inline std::string name_of(const StageSpec& stage)

@@ -14,7 +14,7 @@ struct SurfaceSpec {
   std::string file;
   std::optional<Real> elevation, depth;
   std::vector<std::vector<Real>> points;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

@@ -13,7 +13,7 @@ namespace talus {
 struct Question {
   std::string name, ask, unit = "-", fallback, when;
   std::vector<std::string> range, choices;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -37,7 +37,7 @@ struct Question {
 /// A number that the text of the scene needs in several places.
 struct Term {
   std::string name, is;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &Term::name, any, "-", "what the text of the scene calls it"),

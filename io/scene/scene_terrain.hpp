@@ -13,7 +13,7 @@ namespace talus {
 /// The plan of a scene in two dimensions: a straight line on the map.
 struct TerrainSectionSpec {
   std::vector<Real> from, to;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("from", &TerrainSectionSpec::from, any, "m", "[east, north] of x = 0"),
@@ -29,7 +29,7 @@ struct LayerSpec {
   std::vector<std::vector<Real>> within;
   std::string within_file;
   std::optional<Real> size;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -52,7 +52,7 @@ struct AirSpec {
   Real height{};
   std::optional<Real> reach, size;
   std::string of;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("height", &AirSpec::height, positive, "m", "above the ground"),
@@ -71,7 +71,7 @@ struct FinerSpec {
   std::vector<std::vector<Real>> along;
   std::string down_from;
   Real width{}, size{};
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -89,7 +89,7 @@ struct ObstacleSpec {
   std::vector<std::vector<Real>> outline;
   std::string outline_file;
   Real height{};
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("name", &ObstacleSpec::name, any, "-", "its facets are the group obstacle:NAME"),
@@ -113,7 +113,7 @@ struct TerrainSpec {
   std::optional<AirSpec> air;
   std::vector<FinerSpec> refine;
   std::vector<ObstacleSpec> obstacles;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

@@ -15,7 +15,7 @@ struct WaterSpec {
   SurfaceSpec table;
   Real unit_weight = 9810, suction = 0;
   std::vector<std::string> bodies, undrained;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{

@@ -13,7 +13,7 @@ namespace talus {
 /// Which values of several keys meet: each with each of the others; the first with the first, the second with the second; samples of what they
 /// may be; or, one key at a time, its low and its high value with the middle ones of the others.
 enum class Combine : std::uint8_t { grid, rows, latin, tornado };
-constexpr std::array<std::string_view, 4> words(Combine) { return {"grid", "rows", "latin", "tornado"}; }
+constexpr std::array<std::string_view, 4> enum_names(Combine) { return {"grid", "rows", "latin", "tornado"}; }
 
 /// A text of the file, and where it stands.
 struct Written {
@@ -32,7 +32,7 @@ struct Varied {
 struct ExceedSpec {
   std::string map;
   Real above = 0;
-  Where where;
+  SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{required("map", &ExceedSpec::map, any, "-", "name of a map of outputs.runout, such as thickness_max"),

@@ -19,7 +19,7 @@ constexpr std::uintmax_t largest_file = 4'000'000;  // bytes; a table of 100 000
 
 std::string read_bytes(const std::filesystem::path& file)
 {
-  const Where where{file.string(), 0, 0, ""};
+  const SourceLocation where{file.string(), 0, 0, ""};
   std::error_code error;
   const auto status = std::filesystem::status(file, error);
   if (!std::filesystem::exists(status))

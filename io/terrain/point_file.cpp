@@ -55,11 +55,11 @@ std::optional<SurveyRow> row_of(std::string_view line)
 }
 
 /// Places along one axis that lie at equal distances, but for some that are left out.
-struct Ladder {
+struct PointRows {
   Real first = 0, step = 0;
   Index count = 1;
 };
-std::optional<Ladder> ladder_of(std::vector<Real> places)
+std::optional<PointRows> ladder_of(std::vector<Real> places)
 {
   constexpr Real same = 1e-3;  // of the step: coordinates are written with few digits
   std::sort(places.begin(), places.end());
@@ -72,7 +72,7 @@ std::optional<Ladder> ladder_of(std::vector<Real> places)
   const Real steps = std::round((places.back() - places.front()) / step);
   if (!(steps < 1e6))
     return std::nullopt;
-  Ladder ladder{places.front(), (places.back() - places.front()) / steps, static_cast<Index>(steps) + 1};
+  PointRows ladder{places.front(), (places.back() - places.front()) / steps, static_cast<Index>(steps) + 1};
   for (const Real place : places)
     if (const Real at = (place - ladder.first) / ladder.step; std::abs(at - std::round(at)) > same)
       return std::nullopt;

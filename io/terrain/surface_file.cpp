@@ -39,7 +39,8 @@ MapBox extent_of(const std::vector<std::array<Real, 3>>& points)
 /// A file, and whoever wants to know of it.
 class FileReader {
  public:
-  FileReader(const std::string& file, const Where& where, MapPlan& plan, std::vector<Problem>& problems, std::vector<std::string>& repairs)
+  FileReader(const std::string& file, const SourceLocation& where, MapPlan& plan, std::vector<Problem>& problems,
+             std::vector<std::string>& repairs)
       : file_(file), where_(where), plan_(plan), problems_(problems), repairs_(repairs), path_(plan.directory / file)
   {}
   std::optional<SurfaceRead> read();
@@ -63,7 +64,7 @@ class FileReader {
   void fill(Raster& raster);
 
   const std::string& file_;
-  const Where& where_;
+  const SourceLocation& where_;
   MapPlan& plan_;
   std::vector<Problem>& problems_;
   std::vector<std::string>& repairs_;
@@ -243,18 +244,18 @@ std::optional<SurfaceRead> FileReader::read_raster_surface()
 Index merge_places(std::vector<std::array<Real, 3>>& points)
 {
   std::sort(points.begin(), points.end());
-  std::size_t kept = 0;
+  std::size_t saved = 0;
   for (std::size_t i = 0; i < points.size();) {
     std::size_t end = i;
     Real sum = 0;
     for (; end < points.size() && points[end][0] == points[i][0] && points[end][1] == points[i][1]; ++end)
       sum += points[end][2];
-    points[kept] = points[i];
-    points[kept++][2] = sum / static_cast<Real>(end - i);
+    points[saved] = points[i];
+    points[saved++][2] = sum / static_cast<Real>(end - i);
     i = end;
   }
-  const std::size_t merged = points.size() - kept;
-  points.resize(kept);
+  const std::size_t merged = points.size() - saved;
+  points.resize(saved);
   return static_cast<Index>(merged);
 }
 
@@ -391,7 +392,7 @@ std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, 
   return std::nullopt;
 }
 
-void check_cover(const SurfaceRead& surface, const Where& where, const MapRing& outline, const std::string& of,
+void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
                  std::vector<Problem>& problems)
 {
   if (outline.size() < 3)
@@ -440,8 +441,8 @@ void check_cover(const SurfaceRead& surface, const Where& where, const MapRing& 
          {}});
 }
 
-std::vector<MapPolygon> read_outlines(const std::string& file, const Where& where, const MapPlan& plan, std::vector<Problem>& problems,
-                                      std::vector<std::string>& repairs)
+std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
+                                      std::vector<Problem>& problems, std::vector<std::string>& repairs)
 {
   gdal();  // that it cannot be loaded is no fault of the scene
   PolygonFile read;

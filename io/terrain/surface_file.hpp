@@ -37,11 +37,11 @@ std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, 
 
 /// A problem, if the surface has no value somewhere within the outline: which extents it has and which are wanted, or where the hole is.
 /// `of`: what is so named, "domain".
-void check_cover(const SurfaceRead& surface, const Where& where, const MapRing& outline, const std::string& of,
+void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
                  std::vector<Problem>& problems);
 
 /// The polygons of a file, on the map: reprojected where the file has another coordinate system.  Empty where something is wrong.
-std::vector<MapPolygon> read_outlines(const std::string& file, const Where& where, const MapPlan& plan, std::vector<Problem>& problems,
-                                      std::vector<std::string>& repairs);
+std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
+                                      std::vector<Problem>& problems, std::vector<std::string>& repairs);
 
 }  // namespace talus

@@ -43,7 +43,7 @@ class TerrainReader {
   }
 
  private:
-  void complain(const Where& where, std::string message) { problems_.push_back({where, std::move(message), {}}); }
+  void complain(const SourceLocation& where, std::string message) { problems_.push_back({where, std::move(message), {}}); }
 
   /// Nothing is known of a surface that cannot be read.
   Surface surface(const SurfaceSpec& spec)
@@ -61,7 +61,7 @@ class TerrainReader {
   }
 
   /// A polygon of the scene or of a file, checked.
-  Area area(const Where& where, std::string_view key, const Points& corners, const std::string& file)
+  Area area(const SourceLocation& where, std::string_view key, const Points& corners, const std::string& file)
   {
     if (!file.empty())
       return checked(where, fmt::format("{}_file", key), area_of(read_outlines(file, where, map_, problems_, input_.notes)));
@@ -85,7 +85,7 @@ class TerrainReader {
     return checked(where, key, {{ring}});
   }
 
-  Area checked(const Where& where, std::string_view key, Area area)
+  Area checked(const SourceLocation& where, std::string_view key, Area area)
   {
     for (MapLine& ring : area.rings) {
       if (!ring.empty() && ring.front() == ring.back())

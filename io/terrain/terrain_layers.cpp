@@ -10,7 +10,7 @@ namespace talus {
 namespace {
 
 /// Columns of which something is to be told.
-struct Tally {
+struct StepSums {
   Index columns = 0;
   Real extent = 0;   ///< of the plan around them [m^(D-1)]
   Real volume = 0;   ///< [m^D]
@@ -22,16 +22,16 @@ struct Tally {
 };
 
 /// What became of the columns of a layer.
-struct Fates {
-  Tally kept, blank, crossed, closed;  ///< blank: the bottom is not known; crossed: it lies above the surface over it
+struct LayerCells {
+  StepSums saved, blank, crossed, closed;  ///< blank: the bottom is not known; crossed: it lies above the surface over it
 };
 
 /// The bottom of layer l, and what became of it, below a surface.
 template <int D>
-std::pair<std::vector<Real>, Fates> bottom_below(const std::vector<Real>& above, const Surface& wanted, const LayerSpec& layer,
-                                                 const SurveyedPlan<D>& plan, const Marks& own)
+std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& above, const Surface& wanted, const LayerSpec& layer,
+                                                      const SurveyedPlan<D>& plan, const Marks& own)
 {
-  Fates fates;
+  LayerCells fates;
   std::vector<Real> bottom = above;
   for (Index n = 0; n < plan.n_nodes(); ++n) {
     const Real here = wanted(plan.place[n]), thickness = above[n] - here;
@@ -40,11 +40,11 @@ std::pair<std::vector<Real>, Fates> bottom_below(const std::vector<Real>& above,
     const bool is_kept = thickness >= thinnest * cell;
     if (is_kept)
       bottom[n] = here;
-    Tally* const fate = is_kept                        ? &fates.kept
-                        : std::isnan(here)             ? &fates.blank
-                        : thickness < -touching * cell ? &fates.crossed
-                        : thickness > touching * cell  ? &fates.closed
-                                                       : nullptr;
+    StepSums* const fate = is_kept                        ? &fates.saved
+                           : std::isnan(here)             ? &fates.blank
+                           : thickness < -touching * cell ? &fates.crossed
+                           : thickness > touching * cell  ? &fates.closed
+                                                          : nullptr;
     if (own[n] != 0 && fate != nullptr)
       fate->add(plan.extent[n], std::isnan(here) ? 0 : std::abs(thickness));
   }
@@ -52,10 +52,10 @@ std::pair<std::vector<Real>, Fates> bottom_below(const std::vector<Real>& above,
 }
 
 /// Why nothing is left of a layer.
-std::string in_words(const Fates& fates, const std::string& upper, std::string_view unit)
+std::string in_words(const LayerCells& fates, const std::string& upper, std::string_view unit)
 {
   std::string text;
-  const auto add = [&](const Tally& tally, const std::string& what) {
+  const auto add = [&](const StepSums& tally, const std::string& what) {
     if (tally.columns > 0)
       text += fmt::format("{}{} over {:.4g} {}", text.empty() ? "" : ", ", what, tally.extent, unit);
   };
@@ -66,13 +66,13 @@ std::string in_words(const Fates& fates, const std::string& upper, std::string_v
 }
 
 template <int D>
-void tell(const LayerSpec& layer, const Fates& fates, const std::string& upper, std::vector<std::string>& notes)
+void tell(const LayerSpec& layer, const LayerCells& fates, const std::string& upper, std::vector<std::string>& notes)
 {
   constexpr std::string_view of_plan = D == 2 ? "m" : "m2", of_layer = D == 2 ? "m2" : "m3";
   const auto note = [&](const std::string& what) {
     notes.push_back(fmt::format("{}: layer \"{}\" {}", to_string(layer.where), layer.name, what));
   };
-  const auto& [kept, blank, crossed, closed] = fates;
+  const auto& [saved, blank, crossed, closed] = fates;
   if (blank.columns > 0)
     note(fmt::format("has no thickness where its bottom is not known, over {:.4g} {} of the plan", blank.extent, of_plan));
   if (crossed.columns > 0)
@@ -81,7 +81,7 @@ void tell(const LayerSpec& layer, const Fates& fates, const std::string& upper, 
   if (closed.columns > 0)
     note(fmt::format(
         "was closed where it is thinner than a quarter of a cell: {} columns, {:.4g} m at most, {:.3g} {} or {:.2g} % of its volume",
-        closed.columns, closed.largest, closed.volume, of_layer, 100 * closed.volume / (closed.volume + kept.volume)));
+        closed.columns, closed.largest, closed.volume, of_layer, 100 * closed.volume / (closed.volume + saved.volume)));
 }
 
 }  // namespace
@@ -94,7 +94,7 @@ TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainI
   std::string upper = "the ground";
   for (std::size_t l = 0; l < spec.layers.size(); ++l) {
     const LayerSpec& layer = spec.layers[l];
-    const auto complain = [&](const Where& where, std::string what) {
+    const auto complain = [&](const SourceLocation& where, std::string what) {
       problems.push_back({where, fmt::format("layer \"{}\" {}", layer.name, what), {}});
     };
     layers.inside.push_back(input.within[l] ? cells_in(*input.within[l], plan) : Marks(plan.n_cells(), 1));
@@ -102,7 +102,7 @@ TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainI
     auto [bottom, fates] = bottom_below(above, input.bottoms[l], layer, plan, own);
     if (std::find(own.begin(), own.end(), 1) == own.end())
       complain(layer.where, fmt::format("has no part within what is meshed, {}", domain_in_words(input)));
-    else if (fates.kept.columns == 0)
+    else if (fates.saved.columns == 0)
       complain(layer.bottom.where, fmt::format("has no thickness anywhere in what is meshed, {}: its bottom is {}", domain_in_words(input),
                                                in_words(fates, upper, D == 2 ? "m" : "m2")));
     else

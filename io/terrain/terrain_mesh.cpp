@@ -53,7 +53,7 @@ class TerrainMaker {
   }
 
  private:
-  void complain(const Where& where, std::string message) { problems_.push_back({where, std::move(message), {}}); }
+  void complain(const SourceLocation& where, std::string message) { problems_.push_back({where, std::move(message), {}}); }
   void throw_if_any()
   {
     if (!problems_.empty())

@@ -93,14 +93,14 @@ Plan<3> grid_of(const TerrainInput& input, Real size)
 MapLine thinned(const MapLine& ring, const PlanSizes& sizes)
 {
   constexpr Real close = 0.5, little = 0.05;  // of a cell
-  MapLine kept;
+  MapLine saved;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const MapPlace &corner = ring[i], &next = ring[(i + 1) % ring.size()];
     const Real cell = sizes(corner);
-    if (kept.empty() || distance({kept.back()}, corner) > close * cell || distance({kept.back(), next}, corner) > little * cell)
-      kept.push_back(corner);
+    if (saved.empty() || distance({saved.back()}, corner) > close * cell || distance({saved.back(), next}, corner) > little * cell)
+      saved.push_back(corner);
   }
-  return kept.size() < 3 ? ring : kept;
+  return saved.size() < 3 ? ring : saved;
 }
 
 Polygon local(const MapLine& ring, const MapFrame& frame)
@@ -147,7 +147,7 @@ std::vector<Polygon> outlines_in_domain(const TerrainInput& input, const PlanSiz
   return outlines;
 }
 
-Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const Where& where)
+Plan<3> plan_of_plane(const TerrainInput& input, const PlanSizes& sizes, const SourceLocation& where)
 {
   const std::vector<Polygon> outlines = outlines_in_domain(input, sizes);
   if (input.is_rectangle && outlines.empty() && sizes.strips.empty())
@@ -179,7 +179,7 @@ Real PlanSizes::operator()(const MapPlace& place) const noexcept
 }
 
 template <int D>
-Plan<D> make_plan(const TerrainInput& input, const PlanSizes& sizes, const Where& where)
+Plan<D> make_plan(const TerrainInput& input, const PlanSizes& sizes, const SourceLocation& where)
 {
   if constexpr (D == 2)
     return plan_of_line(input, sizes);
@@ -235,7 +235,7 @@ template SurveyedPlan<2> survey<2>(Plan<2>, const TerrainInput&, const PlanSizes
 template SurveyedPlan<3> survey<3>(Plan<3>, const TerrainInput&, const PlanSizes&);
 template Marks cells_in<2>(const Area&, const SurveyedPlan<2>&);
 template Marks cells_in<3>(const Area&, const SurveyedPlan<3>&);
-template Plan<2> make_plan<2>(const TerrainInput&, const PlanSizes&, const Where&);
-template Plan<3> make_plan<3>(const TerrainInput&, const PlanSizes&, const Where&);
+template Plan<2> make_plan<2>(const TerrainInput&, const PlanSizes&, const SourceLocation&);
+template Plan<3> make_plan<3>(const TerrainInput&, const PlanSizes&, const SourceLocation&);
 
 }  // namespace talus

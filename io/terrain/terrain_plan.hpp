@@ -32,7 +32,7 @@ MapPlace on_map(const MapFrame& frame, const Vec<D - 1>& x) noexcept
 
 /// Intervals or triangles of these sizes over the domain, with nodes or edges along the outlines of all areas.
 template <int D>
-Plan<D> make_plan(const TerrainInput& input, const PlanSizes& sizes, const Where& where);
+Plan<D> make_plan(const TerrainInput& input, const PlanSizes& sizes, const SourceLocation& where);
 
 /// One for each plan cell or node, whether it belongs to something.
 using Marks = std::vector<std::uint8_t>;
@@ -66,7 +66,7 @@ extern template SurveyedPlan<2> survey<2>(Plan<2>, const TerrainInput&, const Pl
 extern template SurveyedPlan<3> survey<3>(Plan<3>, const TerrainInput&, const PlanSizes&);
 extern template Marks cells_in<2>(const Area&, const SurveyedPlan<2>&);
 extern template Marks cells_in<3>(const Area&, const SurveyedPlan<3>&);
-extern template Plan<2> make_plan<2>(const TerrainInput&, const PlanSizes&, const Where&);
-extern template Plan<3> make_plan<3>(const TerrainInput&, const PlanSizes&, const Where&);
+extern template Plan<2> make_plan<2>(const TerrainInput&, const PlanSizes&, const SourceLocation&);
+extern template Plan<3> make_plan<3>(const TerrainInput&, const PlanSizes&, const SourceLocation&);
 
 }  // namespace talus

@@ -108,7 +108,7 @@ std::vector<ClosedForm> forms_of_soil(const Law& law, const TestPlan& plan, Real
     DruckerPrager cone;
     cone.match = match;
     cone.dilation_angle = law.dilation_angle;
-    forms.push_back({fmt::format("Drucker-Prager {}", words(match)[static_cast<std::size_t>(match)]), of_cone(cone)});
+    forms.push_back({fmt::format("Drucker-Prager {}", enum_names(match)[static_cast<std::size_t>(match)]), of_cone(cone)});
   }
   return forms;
 }

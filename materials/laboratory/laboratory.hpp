@@ -9,7 +9,7 @@
 namespace talus {
 
 enum class Laboratory : std::uint8_t { triaxial_compression, triaxial_extension, simple_shear, oedometer, uniaxial_strain_rate };
-constexpr auto words(Laboratory)
+constexpr auto enum_names(Laboratory)
 {
   return std::array<std::string_view, 5>{"triaxial_compression", "triaxial_extension", "simple_shear", "oedometer", "uniaxial_strain_rate"};
 }

@@ -11,7 +11,7 @@ namespace talus {
 
 /// What is prescribed for one component of the path.
 enum class Controlled : std::uint8_t { strain_rate, velocity_gradient, stress };
-constexpr auto words(Controlled) { return std::array<std::string_view, 3>{"strain_rate", "velocity_gradient", "stress"}; }
+constexpr auto enum_names(Controlled) { return std::array<std::string_view, 3>{"strain_rate", "velocity_gradient", "stress"}; }
 
 struct Control {
   Controlled quantity = Controlled::strain_rate;
@@ -46,7 +46,7 @@ struct PointPath {
   Index steps = 100;
   Real time = 1;
   Controls controls{};
-  Where where{};
+  SourceLocation where{};
   static constexpr auto fields()
   {
     return std::tuple{optional("steps", &PointPath::steps, positive, "-", "number of steps"),

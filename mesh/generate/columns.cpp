@@ -23,12 +23,12 @@ Index intervals(const Stack<D>& stack, std::size_t s, Index column)
 }
 
 /// Where a node stands in its column.
-struct Stand {
+struct ColumnHeights {
   Index column;
   Index slab;  ///< the interval below it belongs to; `none` at the bottom
   Real share;  ///< of the slab's thickness, (0, 1]; quotients of whole numbers, so that the same share is the same bits
 };
-bool comes_first(const Stand& a, const Stand& b) noexcept
+bool comes_first(const ColumnHeights& a, const ColumnHeights& b) noexcept
 {
   return std::tie(a.slab, a.share, a.column) < std::tie(b.slab, b.share, b.column);
 }
@@ -36,7 +36,7 @@ bool comes_first(const Stand& a, const Stand& b) noexcept
 template <int D>
 struct Nodes {
   std::vector<Vec<D>> place;
-  std::vector<Stand> stand;
+  std::vector<ColumnHeights> stand;
   std::vector<Index> begin;  ///< of each column, and the end of the last
 };
 
@@ -76,9 +76,9 @@ struct Filling {
 
 /// Closes the columns over one plan cell.
 template <int D>
-class Zipper {
+class PrismCutter {
  public:
-  Zipper(const Stack<D>& stack, const Nodes<D>& nodes, Filling<D>& filling, std::vector<typename Columns<D>::Front>& fronts)
+  PrismCutter(const Stack<D>& stack, const Nodes<D>& nodes, Filling<D>& filling, std::vector<typename Columns<D>::Front>& fronts)
       : stack_(stack), nodes_(nodes), filling_(filling), fronts_(fronts)
   {}
 
@@ -138,7 +138,7 @@ std::array<Index, D> facet_of(const std::array<Index, D + 1>& cell, int local)
 
 /// Facets with an upright edge: two of their nodes stand in one column.
 template <int D>
-bool is_upright(const std::array<Index, D>& facet, const std::vector<Stand>& stand)
+bool is_upright(const std::array<Index, D>& facet, const std::vector<ColumnHeights>& stand)
 {
   for (int i = 0; i < D; ++i)
     for (int j = i + 1; j < D; ++j)
@@ -169,7 +169,7 @@ Columns<D> fill_columns(const Stack<D>& stack)
   Nodes<D> nodes = make_nodes(stack);
   Columns<D> result;
   Filling<D> filling;
-  Zipper<D> zipper(stack, nodes, filling, result.fronts);
+  PrismCutter<D> zipper(stack, nodes, filling, result.fronts);
   for (Index c = 0; c < static_cast<Index>(stack.plan.cells.size()); ++c)
     zipper.close(c);
 

@@ -16,7 +16,7 @@ constexpr int sweeps = 20;
 }  // namespace
 
 template <int D>
-typename Walls<D>::NodeRule& Walls<D>::rule(const Mesh<D>& mesh, Index node)
+typename BoundaryConditions<D>::NodeRule& BoundaryConditions<D>::rule(const Mesh<D>& mesh, Index node)
 {
   if (static_cast<std::size_t>(node) >= rule_of_node_.size())
     rule_of_node_.resize(static_cast<std::size_t>(node) + 1, none);
@@ -29,7 +29,8 @@ typename Walls<D>::NodeRule& Walls<D>::rule(const Mesh<D>& mesh, Index node)
 }
 
 template <int D>
-typename Walls<D>::Parts Walls<D>::base_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const
+typename BoundaryConditions<D>::Parts BoundaryConditions<D>::base_parts(Index number, const Mesh<D>& mesh,
+                                                                        std::span<const Facet> facets) const
 {
   Parts parts;
   for (const Facet facet : facets)
@@ -41,7 +42,8 @@ typename Walls<D>::Parts Walls<D>::base_parts(Index number, const Mesh<D>& mesh,
 
 /// A facet that no ground lies beside, above the column, has no part.
 template <int D>
-typename Walls<D>::Parts Walls<D>::side_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const
+typename BoundaryConditions<D>::Parts BoundaryConditions<D>::side_parts(Index number, const Mesh<D>& mesh,
+                                                                        std::span<const Facet> facets) const
 {
   const SoilColumn<D>& column = walls_[static_cast<std::size_t>(number)].column;
   Parts parts;
@@ -63,7 +65,7 @@ typename Walls<D>::Parts Walls<D>::side_parts(Index number, const Mesh<D>& mesh,
 }
 
 template <int D>
-void Walls<D>::add_dashpots(const Mesh<D>& mesh, Parts parts)
+void BoundaryConditions<D>::add_dashpots(const Mesh<D>& mesh, Parts parts)
 {
   std::map<Index, std::size_t> known;
   for (std::size_t k = 0; k < dashpots_.size(); ++k)
@@ -77,13 +79,13 @@ void Walls<D>::add_dashpots(const Mesh<D>& mesh, Parts parts)
 }
 
 template <int D>
-Index Walls<D>::holder_of(Index node) const noexcept
+Index BoundaryConditions<D>::holder_of(Index node) const noexcept
 {
   return !binds(node) ? none : rule_of(node).whole != none ? rule_of(node).whole : rule_of(node).base;
 }
 
 template <int D>
-void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nodes)
+void BoundaryConditions<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nodes)
 {
   const auto number = static_cast<Index>(walls_.size());
   const bool fixed = wall.kind == WallKind::fixed;
@@ -96,7 +98,7 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Index> nod
 }
 
 template <int D>
-void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets)
+void BoundaryConditions<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets)
 {
   const auto number = static_cast<Index>(walls_.size());
   const bool roller = wall.kind != WallKind::friction;
@@ -130,7 +132,7 @@ void Walls<D>::add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> fac
 }
 
 template <int D>
-void Walls<D>::restrict_to(const Share& share)
+void BoundaryConditions<D>::restrict_to(const Subdomain& share)
 {
   std::erase_if(rules_, [&](NodeRule& rule) {
     rule.node = share.local_node(rule.node);
@@ -150,14 +152,14 @@ void Walls<D>::restrict_to(const Share& share)
 }
 
 template <int D>
-void Walls<D>::settle()
+void BoundaryConditions<D>::settle()
 {
   pushed_.resize(walls_.size());
   for (NodeRule& rule : rules_) {
     for (Plane& plane : rule.frictions)
       plane.normal.normalize();
     // those that let go later come last, so that the others stand without them
-    std::stable_partition(rule.rollers.begin(), rule.rollers.end(), [&](const Plane& plane) { return !lets_go(plane.wall); });
+    std::stable_partition(rule.rollers.begin(), rule.rollers.end(), [&](const Plane& plane) { return !releases(plane.wall); });
     std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span already adds nothing
     for (Plane plane : rule.rollers) {
       plane.normal.normalize();
@@ -176,7 +178,7 @@ void Walls<D>::settle()
 }
 
 template <int D>
-void Walls<D>::begin_stage(bool geostatic, Real time)
+void BoundaryConditions<D>::begin_stage(bool geostatic, Real time)
 {
   if (geostatic)
     shaking_ = {};
@@ -185,7 +187,7 @@ void Walls<D>::begin_stage(bool geostatic, Real time)
 }
 
 template <int D>
-void Walls<D>::find_reactions(Exchange& ranks, const Nodes<D>& nodes)
+void BoundaryConditions<D>::find_reactions(Communicator& ranks, const Nodes<D>& nodes)
 {
   std::vector<std::int64_t> bits(D * n_dashpots_, 0);  // each number is told by one rank, the others add nothing to it
   for (const Dashpot& dashpot : dashpots_) {
@@ -203,7 +205,7 @@ void Walls<D>::find_reactions(Exchange& ranks, const Nodes<D>& nodes)
 }
 
 template <int D>
-bool Walls<D>::fits() const
+bool BoundaryConditions<D>::fits() const
 {
   if (!shaking_.knows_reactions)
     return shaking_.reaction.empty() && shaking_.columns.empty();
@@ -220,7 +222,7 @@ bool Walls<D>::fits() const
 /// The columns move on by themselves; what they do to the model in this step is what their stress was at its beginning, as that of the
 /// particles, and their new velocity, of its middle.
 template <int D>
-void Walls<D>::advance_columns(Real mid, Real dt)
+void BoundaryConditions<D>::advance_columns(Real mid, Real dt)
 {
   columns_then_ = shaking_.columns;
   for (std::size_t k = 0; k < free_fields_.size(); ++k) {
@@ -236,7 +238,7 @@ void Walls<D>::advance_columns(Real mid, Real dt)
 }
 
 template <int D>
-Vec<D> Walls<D>::wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real mid) const noexcept
+Vec<D> BoundaryConditions<D>::wave_at(const typename Dashpot::Part& part, const Vec<D>& place, Real mid) const noexcept
 {
   const Wall<D>& wall = walls_[static_cast<std::size_t>(part.wall)];
   if (wall.kind == WallKind::compliant_base)
@@ -245,7 +247,7 @@ Vec<D> Walls<D>::wave_at(const typename Dashpot::Part& part, const Vec<D>& place
 }
 
 template <int D>
-Vec<D> Walls<D>::drive(const typename Dashpot::Part& part, const Vec<D>& wave) const noexcept
+Vec<D> BoundaryConditions<D>::drive(const typename Dashpot::Part& part, const Vec<D>& wave) const noexcept
 {
   const Wall<D>& wall = walls_[static_cast<std::size_t>(part.wall)];
   if (wall.kind == WallKind::compliant_base)
@@ -263,7 +265,7 @@ Vec<D> Walls<D>::drive(const typename Dashpot::Part& part, const Vec<D>& wave) c
 /// The halfspace takes C v off and brings 2 C v_up, of which one half is the wave itself and one the wave that it would send back [Joyner &
 /// Chen 1975].  Beside, only what differs from the free field (ff) leaves [Zienkiewicz, Bicanic & Shen 1988].
 template <int D>
-void Walls<D>::give_way(Real mid, Real dt, Exchange& ranks, Nodes<D>& nodes)
+void BoundaryConditions<D>::apply_dashpots(Real mid, Real dt, Communicator& ranks, Nodes<D>& nodes)
 {
   if (!shaking_.begun || n_dashpots_ == 0)
     return;
@@ -293,7 +295,7 @@ void Walls<D>::give_way(Real mid, Real dt, Exchange& ranks, Nodes<D>& nodes)
 }
 
 template <int D>
-Vec<D> Walls<D>::prescribed(const Wall<D>& wall, Real time) const noexcept
+Vec<D> BoundaryConditions<D>::prescribed(const Wall<D>& wall, Real time) const noexcept
 {
   const bool counts_from_shaking = wall.record || wall.kind == WallKind::compliant_base;
   if (counts_from_shaking && !shaking_.begun)
@@ -304,7 +306,7 @@ Vec<D> Walls<D>::prescribed(const Wall<D>& wall, Real time) const noexcept
 
 /// The mean velocity of the wall that sets all components of a node; planes do not move along their normals.
 template <int D>
-Vec<D> Walls<D>::moves(const NodeRule& rule, const Kick& kick) const
+Vec<D> BoundaryConditions<D>::moves(const NodeRule& rule, const Kick& kick) const
 {
   const Index whole = whole_of(rule);
   if (whole == none || walls_[static_cast<std::size_t>(whole)].kind != WallKind::velocity)
@@ -314,7 +316,8 @@ Vec<D> Walls<D>::moves(const NodeRule& rule, const Kick& kick) const
 }
 
 template <int D>
-void Walls<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work)
+void BoundaryConditions<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& sliding,
+                                ExactSums<BoundaryWork>& work)
 {
   const Vec<D> v_free = v, v_old = v - change;
   Vec<D> rubbed = Vec<D>::Zero();
@@ -333,7 +336,7 @@ void Walls<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v,
     pushed += by;
     v += by;
   };
-  rubs = false;
+  sliding = false;
   if (const Index whole = whole_of(rule); whole != none) {
     push(whole, constrained(rule, kick.to, v) - v);
   } else {
@@ -351,7 +354,7 @@ void Walls<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v,
         const Vec<D> rub = slip <= limit ? Vec<D>(-v) : Vec<D>(-limit / slip * v);
         push(plane.wall, rub);
         rubbed += rub;
-        touched = rubs = true;
+        touched = sliding = true;
       }
       if (!touched || rule.rollers.size() + rule.frictions.size() == 1)
         break;
@@ -366,13 +369,13 @@ void Walls<D>::act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v,
 }
 
 template <int D>
-void Walls<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<WallWork>& work)
+void BoundaryConditions<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<BoundaryWork>& work)
 {
   for (NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
-    rule.rubs = false;
+    rule.sliding = false;
     if (nodes.active[n])
-      act(rule, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.rubs, work);
+      act(rule, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.sliding, work);
   }
   for (const Dashpot& dashpot : dashpots_) {
     const auto n = static_cast<std::size_t>(dashpot.node);
@@ -385,26 +388,27 @@ void Walls<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<WallWork>& wor
 }
 
 template <int D>
-void Walls<D>::apply(const Kick& kick, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work)
+void BoundaryConditions<D>::apply(const Kick& kick, std::span<const ProjectedNodeSum<D>> sums, std::span<ProjectedNodeMotion<D>> hats,
+                                  ExactSums<BoundaryWork>& work)
 {
   for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
-    bool rubs{};
+    bool sliding{};
     if (sums[n].is_seen())
-      act(rule, kick, sums[n].mass, hats[n].v, hats[n].change, rubs, work);
+      act(rule, kick, sums[n].mass, hats[n].v, hats[n].change, sliding, work);
   }
 }
 
 template <int D>
-void Walls<D>::apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work)
+void BoundaryConditions<D>::apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work)
 {
-  bool rubs{};
+  bool sliding{};
   if (binds(node))
-    act(rule_of(node), kick, mass, motion.v, motion.change, rubs, work);
+    act(rule_of(node), kick, mass, motion.v, motion.change, sliding, work);
 }
 
 template <int D>
-void Walls<D>::keep_impulses()
+void BoundaryConditions<D>::keep_impulses()
 {
   for (std::size_t w = 0; w < walls_.size(); ++w) {
     const Impulse by = pushed_[w].value();
@@ -414,7 +418,7 @@ void Walls<D>::keep_impulses()
 }
 
 template <int D>
-Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) const
+Vec<D> BoundaryConditions<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) const
 {
   if (const Index whole = whole_of(rule); whole != none) {
     const Wall<D>& wall = walls_[static_cast<std::size_t>(whole)];
@@ -430,22 +434,22 @@ Vec<D> Walls<D>::constrained(const NodeRule& rule, Real time, const Vec<D>& v) c
 }
 
 template <int D>
-void Walls<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
+void BoundaryConditions<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
 {
   for (const NodeRule& rule : rules_) {
     NodeMotion<D>& row = remapped[static_cast<std::size_t>(rule.node)];
-    row.v = rule.rubs ? row.change : constrained(rule, time, row.v);
+    row.v = rule.sliding ? row.change : constrained(rule, time, row.v);
   }
 }
 
 template <int D>
-Vec<D> Walls<D>::held(Index node, Real time, const Vec<D>& v) const
+Vec<D> BoundaryConditions<D>::held(Index node, Real time, const Vec<D>& v) const
 {
   return binds(node) ? constrained(rule_of(node), time, v) : v;
 }
 
 template <int D>
-std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
+std::vector<Facet> BoundaryConditions<D>::closed_facets(const Mesh<D>& mesh) const
 {
   std::vector<Facet> closed = facets_;
   const auto whole = [&](Index n) { return binds(n) && (rule_of(n).whole != none || rule_of(n).base != none); };
@@ -457,7 +461,7 @@ std::vector<Facet> Walls<D>::closed_facets(const Mesh<D>& mesh) const
   return closed;
 }
 
-template class Walls<2>;
-template class Walls<3>;
+template class BoundaryConditions<2>;
+template class BoundaryConditions<3>;
 
 }  // namespace talus

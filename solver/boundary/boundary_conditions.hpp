@@ -43,14 +43,14 @@ struct Wall {
   Halfspace halfspace;           ///< behind a compliant base
   SoilColumn<D> column;          ///< the ground beside a free field
   Index foot = none;             ///< the wall below that
-  Where where;
+  SourceLocation where;
   Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the start of the run [N s]
   Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
-  static constexpr auto fields() { return std::tuple{kept("impulse", &Wall::impulse), kept("angular", &Wall::angular)}; }
+  static constexpr auto fields() { return std::tuple{saved("impulse", &Wall::impulse), saved("angular", &Wall::angular)}; }
 };
 
 /// Since when walls give way that were held while the model sought its rest, and what they carry since.
-struct Shaking {
+struct DynamicPhase {
   bool begun = false;  ///< a stage goes on, or is over, that is not geostatic
   bool knows_reactions = false;
   Real begin = 0;                     ///< [s]
@@ -58,8 +58,9 @@ struct Shaking {
   std::vector<ColumnMotion> columns;  ///< of the free fields, in the order of the walls
   static constexpr auto fields()
   {
-    return std::tuple{kept("begun", &Shaking::begun), kept("knows_reactions", &Shaking::knows_reactions), kept("begin", &Shaking::begin),
-                      kept("reaction", &Shaking::reaction), kept("columns", &Shaking::columns)};
+    return std::tuple{saved("begun", &DynamicPhase::begun), saved("knows_reactions", &DynamicPhase::knows_reactions),
+                      saved("begin", &DynamicPhase::begin), saved("reaction", &DynamicPhase::reaction),
+                      saved("columns", &DynamicPhase::columns)};
   }
 };
 
@@ -67,7 +68,7 @@ struct Shaking {
 /// both win over planes; planes (rollers, friction) act together, so edges and corners need no special care.  The dashpots of a base that
 /// gives way push before any of these act.
 template <int D>
-class Walls {
+class BoundaryConditions {
  public:
   struct Impulse {
     Vec<D> linear = Vec<D>::Zero();  ///< [N s]
@@ -82,7 +83,7 @@ class Walls {
   /// be added after what holds its foot.
   void add(Wall<D> wall, const Mesh<D>& mesh, std::span<const Facet> facets);
   /// Of one of several ranks: only conditions on nodes and cells that are held, in their numbers here.
-  void restrict_to(const Share& share);
+  void restrict_to(const Subdomain& share);
   /// To be called once after the last add() or restrict_to().
   void settle();
 
@@ -91,15 +92,16 @@ class Walls {
   /// Dashpots push the nodes in a step of length dt [s], whose new velocities are of the time `mid` [s].  In the first one after a geostatic
   /// stage it is found what keeps each node in balance, and from then on that force goes on: every rank has to ask.  The work is counted by
   /// apply(), which knows the velocity that comes out.
-  void give_way(Real mid, Real dt, Exchange& ranks, Nodes<D>& nodes);
+  void apply_dashpots(Real mid, Real dt, Communicator& ranks, Nodes<D>& nodes);
 
   /// The new velocities of nodes with active mass obey the walls at their time.  The work done is added to `work`.
-  void apply(const Kick& kick, Nodes<D>& nodes, ExactSums<WallWork>& work);
+  void apply(const Kick& kick, Nodes<D>& nodes, ExactSums<BoundaryWork>& work);
   /// So does what particles read on hats, where it is not that of the node alone: the row of a hat on a wall may reach nodes off it.
   /// `sums` say with which mass a hat moves, and which are seen.
-  void apply(const Kick& kick, std::span<const HatSum<D>> sums, std::span<HatMotion<D>> hats, ExactSums<WallWork>& work);
+  void apply(const Kick& kick, std::span<const ProjectedNodeSum<D>> sums, std::span<ProjectedNodeMotion<D>> hats,
+             ExactSums<BoundaryWork>& work);
   /// And so does a node that follows others: its own mass [kg] gets its part of the walls' pushes.
-  void apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<WallWork>& work);
+  void apply(Index node, const Kick& kick, Real mass, NodeMotion<D>& motion, ExactSums<BoundaryWork>& work);
   /// The impulses of the step at hand, by wall, to be summed up over the ranks; then the walls keep them.
   std::span<ExactSums<Impulse>> pushed() noexcept { return pushed_; }
   void keep_impulses();
@@ -111,7 +113,7 @@ class Walls {
 
   std::span<const Wall<D>> walls() const noexcept { return walls_; }
   /// What is kept of the walls becomes that of the same walls in another model of the scene.
-  void go_on_from(const Walls& earlier)
+  void go_on_from(const BoundaryConditions& earlier)
   {
     assert(walls_.size() == earlier.walls_.size());
     for (std::size_t w = 0; w < walls_.size(); ++w)
@@ -128,7 +130,10 @@ class Walls {
   }
   /// Facets of rollers and friction walls, and facets whose nodes are all held or moved: no particle passes them.
   std::vector<Facet> closed_facets(const Mesh<D>& mesh) const;
-  static constexpr auto fields() { return std::tuple{kept("wall", &Walls::walls_), kept("shaking", &Walls::shaking_)}; }
+  static constexpr auto fields()
+  {
+    return std::tuple{saved("wall", &BoundaryConditions::walls_), saved("shaking", &BoundaryConditions::shaking_)};
+  }
 
  private:
   struct Plane {
@@ -142,8 +147,8 @@ class Walls {
     Index base = none;           ///< compliant base, which does so until the shaking begins
     std::vector<Plane> rollers;  ///< normals made orthonormal
     std::vector<Plane> frictions;
-    bool rubs = false;    ///< the last apply() found it pressed against a friction wall
-    bool counted = true;  ///< by this rank: another one keeps impulses and work of nodes that are not its own
+    bool sliding = false;  ///< the last apply() found it pressed against a friction wall
+    bool counted = true;   ///< by this rank: another one keeps impulses and work of nodes that are not its own
   };
   /// At a node of walls that give way; the first of them keeps its impulses.
   struct Dashpot {
@@ -165,7 +170,7 @@ class Walls {
   void add_dashpots(const Mesh<D>& mesh, Parts parts);
   Parts base_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const;
   Parts side_parts(Index number, const Mesh<D>& mesh, std::span<const Facet> facets) const;
-  void find_reactions(Exchange& ranks, const Nodes<D>& nodes);
+  void find_reactions(Communicator& ranks, const Nodes<D>& nodes);
   void advance_columns(Real mid, Real dt);
   std::size_t free_field_number(Index wall) const noexcept
   {
@@ -177,8 +182,8 @@ class Walls {
   Vec<D> drive(const typename Dashpot::Part& part, const Vec<D>& wave) const noexcept;
   /// The wall that sets all components of a node now, or none.
   Index whole_of(const NodeRule& rule) const noexcept { return rule.whole == none && !shaking_.begun ? rule.base : rule.whole; }
-  bool lets_go(Index wall) const noexcept { return walls_[static_cast<std::size_t>(wall)].kind == WallKind::free_field; }
-  bool holds(const Plane& plane) const noexcept { return !shaking_.begun || !lets_go(plane.wall); }
+  bool releases(Index wall) const noexcept { return walls_[static_cast<std::size_t>(wall)].kind == WallKind::free_field; }
+  bool holds(const Plane& plane) const noexcept { return !shaking_.begun || !releases(plane.wall); }
   /// What a wall prescribes at a time [s]: its own velocity, or that of the wave which comes up to it.
   Vec<D> prescribed(const Wall<D>& wall, Real time) const noexcept;
   const NodeRule& rule_of(Index node) const noexcept  ///< of a node that is bound
@@ -186,7 +191,7 @@ class Walls {
     return rules_[static_cast<std::size_t>(rule_of_node_[static_cast<std::size_t>(node)])];
   }
   /// Pushes a mass [kg] that moves with v and has changed by `change` in this step; walls keep the impulses.
-  void act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& rubs, ExactSums<WallWork>& work);
+  void act(const NodeRule& rule, const Kick& kick, Real mass, Vec<D>& v, Vec<D>& change, bool& sliding, ExactSums<BoundaryWork>& work);
   Vec<D> constrained(const NodeRule& rule, Real time, const Vec<D>& v) const;
   Vec<D> moves(const NodeRule& rule, const Kick& kick) const;
 
@@ -199,10 +204,10 @@ class Walls {
   std::size_t n_dashpots_ = 0;              ///< in the whole mesh
   std::vector<Index> free_fields_;          ///< walls
   std::vector<ColumnMotion> columns_then_;  ///< of these, at the beginning of the step
-  Shaking shaking_;
+  DynamicPhase shaking_;
 };
 
-extern template class Walls<2>;
-extern template class Walls<3>;
+extern template class BoundaryConditions<2>;
+extern template class BoundaryConditions<3>;
 
 }  // namespace talus

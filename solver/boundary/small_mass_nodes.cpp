@@ -32,13 +32,13 @@ bool takes_part(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 }  // namespace
 
 template <int D>
-Slaves<D>::Slaves(Exchange& ranks, const Mesh<D>& mesh, const Share& share, const OwnNodes& own)
-    : near_(copies_of_nodes(ranks, share, Topic::slaves, spread_by_rings(mesh, own.owned, 2)))
+SmallMassNodes<D>::SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const OwnNodes& own)
+    : near_(copies_of_nodes(ranks, share, MessageTag::small_mass_nodes, spread_by_rings(mesh, own.owned, 2)))
 {}
 
 template <int D>
 template <class F>
-void Slaves<D>::for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const
+void SmallMassNodes<D>::for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const
 {
   const auto visit = [&](Index n) {
     if (const Real mass = weight_[static_cast<std::size_t>(n)]; mass > 0)
@@ -53,29 +53,29 @@ void Slaves<D>::for_each_active_around(const Mesh<D>& mesh, Index node, int ring
 
 template <int D>
 template <class F>
-void Slaves<D>::for_each_master(const Mesh<D>& mesh, Index slave, F&& f) const
+void SmallMassNodes<D>::for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const
 {
-  const auto n = static_cast<std::size_t>(slave);
+  const auto n = static_cast<std::size_t>(small_mass_node);
   const Real total = -weight_[n];
   if (total > 0)
-    for_each_active_around(mesh, slave, ring_[n], [&](Index master, Real mass) { f(master, mass / total); });
+    for_each_active_around(mesh, small_mass_node, ring_[n], [&](Index host, Real mass) { f(host, mass / total); });
 }
 
 template <int D>
-void Slaves<D>::weigh_masters(const Mesh<D>& mesh, Index slave)
+void SmallMassNodes<D>::weigh_hosts(const Mesh<D>& mesh, Index small_mass_node)
 {
-  const auto n = static_cast<std::size_t>(slave);
+  const auto n = static_cast<std::size_t>(small_mass_node);
   Real total = 0;
   for (std::uint8_t ring = 1; ring <= 2 && !(total > 0); ++ring) {
     ring_[n] = ring;
-    for_each_active_around(mesh, slave, ring, [&](Index, Real mass) { total += mass; });
+    for_each_active_around(mesh, small_mass_node, ring, [&](Index, Real mass) { total += mass; });
   }
   weight_[n] = -total;
 }
 
 template <int D>
 template <class What, class Rows>
-void Slaves<D>::tell_masters(Rows&& rows, const What& what)
+void SmallMassNodes<D>::tell_masters(Rows&& rows, const What& what)
 {
   near_.send(
       rows, what, [&](std::size_t border) { return slaves_here_[border] != 0; },
@@ -85,7 +85,7 @@ void Slaves<D>::tell_masters(Rows&& rows, const What& what)
 
 template <int D>
 template <class What, class Rows>
-void Slaves<D>::tell_slaves(Rows&& rows, const What& what)
+void SmallMassNodes<D>::tell_slaves(Rows&& rows, const What& what)
 {
   near_.send(
       rows, what, [&](std::size_t border) { return slaves_there_[border] != 0; },
@@ -94,18 +94,18 @@ void Slaves<D>::tell_slaves(Rows&& rows, const What& what)
 }
 
 template <int D>
-void Slaves<D>::meet_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes)
+void SmallMassNodes<D>::meet_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes)
 {
   near_.send(ring_, OfMarked{itself, ring_});
   near_.take(ring_, OfMarked{itself, ring_});
-  const auto is_slave = [&](Index n) { return ring_[static_cast<std::size_t>(n)] != 0; };
+  const auto has_small_mass = [&](Index n) { return ring_[static_cast<std::size_t>(n)] != 0; };
   slaves_here_.clear(), slaves_there_.clear();
   asked_.assign(ring_.size(), 0);
-  for (const Border& border : near_.borders()) {
-    slaves_here_.push_back(std::ranges::any_of(border.out, is_slave) ? 1 : 0);
-    slaves_there_.push_back(std::ranges::any_of(border.in, is_slave) ? 1 : 0);
+  for (const NeighbourRank& border : near_.borders()) {
+    slaves_here_.push_back(std::ranges::any_of(border.out, has_small_mass) ? 1 : 0);
+    slaves_there_.push_back(std::ranges::any_of(border.in, has_small_mass) ? 1 : 0);
     for (const Index n : border.in)
-      if (is_slave(n)) {
+      if (has_small_mass(n)) {
         slaves_.push_back({n, 0});
         for (const Index between : mesh.ring_of_node()[n])
           for (const Index around : mesh.ring_of_node()[between])
@@ -119,20 +119,20 @@ namespace {
 
 /// What a slave has for its masters, and what their shares of it are made from.
 template <int D>
-struct Estate {
+struct NodeAndHosts {
   NodeSum<D>& sum;
   Real& weight;
   std::uint8_t& ring;
 };
 template <int D>
-struct Estates {
+struct NodesAndHosts {
   std::vector<NodeSum<D>>& sum;
   std::vector<Real>& weight;
   std::vector<std::uint8_t>& ring;
-  Estate<D> operator[](std::size_t n) const noexcept { return {sum[n], weight[n], ring[n]}; }
+  NodeAndHosts<D> operator[](std::size_t n) const noexcept { return {sum[n], weight[n], ring[n]}; }
 
   template <int E>
-  static auto parts(const Estate<E>& row) noexcept
+  static auto parts(const NodeAndHosts<E>& row) noexcept
   {
     return std::tie(row.sum.mass, row.sum.momentum, row.sum.force, row.weight, row.ring);
   }
@@ -141,7 +141,7 @@ struct Estates {
 }  // namespace
 
 template <int D>
-void Slaves<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
+void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
 {
   slaves_.reserve(nodes.sum.size());
   slaves_.clear();
@@ -159,8 +159,8 @@ void Slaves<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
   if (!near_.borders().empty())
     meet_neighbours(mesh, nodes);
   for (std::size_t s = 0; s < n_own; ++s)
-    weigh_masters(mesh, slaves_[s].node);
-  tell_masters(Estates<D>{nodes.sum, weight_, ring_}, OfMarked{[](const auto& row) { return Estates<D>::parts(row); }, ring_});
+    weigh_hosts(mesh, slaves_[s].node);
+  tell_masters(NodesAndHosts<D>{nodes.sum, weight_, ring_}, OfMarked{[](const auto& row) { return NodesAndHosts<D>::parts(row); }, ring_});
   if (slaves_.size() > n_own)
     std::ranges::sort(slaves_, {}, &Slave::node);
   hand_on(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) {
@@ -171,7 +171,7 @@ void Slaves<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
 }
 
 template <int D>
-void Slaves<D>::lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
+void SmallMassNodes<D>::lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
 {
   tell_masters(nodes.sum, OfMarked{[](auto& sum) { return NodeSum<D>::momentum_parts(sum); }, ring_});
   hand_on(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) { to.momentum += share * from.momentum; });
@@ -179,48 +179,48 @@ void Slaves<D>::lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>
 
 template <int D>
 template <class F>
-void Slaves<D>::hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const
+void SmallMassNodes<D>::hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const
 {
-  for (const Slave& slave : slaves_)
-    for_each_master(mesh, slave.node, [&](Index master, Real share) {
-      if (own.has(master))
-        f(nodes.sum[static_cast<std::size_t>(master)], share, nodes.sum[static_cast<std::size_t>(slave.node)]);
+  for (const Slave& small_mass_node : slaves_)
+    for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) {
+      if (own.has(host))
+        f(nodes.sum[static_cast<std::size_t>(host)], share, nodes.sum[static_cast<std::size_t>(small_mass_node.node)]);
     });
 }
 
 template <int D>
-void Slaves<D>::follow(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
-                       ExactSums<WallWork>& work)
+void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& walls,
+                                    std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work)
 {
   tell_slaves(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, asked_});
-  for (const Slave& slave : slaves_) {
-    if (!own.has(slave.node))
+  for (const Slave& small_mass_node : slaves_) {
+    if (!own.has(small_mass_node.node))
       continue;
     NodeMotion<D> mean;
-    for_each_master(mesh, slave.node, [&](Index master, Real share) {
-      mean.v += share * motion[static_cast<std::size_t>(master)].v;
-      mean.change += share * motion[static_cast<std::size_t>(master)].change;
+    for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) {
+      mean.v += share * motion[static_cast<std::size_t>(host)].v;
+      mean.change += share * motion[static_cast<std::size_t>(host)].change;
     });
-    walls.apply(slave.node, kick, slave.mass, mean, work);
-    motion[static_cast<std::size_t>(slave.node)] = mean;
+    walls.apply(small_mass_node.node, kick, small_mass_node.mass, mean, work);
+    motion[static_cast<std::size_t>(small_mass_node.node)] = mean;
   }
 }
 
 template <int D>
-void Slaves<D>::follow_velocity(const Mesh<D>& mesh, const OwnNodes& own, const Walls<D>& walls, Real mid,
-                                std::vector<NodeMotion<D>>& motion)
+void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& walls, Real mid,
+                                             std::vector<NodeMotion<D>>& motion)
 {
   tell_slaves(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, asked_});
-  for (const Slave& slave : slaves_) {
-    if (!own.has(slave.node))
+  for (const Slave& small_mass_node : slaves_) {
+    if (!own.has(small_mass_node.node))
       continue;
     Vec<D> mean = Vec<D>::Zero();
-    for_each_master(mesh, slave.node, [&](Index master, Real share) { mean += share * motion[static_cast<std::size_t>(master)].v; });
-    motion[static_cast<std::size_t>(slave.node)].v = walls.held(slave.node, mid, mean);
+    for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) { mean += share * motion[static_cast<std::size_t>(host)].v; });
+    motion[static_cast<std::size_t>(small_mass_node.node)].v = walls.held(small_mass_node.node, mid, mean);
   }
 }
 
-template class Slaves<2>;
-template class Slaves<3>;
+template class SmallMassNodes<2>;
+template class SmallMassNodes<3>;
 
 }  // namespace talus

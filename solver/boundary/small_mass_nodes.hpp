@@ -14,12 +14,12 @@ namespace talus {
 /// A rank treats the nodes it owns.  Where a slave hangs on nodes of another rank, its owner is told their masses, tells in turn what they get,
 /// and is told how they move.
 template <int D>
-class Slaves {
+class SmallMassNodes {
  public:
   /// Of a rank alone.
-  Slaves() = default;
+  SmallMassNodes() = default;
   /// Every rank has to make one.
-  Slaves(Exchange& ranks, const Mesh<D>& mesh, const Share& share, const OwnNodes& own);
+  SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const OwnNodes& own);
 
   /// Finds the slaves, sets the active flags of own nodes, hands on mass, momentum and force.
   void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
@@ -27,10 +27,11 @@ class Slaves {
   void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
   /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own; their
   /// work is added.
-  void follow(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, Walls<D>& walls, std::vector<NodeMotion<D>>& motion,
-              ExactSums<WallWork>& work);
+  void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& walls,
+                   std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work);
   /// The same for `v` alone.
-  void follow_velocity(const Mesh<D>& mesh, const OwnNodes& own, const Walls<D>& walls, Real mid, std::vector<NodeMotion<D>>& motion);
+  void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& walls, Real mid,
+                            std::vector<NodeMotion<D>>& motion);
   Index size() const noexcept { return static_cast<Index>(slaves_.size()); }
 
  private:
@@ -43,8 +44,8 @@ class Slaves {
   void for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const;
   /// f(master, share) for the active nodes a slave hangs on; nothing if there are none within two rings.
   template <class F>
-  void for_each_master(const Mesh<D>& mesh, Index slave, F&& f) const;
-  void weigh_masters(const Mesh<D>& mesh, Index slave);
+  void for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const;
+  void weigh_hosts(const Mesh<D>& mesh, Index small_mass_node);
   /// f(master's sum, share, slave's sum) for own masters, slaves in ascending order.
   template <class F>
   void hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const;
@@ -60,11 +61,11 @@ class Slaves {
   std::vector<Real> weight_;         ///< by node: mass if it is active, minus that of its masters if it is a slave, as they were [kg]
   std::vector<std::uint8_t> ring_;   ///< by node: of slaves, the one in which the masters are: 1 or 2
   std::vector<std::uint8_t> asked_;  ///< by node: within two rings of another rank's slave
-  Letters near_;                     ///< between nodes within two rings of each other
+  HaloExchange near_;                ///< between nodes within two rings of each other
   std::vector<std::uint8_t> slaves_here_, slaves_there_;  ///< by border
 };
 
-extern template class Slaves<2>;
-extern template class Slaves<3>;
+extern template class SmallMassNodes<2>;
+extern template class SmallMassNodes<3>;
 
 }  // namespace talus

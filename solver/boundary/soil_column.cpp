@@ -101,7 +101,7 @@ void advance(const SoilColumn<D>& column, const Foot<D>& foot, Real dt, ColumnMo
 
 template <int D>
 std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const Facet> facets, const Vec<D>& up,
-                                           const Particles<D>& particles, std::span<const AnyBatch> materials, Exchange& ranks)
+                                           const Particles<D>& particles, std::span<const AnyBatch> materials, Communicator& ranks)
 {
   SoilColumn<D> column;
   column.up = up;
@@ -179,8 +179,8 @@ template struct SoilColumn<3>;
 template void advance<2>(const SoilColumn<2>&, const Foot<2>&, Real, ColumnMotion&);
 template void advance<3>(const SoilColumn<3>&, const Foot<3>&, Real, ColumnMotion&);
 template std::optional<SoilColumn<2>> column_beside<2>(const Mesh<2>&, std::span<const Facet>, const Vec<2>&, const Particles<2>&,
-                                                       std::span<const AnyBatch>, Exchange&);
+                                                       std::span<const AnyBatch>, Communicator&);
 template std::optional<SoilColumn<3>> column_beside<3>(const Mesh<3>&, std::span<const Facet>, const Vec<3>&, const Particles<3>&,
-                                                       std::span<const AnyBatch>, Exchange&);
+                                                       std::span<const AnyBatch>, Communicator&);
 
 }  // namespace talus

@@ -34,7 +34,7 @@ struct ColumnMotion {
   std::vector<Real> traction;  ///< on horizontal planes of each layer, beyond that at rest, D numbers [Pa]
   static constexpr auto fields()
   {
-    return std::tuple{kept("velocity", &ColumnMotion::velocity), kept("traction", &ColumnMotion::traction)};
+    return std::tuple{saved("velocity", &ColumnMotion::velocity), saved("traction", &ColumnMotion::traction)};
   }
 };
 
@@ -75,6 +75,6 @@ void advance(const SoilColumn<D>& column, const Foot<D>& foot, Real dt, ColumnMo
 /// without particles there, or where one has a law without a shear modulus.  Every rank has to ask.
 template <int D>
 std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const Facet> facets, const Vec<D>& up,
-                                           const Particles<D>& particles, std::span<const AnyBatch> materials, Exchange& ranks);
+                                           const Particles<D>& particles, std::span<const AnyBatch> materials, Communicator& ranks);
 
 }  // namespace talus

@@ -12,14 +12,15 @@ namespace talus {
 
 /// From blocks to the owners of nodes: rows of own blocks on nodes of others, by block and node.  Every rank has to ask.
 template <int D, class Sum>
-std::vector<Border> find_row_borders(Exchange& ranks, const Mesh<D>& mesh, const Share& share, const BlockRows<D, Sum>& blocks)
+std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share,
+                                            const BlockRows<D, Sum>& blocks)
 {
   const auto z = [](Index i) { return static_cast<std::size_t>(i); };
   std::vector<Index> node_of_row(blocks.row.size());
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     for (const Index r : blocks.rows_of_node[n])
       node_of_row[z(r)] = n;
-  std::vector<Border> all(static_cast<std::size_t>(ranks.size()));
+  std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
   for (Index b = 0; b < blocks.size(); ++b) {
     std::vector<std::pair<Index, Index>> rows;  // node, row
     for (Index r = blocks.begin[z(b)]; r < blocks.begin[z(b) + 1]; ++r)
@@ -41,10 +42,10 @@ std::vector<Border> find_row_borders(Exchange& ranks, const Mesh<D>& mesh, const
     return named;
   };
   std::vector<std::vector<Index>> sent;
-  for (const Border& border : all)
+  for (const NeighbourRank& border : all)
     sent.push_back(names(border.out));
   sent = exchange_rows(ranks, sent);
-  std::vector<Border> borders;
+  std::vector<NeighbourRank> borders;
   for (std::size_t q = 0; q < all.size(); ++q) {
     all[q].rank = static_cast<int>(q);
     if (names(all[q].in) != sent[q])
@@ -63,11 +64,11 @@ class Halo {
   /// A rank that is alone: all blocks are inner ones.
   explicit Halo(Index blocks) : inner_(static_cast<std::size_t>(blocks)) { std::iota(inner_.begin(), inner_.end(), 0); }
   template <int D>
-  Halo(Exchange& ranks, const Mesh<D>& mesh, const Share& share, const BlockRows<D, Sum>& blocks)
-      : letters_(ranks, Topic::rows, find_row_borders(ranks, mesh, share, blocks))
+  Halo(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const BlockRows<D, Sum>& blocks)
+      : letters_(ranks, MessageTag::rows, find_row_borders(ranks, mesh, share, blocks))
   {
     std::vector<std::uint8_t> outer(static_cast<std::size_t>(blocks.size()), 0);
-    for (const Border& border : letters_.borders())
+    for (const NeighbourRank& border : letters_.borders())
       for (const Index r : border.out)
         outer[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])] = 1;
     for (Index b = 0; b < blocks.size(); ++b)
@@ -97,13 +98,13 @@ class Halo {
   }
 
  private:
-  Letters letters_;
+  HaloExchange letters_;
   std::vector<Index> outer_, inner_, foreign_;
 };
 
 /// Marks the nodes that particles in own blocks read.
 template <int D, class Sum>
-std::vector<std::uint8_t> nodes_read(const Share& share, const BlockRows<D, Sum>& blocks)
+std::vector<std::uint8_t> nodes_read(const Subdomain& share, const BlockRows<D, Sum>& blocks)
 {
   std::vector<std::uint8_t> read(static_cast<std::size_t>(blocks.rows_of_node.size()), 0);
   for (Index n = 0; n < blocks.rows_of_node.size(); ++n)
@@ -115,7 +116,7 @@ std::vector<std::uint8_t> nodes_read(const Share& share, const BlockRows<D, Sum>
 
 /// Rows of blocks -> sums of the nodes that this rank owns, and those of others that it has `copies` of; the rest stay empty.
 template <class What, int D, class Sum>
-void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, Letters& copies, std::vector<Sum>& sum)
+void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, HaloExchange& copies, std::vector<Sum>& sum)
 {
   halo.template take_rows<What>(blocks);
   const auto add_up = [&](Index n) {
@@ -127,7 +128,7 @@ void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, L
           What::add(blocks.row[static_cast<std::size_t>(r)], total);
     sum[static_cast<std::size_t>(n)] = total;
   };
-  for (const Border& border : copies.borders())
+  for (const NeighbourRank& border : copies.borders())
     parallel_for(static_cast<Index>(border.out.size()), [&](Index i) { add_up(border.out[static_cast<std::size_t>(i)]); });
   copies.send(sum, What{});
   parallel_for(static_cast<Index>(sum.size()), add_up);  // the few once more: cheaper than to ask which

@@ -12,7 +12,7 @@
 namespace talus {
 
 /// What a message is about: messages of different kinds do not mix.
-enum class Topic : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, slaves = 6, masters = 7 };
+enum class MessageTag : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, small_mass_nodes = 6, hosts = 7 };
 
 /// What of a row goes into a message: all of it,
 struct Whole {
@@ -137,19 +137,19 @@ class Sheet {
 };
 
 /// What goes between this rank and another: out here is in there.
-struct Border {
+struct NeighbourRank {
   int rank = 0;
   std::vector<Index> out, in;
 };
 
 /// All borders of a rank, for messages of one topic.  A rank alone has none.
-class Letters {
+class HaloExchange {
  public:
-  Letters() = default;
-  Letters(Exchange& ranks, Topic topic, std::vector<Border> borders)
+  HaloExchange() = default;
+  HaloExchange(Communicator& ranks, MessageTag topic, std::vector<NeighbourRank> borders)
       : ranks_(&ranks), topic_(topic), borders_(std::move(borders)), sheets_out_(borders_.size()), sheets_in_(borders_.size())
   {}
-  const std::vector<Border>& borders() const noexcept { return borders_; }
+  const std::vector<NeighbourRank>& borders() const noexcept { return borders_; }
 
   /// Sends rows `out` across the borders whose numbers to(border) has, and expects some across those of from(border); both sides must agree.
   template <class What, class Rows, class To, class From>
@@ -159,7 +159,7 @@ class Letters {
       return;
     parcels_out_.clear(), parcels_in_.clear(), expected_.clear();
     for (std::size_t q = 0; q < borders_.size(); ++q) {
-      const Border& border = borders_[q];
+      const NeighbourRank& border = borders_[q];
       if (!border.in.empty() && from(q)) {
         parcels_in_.push_back({border.rank, sheets_in_[q].room(border.in.size(), rows, what), true});
         expected_.push_back(q);
@@ -188,13 +188,13 @@ class Letters {
   }
 
  private:
-  Exchange* ranks_ = nullptr;
-  Topic topic_{};
-  std::vector<Border> borders_;
+  Communicator* ranks_ = nullptr;
+  MessageTag topic_{};
+  std::vector<NeighbourRank> borders_;
   std::vector<Sheet> sheets_out_, sheets_in_;  // by border
-  std::vector<Parcel> parcels_out_, parcels_in_;
+  std::vector<Message> parcels_out_, parcels_in_;
   std::vector<std::size_t> expected_;  // borders
-  Talk talk_;
+  PendingMessages talk_;
 };
 
 /// Nodes within `rings` rings of those that `marked` holds.
@@ -212,9 +212,9 @@ std::vector<std::uint8_t> spread_by_rings(const Mesh<D>& mesh, std::vector<std::
 }
 
 /// From owners of nodes to the ranks that want to know of them: `wanted` marks nodes, own ones too.  Every rank has to ask.
-inline Letters copies_of_nodes(Exchange& ranks, const Share& share, Topic topic, std::span<const std::uint8_t> wanted)
+inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& share, MessageTag topic, std::span<const std::uint8_t> wanted)
 {
-  std::vector<Border> all(static_cast<std::size_t>(ranks.size()));
+  std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
   std::vector<std::vector<Index>> asked(all.size());  // whole numbers
   for (std::size_t n = 0; n < wanted.size(); ++n)
     if (wanted[n] != 0 && !share.owns_node(static_cast<Index>(n))) {
@@ -223,7 +223,7 @@ inline Letters copies_of_nodes(Exchange& ranks, const Share& share, Topic topic,
       asked[owner].push_back(share.node[n]);
     }
   asked = exchange_rows(ranks, asked);
-  std::vector<Border> borders;
+  std::vector<NeighbourRank> borders;
   for (std::size_t q = 0; q < all.size(); ++q) {
     all[q].rank = static_cast<int>(q);
     for (const Index whole : asked[q])
@@ -231,14 +231,14 @@ inline Letters copies_of_nodes(Exchange& ranks, const Share& share, Topic topic,
     if (!all[q].out.empty() || !all[q].in.empty())
       borders.push_back(std::move(all[q]));
   }
-  return Letters(ranks, topic, std::move(borders));
+  return HaloExchange(ranks, topic, std::move(borders));
 }
 
 /// All nodes that are sent anywhere.
-inline std::vector<std::uint8_t> nodes_out(const Letters& letters, std::size_t n_nodes)
+inline std::vector<std::uint8_t> nodes_out(const HaloExchange& letters, std::size_t n_nodes)
 {
   std::vector<std::uint8_t> out(letters.borders().empty() ? 0 : n_nodes, 0);
-  for (const Border& border : letters.borders())
+  for (const NeighbourRank& border : letters.borders())
     for (const Index n : border.out)
       out[static_cast<std::size_t>(n)] = 1;
   return out;

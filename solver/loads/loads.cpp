@@ -54,21 +54,21 @@ MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> face
 }
 
 template <int D>
-void restrict_to(const Share& share, MeshTraction<D>& load)
+void restrict_to(const Subdomain& share, MeshTraction<D>& load)
 {
-  std::size_t kept = 0;
+  std::size_t saved = 0;
   for (std::size_t k = 0; k < load.node.size(); ++k)
     if (const Index node = share.local_node(load.node[k]); node != none) {
-      load.node[kept] = node;
-      load.area[kept] = load.area[k];
-      load.measure[kept++] = load.measure[k];
+      load.node[saved] = node;
+      load.area[saved] = load.area[k];
+      load.measure[saved++] = load.measure[k];
     }
-  load.node.resize(kept), load.area.resize(kept), load.measure.resize(kept);
+  load.node.resize(saved), load.area.resize(saved), load.measure.resize(saved);
 }
 
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
-           ExactSums<Push<D>>& total)
+           ExactSums<ForceAndMoment<D>>& total)
 {
   if (particles.applied.empty())
     return;
@@ -104,7 +104,7 @@ void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& foll
     const auto p = static_cast<std::size_t>(row);
     const Vec<D> x = particles.x[p], force = particles.applied[p];
     particles.applied_at[p] = force.dot(x);
-    return Push<D>::at(x, force);
+    return ForceAndMoment<D>::at(x, force);
   });
 }
 
@@ -125,14 +125,14 @@ void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
 
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
-           ExactSums<Push<D>>& total)
+           ExactSums<ForceAndMoment<D>>& total)
 {
   for_each_mesh_force(loads, time, ramp, [&](std::size_t node, const Vec<D>& force) {
     if (sum[node].mass <= 0)
       return;
     sum[node].force += force;
     if (own.has(static_cast<Index>(node)))
-      total.add(Push<D>::at(mesh.node(static_cast<Index>(node)), force));
+      total.add(ForceAndMoment<D>::at(mesh.node(static_cast<Index>(node)), force));
   });
 }
 
@@ -147,15 +147,15 @@ void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, 
 
 template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<const Facet>, const Particles<2>&);
 template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
-template void restrict_to<2>(const Share&, MeshTraction<2>&);
-template void restrict_to<3>(const Share&, MeshTraction<3>&);
-template void apply<2>(const Loads<2>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<2>&, ExactSums<Push<2>>&);
-template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<Push<2>>&);
+template void restrict_to<2>(const Subdomain&, MeshTraction<2>&);
+template void restrict_to<3>(const Subdomain&, MeshTraction<3>&);
+template void apply<2>(const Loads<2>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<2>&, ExactSums<ForceAndMoment<2>>&);
+template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<ForceAndMoment<2>>&);
 template void add_work<2>(const Loads<2>&, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
-template void apply<3>(const Loads<3>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<3>&, ExactSums<Push<3>>&);
-template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<Push<3>>&);
+template void apply<3>(const Loads<3>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<3>&, ExactSums<ForceAndMoment<3>>&);
+template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<ForceAndMoment<3>>&);
 template void add_work<3>(const Loads<3>&, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
 
 }  // namespace talus

@@ -39,7 +39,7 @@ struct ParticleTraction {
   Vec<D> traction = Vec<D>::Zero();  ///< [Pa], per initial area
   Real pressure{};                   ///< [Pa], positive pushes
   Table table;
-  Where where;
+  SourceLocation where;
   std::vector<std::int64_t> id;  ///< particles that carry it
   std::vector<Vec<D>> area;      ///< share of the outward area vector at the start [m^(D-1)]
 };
@@ -50,7 +50,7 @@ struct MeshTraction {
   Vec<D> traction = Vec<D>::Zero();
   Real pressure{};
   Table table;
-  Where where;
+  SourceLocation where;
   std::vector<Index> node;    ///< ascending
   std::vector<Vec<D>> area;   ///< share of the outward area vector [m^(D-1)]
   std::vector<Real> measure;  ///< share of the area [m^(D-1)]
@@ -67,7 +67,7 @@ struct Loads {
 
 /// Of one of several ranks: nodes that are held, in their numbers here.
 template <int D>
-void restrict_to(const Share& share, MeshTraction<D>& load);
+void restrict_to(const Subdomain& share, MeshTraction<D>& load);
 
 /// Shares the facets' area among the particles of the cells behind them.
 /// Facets without a particle behind them are left out; the caller may compare the areas.
@@ -91,7 +91,7 @@ std::vector<std::int64_t> ids_of(const std::vector<ParticleTraction<D>>& loads)
 /// The forces are added to `total`.
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
-           ExactSums<Push<D>>& total);
+           ExactSums<ForceAndMoment<D>>& total);
 
 /// Adds the work [J] of mesh tractions over a step: impulse times the mean of old and new velocity of the nodes that are `own`.
 template <int D>
@@ -100,7 +100,7 @@ void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, 
 /// Adds mesh tractions to the force of nodes that have mass, and those of `own` nodes to `total`.
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
-           ExactSums<Push<D>>& total);
+           ExactSums<ForceAndMoment<D>>& total);
 
 /// Adds the work [J] of the forces on particles since apply(): force times displacement.
 template <int D>

@@ -59,7 +59,7 @@ void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bo
 }
 
 /// What one of several ranks holds of a table.
-inline std::vector<Real> part_of_table(const Share& share, const std::vector<Real>& table)
+inline std::vector<Real> part_of_table(const Subdomain& share, const std::vector<Real>& table)
 {
   std::vector<Real> held;
   held.reserve(share.node.size());
@@ -67,7 +67,7 @@ inline std::vector<Real> part_of_table(const Share& share, const std::vector<Rea
     held.push_back(table[static_cast<std::size_t>(node)]);
   return held;
 }
-inline void restrict_to(const Share& share, Water& water)
+inline void restrict_to(const Subdomain& share, Water& water)
 {
   if (water.any())
     water.table = part_of_table(share, water.table);

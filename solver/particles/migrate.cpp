@@ -103,7 +103,7 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
 }  // namespace
 
 template <int D>
-Migration<D>::Migration(Exchange& ranks, const Share& share) : ranks_(&ranks), border_of_block_(share.block.size(), none)
+Migration<D>::Migration(Communicator& ranks, const Subdomain& share) : ranks_(&ranks), border_of_block_(share.block.size(), none)
 {
   for (const int rank : share.rank_of_block)
     if (rank != share.rank)
@@ -125,7 +125,7 @@ void Migration<D>::agree_on_columns(const Particles<D>& particles)
 }
 
 template <int D>
-bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
                               CellOrder& order)
 {
   if (neighbours_.empty())
@@ -147,7 +147,7 @@ bool Migration<D>::operator()(const Share& share, std::vector<Body>& bodies, std
       }
     std::sort(turnovers[b].leaving.begin(), turnovers[b].leaving.end());
   }
-  const auto in = ranks_->neighbours(neighbours_, out_, static_cast<int>(Topic::particles));
+  const auto in = ranks_->neighbours(neighbours_, out_, static_cast<int>(MessageTag::particles));
 
   // How long a record is depends on its body alone.
   std::size_t columns = 2 * sizeof(Index);

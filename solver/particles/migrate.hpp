@@ -12,13 +12,13 @@ template <int D>
 class Migration {
  public:
   Migration() = default;
-  Migration(Exchange& ranks, const Share& share);
+  Migration(Communicator& ranks, const Subdomain& share);
 
   /// Columns that some rank keeps are kept by all: one that has no particles yet cannot tell.  Once, every rank has to.
   void agree_on_columns(const Particles<D>& particles);
   /// `order` is that of the cells, those of other ranks included; so it is afterwards, without them.  Neighbours have to ask alike.
   /// True if rows changed place.
-  bool operator()(const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+  bool operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
                   CellOrder& order);
   /// Particles that came or went so far.
   std::int64_t moved() const noexcept { return moved_; }
@@ -26,7 +26,7 @@ class Migration {
   void count_from(std::int64_t moved) noexcept { moved_ = moved; }
 
  private:
-  Exchange* ranks_ = nullptr;
+  Communicator* ranks_ = nullptr;
   std::vector<int> neighbours_;         // ranks, ascending
   std::vector<Index> foreign_;          // local blocks of others
   std::vector<Index> border_of_block_;  // local block -> number of its rank among the neighbours

@@ -14,7 +14,7 @@ using RowsOfRanks = std::vector<std::vector<Index>>;
 
 /// Sends out[r] of `rows` to rank r; what comes from rank r stands in the rows in[r] of `n` then.
 template <class Column>
-void send_rows(Exchange& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t n, Column& rows)
+void send_rows(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t n, Column& rows)
 {
   using Row = typename Column::value_type;
   std::vector<std::vector<std::byte>> letters(out.size());
@@ -73,8 +73,8 @@ RowsOfRanks within(const RowsOfRanks& rows, Index begin, Index end)
 }  // namespace
 
 template <int D>
-void deal_out(Exchange& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
-              Particles<D>& particles)
+void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                  Particles<D>& particles)
 {
   assert(rank_of_row.size() == particles.id.size());
   const std::vector<std::int64_t> keepers = count_keepers(ranks, particles);
@@ -115,21 +115,21 @@ void deal_out(Exchange& ranks, std::span<const int> rank_of_row, std::vector<Bod
 }
 
 template <int D>
-void take_own_particles(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
-                        Particles<D>& particles)
+void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                             Particles<D>& particles)
 {
   std::vector<int> rank_of_row;
   rank_of_row.reserve(particles.cell.size());
   for (const Index cell : particles.cell)
     rank_of_row.push_back(share.rank_of_whole_block[static_cast<std::size_t>(cell / block_cells)]);
-  deal_out(ranks, rank_of_row, bodies, materials, particles);
+  redistribute(ranks, rank_of_row, bodies, materials, particles);
   for (Index& cell : particles.cell)
     cell = share.local_cell(cell);
 }
 
-template void deal_out<2>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void deal_out<3>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template void take_own_particles<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void take_own_particles<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

@@ -11,17 +11,17 @@ namespace talus {
 /// bodies and ids, whoever had them, and columns that any rank keeps are kept by all; cells are what they were, numbers of the whole mesh
 /// as a rule.  Column by column: besides the particles there is room needed for one column only.
 template <int D>
-void deal_out(Exchange& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
-              Particles<D>& particles);
+void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                  Particles<D>& particles);
 
 /// Gives each row, of a cell of the whole mesh, to the rank whose cell it is, and to the cell of its part.  As above.
 template <int D>
-void take_own_particles(Exchange& ranks, const Share& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
-                        Particles<D>& particles);
+void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                             Particles<D>& particles);
 
-extern template void deal_out<2>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void deal_out<3>(Exchange&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-extern template void take_own_particles<2>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void take_own_particles<3>(Exchange&, const Share&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+extern template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+extern template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

@@ -73,12 +73,13 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
 }
 
 template <int D>
-Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Index row)
+RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles,
+                               Index row)
 {
   const std::size_t p = z(row);
-  Departed<D> gone{.mass = particles.mass[p], .count = 1};
+  RemovedParticles<D> gone{.mass = particles.mass[p], .count = 1};
   if (particles.x[p].allFinite() && particles.v[p].allFinite()) {
-    gone.momentum = Push<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
+    gone.momentum = ForceAndMoment<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
     gone.kinetic = 0.5 * particles.mass[p] * particles.v[p].squaredNorm();
   }
   std::size_t body = 0;
@@ -93,7 +94,8 @@ Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBat
 namespace {
 
 template <int D>
-Departed<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles, Index row)
+RemovedParticles<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles,
+                                 Index row)
 {
   particles.cell[z(row)] = none;
   return content_of(bodies, materials, particles, row);
@@ -103,14 +105,14 @@ Departed<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyB
 
 template <int D>
 void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
-                   CellOrder& order, ExactSums<Departed<D>>& departed)
+                   CellOrder& order, ExactSums<RemovedParticles<D>>& departed)
 {
   for (Index row = 0; row < particles.size(); ++row) {
     const std::size_t p = z(row);
     const bool sound = particles.x[p].allFinite() && particles.v[p].allFinite() && particles.stress[p].allFinite();
     if (sound && particles.F[p].determinant() > 0)
       continue;
-    Departed<D> gone = mark_deleted(bodies, materials, particles, row);
+    RemovedParticles<D> gone = mark_deleted(bodies, materials, particles, row);
     gone.failed = gone.mass, gone.failed_count = 1;
     departed.add(gone);
   }
@@ -120,7 +122,7 @@ void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<A
 
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, Tally<D>& tally, Health& health)
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
@@ -144,11 +146,11 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
       for (Index body = 0; body < static_cast<Index>(bodies.size()); ++body)
         for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
           const auto probe = locator.probe(mesh, c);
-          for_each_bunch(run, [&](const Bunch& bunch) {
-            if (const auto deep = probe.deep_each(bunch.load(particles.x)); !everywhere(deep))
-              for (int lane = 0; lane < bunch.count; ++lane)
+          for_each_bunch(run, [&](const ParticlePack& pack) {
+            if (const auto deep = probe.deep_each(pack.load(particles.x)); !all_of(deep))
+              for (int lane = 0; lane < pack.count; ++lane)
                 if (!deep[lane])
-                  find(bunch.p[lane]);
+                  find(pack.p[lane]);
           });
         });
     });
@@ -168,11 +170,11 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
           centre += mesh.node(n) / (D + 1);
         particles.x[p] = nearest.x + inset * (centre - nearest.x);
         particles.cell[p] = locator(mesh, particles.x[p], nearest.cell).value_or(nearest.cell);
-        tally.departed.add({.held_count = 1});
-        tally.held_most = std::max(tally.held_most, distance);
+        sums.departed.add({.held_count = 1});
+        sums.largest_set_back = std::max(sums.largest_set_back, distance);
         moved = true;
       } else if (exits.policy == OnExitPolicy::remove) {
-        tally.departed.add(mark_deleted(bodies, materials, particles, row));
+        sums.departed.add(mark_deleted(bodies, materials, particles, row));
         deleted = true;
       } else {
         health.report(particles.id[p], Trouble::lost);
@@ -192,7 +194,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
 }
 
 template <int D>
-bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
+bool sort_by_cell(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
 {
   if (!std::exchange(order.is_new, false) || disorder(order) <= most_disorder)
     return false;
@@ -209,19 +211,19 @@ bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materi
   return true;
 }
 
-template Departed<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
-template Departed<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
+template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
+template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
 template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
-                          CellOrder&, Tally<2>&, Health&);
+                          CellOrder&, StepSums<2>&, ParticleErrors&);
 template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
-                          CellOrder&, Tally<3>&, Health&);
+                          CellOrder&, StepSums<3>&, ParticleErrors&);
 template void drop_lost<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
 template void drop_lost<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template bool follow_order<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
-template bool follow_order<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
+template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
+template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
 template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&,
-                               ExactSums<Departed<2>>&);
+                               ExactSums<RemovedParticles<2>>&);
 template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&,
-                               ExactSums<Departed<3>>&);
+                               ExactSums<RemovedParticles<3>>&);
 
 }  // namespace talus

@@ -22,7 +22,7 @@ struct Exits {
 /// True if rows changed place.
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, Tally<D>& tally, Health& health);
+              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health);
 
 /// Drops the particles whose cell is `none`.
 template <int D>
@@ -30,30 +30,31 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
 
 /// Sorts the arrays by `order` where too many rows are out of place.  True if rows changed place.
 template <int D>
-bool follow_order(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order);
+bool sort_by_cell(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order);
 
 /// What a particle takes along that goes, or brings that comes, as far as it is a number.
 template <int D>
-Departed<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles, Index row);
+RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles,
+                               Index row);
 
 /// Deletes the particles that no step can go on from: position, velocity, deformation or stress not finite, or turned inside out.
 template <int D>
 void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
-                   CellOrder& order, ExactSums<Departed<D>>& departed);
+                   CellOrder& order, ExactSums<RemovedParticles<D>>& departed);
 
-extern template Departed<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
-extern template Departed<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
+extern template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
+extern template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
 extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
-                                 CellOrder&, Tally<2>&, Health&);
+                                 CellOrder&, StepSums<2>&, ParticleErrors&);
 extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
-                                 CellOrder&, Tally<3>&, Health&);
+                                 CellOrder&, StepSums<3>&, ParticleErrors&);
 extern template void drop_lost<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
 extern template void drop_lost<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-extern template bool follow_order<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
-extern template bool follow_order<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
+extern template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
+extern template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
 extern template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&,
-                                      ExactSums<Departed<2>>&);
+                                      ExactSums<RemovedParticles<2>>&);
 extern template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&,
-                                      ExactSums<Departed<3>>&);
+                                      ExactSums<RemovedParticles<3>>&);
 
 }  // namespace talus

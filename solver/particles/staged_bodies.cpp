@@ -43,9 +43,10 @@ void interleave(const Column& there, const std::byte* coming, const std::vector<
 }  // namespace
 
 template <int D>
-Crowd<D> take_out_bodies(std::span<const Index> goes, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                              Particles<D>& particles)
 {
-  Crowd<D> out{bodies, materials, particles};
+  ParticleSet<D> out{bodies, materials, particles};
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     auto& left_behind = std::find(goes.begin(), goes.end(), static_cast<Index>(b)) == goes.end() ? out.particles.cell : particles.cell;
     std::fill(left_behind.begin() + bodies[b].begin, left_behind.begin() + bodies[b].end, none);
@@ -56,7 +57,7 @@ Crowd<D> take_out_bodies(std::span<const Index> goes, std::vector<Body>& bodies,
 }
 
 template <int D>
-void put_in(Crowd<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
 {
   assert(crowd.bodies.size() == bodies.size());
   const std::size_t come = crowd.particles.id.size(), n = particles.id.size() + come;
@@ -92,7 +93,7 @@ void put_in(Crowd<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& ma
 }
 
 template <int D>
-Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<const Real> coming, Exchange& ranks)
+Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<const Real> coming, Communicator& ranks)
 {
   constexpr Real round_off = 1e-9;
   ExactSums<Real> beyond, all;
@@ -127,11 +128,11 @@ Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<c
   return found;
 }
 
-template Crowd<2> take_out_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template Crowd<3> take_out_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template void put_in<2>(Crowd<2>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void put_in<3>(Crowd<3>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template Overlap<2> overlap<2>(const Mesh<2>&, std::span<const Real>, std::span<const Real>, Exchange&);
-template Overlap<3> overlap<3>(const Mesh<3>&, std::span<const Real>, std::span<const Real>, Exchange&);
+template ParticleSet<2> extract_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template ParticleSet<3> extract_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void insert_particles<2>(ParticleSet<2>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void insert_particles<3>(ParticleSet<3>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template Overlap<2> overlap<2>(const Mesh<2>&, std::span<const Real>, std::span<const Real>, Communicator&);
+template Overlap<3> overlap<3>(const Mesh<3>&, std::span<const Real>, std::span<const Real>, Communicator&);
 
 }  // namespace talus

@@ -14,7 +14,7 @@ namespace talus {
 
 /// Particles apart from those of a model, whose bodies they are, in the same order; of most bodies there are none.
 template <int D>
-struct Crowd {
+struct ParticleSet {
   std::vector<Body> bodies;
   std::vector<AnyBatch> materials;
   Particles<D> particles;
@@ -22,12 +22,13 @@ struct Crowd {
 
 /// Moves the particles of the bodies that `goes` names, by their numbers, out of those that are there.
 template <int D>
-Crowd<D> take_out_bodies(std::span<const Index> goes, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
+ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+                              Particles<D>& particles);
 
 /// The particles of the crowd stand behind those that their bodies have.  Columns must be the same, but where one side has no particles;
 /// laws of bodies that come must be the same as well.
 template <int D>
-void put_in(Crowd<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
+void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
 
 /// Volume of the particles in each cell [m^D], of those rows in `order` whose body is `chosen`.
 template <int D, class Chosen>
@@ -53,13 +54,13 @@ struct Overlap {
 };
 /// Every rank has to ask; of each cell one rank knows the volumes.
 template <int D>
-Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<const Real> coming, Exchange& ranks);
+Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<const Real> coming, Communicator& ranks);
 
-extern template Crowd<2> take_out_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template Crowd<3> take_out_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-extern template void put_in<2>(Crowd<2>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void put_in<3>(Crowd<3>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-extern template Overlap<2> overlap<2>(const Mesh<2>&, std::span<const Real>, std::span<const Real>, Exchange&);
-extern template Overlap<3> overlap<3>(const Mesh<3>&, std::span<const Real>, std::span<const Real>, Exchange&);
+extern template ParticleSet<2> extract_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+extern template ParticleSet<3> extract_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template void insert_particles<2>(ParticleSet<2>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+extern template void insert_particles<3>(ParticleSet<3>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template Overlap<2> overlap<2>(const Mesh<2>&, std::span<const Real>, std::span<const Real>, Communicator&);
+extern template Overlap<3> overlap<3>(const Mesh<3>&, std::span<const Real>, std::span<const Real>, Communicator&);
 
 }  // namespace talus

@@ -53,9 +53,9 @@ Real disorder(const CellOrder& order) noexcept;
 
 /// Calls ask(p) once for each of `rows`, well before its turn: memory answers while the rows before are worked on.
 template <class Ask>
-class RowsAhead {
+class PrefetchRows {
  public:
-  RowsAhead(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
+  PrefetchRows(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
   /// The rows before `end` are next.
   void until(std::size_t end)
   {
@@ -77,7 +77,7 @@ struct AskForNothing {
 template <class F, class Ask = AskForNothing>
 void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f, Ask ask = {})
 {
-  RowsAhead ahead(rows, ask);
+  PrefetchRows ahead(rows, ask);
   for (std::size_t begin = 0; begin < rows.size();) {
     const Index c = cell[static_cast<std::size_t>(rows[begin])];
     std::size_t end = begin + 1;

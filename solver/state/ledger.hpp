@@ -31,25 +31,25 @@ struct EnergyLedger {
   Real internal_ahead{}, loads_ahead{};   ///< of `internal`, and of `loads` on particles: done after the time of the velocities
   static constexpr auto fields()
   {
-    return std::tuple{kept("gravity", &EnergyLedger::gravity),
-                      kept("loads", &EnergyLedger::loads),
-                      kept("walls", &EnergyLedger::walls),
-                      kept("friction", &EnergyLedger::friction),
-                      kept("waves", &EnergyLedger::waves),
-                      kept("damping", &EnergyLedger::damping),
-                      kept("arrival", &EnergyLedger::arrival),
-                      kept("nodes", &EnergyLedger::nodes),
-                      kept("remap", &EnergyLedger::remap),
-                      kept("internal", &EnergyLedger::internal),
-                      kept("kinetic_start", &EnergyLedger::kinetic_start),
-                      kept("plastic_start", &EnergyLedger::plastic_start),
-                      kept("set_to_rest", &EnergyLedger::set_to_rest),
-                      kept("carried_away", &EnergyLedger::carried_away),
-                      kept("plastic_deleted", &EnergyLedger::plastic_deleted),
-                      kept("largest_before", &EnergyLedger::largest_before),
-                      kept("largest_seen", &EnergyLedger::largest_seen),
-                      kept("internal_ahead", &EnergyLedger::internal_ahead),
-                      kept("loads_ahead", &EnergyLedger::loads_ahead)};
+    return std::tuple{saved("gravity", &EnergyLedger::gravity),
+                      saved("loads", &EnergyLedger::loads),
+                      saved("walls", &EnergyLedger::walls),
+                      saved("friction", &EnergyLedger::friction),
+                      saved("waves", &EnergyLedger::waves),
+                      saved("damping", &EnergyLedger::damping),
+                      saved("arrival", &EnergyLedger::arrival),
+                      saved("nodes", &EnergyLedger::nodes),
+                      saved("remap", &EnergyLedger::remap),
+                      saved("internal", &EnergyLedger::internal),
+                      saved("kinetic_start", &EnergyLedger::kinetic_start),
+                      saved("plastic_start", &EnergyLedger::plastic_start),
+                      saved("set_to_rest", &EnergyLedger::set_to_rest),
+                      saved("carried_away", &EnergyLedger::carried_away),
+                      saved("plastic_deleted", &EnergyLedger::plastic_deleted),
+                      saved("largest_before", &EnergyLedger::largest_before),
+                      saved("largest_seen", &EnergyLedger::largest_seen),
+                      saved("internal_ahead", &EnergyLedger::internal_ahead),
+                      saved("loads_ahead", &EnergyLedger::loads_ahead)};
   }
 
   /// With what was done up to the time of the velocities, by which kinetic energies and all other works are counted: that of stress and
@@ -93,24 +93,25 @@ Vec3 moment(const Vec<D>& x, const Vec<D>& f) noexcept
 
 /// Forces [N] or impulses [N s], their moment about the origin, and the sums of the moduli of both.
 template <int D>
-struct Push {
+struct ForceAndMoment {
   Vec<D> linear = Vec<D>::Zero();
   Vec3 angular = Vec3::Zero();
   Real size{}, turn{};
   static constexpr auto fields()
   {
-    return std::tuple{kept("linear", &Push::linear), kept("angular", &Push::angular), kept("size", &Push::size), kept("turn", &Push::turn)};
+    return std::tuple{saved("linear", &ForceAndMoment::linear), saved("angular", &ForceAndMoment::angular),
+                      saved("size", &ForceAndMoment::size), saved("turn", &ForceAndMoment::turn)};
   }
 
-  static Push of(const Vec<D>& f, const Vec3& about) noexcept { return {f, about, f.norm(), about.norm()}; }
-  static Push at(const Vec<D>& x, const Vec<D>& f) noexcept { return of(f, moment<D>(x, f)); }
-  Push& operator+=(const Push& other) noexcept
+  static ForceAndMoment of(const Vec<D>& f, const Vec3& about) noexcept { return {f, about, f.norm(), about.norm()}; }
+  static ForceAndMoment at(const Vec<D>& x, const Vec<D>& f) noexcept { return of(f, moment<D>(x, f)); }
+  ForceAndMoment& operator+=(const ForceAndMoment& other) noexcept
   {
     linear += other.linear, angular += other.angular, size += other.size, turn += other.turn;
     return *this;
   }
-  friend Push operator+(Push a, const Push& b) noexcept { return a += b; }
-  friend Push operator*(Real s, const Push& a) noexcept
+  friend ForceAndMoment operator+(ForceAndMoment a, const ForceAndMoment& b) noexcept { return a += b; }
+  friend ForceAndMoment operator*(Real s, const ForceAndMoment& a) noexcept
   {
     return {s * a.linear, s * a.angular, std::abs(s) * a.size, std::abs(s) * a.turn};
   }
@@ -119,15 +120,16 @@ struct Push {
 /// What gave momentum to the bodies since the start of the run, but for walls, which keep their own [N s].
 template <int D>
 struct MomentumLedger {
-  Push<D> loads;  ///< gravity, tractions, forces of place
-  Push<D> damping;
-  Push<D> rest;                  ///< of the motion that is taken out at the end of stages that seek rest
-  Push<D> changes;               ///< of what stages place and take away: bodies, and mass where a density changes
+  ForceAndMoment<D> loads;  ///< gravity, tractions, forces of place
+  ForceAndMoment<D> damping;
+  ForceAndMoment<D> rest;        ///< of the motion that is taken out at the end of stages that seek rest
+  ForceAndMoment<D> changes;     ///< of what stages place and take away: bodies, and mass where a density changes
   Vec3 on_nodes = Vec3::Zero();  ///< moment of momentum that nodes, and what hangs on them, got within the steps [kg m^2/s]
   static constexpr auto fields()
   {
-    return std::tuple{kept("loads", &MomentumLedger::loads), kept("damping", &MomentumLedger::damping), kept("rest", &MomentumLedger::rest),
-                      kept("changes", &MomentumLedger::changes), kept("on_nodes", &MomentumLedger::on_nodes)};
+    return std::tuple{saved("loads", &MomentumLedger::loads), saved("damping", &MomentumLedger::damping),
+                      saved("rest", &MomentumLedger::rest), saved("changes", &MomentumLedger::changes),
+                      saved("on_nodes", &MomentumLedger::on_nodes)};
   }
 };
 
@@ -140,24 +142,24 @@ struct MassLedger {
   Index deleted_count{}, failed_count{};
   Real placed{}, taken{};  ///< by stages: bodies that appeared and vanished, and what a new density made heavier and lighter [kg]
   Index placed_count{}, taken_count{};
-  Push<D> carried_away;       ///< momentum of what was deleted
-  std::int64_t held_count{};  ///< times a particle was set back onto a closed wall
-  Real held_most{};           ///< farthest such set-back [m]
+  ForceAndMoment<D> carried_away;  ///< momentum of what was deleted
+  std::int64_t held_count{};       ///< times a particle was set back onto a closed wall
+  Real largest_set_back{};         ///< farthest such set-back [m]
   static constexpr auto fields()
   {
-    return std::tuple{kept("start", &MassLedger::start),
-                      kept("on_nodes", &MassLedger::on_nodes),
-                      kept("deleted", &MassLedger::deleted),
-                      kept("failed", &MassLedger::failed),
-                      kept("deleted_count", &MassLedger::deleted_count),
-                      kept("failed_count", &MassLedger::failed_count),
-                      kept("placed", &MassLedger::placed),
-                      kept("taken", &MassLedger::taken),
-                      kept("placed_count", &MassLedger::placed_count),
-                      kept("taken_count", &MassLedger::taken_count),
-                      kept("carried_away", &MassLedger::carried_away),
-                      kept("held_count", &MassLedger::held_count),
-                      kept("held_most", &MassLedger::held_most)};
+    return std::tuple{saved("start", &MassLedger::start),
+                      saved("on_nodes", &MassLedger::on_nodes),
+                      saved("deleted", &MassLedger::deleted),
+                      saved("failed", &MassLedger::failed),
+                      saved("deleted_count", &MassLedger::deleted_count),
+                      saved("failed_count", &MassLedger::failed_count),
+                      saved("placed", &MassLedger::placed),
+                      saved("taken", &MassLedger::taken),
+                      saved("placed_count", &MassLedger::placed_count),
+                      saved("taken_count", &MassLedger::taken_count),
+                      saved("carried_away", &MassLedger::carried_away),
+                      saved("held_count", &MassLedger::held_count),
+                      saved("held_most", &MassLedger::largest_set_back)};
   }
   /// That should be there [kg].
   Real due() const noexcept { return start + placed - deleted - taken; }
@@ -165,14 +167,14 @@ struct MassLedger {
 
 /// What particles take along that are deleted, and what was done to those that stay; numbers of particles are whole.
 template <int D>
-struct Departed {
+struct RemovedParticles {
   Real mass{}, count{}, failed{}, failed_count{};  ///< [kg], of them those that failed
   Real kinetic{}, plastic{};                       ///< [J]
-  Push<D> momentum{};
+  ForceAndMoment<D> momentum{};
   Real held_count{};  ///< set back onto a closed wall
 };
 template <int D>
-void book(const Departed<D>& gone, MassLedger<D>& mass, EnergyLedger& energy) noexcept
+void book(const RemovedParticles<D>& gone, MassLedger<D>& mass, EnergyLedger& energy) noexcept
 {
   mass.deleted += gone.mass, mass.failed += gone.failed;
   mass.on_nodes -= gone.failed;  // it took part in the step in which it failed

@@ -5,7 +5,7 @@
 namespace talus {
 
 /// What walls did to the energy of the bodies in a step [J], and to their moment of momentum.
-struct WallWork {
+struct BoundaryWork {
   Real friction{};  ///< of tangential impulses of friction walls, <= 0
   Real moved{};     ///< of all other impulses with the velocity that the wall has itself, and of dashpots
   Real arrival{};   ///< what these take beyond it, from mass that does not move as the wall does: numerical, as the mesh makes it so
@@ -20,7 +20,7 @@ struct NodeWork {
   Real mass{};                           ///< [kg]
   Vec<D> first_moment = Vec<D>::Zero();  ///< of mass [kg m]
   Vec3 turned = Vec3::Zero();            ///< change of the moment of momentum about the origin [kg m^2/s]
-  Push<D> damped;
+  ForceAndMoment<D> damped;
   NodeWork& operator+=(const NodeWork& other) noexcept
   {
     kinetic_before += other.kinetic_before, kinetic_after += other.kinetic_after, gravity += other.gravity, damping += other.damping;

@@ -49,7 +49,7 @@ struct alignas(64) NodeSum {
 /// What particles add up to on a hat: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
 /// operators need besides.
 template <int D>
-struct HatSum : NodeSum<D> {
+struct ProjectedNodeSum : NodeSum<D> {
   Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
   Symmetric<D> tension{};          ///< sum B V sigma [N m]
   Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
@@ -58,7 +58,7 @@ struct HatSum : NodeSum<D> {
     NodeSum<D>::clear_momentum();
     affine.setZero();
   }
-  void add_momentum(const HatSum& other) noexcept
+  void add_momentum(const ProjectedNodeSum& other) noexcept
   {
     NodeSum<D>::add_momentum(other);
     affine += other.affine;
@@ -74,7 +74,7 @@ struct HatSum : NodeSum<D> {
   {
     return std::tie(sum.momentum, sum.affine);
   }
-  HatSum& operator+=(const HatSum& other) noexcept
+  ProjectedNodeSum& operator+=(const ProjectedNodeSum& other) noexcept
   {
     NodeSum<D>::operator+=(other);
     affine += other.affine;
@@ -106,7 +106,7 @@ struct alignas(64) NodeMotion {
 
 /// What particles read on the hat of a node, where the kernel has a node part.
 template <int D>
-struct alignas(64) HatMotion {
+struct alignas(64) ProjectedNodeMotion {
   Vec<D> v = Vec<D>::Zero();       ///< [m/s]
   Vec<D> change = Vec<D>::Zero();  ///< [m/s]
   Mat<D> L = Mat<D>::Zero();       ///< velocity gradient [1/s]

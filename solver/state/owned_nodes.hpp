@@ -37,7 +37,7 @@ OwnNodes all_nodes(const Mesh<D>& mesh)
 
 /// Those of one of several ranks.
 template <int D>
-OwnNodes own_nodes(const Mesh<D>& mesh, const Share& share)
+OwnNodes own_nodes(const Mesh<D>& mesh, const Subdomain& share)
 {
   OwnNodes all = all_nodes(mesh), own{{}, std::move(all.owned)};
   for (Index n = 0; n < mesh.n_nodes(); ++n)

@@ -10,12 +10,12 @@ namespace talus {
 
 /// Up to four particles, side by side in the lanes of packs; their columns are kept in numbers S.
 template <class S>
-struct BunchOf {
+struct ParticlePackOf {
   std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
   int count;
 
   /// Those of `rows` from `begin` on.
-  BunchOf(std::span<const Index> rows, std::size_t begin) noexcept
+  ParticlePackOf(std::span<const Index> rows, std::size_t begin) noexcept
       : count(static_cast<int>(std::min<std::size_t>(pack_size, rows.size() - begin)))
   {
     for (std::size_t lane = 0; lane < pack_size; ++lane)
@@ -39,10 +39,10 @@ struct BunchOf {
     return all;
   }
   template <class Value, Rest rest>
-  [[gnu::always_inline]] void store(const In<Lanes, Value>& value, ParticleColumn<Value, rest>& column) const noexcept
+  [[gnu::always_inline]] void store(const In<SimdReal, Value>& value, ParticleColumn<Value, rest>& column) const noexcept
   {
     if constexpr (rest == Rest::identity && std::is_same_v<S, float>)
-      store(In<Lanes, Value>(value - In<Lanes, Value>::Identity()), column.template rows<S>());
+      store(In<SimdReal, Value>(value - In<SimdReal, Value>::Identity()), column.template rows<S>());
     else
       store(value, column.template rows<S>());
   }
@@ -52,7 +52,7 @@ struct BunchOf {
     return load(column.data());
   }
   template <class Row, class Allocator>
-  [[gnu::always_inline]] void store(const In<Lanes, Row>& value, std::vector<Row, Allocator>& column) const noexcept
+  [[gnu::always_inline]] void store(const In<SimdReal, Row>& value, std::vector<Row, Allocator>& column) const noexcept
   {
     store(value, column.data());
   }
@@ -70,15 +70,15 @@ struct BunchOf {
  private:
   template <class N>
   requires std::is_arithmetic_v<N>
-  [[gnu::always_inline]] Lanes load(const N* rows) const noexcept
+  [[gnu::always_inline]] SimdReal load(const N* rows) const noexcept
   {
     return lanes([&](std::size_t row) { return static_cast<Real>(rows[row]); });
   }
   template <class N, int R, int C>
-  [[gnu::always_inline]] Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> load(
+  [[gnu::always_inline]] Eigen::Matrix<SimdReal, R, C, Eigen::DontAlign> load(
       const Eigen::Matrix<N, R, C, Eigen::DontAlign>* rows) const noexcept
   {
-    Eigen::Matrix<Lanes, R, C, Eigen::DontAlign> all;
+    Eigen::Matrix<SimdReal, R, C, Eigen::DontAlign> all;
     Pack of[R * C];
     load_rows<R * C>({rows[p[0]].data(), rows[p[1]].data(), rows[p[2]].data(), rows[p[3]].data()}, of);
     for (int k = 0; k < R * C; ++k)
@@ -87,13 +87,13 @@ struct BunchOf {
   }
   template <class N>
   requires std::is_arithmetic_v<N>
-  [[gnu::always_inline]] void store(const Lanes& value, N* rows) const noexcept
+  [[gnu::always_inline]] void store(const SimdReal& value, N* rows) const noexcept
   {
     for (int lane = 0; lane < count; ++lane)
       rows[p[lane]] = static_cast<N>(value[lane]);
   }
   template <class N, int R, int C>
-  [[gnu::always_inline]] void store(const Eigen::Matrix<Lanes, R, C, Eigen::DontAlign>& value,
+  [[gnu::always_inline]] void store(const Eigen::Matrix<SimdReal, R, C, Eigen::DontAlign>& value,
                                     Eigen::Matrix<N, R, C, Eigen::DontAlign>* rows) const noexcept
   {
     Pack of[R * C];
@@ -102,7 +102,7 @@ struct BunchOf {
     store_rows<R * C>(of, {rows[p[0]].data(), rows[p[1]].data(), rows[p[2]].data(), rows[p[3]].data()}, count);
   }
 };
-using Bunch = BunchOf<Real>;
+using ParticlePack = ParticlePackOf<Real>;
 
 /// f(S()) with the numbers the particles are kept in.
 template <int D, class F>
@@ -115,7 +115,7 @@ decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
 
 /// Asks memory for the rows of a particle in some columns.
 template <class S>
-struct AskFor {
+struct Prefetch {
   template <class... Columns>
   [[gnu::always_inline]] static void row(std::size_t p, const Columns&... columns) noexcept
   {
@@ -147,22 +147,22 @@ struct AskFor {
 template <class S = Real, class F, class Ask = AskForNothing>
 void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
 {
-  RowsAhead ahead(rows, ask);
+  PrefetchRows ahead(rows, ask);
   for (std::size_t begin = 0; begin < rows.size(); begin += pack_size) {
     ahead.until(begin + pack_size);
-    f(BunchOf<S>(rows, begin));
+    f(ParticlePackOf<S>(rows, begin));
   }
 }
 /// f(bunch, x) for the particles of a run, four at a time.
 template <class S, int D, class F>
 void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
 {
-  for_each_bunch<S>(run, [&](const BunchOf<S>& bunch) {
+  for_each_bunch<S>(run, [&](const ParticlePackOf<S>& pack) {
     Pack x[D];
-    const auto place = bunch.load(places);
+    const auto place = pack.load(places);
     for (int d = 0; d < D; ++d)
       x[d] = place[d].of;
-    f(bunch, std::as_const(x));
+    f(pack, std::as_const(x));
   });
 }
 
@@ -175,9 +175,9 @@ struct Seen {
 
 /// Vectors and tensors of four particles.
 template <int D>
-using VecOf = Eigen::Matrix<Lanes, D, 1, Eigen::DontAlign>;
+using VecOf = Eigen::Matrix<SimdReal, D, 1, Eigen::DontAlign>;
 template <int D>
-using MatOf = Eigen::Matrix<Lanes, D, D, Eigen::DontAlign>;
+using MatOf = Eigen::Matrix<SimdReal, D, D, Eigen::DontAlign>;
 template <int D>
 VecOf<D> vector_of(const Pack (&v)[D]) noexcept
 {

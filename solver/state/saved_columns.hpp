@@ -7,7 +7,7 @@ namespace talus {
 
 /// For each column how many ranks keep it: one that has no particles cannot tell.  Every rank has to ask.
 template <int D>
-std::vector<std::int64_t> count_keepers(Exchange& ranks, const Particles<D>& particles)
+std::vector<std::int64_t> count_keepers(Communicator& ranks, const Particles<D>& particles)
 {
   std::vector<std::int64_t> keepers;
   particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { keepers.push_back(column.empty() ? 0 : 1); });

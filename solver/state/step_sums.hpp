@@ -7,12 +7,12 @@
 namespace talus {
 
 template <int D>
-struct Tally {
-  ExactSums<Departed<D>> departed;
-  Real held_most = 0;                        ///< farthest way on which a particle was set back onto a wall [m]
-  ExactSums<Push<D>> on_particles, on_mesh;  ///< forces of loads [N]
-  ExactSums<WallWork> at_nodes;              ///< work of walls on nodes
-  ExactSums<WallWork> beyond_nodes;          ///< on slaves and hats, of which the kinetic energy of nodes knows nothing
+struct StepSums {
+  ExactSums<RemovedParticles<D>> departed;
+  Real largest_set_back = 0;                           ///< farthest way on which a particle was set back onto a wall [m]
+  ExactSums<ForceAndMoment<D>> on_particles, on_mesh;  ///< forces of loads [N]
+  ExactSums<BoundaryWork> at_nodes;                    ///< work of walls on nodes
+  ExactSums<BoundaryWork> beyond_nodes;                ///< on slaves and hats, of which the kinetic energy of nodes knows nothing
   ExactSums<NodeWork<D>> nodes;
   ExactSums<Balance> balance;
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
@@ -21,7 +21,7 @@ struct Tally {
   Digits digits;                                              ///< of these and of the pushes of walls, kept from step to step
   void clear() noexcept
   {
-    held_most = 0;
+    largest_set_back = 0;
     departed.clear(), on_particles.clear(), on_mesh.clear(), at_nodes.clear(), beyond_nodes.clear();
     nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), remap.clear();
     particles.clear();

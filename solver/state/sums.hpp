@@ -67,7 +67,7 @@ inline void add_plastic_work(const AnyBatch& material, const CellOrder& order, I
 
 /// Sum over the particles of all ranks, each of which has to ask.
 template <class T, class F>
-T sum_particles(const CellOrder& order, Exchange& ranks, F&& f)
+T sum_particles(const CellOrder& order, Communicator& ranks, F&& f)
 {
   ExactSums<T> sum;
   add_particles(order, sum, f);
@@ -77,7 +77,7 @@ T sum_particles(const CellOrder& order, Exchange& ranks, F&& f)
 
 /// Of all ranks, each of which has to ask.
 template <int D>
-Totals<D> totals(const Particles<D>& particles, const CellOrder& order, Exchange& ranks)
+Totals<D> totals(const Particles<D>& particles, const CellOrder& order, Communicator& ranks)
 {
   return sum_particles<Totals<D>>(order, ranks, [&](Index row) { return totals_of(particles, static_cast<std::size_t>(row)); });
 }

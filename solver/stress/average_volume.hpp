@@ -20,7 +20,7 @@ void average_volume(const Mesh<D>& mesh, const CellOrder& order, std::span<const
   sums.gather(order, bodies, particles, [&](Index c, std::span<const Index> run, auto& corners) {
     for (const Index row : run) {
       const auto p = static_cast<std::size_t>(row);
-      const auto hats = hats_inside(mesh, c, particles.x[p]);
+      const auto hats = barycentric_inside(mesh, c, particles.x[p]);
       const Real volume = (Mat<D>::Identity() + dt * particles.L[p]).determinant() * particles.volume[p];
       for (std::size_t a = 0; a <= D; ++a) {
         corners[a][0] += hats[a] * volume;
@@ -38,7 +38,7 @@ void average_volume(const Mesh<D>& mesh, const CellOrder& order, std::span<const
       runs([&](std::span<const Index> run) {
         for (const Index row : run) {
           const auto p = static_cast<std::size_t>(row);
-          const auto hats = hats_inside(mesh, c, particles.x[p]);
+          const auto hats = barycentric_inside(mesh, c, particles.x[p]);
           Real mean = 0;
           for (std::size_t a = 0; a <= D; ++a)
             mean += hats[a] * ratio[a];

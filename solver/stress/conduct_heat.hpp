@@ -11,7 +11,7 @@ struct HeatSums {
   StarSums<D, 2> content;
   StarSums<D, 1> flow;
   explicit HeatSums(const Mesh<D>& mesh) : content(mesh), flow(mesh) {}
-  HeatSums(Exchange& ranks, const Mesh<D>& mesh, const Share& share) : content(ranks, mesh, share), flow(ranks, mesh, share) {}
+  HeatSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share) : content(ranks, mesh, share), flow(ranks, mesh, share) {}
 };
 
 /// One explicit step of  rho c dT/dt = div(k grad T)  on the hats of the mesh, insulated at every surface and between bodies:
@@ -28,7 +28,7 @@ void conduct_heat(const Mesh<D>& mesh, AnyBatch& material, const CellOrder& orde
     sums.content.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
       for (const Index row : run) {
         const auto p = static_cast<std::size_t>(row);
-        const auto hats = hats_inside(mesh, c, particles.x[p]);
+        const auto hats = barycentric_inside(mesh, c, particles.x[p]);
         for (std::size_t a = 0; a <= D; ++a) {
           const Real capacity = particles.mass[p] * specific_heat * hats[a];
           corners[a][0] += capacity;
@@ -55,7 +55,7 @@ void conduct_heat(const Mesh<D>& mesh, AnyBatch& material, const CellOrder& orde
       for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
         for (const Index row : run) {
           const auto p = static_cast<std::size_t>(row);
-          const auto hats = hats_inside(mesh, c, particles.x[p]);
+          const auto hats = barycentric_inside(mesh, c, particles.x[p]);
           for (std::size_t a = 0; a <= D; ++a) {
             const Index n = mesh.cell(c)[a];
             if (const Real capacity = sums.content[n][0]; capacity > 0)

@@ -59,8 +59,8 @@ void follow(const Mesh<D>& mesh, std::span<const Real> density, const Vec<D>& up
 
 /// What is above each particle.  Rays that leave the blocks of a rank go on at the next one's.
 template <int D>
-std::vector<Above> look_up(const Mesh<D>& mesh, const Share& share, Exchange& ranks, std::span<const Real> density, const Vec<D>& up,
-                           const Particles<D>& particles)
+std::vector<Above> look_up(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, std::span<const Real> density,
+                           const Vec<D>& up, const Particles<D>& particles)
 {
   const auto owns = [&](Index cell) { return share.alone() || share.owns_cell(cell); };
   const auto n_ranks = static_cast<std::size_t>(ranks.size());
@@ -103,7 +103,7 @@ Real beside_law(const Particles<D>& particles, std::size_t p) noexcept
 
 /// What lies above each particle; nothing where none of them asks, or nothing has a weight.
 template <int D>
-std::vector<Above> weight_above(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity,
+std::vector<Above> weight_above(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
                                 std::span<const StartStress> start, const CellOrder& order, const Particles<D>& particles)
 {
   const Real g = gravity.norm();
@@ -121,8 +121,9 @@ std::vector<Above> weight_above(const Mesh<D>& mesh, const Share& share, Exchang
 }  // namespace
 
 template <int D>
-void set_start_stress(const Mesh<D>& mesh, const Share& share, Exchange& ranks, const Vec<D>& gravity, std::span<const StartStress> start,
-                      const CellOrder& order, const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+void set_start_stress(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
+                      std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
+                      std::vector<AnyBatch>& materials, Particles<D>& particles)
 {
   const Real g = gravity.norm();
   const std::vector<Above> above = weight_above(mesh, share, ranks, gravity, start, order, particles);
@@ -214,9 +215,9 @@ template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
 template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
 template StressFit fit_stress<2>(const Body&, const AnyBatch&, Real, bool, Particles<2>&);
 template StressFit fit_stress<3>(const Body&, const AnyBatch&, Real, bool, Particles<3>&);
-template void set_start_stress<2>(const Mesh<2>&, const Share&, Exchange&, const Vec<2>&, std::span<const StartStress>, const CellOrder&,
-                                  const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void set_start_stress<3>(const Mesh<3>&, const Share&, Exchange&, const Vec<3>&, std::span<const StartStress>, const CellOrder&,
-                                  const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void set_start_stress<2>(const Mesh<2>&, const Subdomain&, Communicator&, const Vec<2>&, std::span<const StartStress>,
+                                  const CellOrder&, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+template void set_start_stress<3>(const Mesh<3>&, const Subdomain&, Communicator&, const Vec<3>&, std::span<const StartStress>,
+                                  const CellOrder&, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
 
 }  // namespace talus

@@ -11,7 +11,7 @@ namespace talus {
 
 /// Barycentric coordinates of x in cell c, for a particle that may just have left it: none negative, sum one.
 template <int D>
-std::array<Real, D + 1> hats_inside(const Mesh<D>& mesh, Index c, const Vec<D>& x) noexcept
+std::array<Real, D + 1> barycentric_inside(const Mesh<D>& mesh, Index c, const Vec<D>& x) noexcept
 {
   std::array<Real, D + 1> hats = mesh.barycentric(c, x);
   Real sum = 0;
@@ -54,10 +54,10 @@ class StarSums {
 
   /// Of a rank that is alone.
   explicit StarSums(const Mesh<D>& mesh) : StarSums(mesh, all_nodes(mesh)) { halo_ = Halo<Row>(blocks_.size()); }
-  StarSums(Exchange& ranks, const Mesh<D>& mesh, const Share& share) : StarSums(mesh, own_nodes(mesh, share))
+  StarSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share) : StarSums(mesh, own_nodes(mesh, share))
   {
     halo_ = Halo<Row>(ranks, mesh, share, blocks_);
-    copies_ = copies_of_nodes(ranks, share, Topic::sums, nodes_read(share, blocks_));
+    copies_ = copies_of_nodes(ranks, share, MessageTag::sums, nodes_read(share, blocks_));
   }
 
   /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
@@ -99,7 +99,7 @@ class StarSums {
   BlockRows<D, Row> blocks_;
   OwnNodes own_;
   Halo<Row> halo_;
-  Letters copies_;
+  HaloExchange copies_;
   std::vector<Row> of_node_;
 };
 

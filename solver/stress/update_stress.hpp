@@ -36,12 +36,13 @@ struct StressSums {
 /// Q = D nu / h + quadratic h |d| + linear c, exact for a chain of equal cells.
 template <int D>
 StressSums update_stress(const Mesh<D>& mesh, AnyBatch& material, std::span<const Index> rows, Real dt, bool elastic,
-                         const std::vector<Real>& averaged, const std::optional<PoreWater>& pore, Particles<D>& particles, Health& health);
+                         const std::vector<Real>& averaged, const std::optional<PoreWater>& pore, Particles<D>& particles,
+                         ParticleErrors& health);
 
 extern template StressSums update_stress<2>(const Mesh<2>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&,
-                                            const std::optional<PoreWater>&, Particles<2>&, Health&);
+                                            const std::optional<PoreWater>&, Particles<2>&, ParticleErrors&);
 extern template StressSums update_stress<3>(const Mesh<3>&, AnyBatch&, std::span<const Index>, Real, bool, const std::vector<Real>&,
-                                            const std::optional<PoreWater>&, Particles<3>&, Health&);
+                                            const std::optional<PoreWater>&, Particles<3>&, ParticleErrors&);
 
 /// Altitude h [m] / (effective wave speed + |v|) of a particle [s].  `shrinking` is max(-tr L, 0) [1/s].  T is Real or Lanes.
 template <int D, class L, class T>

@@ -44,10 +44,10 @@ struct Tension {
   Pack slope[D][D], shift[D];
 };
 template <int D, int N, class S>
-Tension<D> tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, const Weights<D, N>& weights) noexcept
+Tension<D> tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Weights<D, N>& weights) noexcept
 {
-  const Pack volume = bunch.load(particles.volume).of;
-  const Sym3Of<Lanes> stress = bunch.load(particles.stress);
+  const Pack volume = pack.load(particles.volume).of;
+  const Sym3Of<SimdReal> stress = pack.load(particles.stress);
   Pack T[D][D];
   for (int i = 0; i < D; ++i)
     for (int j = i; j < D; ++j)
@@ -69,18 +69,18 @@ Tension<D> tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, co
 /// A is of `fields`, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
 /// MUSL) only momentum is summed.  A sweep per component: all that a sweep needs of the particle stays in registers.
 template <bool affine, bool loaded, bool forces, int D, int N, class S>
-void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const ParticleColumn<Mat<D>>& fields, const StencilCell<D, N>& cell,
-             const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
+void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const ParticleColumn<Mat<D>>& fields,
+             const StencilCell<D, N>& cell, const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
 {
   alignas(64) Real share[N];  // m_p w_v
-  for (int lane = 0; lane < bunch.count; ++lane) {
-    const std::size_t p = bunch.p[lane];
+  for (int lane = 0; lane < pack.count; ++lane) {
+    const std::size_t p = pack.p[lane];
     const int n = weights.padded_size[lane];
     const Real* const s = weights.s[lane];
     const Real* y[D];
     std::copy_n(weights.y[lane], D, y);
     const bool y_is_x = y[0] == cell.x[0];
-    const Real m = bunch.of(lane, particles.mass);
+    const Real m = pack.of(lane, particles.mass);
     Pack slope[D];
     for (int j = 0; j < D; ++j)
       slope[j] = broadcast(-m * weights.slope[j][lane]);
@@ -94,8 +94,8 @@ void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Parti
       if constexpr (forces)
         store(sums.mass + a, load(sums.mass + a) + w);
     }
-    const Mat<D> A = affine ? bunch.of(lane, fields) : Mat<D>(Mat<D>::Zero());
-    const Vec<D> v_p = bunch.of(lane, particles.v), f_p = loaded ? bunch.of(lane, particles.applied) : Vec<D>(Vec<D>::Zero());
+    const Mat<D> A = affine ? pack.of(lane, fields) : Mat<D>(Mat<D>::Zero());
+    const Vec<D> v_p = pack.of(lane, particles.v), f_p = loaded ? pack.of(lane, particles.applied) : Vec<D>(Vec<D>::Zero());
     for (int i = 0; i < D; ++i) {
       Real v_origin = v_p[i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
       Pack A_i[D], T_i[D];
@@ -139,11 +139,11 @@ void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Parti
 
 /// f_v -= V sigma grad w_v of one particle, for the first n nodes.
 template <int D, int N, class S>
-void deposit_force(const Particles<D>& particles, const BunchOf<S>& bunch, int lane, const Real (&slopes)[D][N], int n,
+void deposit_force(const Particles<D>& particles, const ParticlePackOf<S>& pack, int lane, const Real (&slopes)[D][N], int n,
                    CellSums<D, N>& sums) noexcept
 {
-  const Real volume = particles.volume[bunch.p[lane]];
-  const Sym3 stress = bunch.of(lane, particles.stress);
+  const Real volume = particles.volume[pack.p[lane]];
+  const Sym3 stress = pack.of(lane, particles.stress);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
       const Pack T = broadcast(volume * stress[Symmetric<3>::place(i, j)]);

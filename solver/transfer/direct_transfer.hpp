@@ -136,29 +136,30 @@ Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion,
 
 /// The cell at hand, its particles' weights, and the sums of a run.  Lives on the stack of a thread; see ThroughHats for its twin.
 template <int D, Kernel<D> K>
-class ThroughWeights {
+class DirectTransfer {
  public:
   using Sum = NodeSum<D>;
   using Motion = NodeMotion<D>;
   static constexpr bool has_apic = true;
 
-  explicit ThroughWeights(const K& kernel) : kernel_(kernel) {}
+  explicit DirectTransfer(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
   template <class S>
-  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  void place(const ParticlePackOf<S>& pack, const Pack (&x)[D]) noexcept
   {
-    kernel_.evaluate(cell_, x, bunch.count, weights_);
+    kernel_.evaluate(cell_, x, pack.count, weights_);
   }
 
   void clear() noexcept { sums_.clear(cell_.padded_size); }
   template <bool affine, bool loaded, bool forces, class S>
-  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&x)[D], const ParticleColumn<Mat<D>>& fields) noexcept
+  void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Pack (&x)[D],
+               const ParticleColumn<Mat<D>>& fields) noexcept
   {
     const bool exact = forces && pairs_force_with_slopes();
-    const Tension<D> tension = forces && !exact ? tension_of(particles, bunch, weights_) : Tension<D>{};
-    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, tension, sums_);
+    const Tension<D> tension = forces && !exact ? tension_of(particles, pack, weights_) : Tension<D>{};
+    talus::deposit<affine, loaded, forces>(particles, pack, fields, cell_, weights_, tension, sums_);
     if (exact)
-      deposit_exact_force(particles, bunch, x);
+      deposit_exact_force(particles, pack, x);
   }
   template <bool affine, bool loaded, bool forces>
   void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
@@ -168,9 +169,9 @@ class ThroughWeights {
 
   void read(const std::vector<NodeMotion<D>>& nodes) noexcept { motion_.read(nodes, cell_.nodes, cell_.padded_size); }
   template <bool with_change, bool with_gradient, class S>
-  Seen<D> see(const BunchOf<S>& bunch) const noexcept
+  Seen<D> see(const ParticlePackOf<S>& pack) const noexcept
   {
-    return talus::see<with_change, with_gradient>(motion_, weights_, bunch.count);
+    return talus::see<with_change, with_gradient>(motion_, weights_, pack.count);
   }
   Mat<D> apic_field(int lane, const Vec<D>& x, const Mat<D>& L) const noexcept
   {
@@ -186,14 +187,14 @@ class ThroughWeights {
       return false;
   }
   template <class S>
-  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const BunchOf<S>& bunch,
+  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const ParticlePackOf<S>& pack,
                            [[maybe_unused]] const Pack (&x)[D]) noexcept
   {
     if constexpr (HasSlopesOfValues<K, D>)
-      for (int lane = 0; lane < bunch.count; ++lane) {
+      for (int lane = 0; lane < pack.count; ++lane) {
         alignas(64) Real slopes[D][K::max_nodes];
         kernel_.slopes_of_values(cell_, x, lane, weights_, slopes);
-        deposit_force(particles, bunch, lane, slopes, weights_.padded_size[lane], sums_);
+        deposit_force(particles, pack, lane, slopes, weights_.padded_size[lane], sums_);
       }
   }
 

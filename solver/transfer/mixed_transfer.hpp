@@ -8,19 +8,19 @@ namespace talus {
 /// Mass, momentum and velocity through the weights of the stencil; tension and velocity gradient through the hats of the cell, whose
 /// vertices are the first nodes of the stencil.  The affine moment of a row stays zero: weights carry it with the momentum.
 template <int D, Kernel<D> K>
-class ThroughBoth {
+class MixedTransfer {
  public:
-  using Sum = HatSum<D>;
-  using Motion = HatMotion<D>;
+  using Sum = ProjectedNodeSum<D>;
+  using Motion = ProjectedNodeMotion<D>;
   static constexpr bool has_apic = true;
 
-  explicit ThroughBoth(const K& kernel) : kernel_(kernel) {}
+  explicit MixedTransfer(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
   template <class S>
-  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  void place(const ParticlePackOf<S>& pack, const Pack (&x)[D]) noexcept
   {
-    kernel_.evaluate(cell_, x, bunch.count, weights_);
-    shares_ = shares_of<D>(cell_.slope, cell_.origin, x, bunch.count);
+    kernel_.evaluate(cell_, x, pack.count, weights_);
+    shares_ = shares_of<D>(cell_.slope, cell_.origin, x, pack.count);
   }
 
   void clear() noexcept
@@ -29,12 +29,13 @@ class ThroughBoth {
     tension_.clear();
   }
   template <bool affine, bool loaded, bool forces, class S>
-  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&)[D], const ParticleColumn<Mat<D>>& fields) noexcept
+  void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Pack (&)[D],
+               const ParticleColumn<Mat<D>>& fields) noexcept
   {
-    talus::deposit<affine, loaded, forces>(particles, bunch, fields, cell_, weights_, Tension<D>{}, sums_);
+    talus::deposit<affine, loaded, forces>(particles, pack, fields, cell_, weights_, Tension<D>{}, sums_);
     if constexpr (forces) {
       Pack tension[padded(Symmetric<D>::size)]{};
-      tension_of(particles, bunch, tension);
+      tension_of(particles, pack, tension);
       tension_.template add<Symmetric<D>::size>(shares_, tension);
     }
   }
@@ -54,9 +55,9 @@ class ThroughBoth {
     hats_ = hats_of(rows, cell_.nodes);
   }
   template <bool with_change, bool with_gradient, class S>
-  Seen<D> see(const BunchOf<S>& bunch) const noexcept
+  Seen<D> see(const ParticlePackOf<S>& pack) const noexcept
   {
-    Seen<D> seen = talus::see<with_change, false>(motion_, weights_, bunch.count);
+    Seen<D> seen = talus::see<with_change, false>(motion_, weights_, pack.count);
     if constexpr (with_gradient)
       see_gradient(hats_, shares_, seen);
     return seen;
@@ -70,11 +71,11 @@ class ThroughBoth {
   const K& kernel_;
   typename K::Cell cell_;
   Weights<D, K::max_nodes> weights_;
-  Shares<D> shares_;
+  CornerWeights<D> shares_;
   CellSums<D, K::max_nodes> sums_;
   CornerSums<D, Symmetric<D>::size> tension_;
   CellMotion<D, K::max_nodes> motion_;
-  std::array<HatMotion<D>, D + 1> hats_;
+  std::array<ProjectedNodeMotion<D>, D + 1> hats_;
 };
 
 }  // namespace talus

@@ -7,9 +7,9 @@
 namespace talus {
 
 template <int D>
-struct Hats {
-  std::vector<HatSum<D>> sum;
-  std::vector<HatMotion<D>> motion;
+struct ProjectedNodes {
+  std::vector<ProjectedNodeSum<D>> sum;
+  std::vector<ProjectedNodeMotion<D>> motion;
   std::vector<std::uint8_t> late;  ///< of one of several ranks: hats that read nodes of others
   void find_late(const Mesh<D>& mesh, const OwnNodes& own)
   {
@@ -26,8 +26,8 @@ struct Hats {
 /// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
 /// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  `by_hats_around`: the mass of a node is to be measured by theirs.
 template <int D>
-void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<HatSum<D>>& hats,
-             bool by_hats_around, std::vector<NodeSum<D>>& sum)
+void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
+                  const std::vector<ProjectedNodeSum<D>>& projected, bool by_hats_around, std::vector<NodeSum<D>>& sum)
 {
   for_each_node(std::span(sum), [&](Index v) {
     NodeSum<D> total;
@@ -36,7 +36,7 @@ void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNo
     Real around = 0;
     int ring = 0;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
-      const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
+      const ProjectedNodeSum<D>& hat = projected[static_cast<std::size_t>(n)];
       ++ring;
       around += hat.mass;
       if (!hat.is_seen())
@@ -55,15 +55,15 @@ void collect(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNo
 
 /// The same for momentum alone.
 template <int D>
-void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own, const std::vector<HatSum<D>>& hats,
-                      std::vector<NodeSum<D>>& sum)
+void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
+                      const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
 {
   parallel_for(operators.n_nodes(), [&](Index v) {
     if (!own.has(v))
       return;
     Vec<D> momentum = Vec<D>::Zero();
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
-      const HatSum<D>& hat = hats[static_cast<std::size_t>(n)];
+      const ProjectedNodeSum<D>& hat = projected[static_cast<std::size_t>(n)];
       if (hat.is_seen())
         momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
     });
@@ -74,17 +74,17 @@ void collect_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
 /// f(n, hat) for the hats that particles see, in parallel; what f leaves in `hat` is read.  Those that read nodes of other ranks have to wait until
 /// arrive() returns.
 template <int D, class Arrive, class F>
-void for_each_seen_hat(Hats<D>& hats, Arrive&& arrive, F&& f)
+void for_each_seen_hat(ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
 {
   for (const bool late : {false, true}) {
     if (late)
       arrive();
-    if (late && hats.late.empty())
+    if (late && projected.late.empty())
       break;
-    parallel_for(static_cast<Index>(hats.sum.size()), [&](Index n) {
+    parallel_for(static_cast<Index>(projected.sum.size()), [&](Index n) {
       const auto i = static_cast<std::size_t>(n);
-      if (hats.sum[i].is_seen() && (hats.late.empty() || (hats.late[i] != 0) == late))
-        f(n, hats.motion[i]);
+      if (projected.sum[i].is_seen() && (projected.late.empty() || (projected.late[i] != 0) == late))
+        f(n, projected.motion[i]);
     });
   }
 }
@@ -93,9 +93,10 @@ void for_each_seen_hat(Hats<D>& hats, Arrive&& arrive, F&& f)
 /// checkerboards of the unknowns: what is left of them moves no particle, and must not count where a body is to come to rest.
 /// arrive(): accelerations of nodes of other ranks.
 template <int D, class Arrive>
-void feel(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, Hats<D>& hats, std::vector<Vec<D>>& a)
+void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, ProjectedNodes<D>& projected,
+                         std::vector<Vec<D>>& a)
 {
-  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& hat) {
+  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& hat) {
     hat.change.setZero();
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { hat.change += S * a[static_cast<std::size_t>(v)]; });
   });
@@ -105,9 +106,9 @@ void feel(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arriv
     if (!own.has(v))
       return sum;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
-      const Real share = S * hats.sum[static_cast<std::size_t>(n)].mass;
+      const Real share = S * projected.sum[static_cast<std::size_t>(n)].mass;
       mass += share;
-      sum += share * hats.motion[static_cast<std::size_t>(n)].change;
+      sum += share * projected.motion[static_cast<std::size_t>(n)].change;
     });
     return mass > 0 ? Vec<D>(sum / mass) : Vec<D>(Vec<D>::Zero());
   });
@@ -116,10 +117,11 @@ void feel(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arriv
 /// Unknowns -> hats that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
 /// arrive(): the motion of nodes of other ranks.
 template <int D, class Arrive>
-void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive, Hats<D>& hats)
+void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
+                    ProjectedNodes<D>& projected)
 {
-  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& row) {
-    HatMotion<D> hat;
+  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
+    ProjectedNodeMotion<D> hat;
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
       const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
       hat.v += S * node.v;
@@ -132,9 +134,10 @@ void spread(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>&
 
 /// The gradient of remapped velocities; the step's own velocity goes to `change`.
 template <int D, class Arrive>
-void spread_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive, Hats<D>& hats)
+void project_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive,
+                      ProjectedNodes<D>& projected)
 {
-  for_each_seen_hat(hats, arrive, [&](Index n, HatMotion<D>& hat) {
+  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& hat) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
         n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });

@@ -8,17 +8,17 @@ namespace talus {
 
 /// Barycentric coordinates of four particles, one vertex per pack; zero in lanes beyond `count`.
 template <int D>
-struct Shares {
+struct CornerWeights {
   Pack of[D + 1];
 };
 template <int D>
-[[gnu::always_inline]] inline Shares<D> shares_of(const Real (&slope)[D][pack_size], const Vec<D>& centroid, const Pack (&x)[D],
-                                                  int count) noexcept
+[[gnu::always_inline]] inline CornerWeights<D> shares_of(const Real (&slope)[D][pack_size], const Vec<D>& centroid, const Pack (&x)[D],
+                                                         int count) noexcept
 {
   Pack there{};
   for (int lane = 0; lane < count; ++lane)
     there[lane] = 1;
-  Shares<D> shares;
+  CornerWeights<D> shares;
   for (int a = 0; a <= D; ++a) {
     Pack share = broadcast(1.0 / (D + 1));
     for (int d = 0; d < D; ++d)
@@ -37,7 +37,7 @@ struct CornerSums {
   /// The first n quantities of four particles, one per lane; overwrites them.  Four quantities of one particle a pack while they are
   /// summed: the sums stay in registers, whatever cells the lanes are from, and nothing is left to be added up across lanes.
   template <int n>
-  [[gnu::always_inline]] inline void add(const Shares<D>& shares, Pack (&quantities)[padded(n)]) noexcept
+  [[gnu::always_inline]] inline void add(const CornerWeights<D>& shares, Pack (&quantities)[padded(n)]) noexcept
   {
     constexpr int packs = padded(n) / pack_size;
     for (int k = 0; k < packs; ++k) {
@@ -61,10 +61,10 @@ struct CornerSums {
 
 /// V sigma of four particles.
 template <int D, class S>
-[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const BunchOf<S>& bunch, Pack* to) noexcept
+[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pack, Pack* to) noexcept
 {
-  const Pack volume = bunch.load(particles.volume).of;
-  const Sym3Of<Lanes> stress = bunch.load(particles.stress);
+  const Pack volume = pack.load(particles.volume).of;
+  const Sym3Of<SimdReal> stress = pack.load(particles.stress);
   for (int i = 0; i < D; ++i)
     for (int j = i; j < D; ++j)
       to[Symmetric<D>::place(i, j)] = volume * stress[Symmetric<3>::place(i, j)].of;
@@ -81,17 +81,18 @@ using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
 
 /// Adds a bunch, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
 template <bool affine, bool loaded, bool forces, int D, class S>
-[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const ParticleColumn<Mat<D>>& fields,
-                                           const Pack (&x)[D], const Shares<D>& shares, HatSums<D>& sums) noexcept
+[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack,
+                                           const ParticleColumn<Mat<D>>& fields, const Pack (&x)[D], const CornerWeights<D>& shares,
+                                           HatSums<D>& sums) noexcept
 {
   using Of = Deposit<D, affine, loaded, forces>;
   Pack quantities[padded(Of::size)]{};
-  const Pack m = bunch.load(particles.mass).of;
-  const VecOf<D> v = bunch.load(particles.v);
+  const Pack m = pack.load(particles.mass).of;
+  const VecOf<D> v = pack.load(particles.v);
   for (int i = 0; i < D; ++i)
     quantities[i] = v[i].of;
   if constexpr (affine) {
-    const MatOf<D> A = bunch.load(fields);
+    const MatOf<D> A = pack.load(fields);
     for (int j = 0; j < D; ++j)
       for (int i = 0; i < D; ++i) {
         quantities[i] -= A(i, j).of * x[j];
@@ -102,10 +103,10 @@ template <bool affine, bool loaded, bool forces, int D, class S>
     quantities[i] *= m;
   if constexpr (forces) {
     quantities[Of::mass] = m;
-    tension_of(particles, bunch, quantities + Of::tension);
+    tension_of(particles, pack, quantities + Of::tension);
   }
   if constexpr (loaded) {
-    const VecOf<D> f = bunch.load(particles.applied);
+    const VecOf<D> f = pack.load(particles.applied);
     for (int i = 0; i < D; ++i)
       quantities[Of::load + i] = f[i].of;
   }
@@ -114,12 +115,12 @@ template <bool affine, bool loaded, bool forces, int D, class S>
 
 /// Sums of a run -> rows of its block.  `arms`: centres of the hats about the origin of the cell [m].
 template <bool affine, bool loaded, bool forces, int D>
-void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots,
-            float lightest) noexcept
+void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
+            std::span<const std::uint16_t> slots, float lightest) noexcept
 {
   using Of = Deposit<D, affine, loaded, forces>;
   for (std::size_t a = 0; a <= D; ++a) {
-    HatSum<D>& row = rows[slots[a]];
+    ProjectedNodeSum<D>& row = rows[slots[a]];
     const Real* const of = sums.of[a];
     row.lightest = std::min(row.lightest, lightest);
     row.momentum += Eigen::Map<const Vec<D>>(of);
@@ -141,80 +142,82 @@ void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::
 
 /// What four particles see of the hats of their cell.
 template <bool with_change, int D>
-[[gnu::always_inline]] inline void see_velocity(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares,
+[[gnu::always_inline]] inline void see_velocity(const std::array<ProjectedNodeMotion<D>, D + 1>& projected, const CornerWeights<D>& shares,
                                                 Seen<D>& seen) noexcept
 {
   for (int i = 0; i < D; ++i) {
     seen.v[i] = seen.change[i] = Pack{};
     for (int a = 0; a <= D; ++a) {
-      seen.v[i] += shares.of[a] * hats[static_cast<std::size_t>(a)].v[i];
+      seen.v[i] += shares.of[a] * projected[static_cast<std::size_t>(a)].v[i];
       if constexpr (with_change)
-        seen.change[i] += shares.of[a] * hats[static_cast<std::size_t>(a)].change[i];
+        seen.change[i] += shares.of[a] * projected[static_cast<std::size_t>(a)].change[i];
     }
   }
 }
 template <int D>
-[[gnu::always_inline]] inline void see_gradient(const std::array<HatMotion<D>, D + 1>& hats, const Shares<D>& shares,
+[[gnu::always_inline]] inline void see_gradient(const std::array<ProjectedNodeMotion<D>, D + 1>& projected, const CornerWeights<D>& shares,
                                                 Seen<D>& seen) noexcept
 {
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
       seen.L[i][j] = Pack{};
       for (int a = 0; a <= D; ++a)
-        seen.L[i][j] += shares.of[a] * hats[static_cast<std::size_t>(a)].L(i, j);
+        seen.L[i][j] += shares.of[a] * projected[static_cast<std::size_t>(a)].L(i, j);
     }
 }
 
 /// The motion of the hats of a cell.
 template <int D>
-std::array<HatMotion<D>, D + 1> hats_of(const std::vector<HatMotion<D>>& hats, std::span<const Index> nodes) noexcept
+std::array<ProjectedNodeMotion<D>, D + 1> hats_of(const std::vector<ProjectedNodeMotion<D>>& projected,
+                                                  std::span<const Index> nodes) noexcept
 {
-  std::array<HatMotion<D>, D + 1> here;
+  std::array<ProjectedNodeMotion<D>, D + 1> here;
   for (std::size_t a = 0; a <= D; ++a)
-    here[a] = hats[static_cast<std::size_t>(nodes[a])];
+    here[a] = projected[static_cast<std::size_t>(nodes[a])];
   return here;
 }
 
 /// The cell at hand, its particles' barycentric coordinates, and the sums of a run.  Lives on the stack of a thread.
 template <int D, Kernel<D> K>
-class ThroughHats {
+class ProjectedTransfer {
  public:
-  using Sum = HatSum<D>;
-  using Motion = HatMotion<D>;
+  using Sum = ProjectedNodeSum<D>;
+  using Motion = ProjectedNodeMotion<D>;
   static constexpr bool has_apic = false;
 
-  explicit ThroughHats(const K& kernel) : kernel_(kernel) {}
+  explicit ProjectedTransfer(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept
   {
     kernel_.open(mesh, c, cell_);
     for (std::size_t a = 0; a <= D; ++a)
-      arms_[a] = kernel_.node_part().centre(cell_.nodes[a]) - cell_.origin;
+      arms_[a] = kernel_.node_operators().centre(cell_.nodes[a]) - cell_.origin;
   }
   template <class S>
-  void place(const BunchOf<S>& bunch, const Pack (&x)[D]) noexcept
+  void place(const ParticlePackOf<S>& pack, const Pack (&x)[D]) noexcept
   {
-    shares_ = shares_of<D>(cell_.dw, cell_.origin, x, bunch.count);
+    shares_ = shares_of<D>(cell_.dw, cell_.origin, x, pack.count);
   }
 
   void clear() noexcept { sums_.clear(); }
   template <bool affine, bool loaded, bool forces, class S>
-  void deposit(const Particles<D>& particles, const BunchOf<S>& bunch, const Pack (&)[D], const ParticleColumn<Mat<D>>& fields) noexcept
+  void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Pack (&)[D],
+               const ParticleColumn<Mat<D>>& fields) noexcept
   {
     Pack x[D]{};  // sum B c: the place where values are read is the one about which they are handed on
     for (int a = 0; a <= D; ++a)
       for (int d = 0; d < D; ++d)
         x[d] += shares_.of[a] * arms_[static_cast<std::size_t>(a)][d];
-    talus::deposit<affine, loaded, forces>(particles, bunch, fields, x, shares_, sums_);
+    talus::deposit<affine, loaded, forces>(particles, pack, fields, x, shares_, sums_);
   }
   template <bool affine, bool loaded, bool forces>
-  void add_to(std::span<HatSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
+  void add_to(std::span<ProjectedNodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
     talus::add_to<affine, loaded, forces>(sums_, arms_, rows, slots, lightest);
   }
 
-  void read(const std::vector<HatMotion<D>>& hats) noexcept { motion_ = hats_of(hats, cell_.nodes); }
+  void read(const std::vector<ProjectedNodeMotion<D>>& projected) noexcept { motion_ = hats_of(projected, cell_.nodes); }
   template <bool with_change, bool with_gradient, class S>
-  Seen<D> see(const BunchOf<S>&) const noexcept
+  Seen<D> see(const ParticlePackOf<S>&) const noexcept
   {
     Seen<D> seen;
     see_velocity<with_change>(motion_, shares_, seen);
@@ -227,9 +230,9 @@ class ThroughHats {
   const K& kernel_;
   typename K::Cell cell_;
   std::array<Vec<D>, D + 1> arms_;  ///< centres of the hats about the origin [m]
-  Shares<D> shares_;
+  CornerWeights<D> shares_;
   HatSums<D> sums_;
-  std::array<HatMotion<D>, D + 1> motion_;
+  std::array<ProjectedNodeMotion<D>, D + 1> motion_;
 };
 
 }  // namespace talus

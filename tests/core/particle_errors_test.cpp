@@ -5,9 +5,9 @@
 namespace talus::health_test {
 namespace {
 
-TEST(Health, TellsTheCauseBeforeWhatFollowsFromIt)
+TEST(ParticleErrors, TellsTheCauseBeforeWhatFollowsFromIt)
 {
-  Health health;
+  ParticleErrors health;
   EXPECT_FALSE(health.worst());
   health.report(3, Trouble::no_answer);
   health.report(8, Trouble::inverted);

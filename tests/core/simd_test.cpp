@@ -19,8 +19,8 @@ Real worst_error(F&& f, Exact&& exact, Real low, Real high, bool negative)
   std::uniform_real_distribution<Real> power(low, high);
   Real worst = 0;
   for (int n = 0; n < 20000; ++n) {
-    const Lanes x = in_each_lane([&](int) { return (negative ? -1 : 1) * std::pow(10, power(bits)); });
-    const Lanes y = f(x);
+    const SimdReal x = in_each_lane([&](int) { return (negative ? -1 : 1) * std::pow(10, power(bits)); });
+    const SimdReal y = f(x);
     for (int i = 0; i < pack_size; ++i) {
       const auto right = static_cast<Real>(exact(static_cast<long double>(x[i])));
       const Real unit = std::nextafter(std::abs(right), HUGE_VAL) - std::abs(right);
@@ -30,10 +30,10 @@ Real worst_error(F&& f, Exact&& exact, Real low, Real high, bool negative)
   return worst;
 }
 
-TEST(Lanes, LogarithmAndExponentialKeepTheLastDigits)
+TEST(SimdReal, LogarithmAndExponentialKeepTheLastDigits)
 {
-  const auto log_of = [](const Lanes& x) { return log(x); };
-  const auto exp_of = [](const Lanes& x) { return exp(x); };
+  const auto log_of = [](const SimdReal& x) { return log(x); };
+  const auto exp_of = [](const SimdReal& x) { return exp(x); };
   EXPECT_LE(worst_error(
                 log_of, [](long double x) { return std::log(x); }, -300, 300, false),
             2);
@@ -43,10 +43,10 @@ TEST(Lanes, LogarithmAndExponentialKeepTheLastDigits)
               2);
 }
 
-TEST(Lanes, DifferencesFromOneKeepTheDigitsOfSmallNumbers)
+TEST(SimdReal, DifferencesFromOneKeepTheDigitsOfSmallNumbers)
 {
-  const auto log_of = [](const Lanes& x) { return log1p(x); };
-  const auto exp_of = [](const Lanes& x) { return expm1(x); };
+  const auto log_of = [](const SimdReal& x) { return log1p(x); };
+  const auto exp_of = [](const SimdReal& x) { return expm1(x); };
   const auto exact_log = [](long double x) { return std::log1p(x); };
   const auto exact_exp = [](long double x) { return std::expm1(x); };
   for (const bool negative : {false, true}) {
@@ -57,20 +57,20 @@ TEST(Lanes, DifferencesFromOneKeepTheDigitsOfSmallNumbers)
   }
 }
 
-TEST(Lanes, PowersKeepAllButTheLastDigits)
+TEST(SimdReal, PowersKeepAllButTheLastDigits)
 {
   for (const Real n : {-7.0, -0.3, 0.26, 1.03, 6.0}) {
-    const auto of = [&](const Lanes& x) { return pow(x, n); };
+    const auto of = [&](const SimdReal& x) { return pow(x, n); };
     const auto exact = [&](long double x) { return std::pow(x, static_cast<long double>(n)); };
     EXPECT_LE(worst_error(of, exact, -6, 1, false), 4 + 2 * std::abs(n) * 6 * std::log(10)) << n;
   }
-  EXPECT_EQ(pow(Lanes(0), 0.3)[1], 0);
+  EXPECT_EQ(pow(SimdReal(0), 0.3)[1], 0);
 }
 
-TEST(Lanes, OddNumbersStayInTheirLane)
+TEST(SimdReal, OddNumbersStayInTheirLane)
 {
   const Real nan = std::nan("");
-  const Lanes x = Pack{nan, -2, HUGE_VAL, 0.5};
+  const SimdReal x = Pack{nan, -2, HUGE_VAL, 0.5};
   for (const auto& y : {log(x), log1p(x)}) {
     EXPECT_TRUE(std::isnan(y[0]));
     EXPECT_TRUE(std::isnan(y[1]));
@@ -82,29 +82,29 @@ TEST(Lanes, OddNumbersStayInTheirLane)
     EXPECT_EQ(y[2], HUGE_VAL);
     EXPECT_TRUE(std::isfinite(y[1]) && std::isfinite(y[3]));
   }
-  EXPECT_EQ(log1p(Lanes(-1))[0], -HUGE_VAL);
-  const Lanes::Mask finite = isfinite(x);
+  EXPECT_EQ(log1p(SimdReal(-1))[0], -HUGE_VAL);
+  const SimdReal::Mask finite = isfinite(x);
   EXPECT_FALSE(finite[0] || finite[2]);
   EXPECT_TRUE(finite[1] && finite[3]);
 }
 
-TEST(Lanes, ChoicesAreMadeInEveryLaneAlone)
+TEST(SimdReal, ChoicesAreMadeInEveryLaneAlone)
 {
-  const Lanes a = Pack{1, 2, 3, 4};
-  const Lanes::Mask large = a > 2;
-  const Lanes chosen = where(large, a, -a);
+  const SimdReal a = Pack{1, 2, 3, 4};
+  const SimdReal::Mask large = a > 2;
+  const SimdReal chosen = where(large, a, -a);
   for (int i = 0; i < pack_size; ++i)
     EXPECT_EQ(chosen[i], i < 2 ? -(i + 1) : i + 1);
-  EXPECT_TRUE(somewhere(large) && somewhere(!large) && !everywhere(large));
-  EXPECT_TRUE(everywhere(large || a <= 2) && !somewhere(large && a <= 2));
-  EXPECT_FALSE(somewhere(a > std::nan("")));
+  EXPECT_TRUE(any_of(large) && any_of(!large) && !all_of(large));
+  EXPECT_TRUE(all_of(large || a <= 2) && !any_of(large && a <= 2));
+  EXPECT_FALSE(any_of(a > std::nan("")));
 }
 
-const Lanes some = Pack{0.25, -1, 4, 1e-300};
+const SimdReal some = Pack{0.25, -1, 4, 1e-300};
 
-TEST(Lanes, EveryLaneComputesAsANumberDoes)
+TEST(SimdReal, EveryLaneComputesAsANumberDoes)
 {
-  const Lanes other = Pack{3, 0.5, -2, 7};
+  const SimdReal other = Pack{3, 0.5, -2, 7};
   for (int i = 0; i < pack_size; ++i) {
     EXPECT_EQ((some + other)[i], some[i] + other[i]);
     EXPECT_EQ((some - 2)[i], some[i] - 2);
@@ -121,13 +121,13 @@ TEST(Lanes, EveryLaneComputesAsANumberDoes)
   EXPECT_EQ(sum(some.of), (0.25 - 1) + (4 + 1e-300));
 }
 
-TEST(Lanes, AreNumbersOfTensors)
+TEST(SimdReal, AreNumbersOfTensors)
 {
   const Mat3 a{{1, 2, 3}, {0, 4, -1}, {5, 1, 2}}, b{{0.5, 0, 1}, {1, 1, 0}, {-2, 3, 1}};
-  const Mat3Of<Lanes> product = a.cast<Lanes>() * b.cast<Lanes>();
+  const Mat3Of<SimdReal> product = a.cast<SimdReal>() * b.cast<SimdReal>();
   EXPECT_EQ(lane_of(product, 2), Mat3(a * b));
   EXPECT_EQ(product.determinant()[1], Mat3(a * b).determinant());
-  EXPECT_EQ(lane_of(unpack(pack(Mat3Of<Lanes>(product + product.transpose()))), 0), Mat3(a * b + (a * b).transpose()));
+  EXPECT_EQ(lane_of(unpack(pack(Mat3Of<SimdReal>(product + product.transpose()))), 0), Mat3(a * b + (a * b).transpose()));
 }
 
 template <int n>
@@ -148,7 +148,7 @@ void rows_there_and_back()
   }
 }
 
-TEST(Lanes, RowsBecomeLanesAndLanesRows)
+TEST(SimdReal, RowsBecomeLanesAndLanesRows)
 {
   rows_there_and_back<2>();
   rows_there_and_back<3>();

@@ -86,10 +86,10 @@ TEST(Range, ReadsAsMathematics)
 
 TEST(Where, PrintsWhatIsKnown)
 {
-  EXPECT_EQ(to_string(Where{}), "");
-  EXPECT_EQ(to_string(Where{"a.yaml", 0, 0, ""}), "a.yaml");
-  EXPECT_EQ(to_string(Where{"a.yaml", 3, 0, ""}), "a.yaml:3");
-  EXPECT_EQ(to_string(Where{"a.yaml", 3, 9, ""}), "a.yaml:3:9");
+  EXPECT_EQ(to_string(SourceLocation{}), "");
+  EXPECT_EQ(to_string(SourceLocation{"a.yaml", 0, 0, ""}), "a.yaml");
+  EXPECT_EQ(to_string(SourceLocation{"a.yaml", 3, 0, ""}), "a.yaml:3");
+  EXPECT_EQ(to_string(SourceLocation{"a.yaml", 3, 9, ""}), "a.yaml:3:9");
 }
 
 TEST(SceneErrors, PrintLikeACompilerInOrderOfLines)
@@ -107,7 +107,7 @@ TEST(SceneErrors, PrintLikeACompilerInOrderOfLines)
 
 TEST(SceneErrors, OneProblemWithoutAPlace)
 {
-  const SceneErrors error(Where{}, "the scene is empty");
+  const SceneErrors error(SourceLocation{}, "the scene is empty");
   EXPECT_STREQ(error.what(), "error: the scene is empty\n1 error, nothing was run.");
 }
 

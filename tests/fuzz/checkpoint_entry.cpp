@@ -73,19 +73,19 @@ struct SmallRun {
   Mesh<2> mesh{box<2>({0, 0}, {1, 1}, {2, 2})};
   Particles<2> particles;
   std::vector<Body> bodies{{"block", 0, n_particles, {}}};
-  Share share;
+  Subdomain share;
   CellOrder order;
   std::vector<AnyBatch> materials{make_any_batch(VonMises{}, 0, n_particles, "steel")};
   Nodes<2> nodes;
-  Walls<2> walls;
+  BoundaryConditions<2> walls;
   Loads<2> loads;
   Clock clock{};
   StageState stage;
   EnergyLedger energy{};
   MassLedger<2> mass{};
   MomentumLedger<2> momentum{};
-  Watched watched{};
-  Guards guards{};
+  LimitMonitor watched{};
+  RunLimits guards{};
   Timings timings{};
   Real residual = 0, crossing = 1;
   OutputSpec outputs = small_outputs();
@@ -117,7 +117,7 @@ struct SmallRun {
     walls.add(std::move(floor), mesh, held);
   }
   void sort() { sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order); }
-  Frame<2> frame() const
+  RunView<2> frame() const
   {
     return {.mesh = mesh,
             .share = share,
@@ -162,13 +162,13 @@ void go_on(const CheckpointList& checkpoints)
 /// As a scene begins with the bodies: each row is read.
 void begin_with(const CheckpointList& checkpoints)
 {
-  KeptBodies<2> kept;
-  kept.bodies = {{"block", 0, 0, {}}};
-  kept.materials.push_back(make_any_batch(VonMises{}, 0, 0, "steel"));
-  checkpoints.read(kept);
-  const Particles<2>& p = kept.particles;
+  KeptBodies<2> saved;
+  saved.bodies = {{"block", 0, 0, {}}};
+  saved.materials.push_back(make_any_batch(VonMises{}, 0, 0, "steel"));
+  checkpoints.read(saved);
+  const Particles<2>& p = saved.particles;
   volatile Real sum = 0;  // so that it is worked out
-  for (const Body& body : kept.bodies)
+  for (const Body& body : saved.bodies)
     for (Index i = body.begin; i < body.end; ++i) {
       const auto row = static_cast<std::size_t>(i);
       sum = sum + static_cast<Real>(p.id[row]) + p.x[row].sum() + p.v[row].sum() + p.L[row].sum() + p.F[row].sum() + p.stress[row].sum() +
@@ -184,7 +184,7 @@ std::string good_checkpoint()
   every_step.steps = 1;
   Checkpoints<2> checkpoints(run_folder(), every_step,
                              {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, 2, ""});
-  run.recorder.watch(run.frame(), Moment::stage_begins);
+  run.recorder.watch(run.frame(), RunEvent::stage_begins);
   checkpoints.see(run.frame(), run.recorder);
   ++run.clock.step;
   checkpoints.see(run.frame(), run.recorder);

@@ -46,7 +46,7 @@ void fuzz_record(std::string_view bytes)
   const MemoryFile file(bytes);
   RecordSpec spec;
   spec.unit = RecordUnit::g;
-  for (const Baseline baseline : {Baseline::kept, Baseline::velocity, Baseline::displacement})
+  for (const Baseline baseline : {Baseline::saved, Baseline::velocity, Baseline::displacement})
     try {
       spec.baseline = baseline;
       describe(spec, read_record(file.path(), spec));

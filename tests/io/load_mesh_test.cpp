@@ -19,9 +19,12 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
 
-const Where place_of_mesh{"scene.yaml", 3, 7, "mesh"};
+const SourceLocation place_of_mesh{"scene.yaml", 3, 7, "mesh"};
 
-RegionSpec region(const std::string& name, Shape shape) { return {name, std::move(shape), Where{"scene.yaml", 5, 9, "mesh.regions"}}; }
+RegionSpec region(const std::string& name, Shape shape)
+{
+  return {name, std::move(shape), SourceLocation{"scene.yaml", 5, 9, "mesh.regions"}};
+}
 
 MeshSpec regions(Real size, std::vector<RegionSpec> list)
 {
@@ -190,7 +193,7 @@ TEST(GmshMesh, GridIsABoxWithNamedSides)
 TEST(GmshMesh, GroupsOfTheSceneNameBoundaryFacetsInBoxes)
 {
   MeshSpec spec = grid();
-  spec.groups = {{"footing", "boundary", Box{{0.4, 0.9}, {1.6, 1.1}}, Where{"scene.yaml", 9, 5, ""}}};
+  spec.groups = {{"footing", "boundary", Box{{0.4, 0.9}, {1.6, 1.1}}, SourceLocation{"scene.yaml", 9, 5, ""}}};
   const Mesh<2> mesh = load_mesh<2>(spec, ".");
   const auto facets = mesh.facet_set("footing");
   ASSERT_EQ(facets.value().size(), 2U);
@@ -202,7 +205,7 @@ TEST(GmshMesh, GroupsOfTheSceneNameBoundaryFacetsInBoxes)
 MeshSpec surface_of(const std::string& of)
 {
   MeshSpec spec = regions(0.25, {region("soil", Box{{0, 0}, {2, 1}}), region("air", Box{{0, 1}, {2, 2}})});
-  spec.groups = {{"surface", of, Box{{-0.1, 0.9}, {2.1, 1.1}}, Where{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
+  spec.groups = {{"surface", of, Box{{-0.1, 0.9}, {2.1, 1.1}}, SourceLocation{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
   return spec;
 }
 
@@ -224,7 +227,7 @@ TEST(GmshMesh, GroupsAreChosenFromTheOutlineOfARegion)
 TEST(GmshMesh, GroupsAreChosenFromEarlierGroups)
 {
   MeshSpec spec = surface_of("soil:boundary");
-  spec.groups.push_back({"half", "surface", Box{{0.9, 0}, {3, 3}}, Where{}});
+  spec.groups.push_back({"half", "surface", Box{{0.9, 0}, {3, 3}}, SourceLocation{}});
   const Mesh<2> mesh = load_mesh<2>(spec, ".");
   EXPECT_EQ(2 * mesh.facet_set("half").value().size(), mesh.facet_set("surface").value().size());
 }
@@ -244,7 +247,7 @@ TEST(GmshMesh, WrongGroupsAreRefusedAtTheirPlace)
 {
   const auto said = [](const std::string& name, const Box& within) {
     MeshSpec spec = grid();
-    spec.groups = {{name, "boundary", within, Where{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
+    spec.groups = {{name, "boundary", within, SourceLocation{"scene.yaml", 9, 5, "mesh.groups[0]"}}};
     return complaint<2>(spec);
   };
   EXPECT_EQ(said("top", Box{{0, 3}, {1, 4}}),

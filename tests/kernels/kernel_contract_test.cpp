@@ -105,7 +105,7 @@ TYPED_TEST(KernelContract, OperatorsLeaveValuesOfItsOwnAsTheyAre)
     for (const auto& [name, mesh] : meshes<D>()) {
       const K kernel(mesh);
       for (Index n = 0; n < mesh.n_nodes(); ++n)
-        kernel.node_part().for_each_in_row(
+        kernel.node_operators().for_each_in_row(
             n, [&, &at = name](Index v, Real S, const Vec<D>&) { EXPECT_EQ(S, v == n ? 1 : 0) << at << ", " << n << ", " << v; });
     }
 }

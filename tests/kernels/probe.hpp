@@ -100,7 +100,7 @@ class Probe {
   {
     kernel_.open(mesh_, c, cell);
     nodes_.assign(cell.nodes.begin(), cell.nodes.end());
-    if constexpr (HasNodePart<K, D>) {
+    if constexpr (HasNodeOperators<K, D>) {
       for (const Index n : mesh_.cell(c))
         nodes_.insert(nodes_.end(), mesh_.ring_of_node()[n].begin(), mesh_.ring_of_node()[n].end());
       std::sort(nodes_.begin(), nodes_.end());
@@ -139,7 +139,7 @@ class Probe {
     const auto i = static_cast<std::size_t>(a);
     if constexpr (HasOwnValues<K, D>) {
       values_[entry(cell.nodes[i])] = weights.w[a];
-    } else if constexpr (HasNodePart<K, D>) {
+    } else if constexpr (HasNodeOperators<K, D>) {
       add_row(cell.nodes[i], weights.w[a], weights.w[a]);
     } else {
       values_[i] = weights.w[a];
@@ -152,7 +152,7 @@ class Probe {
   /// `value` of the row of n in S, `hat` of that in D.
   void add_row(Index n, Real value, Real hat)
   {
-    kernel_.node_part().for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
+    kernel_.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
       values_[entry(v)] += value * S;
       gradients_[entry(v)] += hat * gradient;
     });

@@ -19,7 +19,7 @@ std::size_t nodes_as_corners(const Mesh<3>& mesh)
   for (Index n = 0; n < mesh.n_nodes(); ++n) {
     Real sum = 0, least = 1;
     Vec<3> centre = Vec<3>::Zero();
-    kernel.node_part().for_each_in_row(n, [&](Index v, Real S, const Vec<3>&) {
+    kernel.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<3>&) {
       sum += S, least = std::min(least, S);
       centre += S * (mesh.node(v) - mesh.node(n));
     });

@@ -186,8 +186,8 @@ class Neighbours {
   void step(const std::array<Mat3, pack_size>& f, int count, bool elastic, Real viscous)
   {
     constexpr Real dt = 1e-3;
-    Mat3Of<Lanes> F, rate, before;
-    Lanes pressure = 0;
+    Mat3Of<SimdReal> F, rate, before;
+    SimdReal pressure = 0;
     Index rows[pack_size];
     const auto untold = together_.history;
     for (int lane = 0; lane < pack_size; ++lane) {
@@ -203,8 +203,8 @@ class Neighbours {
       pressure.set(lane, viscous * (1 + from));
     }
     alone_.history = together_.history;
-    const Mat3Of<Lanes> answers = together_.update(rows, count, IncrementOf<Lanes>{F, rate, before, dt, pressure, elastic});
-    const Lanes speeds = together_.wave_speed(rows, count, F);
+    const Mat3Of<SimdReal> answers = together_.update(rows, count, IncrementOf<SimdReal>{F, rate, before, dt, pressure, elastic});
+    const SimdReal speeds = together_.wave_speed(rows, count, F);
     for (int lane = 0; lane < pack_size; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
       if (lane >= count) {

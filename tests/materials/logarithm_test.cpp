@@ -60,14 +60,14 @@ TEST(Logarithm, InLanesIsThatOfEveryTensorAlone)
   Dice dice(5);
   for (int n = 0; n < 2000; ++n) {
     std::array<Sym3, pack_size> each;
-    Sym3Of<Lanes> all;
+    Sym3Of<SimdReal> all;
     for (int lane = 0; lane < pack_size; ++lane) {
       auto& a = each[static_cast<std::size_t>(lane)];
       a = add_diagonal(pack(dice.symmetric(std::pow(10, dice.real(-12, n % 3 - 2.0)))), dice.real(-0.5, 3) * (n % 2));
       for (int k = 0; k < 6; ++k)
         all[k].set(lane, a[k]);
     }
-    const Sym3Of<Lanes> logarithms = log1p(all), exponentials = expm1(all);
+    const Sym3Of<SimdReal> logarithms = log1p(all), exponentials = expm1(all);
     for (int lane = 0; lane < pack_size; ++lane) {
       const Sym3& a = each[static_cast<std::size_t>(lane)];
       const Sym3 log_of = log1p(a), exp_of = expm1(a);

@@ -24,10 +24,10 @@ TEST(PowerNear, OfFourAtOnceIsThatOfEach)
 {
   constexpr Real exponent = 0.4;
   const Pack at{0.5, 0.5, 0.5, 0};
-  const PowerNear<Lanes> power(Lanes(at), exponent);
+  const PowerNear<SimdReal> power(SimdReal(at), exponent);
   for (const Real way : {0.0, 5e-4, 0.01, 0.3}) {
     const Pack x{0.5, 0.5 * (1 + way), 0.5 * (1 - way), 0};
-    const Lanes found = power(Lanes(x));
+    const SimdReal found = power(SimdReal(x));
     for (int lane = 0; lane < 3; ++lane)
       EXPECT_NEAR(found.of[lane], std::pow(x[lane], exponent), exact) << way << " " << lane;
     EXPECT_EQ(found.of[3], 0) << way;

@@ -31,7 +31,7 @@ class World : public testing::Test {
  protected:
   void SetUp() override { exchange.barrier(); }
   void TearDown() override { exchange.cut_messages(std::size_t{1} << 30); }
-  Exchange& exchange = world();
+  Communicator& exchange = world();
   const int rank = exchange.rank(), size = exchange.size();
 };
 
@@ -202,12 +202,12 @@ struct Post {
   }
   std::vector<int> others;
   std::vector<std::vector<std::byte>> sent, got, wanted;
-  std::vector<Parcel> out, in;
+  std::vector<Message> out, in;
 };
 
 TEST_F(World, KindsOfMessagesDoNotMix)
 {
-  Talk first_talk, second_talk;
+  PendingMessages first_talk, second_talk;
   for (const std::size_t piece : {std::size_t{1} << 30, std::size_t{16}}) {
     exchange.cut_messages(piece);
     for (int step = 0; step < 50; ++step) {
@@ -239,10 +239,10 @@ TEST_F(World, LongMessagesArriveWhole)
     return;
   const int right = (rank + 1) % size, left = (rank + size - 1) % size;
   std::vector<std::byte> sent = letter(rank, right, 1000000), got(sent.size());
-  const Parcel out{right, sent}, in{left, got};
-  Talk talk;
+  const Message out{right, sent}, in{left, got};
+  PendingMessages talk;
   exchange.start({&out, 1}, {&in, 1}, 0, talk);
-  Talk moved = std::move(talk);
+  PendingMessages moved = std::move(talk);
   moved.wait();
   EXPECT_EQ(got, letter(left, rank, 1000000));
 }
@@ -254,8 +254,8 @@ TEST_F(World, AWrongLengthIsTold)
   std::vector<std::byte> sent(12), got(16);
   const int other = rank ^ 1;
   if (other < size) {
-    const Parcel out{other, sent}, in{other, got};
-    Talk talk;
+    const Message out{other, sent}, in{other, got};
+    PendingMessages talk;
     exchange.start({&out, 1}, {&in, 1}, 0, talk);
     try {
       talk.wait();
@@ -270,13 +270,13 @@ TEST_F(World, CountsWhatItSends)
 {
   const Traffic before = exchange.traffic();
   Post post(rank, size, 0);
-  Talk talk;
+  PendingMessages talk;
   exchange.start(post.out, post.in, 0, talk);
   talk.wait();
   std::vector<std::int64_t> numbers(5);
   exchange.sum(numbers);
   std::int64_t bytes = 0, messages = 0;
-  for (const Parcel& parcel : post.out) {
+  for (const Message& parcel : post.out) {
     bytes += static_cast<std::int64_t>(parcel.bytes.size());
     messages += parcel.bytes.empty() ? 0 : 1;
   }
@@ -288,10 +288,10 @@ TEST_F(World, CountsWhatItSends)
 
 /// The message of the exception, of just that type, that comes out of agree() when the ranks from `first` on have one.
 template <class E>
-std::string agreed(Exchange& exchange, int first, const E& error)
+std::string agreed(Communicator& exchange, int first, const E& error)
 {
   try {
-    exchange.agree(Exchange::caught([&] {
+    exchange.agree(Communicator::caught([&] {
       if (exchange.rank() >= first)
         throw error;
     }));

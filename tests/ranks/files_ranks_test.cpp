@@ -112,23 +112,23 @@ struct Maker {
 
 /// What a rank has of a run, as far as files need it.
 struct RankOfRun {
-  Exchange& ranks = world();
+  Communicator& ranks = world();
   Mesh<2> whole{box<2>({0, 0}, {1, 1}, {24, 24})};
   Mesh<2> mesh = whole;
-  Share share;
+  Subdomain share;
   Maker make;
   Cloud mine;
   CellOrder order;
   Nodes<2> nodes;
-  Walls<2> walls;
+  BoundaryConditions<2> walls;
   Loads<2> loads;
   Clock clock{};
   StageState stage;
   EnergyLedger energy{};
   MassLedger<2> mass{};
   MomentumLedger<2> momentum{};
-  Watched watched{};
-  Guards guards{};
+  LimitMonitor watched{};
+  RunLimits guards{};
   Timings timings{};
   Real residual = 0, crossing = 1;
 
@@ -146,7 +146,7 @@ struct RankOfRun {
     for (Index& cell : mine.particles.cell)
       cell = share.local_cell(cell);
   }
-  Frame<2> frame() const
+  RunView<2> frame() const
   {
     return {mesh,       share, mine.particles, mine.bodies, mine.materials, order,   &ranks, nodes,   walls,    loads,    clock, stage,
             "the only", 0,     energy,         mass,        momentum,       watched, guards, timings, residual, crossing, 0,     0};
@@ -189,7 +189,7 @@ class Files : public testing::Test {
     EXPECT_EQ(message, of_root);
     return message;
   }
-  Exchange& ranks = world();
+  Communicator& ranks = world();
   fs::path folder;
 
  private:
@@ -224,7 +224,7 @@ TEST_F(Files, RowsAreDealtOutWithAllThatIsTheirs)
   std::vector<int> to;
   for (const std::int64_t id : cloud.particles.id)
     to.push_back(static_cast<int>(id % 3) % ranks.size());  // nothing for a fourth
-  deal_out(ranks, to, cloud.bodies, cloud.materials, cloud.particles);
+  redistribute(ranks, to, cloud.bodies, cloud.materials, cloud.particles);
   std::vector<std::int64_t> ids;
   for (std::int64_t id = 0; id < make.n; ++id)
     if (id % 3 % ranks.size() == ranks.rank())
@@ -232,7 +232,7 @@ TEST_F(Files, RowsAreDealtOutWithAllThatIsTheirs)
   make.expect(cloud, ids);
   EXPECT_EQ(cloud.particles.x.size(), ids.size());
   to.assign(ids.size(), ranks.size() - 1);
-  deal_out(ranks, to, cloud.bodies, cloud.materials, cloud.particles);  // from ranks without any
+  redistribute(ranks, to, cloud.bodies, cloud.materials, cloud.particles);  // from ranks without any
   make.expect(cloud, ranks.rank() == ranks.size() - 1 ? RankOfRun::ids(0, make.n) : std::vector<std::int64_t>());
 }
 
@@ -256,7 +256,7 @@ TEST_F(Files, SlicesHaveTheRowsOfTheFile)
 TEST_F(Files, ParticlesAreWrittenAsByOneRank)
 {
   const RankOfRun run(1000);
-  const auto write = [&](Exchange& by, const Particles<2>& particles, const Slice& rows, const fs::path& file) {
+  const auto write = [&](Communicator& by, const Particles<2>& particles, const Slice& rows, const fs::path& file) {
     const auto in_order = rows_by_id(particles);
     std::vector<std::int64_t> ids;
     Column heat{"heat", 1, {}, "J"}, speed{"a<b", 3, {}};
@@ -311,14 +311,14 @@ TEST_F(Files, MeshesAreWrittenAsByOneRank)
 }
 
 /// The particles, and the history of the last body.
-void write_cloud(Exchange& by, const fs::path& file, const Cloud& cloud, const std::vector<Body>& in_file, const Slice& rows)
+void write_cloud(Communicator& by, const fs::path& file, const Cloud& cloud, const std::vector<Body>& in_file, const Slice& rows)
 {
   std::vector<SharedArray> arrays;
   share_columns("particles", cloud.particles, rows, arrays);
   const Body &all = in_file[2], &here = cloud.bodies[2];
   const Slice of_body{here.size() > 0 ? rows.first + here.begin - all.begin : 0, all.size(), rows.piece, all.begin % rows.piece};
   share_history("history", cloud.materials[2], of_body, arrays);
-  write_arrays(by, file, arrays, [&](ArrayWriter& rest) { keep(rest, "words", std::string("of the root")); });
+  write_arrays(by, file, arrays, [&](ArrayWriter& rest) { save(rest, "words", std::string("of the root")); });
 }
 
 TEST_F(Files, ArraysAreWrittenAsByOneRankAndReadInSlices)
@@ -327,7 +327,7 @@ TEST_F(Files, ArraysAreWrittenAsByOneRankAndReadInSlices)
   const auto slice = slice_of_particles(run.frame(), small_piece);
   write_cloud(ranks, folder / "all.h5", {slice.particles, slice.bodies, slice.materials}, slice.whole_bodies, slice.rows);
   Cloud whole = run.make([](std::int64_t) { return true; });
-  deal_out(one_rank(), std::vector<int>(1000, 0), whole.bodies, whole.materials, whole.particles);
+  redistribute(one_rank(), std::vector<int>(1000, 0), whole.bodies, whole.materials, whole.particles);
   if (ranks.is_root()) {
     write_cloud(one_rank(), folder / "one.h5", whole, whole.bodies, {0, 1000, small_piece});
     EXPECT_TRUE(read_whole(folder / "all.h5") == read_whole(folder / "one.h5"));
@@ -425,7 +425,7 @@ TEST_F(Files, ACheckpointIsTakenOverInSlicesAndRefusedByAllWhereOneOfThemIsDamag
   const Slices slices{n, ranks.size()};
   EXPECT_EQ(other.mine.particles.size(), static_cast<Index>(slices.size(ranks.rank())));
   if (!ranks.alone()) {
-    take_own_particles(ranks, other.share, other.mine.bodies, other.mine.materials, other.mine.particles);
+    receive_owned_particles(ranks, other.share, other.mine.bodies, other.mine.materials, other.mine.particles);
     for (const Index cell : other.mine.particles.cell)
       ASSERT_TRUE(other.share.owns_cell(cell));
     for (Index& cell : other.mine.particles.cell)

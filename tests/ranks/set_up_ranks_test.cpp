@@ -39,7 +39,7 @@ loads:
 
 class SetUpOnRanks : public testing::Test {
  protected:
-  Exchange& ranks = world();
+  Communicator& ranks = world();
   Scene scene = three_bodies();
   Mesh<2> mesh = load_mesh<2>(scene.mesh, ".");
   talus::Setup<2> whole = set_up(scene, mesh, one_rank()), part = set_up(scene, mesh, ranks);
@@ -102,7 +102,7 @@ TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)
   for (const Index cell : whole.particles.cell)
     ++weights[z(cell / block_cells)];
   const Part<2> here = cut(mesh, partition(mesh, weights, ranks.size()), ranks.rank(), 2);
-  take_own_particles(ranks, here.share, part.bodies, part.materials, part.particles);
+  receive_owned_particles(ranks, here.share, part.bodies, part.materials, part.particles);
   expect_rows_of_the_whole();
   for (std::size_t p = 0; p < part.particles.cell.size(); ++p) {
     const Index cell = part.particles.cell[p];

@@ -76,7 +76,7 @@ inline Stage test_stage(Real duration)
 template <int D, Kernel<D> K>
 void run_until(Model<D, K>& m, Real end, Real cfl = 0.4)
 {
-  run_stage(m, test_stage(end - m.clock.time), StepLimits{.cfl = cfl}, [](const auto&, Moment) {});
+  run_stage(m, test_stage(end - m.clock.time), StepLimits{.cfl = cfl}, [](const auto&, RunEvent) {});
 }
 
 /// A wall on the facets of a set of the mesh, such as "y_min".

@@ -90,7 +90,7 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
   constexpr int D = TypeParam::D;
   auto m = any_ball<TypeParam>(Precision::full);
   scatter(m);
-  sum_on_nodes(m);
+  assemble_nodes(m);
   using Mass = Eigen::Matrix<Real, 1, 1>;
   const std::size_t n = m.nodes.sum.size();
   std::vector<Mass> mass(n, Mass::Zero()), summed_mass(n);
@@ -123,11 +123,11 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticlesInBothPrecisi
       auto m = any_ball<TypeParam>(precision);
       m.transfer.scheme = scheme;
       scatter(m);
-      sum_on_nodes(m);
+      assemble_nodes(m);
       Dice dice;
       for (auto& node : m.nodes.motion)
         node = {.v = dice.any<Vec<D>>(), .change = dice.any<Vec<D>>()};
-      show_to_particles(m, Kick{});
+      project_to_particles(m, Kick{});
       const std::size_t n = m.particles.id.size();
       const Real dt = 0.25;
       std::vector<Vec<D>> v(n, Vec<D>::Zero()), x(m.particles.x.begin(), m.particles.x.end()), read_v(n), read_x(n);

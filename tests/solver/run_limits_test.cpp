@@ -23,8 +23,8 @@ M flying_block()
 std::string stopped(M& m, int* shown = nullptr)
 {
   try {
-    finish_stage(m, test_stage(0.2), {}, [&](const M&, Moment moment) {
-      if (shown && moment == Moment::given_up)
+    finish_stage(m, test_stage(0.2), {}, [&](const M&, RunEvent moment) {
+      if (shown && moment == RunEvent::given_up)
         ++*shown;
     });
   } catch (const RunError& e) {
@@ -33,7 +33,7 @@ std::string stopped(M& m, int* shown = nullptr)
   return {};
 }
 
-TEST(Guards, ASoundRunPasses)
+TEST(RunLimits, ASoundRunPasses)
 {
   M m = flying_block();
   m.guards.speed = 3, m.guards.gain = 0.01;
@@ -44,7 +44,7 @@ TEST(Guards, ASoundRunPasses)
   EXPECT_LT(m.watched.gain, 1e-6);
 }
 
-TEST(Guards, MassThatIsNotThereIsMissed)
+TEST(RunLimits, MassThatIsNotThereIsMissed)
 {
   M m = flying_block();
   m.mass.start *= 1 + 1e-6;
@@ -54,7 +54,7 @@ TEST(Guards, MassThatIsNotThereIsMissed)
   EXPECT_EQ(shown, 1) << "before the run gives up its state can be kept";
 }
 
-TEST(Guards, EnergyFromNowhereIsSeen)
+TEST(RunLimits, EnergyFromNowhereIsSeen)
 {
   const auto with_a_push = [](Real gain, bool stops) {
     M m = flying_block();
@@ -74,13 +74,13 @@ TEST(Guards, EnergyFromNowhereIsSeen)
   EXPECT_NEAR(seen.gain, gained, 1e-3);
 }
 
-TEST(Guards, TheEndOfAStageIsLookedAt)
+TEST(RunLimits, TheEndOfAStageIsLookedAt)
 {
   const auto short_stage = [](M& m) -> std::string {
     const Stage stage = test_stage(1e-4);
     begin_stage(m, stage, 0);
     try {
-      finish_stage(m, stage, {}, [](const M&, Moment) {});
+      finish_stage(m, stage, {}, [](const M&, RunEvent) {});
     } catch (const RunError& e) {
       return e.what();
     }
@@ -114,7 +114,7 @@ M with_a_failed_particle(Real allowed)
   return m;
 }
 
-TEST(Guards, AFailedParticleStopsTheRunUnlessItMayGo)
+TEST(RunLimits, AFailedParticleStopsTheRunUnlessItMayGo)
 {
   M m = with_a_failed_particle(0);
   const std::string message = stopped(m);
@@ -132,17 +132,17 @@ TEST(Guards, AFailedParticleStopsTheRunUnlessItMayGo)
   EXPECT_NEAR(without.energy.carried_away, 0.5 * without.mass.failed * 1.25, 1e-2 * without.mass.failed);
 }
 
-TEST(Guards, WhatFailedInTheLastStepIsNotMissed)
+TEST(RunLimits, WhatFailedInTheLastStepIsNotMissed)
 {
   M m = with_a_failed_particle(0.1);
   const Stage stage = test_stage(1e-4);
   begin_stage(m, stage, 0);
-  EXPECT_NO_THROW(finish_stage(m, stage, {}, [](const M&, Moment) {}));
+  EXPECT_NO_THROW(finish_stage(m, stage, {}, [](const M&, RunEvent) {}));
   EXPECT_EQ(m.mass.failed_count, 1);
   EXPECT_EQ(m.clock.step, 1);
 }
 
-TEST(Guards, NoMoreMayFailThanIsAllowed)
+TEST(RunLimits, NoMoreMayFailThanIsAllowed)
 {
   M m = with_a_failed_particle(1e-6);
   EXPECT_THAT(stopped(m), HasSubstr("beyond watch.failed_mass = 1e-06"));

@@ -69,7 +69,7 @@ void update_in_lanes(benchmark::State& timer, Regime regime)
 {
   Body<L> body(regime);
   const auto packed = [&](const std::vector<Mat3>& all) {
-    std::vector<Mat3Of<Lanes>> packs(all.size() / pack_size);
+    std::vector<Mat3Of<SimdReal>> packs(all.size() / pack_size);
     for (std::size_t p = 0; p < packs.size(); ++p)
       for (Index k = 0; k < 9; ++k)
         packs[p](k) = in_each_lane([&](int lane) { return all[p * pack_size + static_cast<std::size_t>(lane)](k); });
@@ -83,7 +83,7 @@ void update_in_lanes(benchmark::State& timer, Regime regime)
     for (Index i = 0; i < body.n; i += pack_size) {
       const auto p = static_cast<std::size_t>(i / pack_size);
       const Index rows[pack_size] = {i, i + 1, i + 2, i + 3};
-      stress[p] = body.batch.update(rows, pack_size, IncrementOf<Lanes>{F[p], gradient[p], stress[p], 1.0, 0, false});
+      stress[p] = body.batch.update(rows, pack_size, IncrementOf<SimdReal>{F[p], gradient[p], stress[p], 1.0, 0, false});
     }
     benchmark::DoNotOptimize(stress.data());
   }

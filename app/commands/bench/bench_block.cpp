@@ -78,8 +78,8 @@ Particles<D> bench_particles(const Mesh<D>& mesh, int per_cell, Real density)
 Transfer bench_transfer(const std::string& name)
 {
   TransferSpec spec;
-  for (std::size_t i = 0; i < words(TransferScheme{}).size(); ++i)
-    if (words(TransferScheme{})[i] == name)
+  for (std::size_t i = 0; i < enum_names(TransferScheme{}).size(); ++i)
+    if (enum_names(TransferScheme{})[i] == name)
       spec.scheme = static_cast<TransferScheme>(i);
   return transfer_of(spec);
 }

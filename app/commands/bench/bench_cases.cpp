@@ -15,7 +15,7 @@ namespace {
 template <class Choice>
 std::vector<std::string> names_of(Choice choice)
 {
-  const auto names = words(choice);
+  const auto names = enum_names(choice);
   return {names.begin(), names.end()};
 }
 

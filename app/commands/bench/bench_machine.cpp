@@ -56,13 +56,13 @@ Real triad_bandwidth()
 Real fma_rate(int n_threads)
 {
   constexpr int chains = 12, rounds = 2'000'000;  // enough chains to hide a latency of 4 or 5 cycles with two units
-  std::vector<Real> kept(static_cast<std::size_t>(n_threads));
+  std::vector<Real> saved(static_cast<std::size_t>(n_threads));
   const Real seconds = shortest_pass([&] {
     parallel_for(n_threads, [&](Index thread) {
       Pack sums[chains];
       for (int i = 0; i < chains; ++i)
         sums[i] = Pack{1, 2, 3, 4} + static_cast<Real>(i);
-      const Pack factor = Pack{0.5, 0.5, 0.5, 0.5} + kept[static_cast<std::size_t>(thread)] * 1e-300;
+      const Pack factor = Pack{0.5, 0.5, 0.5, 0.5} + saved[static_cast<std::size_t>(thread)] * 1e-300;
       const Pack summand = 1 - factor;
       for (int round = 0; round < rounds; ++round)
         for (Pack& x : sums)
@@ -70,7 +70,7 @@ Real fma_rate(int n_threads)
       Pack total = sums[0];
       for (int i = 1; i < chains; ++i)
         total += sums[i];
-      kept[static_cast<std::size_t>(thread)] = sum(total);
+      saved[static_cast<std::size_t>(thread)] = sum(total);
     });
   });
   return Real{chains} * rounds * pack_size * n_threads / seconds;

@@ -48,17 +48,17 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
   }
   Laps laps(plan);
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),
-              {[&](const Frame<D>& frame, Moment moment) {
+              {[&](const RunView<D>& frame, RunEvent moment) {
                  if (recorder)
                    recorder->watch(frame, moment);
-                 if (moment == Moment::stage_done) {
+                 if (moment == RunEvent::stage_done) {
                    result.bytes_held = bytes_per_particle(frame);
                    result.bytes_moved = bytes_moved(frame);
                  }
-                 if (moment == Moment::step_done)
+                 if (moment == RunEvent::step_done)
                    laps.step_done(frame.timings.particle_steps, phases_of(frame.timings));
                },
-               [](const Frame<D>&, const StageResult&) {}});
+               [](const RunView<D>&, const StageResult&) {}});
   laps.fill(result);
   return result;
 }
@@ -112,7 +112,7 @@ void Laps::fill(BenchResult& result) const
 }
 
 template <int D>
-Real bytes_moved(const Frame<D>& frame)
+Real bytes_moved(const RunView<D>& frame)
 {
   constexpr std::array<std::string_view, 5> constants{"id", "cell", "mass", "volume0", "start"};
   const auto bytes = [](const auto& column) { return static_cast<Real>(column.size() * sizeof(column[0])); };
@@ -132,8 +132,8 @@ Real bytes_moved(const Frame<D>& frame)
   return total / static_cast<Real>(frame.particles.size());
 }
 
-template Real bytes_moved<2>(const Frame<2>&);
-template Real bytes_moved<3>(const Frame<3>&);
+template Real bytes_moved<2>(const RunView<2>&);
+template Real bytes_moved<3>(const RunView<3>&);
 
 BenchResult measure(const BenchSetting& setting, const BenchPlan& plan)
 {

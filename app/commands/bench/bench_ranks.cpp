@@ -48,7 +48,7 @@ std::vector<Real> seconds_between(const RankMark& from, const RankMark& to, int 
 
 /// Of this rank, in the order of rank_columns.
 template <int D>
-std::vector<Real> holdings(const Frame<D>& frame, const RankMark& from, const RankMark& to, int steps, const Estimate& memory)
+std::vector<Real> holdings(const RunView<D>& frame, const RankMark& from, const RankMark& to, int steps, const Estimate& memory)
 {
   const bool alone = frame.share.alone();
   const auto owns_cell = [&](Index c) { return alone || frame.share.owns_cell(c); };
@@ -128,8 +128,8 @@ void measure_ranks(const BenchSetting& setting, const BenchPlan& plan, RanksRepo
   std::size_t n_times = 0;
   int done = 0;
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),
-              {[&](const Frame<D>& frame, Moment moment) {
-                 if (moment != Moment::step_done)
+              {[&](const RunView<D>& frame, RunEvent moment) {
+                 if (moment != RunEvent::step_done)
                    return;
                  ++done;
                  if (done >= plan.warm_up && (done - plan.warm_up) % plan.steps == 0)
@@ -138,7 +138,7 @@ void measure_ranks(const BenchSetting& setting, const BenchPlan& plan, RanksRepo
                  if (done == plan.all_steps())
                    held = holdings(frame, marks.front(), marks.back(), plan.repeats * plan.steps, memory);
                },
-               [](const Frame<D>&, const StageResult&) {}});
+               [](const RunView<D>&, const StageResult&) {}});
   for (std::size_t i = 1; i < marks.size(); ++i) {
     const std::vector<Real> seconds = seconds_between(marks[i - 1], marks[i], plan.steps);
     n_times = seconds.size();

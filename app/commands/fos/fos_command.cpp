@@ -135,7 +135,7 @@ class FosSearch {
     PlannedRun run;
   };
 
-  static std::string_view word_of(const FosTrial& trial) { return words(Verdict{})[static_cast<std::size_t>(trial.verdict)]; }
+  static std::string_view word_of(const FosTrial& trial) { return enum_names(Verdict{})[static_cast<std::size_t>(trial.verdict)]; }
 
   void say(const std::string& what) const
   {

@@ -32,7 +32,7 @@ struct Motion {
 std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std::string> moved, const AtRest& bodies);
 
 enum class Verdict : std::uint8_t { holds, fails, unclear };
-constexpr std::array<std::string_view, 3> words(Verdict) { return {"holds", "fails", "unclear"}; }
+constexpr std::array<std::string_view, 3> enum_names(Verdict) { return {"holds", "fails", "unclear"}; }
 
 /// Above these a measure says that the slope goes on.
 struct FosCriterion {

@@ -231,7 +231,7 @@ try {
 } catch (const SceneErrors& e) {
   std::vector<Problem> problems;
   for (const Problem& problem : e.problems()) {
-    Where where = plan.spec.where;
+    SourceLocation where = plan.spec.where;
     where.path = problem.where.path;
     problems.push_back({where, "a run that talus fos makes of this scene is refused: " + problem.message, ""});
   }
@@ -280,7 +280,7 @@ FosPlan plan_fos(const FosOptions& options)
   const Scene& scene = plan.spec;
   const std::size_t n_stages = stages_until_rest(scene);
   if (n_stages == 0) {
-    Where where = scene.where;
+    SourceLocation where = scene.where;
     where.path = "stages";
     throw SceneErrors(where, "there is no stage of type geostatic: strength is divided in the state at rest that such a stage finds");
   }

@@ -103,7 +103,7 @@ Answers given_answers(const SceneTemplate& from, const std::vector<std::string>&
   for (const std::string& text : set) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
-    const Where where{"--set " + text, 0, 0, ""};
+    const SourceLocation where{"--set " + text, 0, 0, ""};
     if (equals == text.npos)
       problems.push_back({where, "write it as name=value", ""});
     else if (std::find(known.begin(), known.end(), name) == known.end())
@@ -131,14 +131,14 @@ Answers take_given(const SceneTemplate& from, const std::vector<std::string>& se
       try {
         text = read_answer(*open, said->text);
       } catch (const std::invalid_argument& e) {
-        problems.push_back({Where{fmt::format("--set {}={}", name, said->text), 0, 0, ""}, e.what(), ""});
+        problems.push_back({SourceLocation{fmt::format("--set {}={}", name, said->text), 0, 0, ""}, e.what(), ""});
       }
     answers.push_back({name, read_answer(*open, problems.empty() ? text : open->fallback)});
   }
   for (const Answer& one : given)
     if (std::none_of(answers.begin(), answers.end(), [&](const Answer& answer) { return answer.name == one.name; }))
       problems.push_back(
-          {Where{fmt::format("--set {}={}", one.name, one.text), 0, 0, ""}, "with the other answers nothing asks for this", ""});
+          {SourceLocation{fmt::format("--set {}={}", one.name, one.text), 0, 0, ""}, "with the other answers nothing asks for this", ""});
   if (!problems.empty())
     throw SceneErrors(std::move(problems));
   return answers;

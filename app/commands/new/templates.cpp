@@ -51,7 +51,7 @@ std::vector<NamedNumber> values_of(const SceneTemplate& from, const Answers& ans
 }
 
 /// The value of a formula of the head.
-Real value_at(const Where& where, const SceneTemplate& from, const Answers& answers, const std::string& formula)
+Real value_at(const SourceLocation& where, const SceneTemplate& from, const Answers& answers, const std::string& formula)
 {
   try {
     return evaluate(formula, values_of(from, answers));
@@ -93,7 +93,7 @@ class Filling {
 
   [[noreturn]] void fail(std::size_t column, const std::string& what) const
   {
-    throw SceneErrors(Where{from_.file, from_.first_line + line_ - 1, static_cast<int>(column) + 1, ""}, what);
+    throw SceneErrors(SourceLocation{from_.file, from_.first_line + line_ - 1, static_cast<int>(column) + 1, ""}, what);
   }
 
   bool written() const

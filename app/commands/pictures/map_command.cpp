@@ -60,7 +60,7 @@ void draw_maps(const MapOptions& options)
   require_maps(options.folder, scene, options.movie.has_value());
   words.insert(words.begin(), "map");
   if (options.movie)
-    film(options, std::move(words));
+    make_movie(options, std::move(words));
   else
     for (const RenderedFile& file : launch_render(words))
       fmt::print("{}\n", file.path.string());

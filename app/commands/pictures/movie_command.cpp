@@ -42,7 +42,7 @@ void check_movie(const MovieOptions& options, const std::vector<std::string>& wo
     problems.emplace_back("--out: of a movie it says where the pictures go that --keep-frames keeps");
 }
 
-void film(const MovieOptions& options, std::vector<std::string> words)
+void make_movie(const MovieOptions& options, std::vector<std::string> words)
 {
   require_movie_maker();
   if (options.keep_frames) {

@@ -11,6 +11,6 @@ namespace talus {
 void check_movie(const MovieOptions& options, const std::vector<std::string>& words, std::vector<std::string>& problems);
 
 /// Has talus-render draw what the words say, makes a movie of it, and prints its name.
-void film(const MovieOptions& options, std::vector<std::string> words);
+void make_movie(const MovieOptions& options, std::vector<std::string> words);
 
 }  // namespace talus

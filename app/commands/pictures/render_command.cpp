@@ -73,7 +73,7 @@ void render_results(const RenderOptions& options)
   check_movie(options, options.words, problems);
   render::require_none(problems);
   if (options.movie)
-    film(options, std::move(words));
+    make_movie(options, std::move(words));
   else
     for (const RenderedFile& file : launch_render(words))
       fmt::print("{}\n", file.path.string());

@@ -61,17 +61,17 @@ std::vector<Real> renumber(std::span<const Real> nodes, MeshEdges& edges)
   for (const Edge& edge : edges.all)
     for (const Index n : edge)
       number[static_cast<std::size_t>(n)] = 0;
-  std::vector<Real> kept;
+  std::vector<Real> saved;
   for (std::size_t n = 0; n < number.size(); ++n)
     if (number[n] != none) {
-      number[n] = static_cast<Index>(kept.size() / 3);
-      kept.insert(kept.end(), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
+      number[n] = static_cast<Index>(saved.size() / 3);
+      saved.insert(saved.end(), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
     }
   for (std::vector<Edge>* list : {&edges.all, &edges.outline})
     for (Edge& edge : *list)
       for (Index& n : edge)
         n = number[static_cast<std::size_t>(n)];
-  return kept;
+  return saved;
 }
 
 PagePlaces places_of(std::span<const Real> nodes, Page& page)
@@ -180,7 +180,7 @@ ReachRule rule_of(const std::optional<RunoutSpec>& runout, const std::optional<S
   return reach_rule(runout, asked ? *runout->cell : mesh ? mean_node_size(mesh->dimension, mesh->nodes, mesh->corners) : 0);
 }
 
-SurveyTask survey_task(const RunFolder& run, const PageWishes& wishes, const std::vector<PageBody>& bodies, const ReachRule& rule,
+SurveyTask survey_task(const RunFolder& run, const PageOptions& wishes, const std::vector<PageBody>& bodies, const ReachRule& rule,
                        const Vec3& up)
 {
   SurveyTask task{up, bodies.size(), wishes.fields, run.scene.outputs.picture.field, rule, {}, {}};
@@ -193,7 +193,7 @@ SurveyTask survey_task(const RunFolder& run, const PageWishes& wishes, const std
   return task;
 }
 
-Page begin_page(const RunFolder& run, const PageWishes& wishes)
+Page begin_page(const RunFolder& run, const PageOptions& wishes)
 {
   Page page;
   page.title = run.scene.title;
@@ -243,7 +243,7 @@ RunFolder read_run_folder(const fs::path& folder)
   return run;
 }
 
-std::string page_of(const RunFolder& run, const PageWishes& wishes, const fs::path& template_file, RunSurvey& survey,
+std::string page_of(const RunFolder& run, const PageOptions& wishes, const fs::path& template_file, RunSurvey& survey,
                     std::vector<std::string>& notes)
 {
   const std::string text = read_whole(template_file);

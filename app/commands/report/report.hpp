@@ -12,7 +12,7 @@
 
 namespace talus {
 
-struct PageWishes {
+struct PageOptions {
   std::vector<std::string> fields;    ///< empty: that of the pictures, then all
   std::optional<std::size_t> frames;  ///< so many; default as many as there is room for
   Real megabytes = 28;                ///< of the whole file, at most
@@ -37,7 +37,7 @@ RunState state_of_run(const std::filesystem::path& folder, const SummaryBack& su
 
 /// The page that `text`, a template, makes of a run.  `survey`: what is known from before, if anything; brought up to date.  `notes`, what
 /// the page leaves out, if asked for.  Error for what was asked for and is not there, or does not fit; EnvironmentError.
-std::string page_of(const RunFolder& run, const PageWishes& wishes, const std::filesystem::path& template_file, RunSurvey& survey,
+std::string page_of(const RunFolder& run, const PageOptions& wishes, const std::filesystem::path& template_file, RunSurvey& survey,
                     std::vector<std::string>& notes);
 
 /// The template of pages: `given`, else report.html beside this program, which the build makes there where it can fetch the libraries of the page.

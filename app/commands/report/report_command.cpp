@@ -12,7 +12,7 @@ namespace talus {
 void write_report(const ReportOptions& options)
 {
   const RunFolder run = read_run_folder(options.folder);
-  PageWishes wishes{options.fields, {}, options.size.value_or(PageWishes{}.megabytes), {}};
+  PageOptions wishes{options.fields, {}, options.size.value_or(PageOptions{}.megabytes), {}};
   if (options.frames)
     wishes.frames = static_cast<std::size_t>(*options.frames);
   const auto file = options.out.value_or(options.folder / report_file);

@@ -25,13 +25,13 @@ struct Outward {
 /// Along all axes but the one that is nearest to `up`; along all where there is no gravity.
 std::vector<Outward> directions(const MetricTask& task)
 {
-  Index upright = 0;
+  Index vertical = 0;
   for (Index d = 1; d < task.dimension; ++d)
-    if (std::abs(task.up[d]) > std::abs(task.up[upright]))
-      upright = d;
+    if (std::abs(task.up[d]) > std::abs(task.up[vertical]))
+      vertical = d;
   std::vector<Outward> all;
   for (Index d = 0; d < task.dimension; ++d)
-    if (!task.gravity || d != upright)
+    if (!task.gravity || d != vertical)
       for (const bool positive : {true, false})
         all.push_back({fmt::format("{}{}", positive ? '+' : '-', axis_letters[static_cast<std::size_t>(d)]), d, positive});
   return all;
@@ -161,7 +161,7 @@ void add_history(const HistoryTable& history, const MetricTask& task, std::vecto
          fmt::format("{}{} along {}, at the last row; in the first row {:.6g} m",
                      front.mass_share < 1 ? fmt::format("coordinate beyond which {:.3g} % of the mass lies", 100 * (1 - front.mass_share))
                                           : std::string("outermost particle"),
-                     front.body.empty() ? "" : " of " + front.body, words(front.direction)[static_cast<std::size_t>(front.direction)],
+                     front.body.empty() ? "" : " of " + front.body, enum_names(front.direction)[static_cast<std::size_t>(front.direction)],
                      column->front())});
   }
 }

@@ -28,7 +28,7 @@ struct KeptAnyway {
 
 /// Everything, if `budget` [B] allows; else fewer frames, evenly spread from the first to the last, but not fewer than 12; then fewer fields,
 /// but not fewer than 3; then fewer particles.  Error: so few that nothing could be seen.
-PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway kept);
+PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway saved);
 
 /// `n` of so many numbers from zero, evenly spread, the first and the last among them.
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t of);

@@ -29,11 +29,11 @@ namespace fs = std::filesystem;
 std::optional<Real> time_kept(const PlannedRun& run, bool quick)
 {
   try {
-    const CheckpointList kept(run.folder);
-    const RunIdentity& identity = kept.identity();
+    const CheckpointList saved(run.folder);
+    const RunIdentity& identity = saved.identity();
     const bool same_mesh = run.mesh_digest.empty() || digest_text(static_cast<std::uint64_t>(identity.mesh)) == run.mesh_digest;
     if (identity.quick == quick && identity.set == run.changes && same_mesh)
-      return kept.clock().time;
+      return saved.clock().time;
   } catch (const EnvironmentError&) {
   }
   return std::nullopt;

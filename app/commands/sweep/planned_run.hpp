@@ -20,7 +20,7 @@ struct PlannedRun {
 };
 
 enum class CaseState : std::uint8_t { to_run, not_ended, stopped, failed, done };
-constexpr std::array<std::string_view, 5> words(CaseState) { return {"to be run", "not ended", "stopped", "failed", "done"}; }
+constexpr std::array<std::string_view, 5> enum_names(CaseState) { return {"to be run", "not ended", "stopped", "failed", "done"}; }
 
 /// What the folder of a run says of it.
 struct CaseStatus {

@@ -152,7 +152,7 @@ std::vector<std::string> SweepTable::words_of_case(std::size_t i) const
   std::vector<std::string> all{std::to_string(plan_.cases[i].number)};
   for (const Written& value : plan_.cases[i].values)
     all.push_back(value.text);
-  all.emplace_back(words(CaseState{})[static_cast<std::size_t>(status_[i].state)]);
+  all.emplace_back(enum_names(CaseState{})[static_cast<std::size_t>(status_[i].state)]);
   return all;
 }
 
@@ -224,7 +224,7 @@ std::vector<std::string> SweepTable::unknown_names() const
     }
     if (found || known == nullptr)
       continue;
-    const Where& where = plan_.study.collect[k].at.where;
+    const SourceLocation& where = plan_.study.collect[k].at.where;
     const auto near = closest_match(column_asked(names_[k]).second, *known);
     complaints.push_back(fmt::format("{}: {}: no case has a number \"{}\"{}", to_string(where), where.path, names_[k],
                                      near ? fmt::format(" — did you mean \"{}\"?", *near)

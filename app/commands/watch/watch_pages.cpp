@@ -76,7 +76,7 @@ void WatchPages::make_page()
 {
   const auto begin = Watch::now();
   const RunFolder run = read_run_folder(folder_);
-  PageWishes wishes{{}, {}, live_megabytes, {}, live_rows};
+  PageOptions wishes{{}, {}, live_megabytes, {}, live_rows};
   if (run.state == RunState::at_work)
     wishes.live = interval_;
   std::vector<std::string> notes;

@@ -20,7 +20,7 @@ std::string line_of(std::string_view text, int number)
 
 }  // namespace
 
-void Complaints::add(Where where, std::string_view key, std::string message)
+void SceneErrorCollector::add(SourceLocation where, std::string_view key, std::string message)
 {
   if (!key.empty())
     where.path += where.path.empty() ? std::string(key) : fmt::format(".{}", key);
@@ -28,7 +28,7 @@ void Complaints::add(Where where, std::string_view key, std::string message)
   problems_.push_back({std::move(where), std::move(message), std::move(line)});
 }
 
-void Complaints::add(const Where& where, std::string_view key, const SceneErrors& in_file)
+void SceneErrorCollector::add(const SourceLocation& where, std::string_view key, const SceneErrors& in_file)
 {
   for (const Problem& problem : in_file.problems()) {
     if (problem.where.line == 0)
@@ -38,8 +38,8 @@ void Complaints::add(const Where& where, std::string_view key, const SceneErrors
   }
 }
 
-void Complaints::unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
-                               std::vector<std::string> known)
+void SceneErrorCollector::unknown_group(const SourceLocation& where, std::string_view key, std::string_view kind, const std::string& name,
+                                        std::vector<std::string> known)
 {
   const std::string has =
       known.empty() ? fmt::format("; the mesh has no {} groups", kind) : fmt::format("; the mesh has {}", or_list(known));
@@ -47,7 +47,7 @@ void Complaints::unknown_group(const Where& where, std::string_view key, std::st
   add(where, key, fmt::format("the mesh has no {} group \"{}\"{}", kind, name, near ? fmt::format(" — did you mean \"{}\"?", *near) : has));
 }
 
-void Complaints::throw_if_any() const
+void SceneErrorCollector::throw_if_any() const
 {
   if (!problems_.empty())
     throw SceneErrors(problems_);

@@ -7,16 +7,16 @@
 
 namespace talus {
 
-class Complaints {
+class SceneErrorCollector {
  public:
-  explicit Complaints(const Scene& scene) : scene_(&scene) {}
+  explicit SceneErrorCollector(const Scene& scene) : scene_(&scene) {}
 
   /// About the value of `key` in the mapping at `where`; an empty key means the mapping itself.
-  void add(Where where, std::string_view key, std::string message);
+  void add(SourceLocation where, std::string_view key, std::string message);
   /// What is wrong in a file that the value of `key` there names.
-  void add(const Where& where, std::string_view key, const SceneErrors& in_file);
+  void add(const SourceLocation& where, std::string_view key, const SceneErrors& in_file);
   /// There is no such group: names the nearest one, or all.
-  void unknown_group(const Where& where, std::string_view key, std::string_view kind, const std::string& name,
+  void unknown_group(const SourceLocation& where, std::string_view key, std::string_view kind, const std::string& name,
                      std::vector<std::string> known);
   void throw_if_any() const;
 

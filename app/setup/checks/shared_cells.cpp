@@ -19,8 +19,8 @@ bool meet(const Scene& scene, const std::string& a, const std::string& b)
 
 }  // namespace
 
-void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, std::span<const Index> cell, Index n_cells, Exchange& ranks,
-                          std::vector<std::string>& warnings)
+void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, std::span<const Index> cell, Index n_cells,
+                          Communicator& ranks, std::vector<std::string>& warnings)
 {
   constexpr std::int64_t most = 10;
   std::vector<Index> owner(static_cast<std::size_t>(n_cells), none), counted(owner);
@@ -45,7 +45,7 @@ void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, s
     warnings.push_back(fmt::format("{} more pairs of bodies share cells at the start", pairs - most));
 }
 
-void find_groups_filled_twice(const Scene& scene, Complaints& complaints)
+void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& complaints)
 {
   std::map<std::string, std::vector<const BodySpec*>> filled;
   for (const BodySpec& body : scene.bodies) {

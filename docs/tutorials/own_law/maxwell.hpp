@@ -48,14 +48,14 @@ struct Maxwell : Elasticity {
     const Sym3Of<T> trial = push_forward(in.dt * in.L, get(state, &State::elastic_left));
     const Sym3Of<T> twice_strain = log1p(trial);
     const T volume = 0.5 * trace(twice_strain);
-    if (!everywhere(J > 0 && isfinite(volume)))
+    if (!all_of(J > 0 && isfinite(volume)))
       return no_answer_somewhere(*this, in, state, c);
     const Sym3Of<T> shear = scale_and_shift(0.5, twice_strain, -volume / 3);
-    const Real kept = in.elastic ? 1 : 1 / (1 + in.dt / relaxation_time);
-    put(state, &State::elastic_left, kept < 1 ? expm1(scale_and_shift(2 * kept, shear, volume * (2.0 / 3))) : trial);
-    const T work = 2 * c.shear * kept * (1 - kept) * squared_norm(shear);  // stress at the end times what relaxed
+    const Real saved = in.elastic ? 1 : 1 / (1 + in.dt / relaxation_time);
+    put(state, &State::elastic_left, saved < 1 ? expm1(scale_and_shift(2 * saved, shear, volume * (2.0 / 3))) : trial);
+    const T work = 2 * c.shear * saved * (1 - saved) * squared_norm(shear);  // stress at the end times what relaxed
     put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
-    return unpack(scale_and_shift(2 * c.shear * kept / J, shear, c.bulk * volume / J));
+    return unpack(scale_and_shift(2 * c.shear * saved / J, shear, c.bulk * volume / J));
   }
 
   /// Makes `stress` [Pa] that of the state at F = I: what a law remembers its stress by.

@@ -32,7 +32,7 @@ using Values = std::vector<std::string>;
 template <class Enum>
 Enum choice(const std::string& word, const std::string& option)
 {
-  constexpr auto names = words(Enum{});
+  constexpr auto names = enum_names(Enum{});
   const auto found = std::find(names.begin(), names.end(), word);
   if (found == names.end())
     throw Error(fmt::format("{}: unknown \"{}\"{}", option, word, suggestion(word, std::vector<std::string>(names.begin(), names.end()))));

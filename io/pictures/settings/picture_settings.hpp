@@ -67,13 +67,13 @@ struct Frames {
 };
 
 enum class Map : std::uint8_t { viridis, cividis, coolwarm };
-constexpr std::array<std::string_view, 3> words(Map) { return {"viridis", "cividis", "coolwarm"}; }
+constexpr std::array<std::string_view, 3> enum_names(Map) { return {"viridis", "cividis", "coolwarm"}; }
 enum class MeshLines : std::uint8_t { outline, edges, none };
-constexpr std::array<std::string_view, 3> words(MeshLines) { return {"outline", "edges", "none"}; }
+constexpr std::array<std::string_view, 3> enum_names(MeshLines) { return {"outline", "edges", "none"}; }
 enum class NamedView : std::uint8_t { front, back, left, right, top, iso };
-constexpr std::array<std::string_view, 6> words(NamedView) { return {"front", "back", "left", "right", "top", "iso"}; }
+constexpr std::array<std::string_view, 6> enum_names(NamedView) { return {"front", "back", "left", "right", "top", "iso"}; }
 enum class RangeOf : std::uint8_t { last, whole };
-constexpr std::array<std::string_view, 2> words(RangeOf) { return {"last", "whole"}; }
+constexpr std::array<std::string_view, 2> enum_names(RangeOf) { return {"last", "whole"}; }
 
 /// What lies beyond it, normal . x > offset, is left out.
 struct Plane {

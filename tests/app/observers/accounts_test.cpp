@@ -16,7 +16,7 @@ namespace {
 struct Scene {
   Model<2, Linear<2>> m{Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(1, 1), {1, 1}))};
   Stage stage;
-  Accounts<2> accounts;
+  BalanceHistory<2> accounts;
 
   Scene()
   {
@@ -38,7 +38,7 @@ struct Scene {
     m.particles.v.set(0, Vec<2>(speed, 0));
     std::get<Batch<VonMises>>(m.materials[0]).history[0].plastic_work = plastic_work / 2;
   }
-  void see(Moment moment) { accounts.see(frame_of(m, stage), moment); }
+  void see(RunEvent moment) { accounts.see(frame_of(m, stage), moment); }
   EnergyNow energy() const { return accounts.energy(frame_of(m, stage)); }
 };
 
@@ -61,12 +61,12 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
   Scene s;
   s.now(2, 10);
   s.m.energy = {.kinetic_start = 4, .plastic_start = 10, .largest_seen = 12345};
-  s.see(Moment::stage_begins);
+  s.see(RunEvent::stage_begins);
   book_terms(s.m.energy, 1);
   s.now(3, 14);
-  s.see(Moment::step_done);
+  s.see(RunEvent::step_done);
   s.m.energy.set_to_rest = 50;
-  s.see(Moment::stage_done);
+  s.see(RunEvent::stage_done);
   const EnergyNow first = s.energy();
   EXPECT_EQ(first.kinetic_start, 4);
   EXPECT_EQ(first.kinetic, 9);
@@ -79,19 +79,19 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
   expect_balance(first);
 
   s.m.energy = {.kinetic_start = 9 + 6, .plastic_start = 14 - 3};  // what came brought 6 J, what went had dissipated 3 J
-  s.see(Moment::stage_begins);
+  s.see(RunEvent::stage_begins);
   book_terms(s.m.energy, 2);
   s.now(4, 22);
   s.m.energy.set_to_rest = 500;
-  s.see(Moment::stage_done);
+  s.see(RunEvent::stage_done);
   const Real transfer_of_second = 2 * (5000 - 200) - (16 + 500 - 15 + 2 * 7);
 
   s.m.energy = {.kinetic_start = 16 - 5, .plastic_start = 22 + 8, .largest_seen = 23456};  // 5 J went; what came had dissipated 8 J
-  s.see(Moment::stage_begins);
+  s.see(RunEvent::stage_begins);
   book_terms(s.m.energy, 4);
   s.m.energy.internal_ahead = 600, s.m.energy.loads_ahead = 6;
   s.now(5, 34);
-  s.see(Moment::step_done);
+  s.see(RunEvent::step_done);
   const EnergyNow third = s.energy();
   EXPECT_EQ(third.kinetic_start, 4 + 6);
   EXPECT_EQ(third.kinetic, 25);
@@ -140,14 +140,14 @@ TEST(AccountsByHand, MeasureDefectsByAllMomentumThereWas)
   EXPECT_EQ(now.angular_loss(), 0.5);
 }
 
-Push<2> push(Real f, Real about) { return Push<2>::of({f, 0}, {0, 0, about}); }
+ForceAndMoment<2> push(Real f, Real about) { return ForceAndMoment<2>::of({f, 0}, {0, 0, about}); }
 
 TEST(AccountsByHand, NameAllThatGaveMomentum)
 {
   Scene s;
   s.now(5, 0);
   s.m.particles.v.set(1, Vec<2>(0, 3));  // at (-2, 1) with 4 kg; the other at (1, 3) with 2 kg
-  s.see(Moment::stage_begins);
+  s.see(RunEvent::stage_begins);
   s.now(7, 0);
   s.m.momentum.loads = push(1, -2), s.m.momentum.damping = push(4, -8), s.m.momentum.rest = push(16, -32);
   s.m.momentum.changes = push(64, -128), s.m.mass.carried_away = push(256, -512), s.m.momentum.on_nodes = {0, 0, 10000};

@@ -92,12 +92,12 @@ class Disk : public Program {
     if (const auto written = files_in(folder_ / "full", ".vtp"); !written.empty()) {
       EXPECT_THAT(said, HasSubstr("last good output disk/run/particles_")) << pages;
     }
-    const auto kept = exists("full/checkpoints") ? files_in(folder_ / "full/checkpoints", ".h5") : std::vector<fs::path>{};
-    if (kept.empty()) {
+    const auto saved = exists("full/checkpoints") ? files_in(folder_ / "full/checkpoints", ".h5") : std::vector<fs::path>{};
+    if (saved.empty()) {
       EXPECT_EQ(read("code_again.txt"), "3\n");
       EXPECT_THAT(read("said_again.txt"), HasSubstr("has no checkpoints"));
     } else {
-      EXPECT_THAT(said, HasSubstr("last checkpoint disk/run/checkpoints/" + kept.back().filename().string()));
+      EXPECT_THAT(said, HasSubstr("last checkpoint disk/run/checkpoints/" + saved.back().filename().string()));
       EXPECT_EQ(read("code_again.txt"), "0\n") << read("said_again.txt");
       expect_same_results(folder_ / "whole", folder_ / "again");
     }

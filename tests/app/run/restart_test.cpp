@@ -37,13 +37,13 @@ TEST_P(Restart, GivesTheSameBitsThreeTimesInAChain)
 {
   write("scene.yaml", GetParam().parts.text());
   run("scene.yaml --out whole --threads 2");
-  const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
-  ASSERT_GE(kept.size(), 4U) << "too few steps to stop at";
+  const auto saved = files_in(folder_ / "whole/checkpoints", ".h5");
+  ASSERT_GE(saved.size(), 4U) << "too few steps to stop at";
   fs::copy(folder_ / "whole", folder_ / "again", fs::copy_options::recursive);
   for (std::size_t link = 1; link <= 3; ++link) {
-    forget_checkpoints_after(kept[link * (kept.size() - 1) / 4]);
+    forget_checkpoints_after(saved[link * (saved.size() - 1) / 4]);
     run("--resume again --threads 1");
-    ASSERT_EQ(files_in(folder_ / "again/checkpoints", ".h5").size(), kept.size());
+    ASSERT_EQ(files_in(folder_ / "again/checkpoints", ".h5").size(), saved.size());
   }
   expect_same_results(folder_ / "whole", folder_ / "again");
 }
@@ -86,34 +86,34 @@ TEST_F(Checkpoint, TheLastAreKeptAndADamagedOneGivesWayToTheOneBefore)
   scene.replace(scene.find(many), many.size(), "checkpoint: {steps: 4, keep: 3}");
   write("scene.yaml", scene);
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
-  const auto kept = files_in(folder_ / "out/checkpoints", ".h5");
-  ASSERT_EQ(kept.size(), 3u);
-  fs::resize_file(kept.back(), fs::file_size(kept.back()) / 2);
+  const auto saved = files_in(folder_ / "out/checkpoints", ".h5");
+  ASSERT_EQ(saved.size(), 3u);
+  fs::resize_file(saved.back(), fs::file_size(saved.back()) / 2);
   const Outcome outcome = talus("run --resume out --quiet");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_NE(outcome.err.find("warning: "), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("going on from "), std::string::npos) << outcome.err;
-  EXPECT_NE(outcome.err.find(kept[1].filename().string()), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find(saved[1].filename().string()), std::string::npos) << outcome.err;
   for (const auto& file : files_in(folder_ / "out/checkpoints", ".h5"))
     fs::resize_file(file, 100);
   const Outcome nothing_left = talus("run --resume out --quiet");
   EXPECT_EQ(nothing_left.code, 3);
-  EXPECT_NE(nothing_left.err.find(kept[0].filename().string()), std::string::npos) << nothing_left.err;
+  EXPECT_NE(nothing_left.err.find(saved[0].filename().string()), std::string::npos) << nothing_left.err;
 }
 
 TEST_F(Checkpoint, GoesOnInAFolderOfItsOwn)
 {
   write("scene.yaml", SceneParts{}.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out whole").code, 0);
-  const auto kept = files_in(folder_ / "whole/checkpoints", ".h5");
-  const std::string middle = kept.at(kept.size() / 2).filename().string();
+  const auto saved = files_in(folder_ / "whole/checkpoints", ".h5");
+  const std::string middle = saved.at(saved.size() / 2).filename().string();
   ASSERT_EQ(talus("run --quiet --out rest --resume whole/checkpoints/" + middle).code, 0);
-  expect_same_state(kept.back(), folder_ / "rest/checkpoints" / kept.back().filename());
+  expect_same_state(saved.back(), folder_ / "rest/checkpoints" / saved.back().filename());
   const HistoryTable whole = history("whole"), rest = history("rest");
   EXPECT_LT(rest.rows(), whole.rows());
   for (const char* column : {"time", "kinetic", "reaction_y_min_y", "top_x"})
     EXPECT_EQ(last(rest, column), last(whole, column)) << column;
-  EXPECT_EQ(files_in(folder_ / "whole/checkpoints", ".h5"), kept) << "the run it came from was touched";
+  EXPECT_EQ(files_in(folder_ / "whole/checkpoints", ".h5"), saved) << "the run it came from was touched";
 }
 
 /// Killed without warning, at any moment: in a step, while a checkpoint or an output is written, while it reads one.
@@ -151,10 +151,10 @@ TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
 {
   write("scene.yaml", SceneParts{}.text());
   ASSERT_EQ(talus("run scene.yaml --quiet --out out").code, 0);
-  const auto kept = files_in(folder_ / "out/checkpoints", ".h5");
+  const auto saved = files_in(folder_ / "out/checkpoints", ".h5");
   const fs::path file = folder_ / "forged.h5";
   const auto refused_with = [&](const std::string& at, std::int64_t value) {
-    fs::copy_file(kept[1], file, fs::copy_options::overwrite_existing);
+    fs::copy_file(saved[1], file, fs::copy_options::overwrite_existing);
     if (!at.empty())
       forge_value(file, at, 0, static_cast<double>(value));
     return talus("run --quiet --out forged --resume forged.h5");
@@ -182,7 +182,7 @@ TEST_F(Checkpoint, ThatNoRunCanHaveWrittenIsRefused)
     EXPECT_NE(outcome.err.find("is not there"), std::string::npos) << outcome.err;
   }
   const auto refused_without = [&](const std::string& columns, int bodies) {
-    fs::copy_file(kept[1], file, fs::copy_options::overwrite_existing);
+    fs::copy_file(saved[1], file, fs::copy_options::overwrite_existing);
     forge_empty(file, columns);
     forge_value(file, "bodies/count", 0, bodies);
     const Outcome outcome = talus("run --quiet --out forged --resume forged.h5");
@@ -286,11 +286,11 @@ TEST_F(Checkpoint, WithoutAnyParticleLeftIsAsGoodAsAnyOther)
   ASSERT_EQ(talus("run scene.yaml --quiet --out whole").code, 0);
   ASSERT_EQ(last(history("whole"), "mass"), 0) << "something has stayed";
   fs::copy(folder_ / "whole", folder_ / "again", fs::copy_options::recursive);
-  const auto kept = files_in(folder_ / "again/checkpoints", ".h5");
-  ASSERT_GE(kept.size(), 3U);
-  const fs::path from = kept[kept.size() - 2];
+  const auto saved = files_in(folder_ / "again/checkpoints", ".h5");
+  ASSERT_GE(saved.size(), 3U);
+  const fs::path from = saved[saved.size() - 2];
   ASSERT_EQ(ArrayReader(from).rows("particles/id"), 0U);
-  fs::remove(kept.back());
+  fs::remove(saved.back());
   const Outcome outcome = talus("run --quiet --resume again");
   EXPECT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(without_losses(outcome.err), "");

@@ -59,10 +59,10 @@ class Stages : public Program {
   void expect_closed_books() const
   {
     const std::string summary = read("out/summary.json");
-    for (const std::string kept : {"mass", "momentum", "angular_momentum"}) {
-      const auto begin = summary.find('"' + kept + "\": {");
-      ASSERT_NE(begin, summary.npos) << kept;
-      EXPECT_THAT(summary.substr(begin, summary.find('}', begin) - begin), HasSubstr("\"closes\": true")) << kept;
+    for (const std::string saved : {"mass", "momentum", "angular_momentum"}) {
+      const auto begin = summary.find('"' + saved + "\": {");
+      ASSERT_NE(begin, summary.npos) << saved;
+      EXPECT_THAT(summary.substr(begin, summary.find('}', begin) - begin), HasSubstr("\"closes\": true")) << saved;
     }
     const Real scale = std::abs(sum_behind("\"gravity_work [J]\": ", summary));
     for (const std::string term : {"gravity_work", "energy_defect", "transfer_loss", "plastic"})

@@ -28,12 +28,12 @@ TEST(Threads, NeverMoreThanThereAre)
 template <class F>
 std::vector<int> kept_by(ThreadChoice choice, int steps, F&& f)
 {
-  std::vector<int> kept;
+  std::vector<int> saved;
   for (int step = 0; step < steps; ++step) {
     choice.took(f(choice.next(), step));
-    kept.push_back(choice.kept());
+    saved.push_back(choice.saved());
   }
-  return kept;
+  return saved;
 }
 
 TEST(ThreadChoice, KeepsTheNumberWithWhichStepsTakeTheLeastTime)
@@ -48,11 +48,11 @@ TEST(ThreadChoice, KeepsTheNumberWithWhichStepsTakeTheLeastTime)
 
 TEST(ThreadChoice, FollowsWhatElseTheMachineDoes)
 {
-  const auto kept = kept_by(ThreadChoice(1, 1, 2), 1500, [](int threads, int step) {
+  const auto saved = kept_by(ThreadChoice(1, 1, 2), 1500, [](int threads, int step) {
     return (step < 700) == (threads == 2) ? 1 : 1.5;  // free cores at first, busy ones later
   });
-  EXPECT_EQ(kept[600], 2);
-  EXPECT_EQ(kept[1400], 1);
+  EXPECT_EQ(saved[600], 2);
+  EXPECT_EQ(saved[1400], 1);
 }
 
 TEST(ThreadChoice, TriesOthersOnlyNowAndThen)
@@ -69,8 +69,8 @@ TEST(ThreadChoice, TriesOthersOnlyNowAndThen)
 
 TEST(ThreadChoice, OneStepThatTakesLongDecidesNothing)
 {
-  const auto kept = kept_by(ThreadChoice(1, 1, 2), 1000, [](int threads, int step) { return step % 7 == 0 ? 100.0 : threads; });
-  EXPECT_EQ(*std::max_element(kept.begin(), kept.end()), 1);
+  const auto saved = kept_by(ThreadChoice(1, 1, 2), 1000, [](int threads, int step) { return step % 7 == 0 ? 100.0 : threads; });
+  EXPECT_EQ(*std::max_element(saved.begin(), saved.end()), 1);
 }
 
 class ThreadsOfRuns : public Program {

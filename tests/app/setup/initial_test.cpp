@@ -477,15 +477,15 @@ TEST_F(Initial, GravityThatGrowsUnderStressIsWarnedOf)
 TEST_F(Initial, ADamagedStateGivesWayToTheOneBefore)
 {
   run_well("first", {.when = "time: {end: 0.05}\n", .checkpoint = ", steps: 10"});
-  const auto kept = checkpoints("first");
-  ASSERT_GE(kept.size(), 2U);
-  fs::resize_file(kept.back(), fs::file_size(kept.back()) / 2);
+  const auto saved = checkpoints("first");
+  ASSERT_GE(saved.size(), 2U);
+  fs::resize_file(saved.back(), fs::file_size(saved.back()) / 2);
   const Outcome outcome = run("second", second());
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, HasSubstr("warning: second.yaml:6:10: first/checkpoints/" + kept.back().filename().string()));
-  EXPECT_THAT(outcome.err, HasSubstr("; taking first/checkpoints/" + kept[kept.size() - 2].filename().string() + "\n"));
-  EXPECT_THAT(origin("second"), HasSubstr("\"file\":\"" + kept[kept.size() - 2].string() + "\""));
-  for (const auto& file : kept)
+  EXPECT_THAT(outcome.err, HasSubstr("warning: second.yaml:6:10: first/checkpoints/" + saved.back().filename().string()));
+  EXPECT_THAT(outcome.err, HasSubstr("; taking first/checkpoints/" + saved[saved.size() - 2].filename().string() + "\n"));
+  EXPECT_THAT(origin("second"), HasSubstr("\"file\":\"" + saved[saved.size() - 2].string() + "\""));
+  for (const auto& file : saved)
     fs::resize_file(file, 100);
   EXPECT_THAT(refusal(second()), HasSubstr("error: initial.from: first/checkpoints/"));
 }
@@ -496,14 +496,14 @@ TEST_F(Initial, AStateOnTheWayIsWarnedOf)
       ", before its stage was over: of a run on its way, stopped or failed, or one that did not keep its end; with "
       "outputs.checkpoint.at_end a run keeps it\n";
   run_well("first", {.when = "time: {end: 0.05}\n", .checkpoint = ", steps: 10, keep: 9"});
-  auto kept = checkpoints("first");
-  ASSERT_GE(kept.size(), 2U);
-  fs::remove(kept.back());
-  kept.pop_back();
+  auto saved = checkpoints("first");
+  ASSERT_GE(saved.size(), 2U);
+  fs::remove(saved.back());
+  saved.pop_back();
   const Outcome outcome = run("second", second());
   EXPECT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_THAT(outcome.err, testing::StartsWith("warning: second.yaml:6:10: first/checkpoints/" + kept.back().filename().string() +
-                                               " is the state after step " + std::to_string(10 * kept.size()) + ", t = 0.0"));
+  EXPECT_THAT(outcome.err, testing::StartsWith("warning: second.yaml:6:10: first/checkpoints/" + saved.back().filename().string() +
+                                               " is the state after step " + std::to_string(10 * saved.size()) + ", t = 0.0"));
   EXPECT_THAT(outcome.err, HasSubstr(midst));
 
   EXPECT_EQ(run("failed", {.more = "watch: {speed: 1.0e-4}\n", .when = "time: {end: 0.05}\n"}).code, 1);
@@ -539,10 +539,10 @@ TEST_F(Initial, SuchARunGoesOnWithTheSameBitsWithoutTheOther)
   fs::rename(folder_ / "second", folder_ / "whole");
   run_well("second", bank);
   fs::remove_all(folder_ / "first");
-  const auto kept = checkpoints("second");
-  ASSERT_GE(kept.size(), 3U);
-  for (std::size_t i = kept.size() / 2; i < kept.size(); ++i)
-    fs::remove(kept[i]);
+  const auto saved = checkpoints("second");
+  ASSERT_GE(saved.size(), 3U);
+  for (std::size_t i = saved.size() / 2; i < saved.size(); ++i)
+    fs::remove(saved[i]);
   const Outcome outcome = talus("run --quiet --resume second");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   EXPECT_EQ(without_losses(outcome.err), "");

@@ -23,7 +23,7 @@ std::vector<std::byte> bytes_of(std::string_view text)
 
 TEST(ExchangeAlone, IsOneRank)
 {
-  const Exchange exchange;
+  const Communicator exchange;
   EXPECT_EQ(exchange.rank(), 0);
   EXPECT_EQ(exchange.size(), 1);
   EXPECT_TRUE(exchange.alone());
@@ -32,7 +32,7 @@ TEST(ExchangeAlone, IsOneRank)
 
 TEST(ExchangeAlone, ChangesNothing)
 {
-  Exchange exchange;
+  Communicator exchange;
   std::vector<std::int64_t> numbers{1, -2};
   exchange.sum(numbers);
   EXPECT_THAT(numbers, testing::ElementsAre(1, -2));
@@ -70,10 +70,10 @@ TEST(ExchangeAlone, ChangesNothing)
 
 TEST(ExchangeAlone, SendsToItself)
 {
-  Exchange exchange;
+  Communicator exchange;
   std::vector<std::byte> sent = bytes_of("to myself"), got(sent.size());
-  const Parcel out{0, sent}, in{0, got}, elsewhere{1, sent};
-  Talk talk;
+  const Message out{0, sent}, in{0, got}, elsewhere{1, sent};
+  PendingMessages talk;
   exchange.start({&out, 1}, {&in, 1}, 3, talk);
   talk.wait();
   EXPECT_EQ(got, sent);
@@ -90,16 +90,16 @@ TEST(ExchangeAlone, SendsToItself)
 
 TEST(ExchangeAlone, LetsErrorsPass)
 {
-  Exchange exchange;
+  Communicator exchange;
   EXPECT_NO_THROW(exchange.agree(nullptr));
   EXPECT_THROW(exchange.together([] { throw RunError("no"); }), RunError);
-  EXPECT_THROW(exchange.agree(Exchange::caught([] { throw std::out_of_range("no"); })), std::out_of_range);
+  EXPECT_THROW(exchange.agree(Communicator::caught([] { throw std::out_of_range("no"); })), std::out_of_range);
   int times = 0;
   exchange.together([&] { ++times; });
   EXPECT_EQ(times, 1);
 }
 
-TEST(ExchangeAloneDeathTest, AbortEndsTheProcess) { EXPECT_EXIT(Exchange().abort(3), testing::ExitedWithCode(3), ""); }
+TEST(ExchangeAloneDeathTest, AbortEndsTheProcess) { EXPECT_EXIT(Communicator().abort(3), testing::ExitedWithCode(3), ""); }
 
 TEST(LaunchedAsRanks, LooksForALauncher)
 {

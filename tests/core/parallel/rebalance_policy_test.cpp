@@ -14,7 +14,7 @@ struct Course {
   Real lost = 0, paid = 0;  // [s]
   std::int64_t moves = 0, looks = 0;
 };
-Course run(MoveRule rule, std::int64_t steps, Real seconds, Real growth, Real cost)
+Course run(RebalancePolicy rule, std::int64_t steps, Real seconds, Real growth, Real cost)
 {
   Course course;
   Real imbalance = 1;
@@ -34,9 +34,9 @@ Course run(MoveRule rule, std::int64_t steps, Real seconds, Real growth, Real co
   return course;
 }
 
-TEST(MoveRule, MovesAsOftenAsItIsToldTo)
+TEST(RebalancePolicy, MovesAsOftenAsItIsToldTo)
 {
-  MoveRule rule(5, 100, 1e9);
+  RebalancePolicy rule(5, 100, 1e9);
   EXPECT_TRUE(rule.always_moves());
   EXPECT_FALSE(rule.looks(100));
   EXPECT_FALSE(rule.looks(104));
@@ -44,20 +44,20 @@ TEST(MoveRule, MovesAsOftenAsItIsToldTo)
   rule.moved(105, 1e9);
   EXPECT_FALSE(rule.looks(109));
   EXPECT_TRUE(rule.looks(110));
-  rule.give_up();
+  rule.abort_run();
   EXPECT_FALSE(rule.looks(1000));
 }
 
-TEST(MoveRule, NeverMovesIfToldSo)
+TEST(RebalancePolicy, NeverMovesIfToldSo)
 {
-  const MoveRule rule(0, 0, 0);
+  const RebalancePolicy rule(0, 0, 0);
   for (const std::int64_t step : {0, 1, 50, 100000})
     EXPECT_FALSE(rule.looks(step));
 }
 
-TEST(MoveRule, WaitsUntilMoreIsLostThanAMoveCosts)
+TEST(RebalancePolicy, WaitsUntilMoreIsLostThanAMoveCosts)
 {
-  MoveRule rule({}, 0, 9);
+  RebalancePolicy rule({}, 0, 9);
   EXPECT_FALSE(rule.always_moves());
   EXPECT_FALSE(rule.looks(49));
   EXPECT_TRUE(rule.looks(50));
@@ -71,9 +71,9 @@ TEST(MoveRule, WaitsUntilMoreIsLostThanAMoveCosts)
   EXPECT_FALSE(rule.has_lost_enough(200, 0.5, 4)) << "a move costs more now, and what was lost before is paid for";
 }
 
-TEST(MoveRule, LooksLessOftenWhereNothingIsGained)
+TEST(RebalancePolicy, LooksLessOftenWhereNothingIsGained)
 {
-  MoveRule rule({}, 0, 1);
+  RebalancePolicy rule({}, 0, 1);
   EXPECT_TRUE(rule.has_lost_enough(50, 1, 3));
   EXPECT_FALSE(rule.gains(3, 2.9)) << "blocks cannot be cut";
   EXPECT_FALSE(rule.looks(149));
@@ -86,23 +86,23 @@ TEST(MoveRule, LooksLessOftenWhereNothingIsGained)
   EXPECT_TRUE(rule.looks(400)) << "after a move it begins anew";
 }
 
-TEST(MoveRule, OfEvenSharesNothingComes)
+TEST(RebalancePolicy, OfEvenSharesNothingComes)
 {
-  const Course course = run(MoveRule({}, 0, 1e-3), 10000, 1, 0, 1e-3);
+  const Course course = run(RebalancePolicy({}, 0, 1e-3), 10000, 1, 0, 1e-3);
   EXPECT_EQ(course.moves, 0);
   EXPECT_EQ(course.looks, 199);
 }
 
 /// Against every even spacing of moves, the best of which is the best of all here: what is lost grows alike after each move.
-TEST(MoveRule, CostsNoMoreThanTwiceTheBest)
+TEST(RebalancePolicy, CostsNoMoreThanTwiceTheBest)
 {
   constexpr std::int64_t steps = 20000;
   for (const Real cost : {5.0, 50.0, 500.0})
     for (const Real growth : {1e-4, 1e-3}) {
-      const Course course = run(MoveRule({}, 0, cost), steps, 0.1, growth, cost);
+      const Course course = run(RebalancePolicy({}, 0, cost), steps, 0.1, growth, cost);
       Real best = std::numeric_limits<Real>::infinity();
       for (std::int64_t every = 50; every <= 2 * steps; every = every * 11 / 10) {
-        const Course other = run(MoveRule(every, 0, cost), steps, 0.1, growth, cost);
+        const Course other = run(RebalancePolicy(every, 0, cost), steps, 0.1, growth, cost);
         best = std::min(best, other.lost + other.paid);
       }
       EXPECT_LE(course.lost + course.paid, 2 * best + cost) << "a move costs " << cost << " s, growth " << growth;

@@ -94,7 +94,7 @@ std::string complaint(const std::string& bytes)
   const ScratchFolder folder;
   write(folder / "a.msh", bytes);
   try {
-    read_msh<D>(folder / "a.msh", Where{"scene.yaml", 3, 10, "mesh.file"});
+    read_msh<D>(folder / "a.msh", SourceLocation{"scene.yaml", 3, 10, "mesh.file"});
   } catch (const SceneErrors& errors) {
     std::string text = errors.what();
     const std::string path = folder.path().string() + "/";
@@ -212,7 +212,7 @@ TEST(GmshRead, PlaneMeshInSolidSceneIsRefused)
 TEST(GmshRead, MissingEmptyAndFolderAreErrorsOfTheScene)
 {
   const ScratchFolder folder;
-  const Where asked{"scene.yaml", 3, 10, "mesh.file"};
+  const SourceLocation asked{"scene.yaml", 3, 10, "mesh.file"};
   const auto said = [&](const std::string& name) -> std::string {
     try {
       read_msh<2>(folder / name, asked);

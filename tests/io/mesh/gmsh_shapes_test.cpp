@@ -17,9 +17,9 @@ using ::testing::HasSubstr;
 MeshSpec region(Real size, Shape shape)
 {
   MeshSpec spec;
-  spec.where = Where{"scene.yaml", 3, 7, "mesh"};
+  spec.where = SourceLocation{"scene.yaml", 3, 7, "mesh"};
   spec.size = size;
-  spec.regions = {{"rock", std::move(shape), Where{"scene.yaml", 5, 9, "mesh.regions[0]"}}};
+  spec.regions = {{"rock", std::move(shape), SourceLocation{"scene.yaml", 5, 9, "mesh.regions[0]"}}};
   return spec;
 }
 
@@ -66,7 +66,7 @@ TEST(GmshShapes, SidesOfOneNameAreOneAndSidesBetweenRegionsCount)
 {
   Polygon lower{{{0, 0}, {4, 0}, {4, 1}, {0, 1}}, {}, {}, {"rim", "rim", "joint", "rim"}};
   MeshSpec spec = region(0.5, lower);
-  spec.regions.push_back({"soil", Box{{0, 1}, {4, 2}}, Where{}});
+  spec.regions.push_back({"soil", Box{{0, 1}, {4, 2}}, SourceLocation{}});
   const Mesh<2> mesh = load_mesh<2>(spec, ".");
   EXPECT_NEAR(area_of(mesh, "rock:rim"), 6, round_off * 6);
   EXPECT_NEAR(area_of(mesh, "rock:joint"), 4, round_off * 6);
@@ -79,7 +79,7 @@ TEST(GmshShapes, ASideThatIsNotThereIsRefused)
 {
   MeshSpec spec = region(0.5, Box{{0, 0}, {2, 2}});
   spec.regions.push_back({"more", Polygon{{{1, 0.5}, {3, 0.5}, {3, 1.5}, {1, 1.5}}, {}, {}, {"a", "b", "c", "inside"}},
-                          Where{"scene.yaml", 8, 9, "mesh.regions[1]"}});
+                          SourceLocation{"scene.yaml", 8, 9, "mesh.regions[1]"}});
   EXPECT_THAT(complaint<2>(spec),
               HasSubstr("scene.yaml:8:9: error: mesh.regions[1]: no facet of region \"more\" lies on its side \"inside\""));
 }
@@ -138,7 +138,7 @@ TEST(GmshShapes, NothingLeftIsRefusedAtTheRegion)
 TEST(GmshShapes, GroupsFaceADirection)
 {
   MeshSpec spec = region(0.5, tunnel);
-  const Where where{"scene.yaml", 9, 5, "mesh.groups[0]"};
+  const SourceLocation where{"scene.yaml", 9, 5, "mesh.groups[0]"};
   spec.groups = {{"up", "boundary", {}, where, {0, 1}, 30},
                  {"slope", "rock:boundary", {}, where, {2, 1}, 5},
                  {"floor of the tunnel", "rock:hole_1", {}, where, {0, 1}, 1}};
@@ -164,7 +164,7 @@ class Msh : public ::testing::Test {
         << 2 + elements << "\n1 2 2 1 1 1 2 5\n2 2 2 1 1 1 5 4\n"
         << more_elements << "$EndElements\n";
     MeshSpec spec;
-    spec.where = Where{"scene.yaml", 3, 7, "mesh"};
+    spec.where = SourceLocation{"scene.yaml", 3, 7, "mesh"};
     spec.file = "m.msh";
     return spec;
   }

@@ -168,7 +168,7 @@ TEST(Scene, ReadsMaterialsWithTheKeysOfTheirLaws)
   EXPECT_EQ(clay.poisson_ratio, 0.3);
   EXPECT_EQ(clay.friction_angle, 31);
   EXPECT_EQ(clay.dilation_angle, 1);
-  EXPECT_EQ(words(clay.match)[static_cast<std::size_t>(clay.match)], "plane_strain");
+  EXPECT_EQ(enum_names(clay.match)[static_cast<std::size_t>(clay.match)], "plane_strain");
   const auto& rock = std::get<LinearElastic>(s.materials[1].law);
   EXPECT_EQ(rock.density, 2650);
   EXPECT_EQ(rock.bulk_modulus, 3e9);

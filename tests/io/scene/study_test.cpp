@@ -140,7 +140,7 @@ TEST_F(StudyFile, KnowsWhereValuesAndNamesStand)
 {
   const Study study = read("scene: scene.yaml\nvary: {time.end: [1, 2]}\ncollect: [steps, toe]\n");
   EXPECT_EQ(scene_of(study), folder_ / "scene.yaml");
-  const Where& where = study.vary.at(0).values.at(1).at.where;
+  const SourceLocation& where = study.vary.at(0).values.at(1).at.where;
   EXPECT_EQ(where.line, 2);
   EXPECT_EQ(where.column, 22);
   EXPECT_EQ(where.path, "vary.time.end[1]");

@@ -52,8 +52,8 @@ TEST_F(Child, IsToldToEndByWhoLetsGoOfIt)
 {
   const auto begun = std::chrono::steady_clock::now();
   {
-    std::optional<ChildProcess> kept;
-    kept = shell("sleep 100");
+    std::optional<ChildProcess> saved;
+    saved = shell("sleep 100");
   }
   EXPECT_LT(std::chrono::steady_clock::now() - begun, std::chrono::seconds(50));
 }

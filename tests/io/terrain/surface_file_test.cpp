@@ -192,7 +192,7 @@ TEST_F(SurfaceFile, LargeHoleIsAnErrorOnlyWhereItIsWanted)
   const auto ground = read("ground.tif");
   ASSERT_TRUE(ground);
   EXPECT_THAT(repairs, IsEmpty());
-  const Where where{"slope.yaml", 7, 3, "mesh.terrain.ground"};
+  const SourceLocation where{"slope.yaml", 7, 3, "mesh.terrain.ground"};
   check_cover(*ground, where, {{east, north}, {east + 40, north}, {east + 40, north + 150}, {east, north + 150}}, "domain", problems);
   EXPECT_THAT(problems, IsEmpty());
   check_cover(*ground, where, {{east, north}, {east + 200, north}, {east + 200, north + 150}, {east, north + 150}}, "domain", problems);
@@ -500,7 +500,7 @@ TEST_F(SurfaceFile, OutlinesAsTextInATableHaveTheirHoles)
 TEST_F(SurfaceFile, FileWithoutOutlinesIsAProblemOfTheScene)
 {
   write_whole(folder / "point.geojson", R"({"type": "Point", "coordinates": [1, 2]})");
-  const Where where{"slope.yaml", 4, 5, "mesh.terrain.domain_file"};
+  const SourceLocation where{"slope.yaml", 4, 5, "mesh.terrain.domain_file"};
   EXPECT_THAT(read_outlines("point.geojson", where, plan, problems, repairs), IsEmpty());
   EXPECT_THAT(only_problem(), AllOf(HasSubstr("slope.yaml:4:5"), HasSubstr("has no polygon")));
   problems.clear();

@@ -145,7 +145,7 @@ TEST(MaterialsPage, StrengthsUnderTheThreeMatchesAreTheMeasuredOnes)
     rows[4] += fmt::format(" {:.1f} |", plane_strain_strength(law, 0.08) / 1e3);
     rows[5] += fmt::format(" {:.1f} |", std::atan(drained_simple_shear(soil(match, 30, 0))[0]) / radians(1));
   }
-  std::ifstream file(TALUS_SOURCE_DIR "/docs/materials.md");
+  std::ifstream file(TALUS_SOURCE_DIR "/docs/reference/materials.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   ASSERT_FALSE(page.empty());
   for (const std::string& row : rows)

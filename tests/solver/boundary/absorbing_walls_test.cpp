@@ -28,7 +28,7 @@ Wall<2> wall(WallKind kind, const std::string& name)
 /// A square of two by two cells, 2 m wide, of which one node moves at a time.
 struct Ground : NodesInASquare {
   Ground() : NodesInASquare(2, 0.25) {}
-  Shaking& shaking() { return walls.*std::get<1>(Walls<2>::fields()).member; }
+  DynamicPhase& shaking() { return walls.*std::get<1>(BoundaryConditions<2>::fields()).member; }
   Wall<2> compliant() const
   {
     Wall<2> base = wall(WallKind::compliant_base, "base");
@@ -50,7 +50,7 @@ TEST(GivingWalls, ACompliantBaseHoldsUntilTheShakingBegins)
   const NodeMotion<2>& motion = ground.set({1, 0}, 2, {{1, -1}, {1, -1}});
   EXPECT_EQ(ground.walls.holder_of(static_cast<Index>(ground.node({1, 0}))), 0);
   EXPECT_EQ(ground.walls.closed_facets(ground.mesh).size(), 4u) << "those of the base, twice";
-  ground.walls.give_way(1, 0.25, one_rank(), ground.nodes);
+  ground.walls.apply_dashpots(1, 0.25, one_rank(), ground.nodes);
   expect_near(motion.v, {1, -1});
   ground.walls.apply(Kick{0, 0.25}, ground.nodes, ground.work);
   expect_near(motion.v, {0, 0});
@@ -69,7 +69,7 @@ TEST(GivingWalls, ACompliantBaseGivesTwiceTheWaveAndTakesWhatLeaves)
   const Real mass = 2, kick = 0.25;
   const NodeMotion<2>& motion = ground.set({1, 0}, mass, {{1, -1}, {0.5, -0.25}});
   const Vec<2> reaction = -mass / kick * Vec<2>(0.5, -0.25);  // what kept it in balance
-  ground.walls.give_way(7.5, kick, one_rank(), ground.nodes);
+  ground.walls.apply_dashpots(7.5, kick, one_rank(), ground.nodes);
 
   const Vec<2> C(2 * 3, 2 * 5);            // of half of each of two facets of 1 m: along it s waves, across p waves
   const Vec<2> wave = 0.5 * Vec<2>(4, 1);  // half a second after the shaking began
@@ -84,7 +84,7 @@ TEST(GivingWalls, ACompliantBaseGivesTwiceTheWaveAndTakesWhatLeaves)
   const Wall<2>& base = ground.walls.walls().front();
   expect_near(base.impulse, mass * by);
   EXPECT_NEAR(base.angular[2], mass * by[1], rounding);  // the node is at (1, 0)
-  const WallWork work = ground.work.value();
+  const BoundaryWork work = ground.work.value();
   EXPECT_NEAR(work.moved, (mass * by).dot(motion.v - 0.5 * motion.change), rounding);
   EXPECT_NEAR(work.waves, kick * wave.dot(C.cwiseProduct(wave)), rounding);
   EXPECT_EQ(work.friction, 0);
@@ -92,7 +92,7 @@ TEST(GivingWalls, ACompliantBaseGivesTwiceTheWaveAndTakesWhatLeaves)
 
   // in the next step the reaction goes on, whatever the node did meanwhile
   ground.set({1, 0}, mass, {{0, 0}, {9, 9}});
-  ground.walls.give_way(7, kick, one_rank(), ground.nodes);  // no wave yet
+  ground.walls.apply_dashpots(7, kick, one_rank(), ground.nodes);  // no wave yet
   expect_near(motion.v, (kick * reaction).cwiseQuotient(Vec<2>(Vec<2>::Constant(mass) + kick * C)));
   EXPECT_TRUE(ground.walls.fits());
 }
@@ -137,7 +137,7 @@ TEST(GivingWalls, ASideGivesWhatTheFreeFieldDoes)
       const ColumnMotion then = motion;
       advance(column(), moves, dt, motion);
       const NodeMotion<2>& at = ground.set({2, 1}, mass, {{1, -1}, {0, 0}});  // in balance before, so no reaction
-      ground.walls.give_way(7.5, dt, one_rank(), ground.nodes);
+      ground.walls.apply_dashpots(7.5, dt, one_rank(), ground.nodes);
       const Vec<2> face(0.5, 0);  // half a facet of each layer, out of the model
       const Vec<2> C(0.5 * (2 * 5 + 0.5 * 1.5 * 4), 0.5 * (2 * 3 + 0.5 * 1.5 * 2));
       const Vec<2> field = column().velocity_at(1, motion);
@@ -169,7 +169,7 @@ TEST(GivingWalls, AFacetAboveTheGroundBesideStaysFree)
   ground.walls.settle();
   ground.walls.begin_stage(false, 0);
   const NodeMotion<2>&middle = ground.set({2, 1}, 2, {{1, 0}, {0, 0}}), &top = ground.set({2, 2}, 2, {{1, 0}, {0, 0}});
-  ground.walls.give_way(1, 0.2, one_rank(), ground.nodes);
+  ground.walls.apply_dashpots(1, 0.2, one_rank(), ground.nodes);
   expect_near(top.v, {1, 0});
   expect_near(middle.v, {2 / (2 + 0.25 * 0.5 * 2 * 5), 0});  // half of one facet
 }
@@ -191,7 +191,7 @@ TEST(GivingWalls, AnInclinedFloorHoldsAloneOnceTheSideBesideItLetsGo)
   side.column.layer = {{rock, 1}};
   const Vec<2> v(3, 4), normal = Vec<2>(-0.5, -1).normalized();
   for (const bool side_first : {false, true}) {
-    Walls<2> walls;
+    BoundaryConditions<2> walls;
     for (const bool now_side : {side_first, !side_first})
       walls.add(now_side ? side : wall(WallKind::roller, "floor"), mesh, *mesh.facet_set(now_side ? "x_max" : "y_min"));
     walls.settle();
@@ -228,23 +228,23 @@ TEST(GivingWalls, WhatWasKeptFitsOnlyIfItHasANumberForEachDashpot)
   ground.walls.settle();
   EXPECT_TRUE(ground.walls.fits());
   ground.walls.begin_stage(false, 0);
-  ground.walls.give_way(1, 0.2, one_rank(), ground.nodes);
+  ground.walls.apply_dashpots(1, 0.2, one_rank(), ground.nodes);
   EXPECT_EQ(ground.shaking().reaction.size(), 2u * 5u);  // three nodes below, three beside, of which one is both
   EXPECT_TRUE(ground.walls.fits());
-  const Shaking right = ground.shaking();
+  const DynamicPhase right = ground.shaking();
   const auto fits_with = [&](const auto& change) {
     ground.shaking() = right;
     change(ground.shaking());
     return ground.walls.fits();
   };
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.reaction.pop_back(); }));
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.columns.pop_back(); }));
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.columns[0].velocity.pop_back(); }));
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.columns[0].traction.pop_back(); }));
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.knows_reactions = false; }));
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.knows_reactions = false, s.columns.clear(); }));
-  EXPECT_FALSE(fits_with([](Shaking& s) { s.knows_reactions = false, s.reaction.clear(); }));
-  EXPECT_TRUE(fits_with([](Shaking& s) { s = {}; }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.reaction.pop_back(); }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.columns.pop_back(); }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.columns[0].velocity.pop_back(); }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.columns[0].traction.pop_back(); }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.knows_reactions = false; }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.knows_reactions = false, s.columns.clear(); }));
+  EXPECT_FALSE(fits_with([](DynamicPhase& s) { s.knows_reactions = false, s.reaction.clear(); }));
+  EXPECT_TRUE(fits_with([](DynamicPhase& s) { s = {}; }));
 }
 
 }  // namespace

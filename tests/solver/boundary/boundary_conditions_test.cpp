@@ -22,7 +22,7 @@ Wall<D> wall(WallKind kind, const std::string& name, Real friction = 0)
 Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3& node_at, const Vec3& v)
 {
   const Mesh<3> mesh(box<3>(Vec3::Zero(), Vec3::Ones(), {2, 2, 2}));
-  Walls<3> walls;
+  BoundaryConditions<3> walls;
   for (const auto& [face, w] : faces)
     w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, mesh, *mesh.node_set(face))
                                                               : walls.add(w, mesh, *mesh.facet_set(face));
@@ -38,18 +38,18 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
   for (auto& row : nodes.sum)
     row.mass = 1;
   nodes.motion[at] = {v, v};
-  ExactSums<WallWork> work;
+  ExactSums<BoundaryWork> work;
   walls.apply(Kick{0.1, 0.1}, nodes, work);
   return nodes.motion[at].v;
 }
 
-TEST(Walls, FixedStopsAllAndRollerOnlyTheNormal)
+TEST(BoundaryConditions, FixedStopsAllAndRollerOnlyTheNormal)
 {
   EXPECT_EQ(after({{"x_min", wall<3>(WallKind::fixed, "x_min")}}, {0, 0.5, 0.5}, {1, 2, 3}), Vec3::Zero());
   EXPECT_LT((after({{"x_min", wall<3>(WallKind::roller, "x_min")}}, {0, 0.5, 0.5}, {1, 2, 3}) - Vec3(0, 2, 3)).norm(), 1e-15);
 }
 
-TEST(Walls, RollersThatMeetInAnEdgeOrACornerActTogether)
+TEST(BoundaryConditions, RollersThatMeetInAnEdgeOrACornerActTogether)
 {
   const auto x = std::pair{std::string("x_min"), wall<3>(WallKind::roller, "x_min")};
   const auto y = std::pair{std::string("y_min"), wall<3>(WallKind::roller, "y_min")};
@@ -59,7 +59,7 @@ TEST(Walls, RollersThatMeetInAnEdgeOrACornerActTogether)
   EXPECT_LT((after({x, y, z}, {0, 0.5, 0}, {1, 2, 3}) - Vec3(0, 2, 0)).norm(), 1e-15);
 }
 
-TEST(Walls, FixedWinsOverEveryOtherConditionOfANode)
+TEST(BoundaryConditions, FixedWinsOverEveryOtherConditionOfANode)
 {
   Wall<3> moving = wall<3>(WallKind::velocity, "x_min");
   moving.velocity = {5, 0, 0};
@@ -69,7 +69,7 @@ TEST(Walls, FixedWinsOverEveryOtherConditionOfANode)
   EXPECT_EQ(after({{"x_min", moving}}, {0, 0, 0.5}, {1, 2, 3}), Vec3(5, 0, 0));
 }
 
-TEST(Walls, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
+TEST(BoundaryConditions, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
 {
   const auto face = [](Real mu) { return std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", mu)}; };
   const Vec3 at(0.5, 0, 0.5);
@@ -78,7 +78,7 @@ TEST(Walls, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
   EXPECT_LT((after({face(0.5)}, at, {0.8, 1, 0}) - Vec3(0.8, 1, 0)).norm(), 1e-15);   // leaving: free
 }
 
-TEST(Walls, FrictionWallsOfACornerLeaveNoPenetration)
+TEST(BoundaryConditions, FrictionWallsOfACornerLeaveNoPenetration)
 {
   const auto floor = std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", 0.3)};
   const auto side = std::pair{std::string("x_min"), wall<3>(WallKind::friction, "x_min", 0.3)};
@@ -139,7 +139,7 @@ TEST(RestingBlock, DoesNotCreepBelowTheFrictionAngle)
   rest.damping = 0.7;
   rest.ramp = 0.5;
   rest.residual = 1e-3;
-  run_stage(m, rest, StepLimits{.cfl = 0.5}, [](const auto&, Moment) {});
+  run_stage(m, rest, StepLimits{.cfl = 0.5}, [](const auto&, RunEvent) {});
   const Vec<2> start = incline.centre(m);
   run_until(m, m.clock.time + 1);
   EXPECT_LT((incline.centre(m) - start).norm(), 1e-6);  // of a block 4 m long

@@ -9,9 +9,9 @@ namespace talus::testing {
 /// Two by two cells; no node is active until a test gives it a mass and a motion.
 struct NodesInASquare {
   Mesh<2> mesh;
-  Walls<2> walls;
+  BoundaryConditions<2> walls;
   Nodes<2> nodes;
-  ExactSums<WallWork> work;
+  ExactSums<BoundaryWork> work;
 
   NodesInASquare(Real side, Real kick) : mesh(box<2>(Vec<2>::Zero(), {side, side}, {2, 2}))
   {

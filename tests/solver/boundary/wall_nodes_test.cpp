@@ -67,7 +67,7 @@ TEST(NodesAtWalls, AMovingWallGivesItsVelocityAndKeepsItsImpulse)
   expect_near(now.change, end - old);
   expect_near(square.first().impulse, impulse);
   EXPECT_NEAR(square.first().angular[2], -0.5 * impulse[0], rounding);
-  const WallWork work = square.work.value();
+  const BoundaryWork work = square.work.value();
   EXPECT_NEAR(work.turned[2], -0.5 * impulse[0], rounding);
   EXPECT_EQ(work.friction, 0);
   EXPECT_NEAR(work.moved, impulse.dot(mean), rounding);
@@ -102,7 +102,7 @@ TEST(NodesAtWalls, ARollerTakesTheKineticEnergyOfTheNormalVelocity)
   expect_near(now.change, {0.5, 2});
   expect_near(square.first().impulse, {0, 6});
   EXPECT_NEAR(square.first().angular[2], 0.5 * 6, rounding);
-  const WallWork work = square.work.value();
+  const BoundaryWork work = square.work.value();
   EXPECT_EQ(work.friction, 0);
   EXPECT_EQ(work.moved, 0);
   EXPECT_NEAR(work.arrival, 6 * 0.5 * (-2 + 0), rounding);
@@ -118,7 +118,7 @@ TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
   expect_near(now.v, {1, 0});  // 2 - 0.25 * 4
   expect_near(square.first().impulse, {-2, 8});
   EXPECT_NEAR(square.first().angular[2], 0.5 * 8, rounding);
-  const WallWork work = square.work.value();
+  const BoundaryWork work = square.work.value();
   EXPECT_NEAR(work.friction, -2 * 0.5 * (old[0] + 1), rounding);
   EXPECT_EQ(work.moved, 0);
   EXPECT_NEAR(work.arrival, 8 * 0.5 * (old[1] + 0), rounding);
@@ -173,7 +173,7 @@ Vec<2> after_a_bend(Real degrees, const Vec<2>& v)
     if (x[0] > 0.5 && x[1] < 0.5)
       x[1] = -std::tan(degrees * std::numbers::pi / 180);
   const Mesh<2> mesh(std::move(data));
-  Walls<2> walls;
+  BoundaryConditions<2> walls;
   walls.add(wall(WallKind::roller), mesh, *mesh.facet_set("y_min"));
   walls.settle();
   for (Index n = 0; n < mesh.n_nodes(); ++n)
@@ -222,21 +222,21 @@ TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
   square.hold("x_min", wall(WallKind::velocity, {3, 1}));
   square.walls.settle();
   const std::size_t n = square.node({0, 0.5}), unseen = square.node({0, 1});
-  std::vector<HatSum<2>> sums(square.nodes.sum.size());
-  std::vector<HatMotion<2>> hats(sums.size());
+  std::vector<ProjectedNodeSum<2>> sums(square.nodes.sum.size());
+  std::vector<ProjectedNodeMotion<2>> projected(sums.size());
   sums[n].mass = 5, sums[n].lightest = 1;
-  hats[n].v = {1, 1};
-  square.walls.apply(Square::kick, sums, hats, square.work);
+  projected[n].v = {1, 1};
+  square.walls.apply(Square::kick, sums, projected, square.work);
   square.walls.keep_impulses();
-  expect_near(hats[n].v, {3, 1});
-  expect_near(hats[n].change, {2, 0});
-  expect_near(hats[unseen].v, {0, 0});
+  expect_near(projected[n].v, {3, 1});
+  expect_near(projected[n].change, {2, 0});
+  expect_near(projected[unseen].v, {0, 0});
   expect_near(square.first().impulse, {10, 0});
 
-  NodeMotion<2> slave{{2, 1}, {0, 0}};
-  square.walls.apply(static_cast<Index>(n), Square::kick, 4, slave, square.work);
+  NodeMotion<2> small_mass_node{{2, 1}, {0, 0}};
+  square.walls.apply(static_cast<Index>(n), Square::kick, 4, small_mass_node, square.work);
   square.walls.keep_impulses();
-  expect_near(slave.v, {3, 1});
+  expect_near(small_mass_node.v, {3, 1});
   expect_near(square.first().impulse, {14, 0});
   NodeMotion<2> free{{2, 1}, {0, 0}};
   square.walls.apply(static_cast<Index>(square.node({1, 1})), Square::kick, 4, free, square.work);

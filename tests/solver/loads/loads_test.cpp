@@ -64,7 +64,7 @@ TEST(Loads, CarriedTractionsFollowTheDeformationOfTheirParticles)
   Mat3 F = Mat3::Identity();
   F.topLeftCorner<2, 2>() << 1.5, 0.25, 0.5, 2;
   set_each(m.particles.F, [&](std::size_t) { return F; });
-  ExactSums<Push<2>> total;
+  ExactSums<ForceAndMoment<2>> total;
   apply(m.loads, 4.0, 0.5, m.followed, m.order, m.particles, total);
 
   const Vec<2> surface(-0.5 * 0.5 / 3, 1.5 * 0.5 / 3);  // across (1.5, 0.5), what a tangent becomes
@@ -77,7 +77,7 @@ TEST(Loads, CarriedTractionsFollowTheDeformationOfTheirParticles)
     expect_near(m.particles.applied[p], here);
     linear += here, angular += turning(m.particles.x[p], here), sizes += here.norm();
   }
-  const Push<2> sum = total.value();
+  const ForceAndMoment<2> sum = total.value();
   expect_near(sum.linear, linear);
   EXPECT_NEAR(sum.angular[2], angular, rounding);
   EXPECT_NEAR(sum.size, sizes, rounding);
@@ -99,7 +99,7 @@ TEST(Loads, TwoTractionsOfOneParticleAddUp)
     m.loads.on_particles.back().traction = {0, times + 1.0};
   }
   make_ready(m);
-  ExactSums<Push<2>> total;
+  ExactSums<ForceAndMoment<2>> total;
   apply(m.loads, 0.0, 1.0, m.followed, m.order, m.particles, total);
   expect_near(total.value().linear, {0, 3});
 }
@@ -126,7 +126,7 @@ TEST(Loads, ForcesOfPlaceAreTheMassTimesTheAccelerationThere)
     ASSERT_EQ(start.size(), 600u);
     for (Vec<2>& x : m.particles.x)
       x += Vec<2>(0.01, 0.02);
-    ExactSums<Push<2>> total;
+    ExactSums<ForceAndMoment<2>> total;
     apply(m.loads, 3.0, 0.5, m.followed, m.order, m.particles, total);
     Vec<2> sum = Vec<2>::Zero();
     for (std::size_t p = 0; p < start.size(); ++p) {
@@ -160,17 +160,17 @@ TEST(Loads, TractionsOfTheMeshPushNodesThatHaveMassAndWorkAtTheirMeanVelocity)
   nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
   nodes.motion.resize(nodes.sum.size());
   nodes.kick = 0.25;
-  Push<2> expected;
+  ForceAndMoment<2> expected;
   Real work = 0;
   for (std::size_t k = 0; k < 2; ++k) {  // the last one has no mass
     const auto n = static_cast<std::size_t>(load.node[k]);
     nodes.sum[n].mass = 3;
     nodes.sum[n].force = {100, 200};
     nodes.motion[n] = {Vec<2>(2, 3 + static_cast<Real>(k)), Vec<2>(1, -4)};
-    expected += Push<2>::at(mesh.node(load.node[k]), force(k));
+    expected += ForceAndMoment<2>::at(mesh.node(load.node[k]), force(k));
     work += 0.25 * force(k).dot(Vec<2>(1.5, 5 + static_cast<Real>(k)));  // between (1, 7 + k) and (2, 3 + k)
   }
-  ExactSums<Push<2>> total;
+  ExactSums<ForceAndMoment<2>> total;
   apply(loads, 4.0, 0.5, mesh, own, std::span(nodes.sum), total);
   for (std::size_t k = 0; k < 3; ++k)
     expect_near(nodes.sum[static_cast<std::size_t>(load.node[k])].force, k < 2 ? Vec<2>(Vec<2>(100, 200) + force(k)) : Vec<2>(0, 0));
@@ -184,7 +184,7 @@ TEST(Loads, TractionsOfTheMeshPushNodesThatHaveMassAndWorkAtTheirMeanVelocity)
   // nodes of another rank are pushed here too, and counted there
   OwnNodes others = own;
   others.owned.assign(others.owned.size(), 0);
-  ExactSums<Push<2>> nothing;
+  ExactSums<ForceAndMoment<2>> nothing;
   ExactSums<Real> no_work;
   const Vec<2> before = nodes.sum[static_cast<std::size_t>(load.node[0])].force;
   apply(loads, 4.0, 0.5, mesh, others, std::span(nodes.sum), nothing);

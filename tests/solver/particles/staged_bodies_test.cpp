@@ -33,14 +33,14 @@ TEST(BodiesOfStages, AreTheSameAfterTheyWentAndCame)
   const Particles<2> before = m.particles;
   const std::vector<Body> bodies = m.bodies;
   const std::vector<Index> goes{1};
-  Crowd<2> out = take_out_bodies<2>(goes, m.bodies, m.materials, m.particles);
+  ParticleSet<2> out = extract_bodies<2>(goes, m.bodies, m.materials, m.particles);
   EXPECT_EQ(m.bodies[1].size(), 0);
   EXPECT_EQ(m.particles.size(), before.size() - bodies[1].size());
   EXPECT_EQ(out.particles.size(), bodies[1].size());
   EXPECT_EQ(out.particles.id.front(), bodies[1].begin) << "its number";
   std::visit([&](const auto& batch) { EXPECT_EQ(batch.begin, m.bodies[2].begin); }, m.materials[2]);
 
-  put_in(std::move(out), m.bodies, m.materials, m.particles);
+  insert_particles(std::move(out), m.bodies, m.materials, m.particles);
   EXPECT_EQ(m.particles.id, before.id);
   EXPECT_EQ(m.particles.cell, before.cell);
   for (std::size_t b = 0; b < m.bodies.size(); ++b) {

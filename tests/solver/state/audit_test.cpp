@@ -31,9 +31,9 @@ Real largest_term(const Block& m, Real kinetic)
 /// Moment of internal forces, which is what is left of what nodes got, over what was given.
 Real moment_of_internal_forces(const Block& m)
 {
-  Push<2> given = m.momentum.loads + m.momentum.damping;
+  ForceAndMoment<2> given = m.momentum.loads + m.momentum.damping;
   for (const Wall<2>& wall : m.walls.walls())
-    given += Push<2>::of(wall.impulse, wall.angular);
+    given += ForceAndMoment<2>::of(wall.impulse, wall.angular);
   return (m.momentum.on_nodes - given.angular).norm() / given.turn;
 }
 

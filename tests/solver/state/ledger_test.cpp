@@ -67,17 +67,17 @@ TEST(Moments, AreCrossProducts)
 
 TEST(Pushes, AddForcesMomentsAndTheirModuli)
 {
-  const Push<2> one = Push<2>::at({2, 1}, {3, 4}), two = Push<2>::of({-6, 8}, {0, 0, -7});
+  const ForceAndMoment<2> one = ForceAndMoment<2>::at({2, 1}, {3, 4}), two = ForceAndMoment<2>::of({-6, 8}, {0, 0, -7});
   EXPECT_EQ(one.linear, Vec<2>(3, 4));
   EXPECT_EQ(one.angular, Vec3(0, 0, 5));
   EXPECT_EQ(one.size, 5);
   EXPECT_EQ(one.turn, 5);
-  const Push<2> sum = one + two;
+  const ForceAndMoment<2> sum = one + two;
   EXPECT_EQ(sum.linear, Vec<2>(-3, 12));
   EXPECT_EQ(sum.angular, Vec3(0, 0, -2));
   EXPECT_EQ(sum.size, 15);
   EXPECT_EQ(sum.turn, 12);
-  const Push<2> back = -2 * sum;
+  const ForceAndMoment<2> back = -2 * sum;
   EXPECT_EQ(back.linear, Vec<2>(6, -24));
   EXPECT_EQ(back.angular, Vec3(0, 0, 4));
   EXPECT_EQ(back.size, 30) << "moduli stay positive";
@@ -95,13 +95,13 @@ TEST(MassLedgers, BookEverythingThatDeletedParticlesTakeAlong)
 {
   MassLedger<3> mass;
   mass.deleted = 1, mass.failed = 2, mass.on_nodes = 4, mass.deleted_count = 8, mass.failed_count = 16, mass.held_count = 32;
-  mass.carried_away = Push<3>::of({1, 0, 0}, {0, 1, 0});
+  mass.carried_away = ForceAndMoment<3>::of({1, 0, 0}, {0, 1, 0});
   EnergyLedger energy;
   energy.carried_away = 64, energy.plastic_deleted = 128;
-  Departed<3> gone;
+  RemovedParticles<3> gone;
   gone.mass = 256, gone.failed = 512, gone.count = 1024, gone.failed_count = 2048, gone.held_count = 4096;
   gone.kinetic = 8192, gone.plastic = 16384;
-  gone.momentum = Push<3>::of({3, 0, 4}, {0, 0, 2});
+  gone.momentum = ForceAndMoment<3>::of({3, 0, 4}, {0, 0, 2});
   book(gone, mass, energy);
   EXPECT_EQ(mass.deleted, 1 + 256);
   EXPECT_EQ(mass.failed, 2 + 512);
@@ -160,7 +160,7 @@ TEST(TotalsByHand, AreThoseOfAPointMass)
 TEST(TotalsByHand, OfAllAreTheSumsOfEach)
 {
   const auto p = five_particles<2>();
-  Exchange alone;
+  Communicator alone;
   const Totals<2> all = totals(p, two_bodies_in_two_blocks(), alone);
   Totals<2> expected;
   for (int i = 0; i < 5; ++i) {

@@ -78,18 +78,18 @@ void averages_volumes()
 
   std::mt19937 bits(1);
   std::uniform_real_distribution<Real> any_rate(-20, 20);
-  Real volume = 0, kept = 0, spread = 0, spread_averaged = 0;
+  Real volume = 0, saved = 0, spread = 0, spread_averaged = 0;
   for (std::size_t p = 0; p < averaged.size(); ++p)
     m.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
   average_volume(m.mesh, m.order, only_body, dt, m.particles, sums, averaged);
   for (std::size_t p = 0; p < averaged.size(); ++p) {
     const Real own = (Mat<D>::Identity() + dt * m.particles.L[p]).determinant();
     volume += own * m.particles.volume0[p];
-    kept += averaged[p] * m.particles.volume0[p];
+    saved += averaged[p] * m.particles.volume0[p];
     spread += std::pow(own - 1, 2);
     spread_averaged += std::pow(averaged[p] - 1, 2);
   }
-  EXPECT_NEAR(kept, volume, 1e-13);          // the volume of the body is no matter of averaging
+  EXPECT_NEAR(saved, volume, 1e-13);         // the volume of the body is no matter of averaging
   EXPECT_LT(spread_averaged, 0.1 * spread);  // a star has more than ten particles
 }
 TEST(AverageVolume, KeepsUniformRatiosAndTheTotalAndSmoothsTheRestIn2D) { averages_volumes<2>(); }
@@ -326,7 +326,7 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
   Stage stage = testing::test_stage(10);
   stage.damping = 0.5;
   stage.residual = 1e-3;
-  const StageResult result = run_stage(m, stage, StepLimits{}, [](const auto&, Moment) {});
+  const StageResult result = run_stage(m, stage, StepLimits{}, [](const auto&, RunEvent) {});
   EXPECT_LT(result.end, 10);
   Real inside = 0, outside = 0;  // virial: sum V stress_xx = sum f_x x, the roller being at x = 0
   for (std::size_t p = 0; p < m.particles.id.size(); ++p) {

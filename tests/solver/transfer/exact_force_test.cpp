@@ -31,7 +31,7 @@ Model<D, Umls<D>> stressed_block(UmlsGradient gradient)
   std::uniform_real_distribution<Real> number(-1, 1);
   set_each(m.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
   scatter(m);
-  sum_on_nodes(m);
+  assemble_nodes(m);
   return m;
 }
 

@@ -61,7 +61,7 @@ TEST(NodeRows, AreSeenOnceAParticleIsNear)
 
 TEST(NodeRows, OfHatsHaveMomentumIfTheyHaveAnAffineField)
 {
-  HatSum<2> hat, other;
+  ProjectedNodeSum<2> hat, other;
   EXPECT_FALSE(hat.has_momentum());
   other.momentum = {1, 2};
   EXPECT_TRUE(other.has_momentum());

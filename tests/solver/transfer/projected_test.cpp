@@ -57,7 +57,7 @@ void read_random_motion(Model<D, K>& m)
   for (auto& node : m.nodes.motion)
     for (int d = 0; d < D; ++d)
       node.change[d] = node.v[d] = number(random);
-  show_to_particles(m, Kick{});
+  project_to_particles(m, Kick{});
 }
 
 TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
@@ -65,7 +65,7 @@ TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
   constexpr int D = TypeParam::D;
   auto m = ball<TypeParam>();
   scatter(m);
-  sum_on_nodes(m);
+  assemble_nodes(m);
   read_random_motion(m);
   gather(m, 0);
   Real power = 0, stress_power = 0, size = 0;
@@ -85,7 +85,7 @@ TYPED_TEST(ProjectedIn, MomentumIsScatteredByTheTransposeOfTheGather)
   auto m = ball<TypeParam>();
   const auto v = m.particles.v;
   scatter(m);
-  sum_on_nodes(m);
+  assemble_nodes(m);
   read_random_motion(m);
   m.particles.v.assign(m.particles.v.size(), Vec<TypeParam::D>::Zero());
   gather(m, 0);  // flip: the increment, which is the velocity here
@@ -105,10 +105,10 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
   auto m = ball<TypeParam>();
   const Mat<D> A = Mat<D>::Random();
   scatter(m);
-  sum_on_nodes(m);
+  assemble_nodes(m);
   for (Index n = 0; n < m.mesh.n_nodes(); ++n)
     m.nodes.motion[static_cast<std::size_t>(n)].v = A * m.mesh.node(n) + Vec<D>::Ones();
-  show_to_particles(m, Kick{});
+  project_to_particles(m, Kick{});
   gather(m, 0);
   for (std::size_t p = 0; p < m.particles.L.size(); ++p)
     ASSERT_LT((m.particles.L[p] - A).norm(), 1e-12);
@@ -160,8 +160,8 @@ void slide_on_a_rough_floor(Scheme scheme)
     advance(m, 1e-3);
     for (const Facet facet : floor)
       for (const Index n : m.mesh.nodes_of(facet))
-        if (m.hats.sum[static_cast<std::size_t>(n)].is_seen()) {
-          ASSERT_GT(m.hats.motion[static_cast<std::size_t>(n)].v[1], -1e-12) << "what particles read leads into the floor";
+        if (m.projected.sum[static_cast<std::size_t>(n)].is_seen()) {
+          ASSERT_GT(m.projected.motion[static_cast<std::size_t>(n)].v[1], -1e-12) << "what particles read leads into the floor";
         }
   }
   const Totals<2> end = totals(m);
@@ -221,7 +221,7 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
   Stage rest = test_stage(6);  // 17 periods of the column
   rest.damping = 0.8;
   rest.residual = 1e-3;
-  ASSERT_NO_THROW(run_stage(m, rest, StepLimits{.cfl = 0.4}, [](const auto&, Moment) {}));
+  ASSERT_NO_THROW(run_stage(m, rest, StepLimits{.cfl = 0.4}, [](const auto&, RunEvent) {}));
   for (std::size_t p = 0; p < m.particles.id.size(); ++p)
     ASSERT_NEAR(m.particles.stress[p][1], -1e4 * (10 - m.particles.x[p][1]), 1e4) << "the weight of a layer of cells";
 }

@@ -62,9 +62,9 @@ TEST(PictureSettings, HelpOffersTheWordsThatAreUnderstood)
     ASSERT_NE(option, render::picture_options.end()) << name;
     EXPECT_THAT(std::string(option->values), HasSubstr(fmt::format("{{{}}}", fmt::join(words, ",")))) << name;
   };
-  offered("--map", words(render::Map{}));
-  offered("--view", words(render::NamedView{}));
-  offered("--mesh", words(render::MeshLines{}));
+  offered("--map", enum_names(render::Map{}));
+  offered("--view", enum_names(render::NamedView{}));
+  offered("--mesh", enum_names(render::MeshLines{}));
 }
 
 TEST(PictureSettings, EverythingWrongIsSaidAtOnce)
