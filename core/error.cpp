@@ -18,7 +18,7 @@ std::string to_string(const SourceLocation& where)
 
 namespace {
 
-std::string print(const std::vector<Problem>& problems)
+std::string print(const std::vector<SceneError>& problems)
 {
   std::string text;
   for (const auto& [where, message, source_line] : problems) {
@@ -34,9 +34,9 @@ std::string print(const std::vector<Problem>& problems)
   return text;
 }
 
-std::vector<Problem> by_place(std::vector<Problem> problems)
+std::vector<SceneError> by_place(std::vector<SceneError> problems)
 {
-  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+  std::stable_sort(problems.begin(), problems.end(), [](const SceneError& a, const SceneError& b) {
     return std::tie(a.where.file, a.where.line, a.where.column) < std::tie(b.where.file, b.where.line, b.where.column);
   });
   return problems;
@@ -44,6 +44,6 @@ std::vector<Problem> by_place(std::vector<Problem> problems)
 
 }  // namespace
 
-SceneErrors::SceneErrors(std::vector<Problem> problems) : Error(print(by_place(problems))), problems_(by_place(std::move(problems))) {}
+SceneErrors::SceneErrors(std::vector<SceneError> problems) : Error(print(by_place(problems))), problems_(by_place(std::move(problems))) {}
 
 }  // namespace talus

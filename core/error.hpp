@@ -22,7 +22,7 @@ class Error : public std::runtime_error {
 };
 
 /// One thing that is wrong with the input.
-struct Problem {
+struct SceneError {
   SourceLocation where;
   std::string message;
   std::string source_line;  ///< text of the line, empty if unknown
@@ -31,12 +31,12 @@ struct Problem {
 /// Everything that is wrong with a scene or a mesh, printed like a compiler's errors.  Exit code 2.
 class SceneErrors : public Error {
  public:
-  explicit SceneErrors(std::vector<Problem> problems);
-  SceneErrors(const SourceLocation& where, const std::string& message) : SceneErrors(std::vector<Problem>{{where, message, {}}}) {}
-  const std::vector<Problem>& problems() const noexcept { return problems_; }
+  explicit SceneErrors(std::vector<SceneError> problems);
+  SceneErrors(const SourceLocation& where, const std::string& message) : SceneErrors(std::vector<SceneError>{{where, message, {}}}) {}
+  const std::vector<SceneError>& problems() const noexcept { return problems_; }
 
  private:
-  std::vector<Problem> problems_;
+  std::vector<SceneError> problems_;
 };
 
 /// The simulation failed: names step, time, particle, place.  Exit code 1.

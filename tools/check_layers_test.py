@@ -21,7 +21,7 @@ class Layers(unittest.TestCase):
     def test_a_folder_does_not_see_what_is_above_or_beside(self):
         self.fails("core/types.hpp", '#include "mesh/mesh.hpp"')
         self.fails("materials/law.hpp", '#include "mesh/mesh.hpp"')
-        self.fails("io/scene/scene.cpp", '#include "solver/model.hpp"')
+        self.fails("io/scene/scene.cpp", '#include "solver/model/model.hpp"')
         self.fails("io/document/document.cpp", '#include "io/scene/scene.hpp"')
         self.fails("app/setup/setup.cpp", '#include "app/cli/cli.hpp"')
         self.fails("tests/mesh/locate_test.cpp", '#include "kernels/kernel.hpp"')
@@ -55,10 +55,10 @@ class Layers(unittest.TestCase):
 
     def test_threads_have_one_file(self):
         self.passes("core/parallel/threads.hpp", "#pragma omp parallel for")
-        self.passes("solver/gather.hpp", "#pragma omp simd reduction(+ : sum)")
-        self.fails("solver/gather.hpp", "#pragma omp parallel for")
-        self.fails("solver/gather.hpp", '_Pragma("omp atomic")')
-        self.fails("solver/gather.hpp", "#include <omp.h>")
+        self.passes("solver/transfer/gather.hpp", "#pragma omp simd reduction(+ : sum)")
+        self.fails("solver/transfer/gather.hpp", "#pragma omp parallel for")
+        self.fails("solver/transfer/gather.hpp", '_Pragma("omp atomic")')
+        self.fails("solver/transfer/gather.hpp", "#include <omp.h>")
 
     def test_folders_include_each_other_in_no_circle(self):
         self.assertEqual(circle_in(FOLDERS), [])

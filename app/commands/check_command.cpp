@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/commands/check_command.hpp"
+#include "app/commands/run_command.hpp"
 #include "app/run/cost_estimate.hpp"
 #include "app/run/thread_choice.hpp"
 #include "app/setup/quick.hpp"
@@ -16,6 +17,7 @@
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"
 #include "io/terrain/terrain_mesh.hpp"
+#include "solver/stop_watch.hpp"
 
 namespace talus {
 
@@ -86,7 +88,7 @@ std::string describe_changes(const Setup<D>& setup)
   for (std::size_t s = 0; s < setup.changes.size(); ++s) {
     const StageChange<D>& change = setup.changes[s];
     const auto add = [&](const std::string& what) { text += fmt::format("  stage {} \"{}\": {}\n", s, setup.stages[s].name, what); };
-    const auto name = [&](Index b) -> const std::string& { return setup.bodies[static_cast<std::size_t>(b)].name; };
+    const auto name = [&](Index b) -> const std::string& { return setup.state.bodies[static_cast<std::size_t>(b)].name; };
     for (const Index b : change.vanish)
       add(fmt::format("body \"{}\" vanishes", name(b)));
     for (const auto& [b, becomes] : change.renew)
@@ -129,11 +131,11 @@ std::string describe_time(const std::vector<StageTrial>& trials, const std::vect
 template <int D>
 std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Body& body)
 {
-  if (!setup.water.any())
+  if (!setup.conditions.water.any())
     return "";
-  if (!setup.water.drains(static_cast<Index>(&body - setup.bodies.data())))
+  if (!setup.conditions.water.drains(static_cast<Index>(&body - setup.state.bodies.data())))
     return ", total stress";
-  return fmt::format(", effective stress, {} below the water table", count_wet(mesh, setup.water, body, setup.particles));
+  return fmt::format(", effective stress, {} below the water table", count_wet(mesh, setup.conditions.water, body, setup.state.particles));
 }
 
 enum class Times : std::uint8_t { left_out, measured };
@@ -151,14 +153,14 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   if (quick)
     shorten(first_step(mesh, setup), setup.stages, scene.outputs);
   const auto warnings = setup.warnings;
-  const auto names = setup.bodies;
+  const auto names = setup.state.bodies;
   const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup), passage = passage_time<D>(setup, upright_of(scene).template head<D>());
   const std::vector<Stage> stages = setup.stages;
   const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
-  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-    if (const Body& body = setup.bodies[b]; presence_of(body.name, scene.stages).from == 0)
+  for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
+    if (const Body& body = setup.state.bodies[b]; presence_of(body.name, scene.stages).from == 0)
       bodies += fmt::format("  body \"{}\": {} particles{}\n", body.name, body.size(), describe_water(mesh, setup, body));
   bodies += describe_changes(setup);
   if (setup.origin)

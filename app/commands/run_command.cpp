@@ -30,6 +30,7 @@
 #include "io/system/signals.hpp"
 #include "io/system/traps.hpp"
 #include "mesh/digest.hpp"
+#include "solver/stop_watch.hpp"
 
 namespace talus {
 
@@ -83,7 +84,7 @@ class Run {
     const RunIdentity identity = identity_of(mesh_digest, setup);
     if (from_)
       compare(from_->identity(), identity);
-    least_energy_ = setup.guards.least_energy * least_energy_factor;
+    least_energy_ = setup.conditions.limits.least_energy * least_energy_factor;
     summary_ = begin_summary(scene_, mesh, mesh_digest, setup);
 
     n_particles_ = setup.n_particles, n_cells_ = mesh.n_cells(), n_nodes_ = mesh.n_nodes();
@@ -92,41 +93,41 @@ class Run {
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     StopWatch of_step;
-    RunCallbacks<D> audience{[&](const RunView<D>& frame, RunEvent moment) {
+    RunCallbacks<D> audience{[&](const RunView<D>& view, RunEvent moment) {
                                Real seconds = 0;
                                of_step.lap(seconds);
                                if (moment == RunEvent::step_done)
                                  thread_choice_.took(seconds);
-                               recorder.watch(frame, moment);
+                               recorder.watch(view, moment);
                                if (moment == RunEvent::step_begins) {
-                                 checkpoints.see(frame, recorder);
+                                 checkpoints.see(view, recorder);
                                  set_threads(thread_choice_.next());
                                  of_step = {};
                                }
                                if (moment == RunEvent::given_up)
-                                 checkpoints.write(frame, recorder);
+                                 checkpoints.write(view, recorder);
                              },
-                             [&](const RunView<D>& frame, const StageResult& result) {
+                             [&](const RunView<D>& view, const StageResult& result) {
                                recorder.stage_done(result);
-                               checkpoints.see_end_of_stage(frame, recorder, static_cast<Index>(stages_.size()));
+                               checkpoints.see_end_of_stage(view, recorder, static_cast<Index>(stages_.size()));
                              }};
     fs::path taken;
     const auto laws = setup.laws;
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
-    audience.changed = [&](const RunView<D>& frame, const Stage& stage, const StageReport& news) {
-      recorder.changed(tell(frame, stage, news));
+    audience.changed = [&](const RunView<D>& view, const Stage& stage, const StageReport& news) {
+      recorder.changed(tell(view, stage, news));
     };
     if (from_)
-      audience.take_over = [&](const State<D>& state) { taken = from_->take_over(state, recorder, limits); };
+      audience.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
-    audience.ready = [&](const RunView<D>& frame) {
-      summary_.nodes_as_corners = world().sum(frame.nodes_as_corners);
-      check_disk_space(folder_, frame, scene_.outputs, time_left(frame));
-      world().together([&] { prepare(frame); });
+    audience.ready = [&](const RunView<D>& view) {
+      summary_.nodes_as_corners = world().sum(view.nodes_as_corners);
+      check_disk_space(folder_, view, scene_.outputs, time_left(view));
+      world().together([&] { prepare(view); });
       began_ = true;  // for the other ranks too
       whole_.reset();
       if (from_)
-        go_on(frame, taken, recorder);
+        go_on(view, taken, recorder);
       watch_.lap(build_seconds_);
     };
     const auto failed = [&](const char* what, const std::string& way_back = {}) {
@@ -180,7 +181,10 @@ class Run {
   }
   std::string strict_message() const { return fmt::format("{} (strict); the results are complete", fmt::join(failed_accounts_, "; ")); }
 
-  bool is_over(const RunView<D>& frame) const { return frame.stage.done && frame.stage_number + 1 == static_cast<Index>(stages_.size()); }
+  bool is_over(const RunView<D>& view) const
+  {
+    return view.state.stage.done && view.state.stage.number + 1 == static_cast<Index>(stages_.size());
+  }
 
   RunIdentity identity_of(std::uint64_t mesh_digest, const Setup<D>& setup) const
   {
@@ -257,16 +261,16 @@ class Run {
   }
 
   /// Of all stages [s], at most.
-  Real time_left(const RunView<D>& frame) const
+  Real time_left(const RunView<D>& view) const
   {
-    Real time = from_ ? 0 - frame.clock.time : 0;
+    Real time = from_ ? 0 - view.state.clock.time : 0;
     for (const Stage& stage : stages_)
       time += stage.duration;
     return std::max(time, 0.0);
   }
 
   /// The folder, the mesh and the scene in it, and a summary that says "not ended".
-  void prepare(const RunView<D>& frame)
+  void prepare(const RunView<D>& view)
   {
     if (from_)
       edits_ = find_edits(from_->identity().scene_file, from_->folder(), from_->identity().scene_text, from_->identity().set);
@@ -275,11 +279,11 @@ class Run {
       remove_leftovers(folder_);
       adopt_results(folder_);
       began_ = true;
-      write_first_files(folder_, frame);
+      write_first_files(folder_, view);
       update_scene_copy(folder_, scene_);
     } else {
       NewResults fresh(folder_, replacing(options_));
-      write_first_files(fresh.staging(), frame);
+      write_first_files(fresh.staging(), view);
       if (!fresh.keeps_scene())
         write_whole(fresh.staging() / scene_copy_file, with_changes(scene_.text, scene_.overrides));
       lock_ = fresh.commit();
@@ -299,10 +303,10 @@ class Run {
   }
 
   /// Summary, mesh and state at the start; a mesh that is there is that of the run, or what the user has made of it.
-  void write_first_files(const fs::path& place, const RunView<D>& frame) const
+  void write_first_files(const fs::path& place, const RunView<D>& view) const
   {
     write_summary(place / "summary.json", summary_);
-    const Mesh<D>& mesh = whole_ ? *whole_ : frame.mesh;
+    const Mesh<D>& mesh = whole_ ? *whole_ : view.problem.mesh;
     if (!fs::exists(place / "mesh.msh"))
       write_msh(place / "mesh.msh", mesh);
     if (!fs::exists(place / "mesh.vtu"))
@@ -316,9 +320,9 @@ class Run {
       });
   }
 
-  void go_on(const RunView<D>& frame, const fs::path& taken, Recorder<D>& recorder)
+  void go_on(const RunView<D>& view, const fs::path& taken, Recorder<D>& recorder)
   {
-    resumed_after_ = frame.clock.step;
+    resumed_after_ = view.state.clock.step;
     std::vector<std::string> news = edits_;
     if (in_place()) {
       std::vector<fs::path> aside;
@@ -326,23 +330,23 @@ class Run {
       if (!aside.empty())
         news.push_back(fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}",
                                    taken.filename().string(), fmt::join(names_of(aside), ", ")));
-      const auto missing = recorder.resume(frame);
+      const auto missing = recorder.resume(view);
       news.insert(news.end(), missing.begin(), missing.end());
     } else {
-      recorder.begin_again(frame);
+      recorder.begin_again(view);
     }
     for (const std::string& what : news)  // of the root alone
       say(stderr, "warning: {}\n", what);
     summary_.warnings.insert(summary_.warnings.end(), news.begin(), news.end());
     if (!options_.quiet && world().is_root())
-      say(stdout, "{} step {}, t = {:.6g} s\n", is_over(frame) ? "nothing is left to do: the run was over after" : "going on after",
-          frame.clock.step, frame.clock.time);
+      say(stdout, "{} step {}, t = {:.6g} s\n", is_over(view) ? "nothing is left to do: the run was over after" : "going on after",
+          view.state.clock.step, view.state.clock.time);
   }
 
   /// What a stage has changed; returns it as lines for the summary.
-  std::vector<std::string> tell(const RunView<D>& frame, const Stage& stage, const StageReport& news)
+  std::vector<std::string> tell(const RunView<D>& view, const Stage& stage, const StageReport& news)
   {
-    const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", frame.clock.time, stage.name);
+    const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", view.state.clock.time, stage.name);
     std::vector<std::string> lines;
     for (const std::string& what : news.told)
       lines.push_back(when + what);

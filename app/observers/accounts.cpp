@@ -16,10 +16,10 @@ namespace {
 
 /// Momentum of the particles; the moduli are those of each.
 template <int D>
-ForceAndMoment<D> momentum_of(const RunView<D>& frame)
+ForceAndMoment<D> momentum_of(const RunView<D>& view)
 {
-  const Particles<D>& particles = frame.particles;
-  return sum_particles<ForceAndMoment<D>>(frame.order, *frame.ranks, [&](Index row) {
+  const Particles<D>& particles = view.state.particles;
+  return sum_particles<ForceAndMoment<D>>(view.order, *view.problem.ranks, [&](Index row) {
     const auto p = static_cast<std::size_t>(row);
     return ForceAndMoment<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
   });
@@ -46,13 +46,13 @@ Real MomentumNow<D>::angular_loss() const noexcept
 }
 
 template <int D>
-void BalanceHistory<D>::see(const RunView<D>& frame, RunEvent moment)
+void BalanceHistory<D>::see(const RunView<D>& view, RunEvent moment)
 {
   if (moment == RunEvent::stage_begins) {
     if (!begun_) {
-      kinetic_begin_ = totals(frame).kinetic;
-      plastic_begin_ = frame.energy.plastic_start;
-      start_ = momentum_of(frame);
+      kinetic_begin_ = totals(view).kinetic;
+      plastic_begin_ = view.state.energy.plastic_start;
+      start_ = momentum_of(view);
     } else {
       before_.gravity += stage_.gravity, before_.loads += stage_.loads, before_.walls += stage_.walls;
       before_.waves += stage_.waves;
@@ -61,29 +61,29 @@ void BalanceHistory<D>::see(const RunView<D>& frame, RunEvent moment)
       transfer_before_ += stage_.transfer(kinetic_end_);
       taken_out_before_ += taken_out_;
       // What differs between the end of the one stage and the beginning of the next has come or gone with bodies.
-      const Real came = frame.energy.kinetic_start - (kinetic_end_ - taken_out_);
+      const Real came = view.state.energy.kinetic_start - (kinetic_end_ - taken_out_);
       (came > 0 ? kinetic_begin_ : before_.carried_away) += std::abs(came);
-      before_.plastic_deleted += plastic_end_ - frame.energy.plastic_start;
+      before_.plastic_deleted += plastic_end_ - view.state.energy.plastic_start;
     }
     begun_ = true;
     taken_out_ = 0;
   }
   if (moment == RunEvent::stage_done) {
-    taken_out_ = frame.energy.set_to_rest;
-    kinetic_end_ = totals(frame).kinetic + taken_out_;
-    plastic_end_ = plastic_work(frame);
+    taken_out_ = view.state.energy.set_to_rest;
+    kinetic_end_ = totals(view).kinetic + taken_out_;
+    plastic_end_ = plastic_work(view);
   }
-  stage_ = frame.energy.at_velocities();
+  stage_ = view.state.energy.at_velocities();
 }
 
 template <int D>
-EnergyNow BalanceHistory<D>::energy(const RunView<D>& frame) const
+EnergyNow BalanceHistory<D>::energy(const RunView<D>& view) const
 {
-  const EnergyLedger e = frame.energy.at_velocities();
+  const EnergyLedger e = view.state.energy.at_velocities();
   EnergyNow now;
   now.kinetic_start = kinetic_begin_;
-  now.kinetic = totals(frame).kinetic;
-  now.plastic = plastic_work(frame) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;
+  now.kinetic = totals(view).kinetic;
+  now.plastic = plastic_work(view) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;
   now.strain = before_.internal + e.internal - now.plastic;
   now.friction = 0 - before_.friction - e.friction;  // 0 - 0 is not -0
   now.damping = taken_out_before_ + taken_out_ - before_.damping - e.damping;
@@ -100,14 +100,14 @@ EnergyNow BalanceHistory<D>::energy(const RunView<D>& frame) const
 }
 
 template <int D>
-MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& frame) const
+MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& view) const
 {
-  const MomentumLedger<D>& given = frame.momentum;
+  const MomentumLedger<D>& given = view.state.momentum;
   ForceAndMoment<D> in_steps = given.loads + given.damping;
-  for (const Wall<D>& wall : frame.walls.walls())
+  for (const Wall<D>& wall : view.state.walls.walls())
     in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
-  MomentumNow<D> now{start_, momentum_of(frame), in_steps + given.rest + given.changes + -1 * frame.mass.carried_away};
-  if (frame.particles.precision() == Precision::single)
+  MomentumNow<D> now{start_, momentum_of(view), in_steps + given.rest + given.changes + -1 * view.state.mass.carried_away};
+  if (view.state.particles.precision() == Precision::single)
     now.most_linear_defect = 1e-5;
   now.forces = given.on_nodes - in_steps.angular;
   now.lost = now.start.angular + now.given.angular + now.forces - now.end.angular;

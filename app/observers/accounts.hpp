@@ -68,10 +68,10 @@ struct MomentumNow {
 template <int D>
 class BalanceHistory {
  public:
-  void see(const RunView<D>& frame, RunEvent moment);
+  void see(const RunView<D>& view, RunEvent moment);
 
-  EnergyNow energy(const RunView<D>& frame) const;
-  MomentumNow<D> momentum(const RunView<D>& frame) const;
+  EnergyNow energy(const RunView<D>& view) const;
+  MomentumNow<D> momentum(const RunView<D>& view) const;
   static constexpr auto fields()
   {
     return std::tuple{saved("before", &BalanceHistory::before_),

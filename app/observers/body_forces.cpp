@@ -7,55 +7,55 @@ namespace talus {
 namespace {
 
 template <int D>
-BodySums<D> sums_of_body(const RunView<D>& frame, Index body)
+BodySums<D> sums_of_body(const RunView<D>& view, Index body)
 {
-  const Particles<D>& particles = frame.particles;
+  const Particles<D>& particles = view.state.particles;
   ExactSums<BodySums<D>> sum;
-  add_particles(frame.order, {body, body + 1}, sum, [&](Index row) {
+  add_particles(view.order, {body, body + 1}, sum, [&](Index row) {
     const auto p = static_cast<std::size_t>(row);
     const Real m = particles.mass[p];
     const Vec<D> v = particles.v[p], load = particles.applied.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(particles.applied[p]);
     return BodySums<D>{m, 0.5 * m * v.squaredNorm(), m * v, load};
   });
-  frame.ranks->sum(sum);
+  view.problem.ranks->sum(sum);
   return sum.value();
 }
 
 }  // namespace
 
 template <int D>
-void BodyForces<D>::see(const RunView<D>& frame, RunEvent moment)
+void BodyForces<D>::see(const RunView<D>& view, RunEvent moment)
 {
   if (!wanted_ || moment == RunEvent::step_begins || moment == RunEvent::given_up)
     return;
   std::vector<BodySums<D>> now;
-  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
-    now.push_back(sums_of_body(frame, static_cast<Index>(b)));
+  for (std::size_t b = 0; b < view.state.bodies.size(); ++b)
+    now.push_back(sums_of_body(view, static_cast<Index>(b)));
   impulses_.resize(now.size());
   if (moment == RunEvent::step_done)
-    add_step(frame, now);
+    add_step(view, now);
   sums_ = std::move(now);
-  deleted_ = frame.mass.carried_away.linear;
-  failed_ = frame.mass.failed;
+  deleted_ = view.state.mass.carried_away.linear;
+  failed_ = view.state.mass.failed;
 }
 
 template <int D>
-void BodyForces<D>::add_step(const RunView<D>& frame, const std::vector<BodySums<D>>& now)
+void BodyForces<D>::add_step(const RunView<D>& view, const std::vector<BodySums<D>>& now)
 {
-  const Vec<D> gravity = frame.nodes.gravity;
-  const Real kick = frame.nodes.kick;
+  const Vec<D> gravity = view.nodes.gravity;
+  const Real kick = view.nodes.kick;
   const auto lost = [&](std::size_t b) { return now[b].mass != sums_[b].mass; };
   std::size_t losers = 0;
   for (std::size_t b = 0; b < now.size(); ++b)
     losers += lost(b) ? 1 : 0;
-  const Real failed = frame.mass.failed - failed_;  // took part in the step in which it failed, with loads that went with it
+  const Real failed = view.state.mass.failed - failed_;  // took part in the step in which it failed, with loads that went with it
   for (std::size_t b = 0; b < now.size(); ++b) {
     BodyImpulse<D>& impulse = impulses_[b];
-    if (lost(b) && (losers > 1 || (failed > 0 && !frame.particles.applied.empty()))) {
+    if (lost(b) && (losers > 1 || (failed > 0 && !view.state.particles.applied.empty()))) {
       ++impulse.unknown;
       continue;
     }
-    const Vec<D> deleted = lost(b) ? Vec<D>(frame.mass.carried_away.linear - deleted_) : Vec<D>(Vec<D>::Zero());
+    const Vec<D> deleted = lost(b) ? Vec<D>(view.state.mass.carried_away.linear - deleted_) : Vec<D>(Vec<D>::Zero());
     const Real mass = now[b].mass + (lost(b) ? failed : 0);
     impulse.given += now[b].momentum - sums_[b].momentum + deleted - kick * (mass * gravity + now[b].load);
   }

@@ -43,7 +43,7 @@ class BodyForces {
  public:
   explicit BodyForces(bool wanted) noexcept : wanted_(wanted) {}
   /// Called at every event of a run, on every rank.
-  void see(const RunView<D>& frame, RunEvent moment);
+  void see(const RunView<D>& view, RunEvent moment);
 
   /// Of each body, at the last event.
   const std::vector<BodySums<D>>& sums() const noexcept { return sums_; }
@@ -57,7 +57,7 @@ class BodyForces {
   }
 
  private:
-  void add_step(const RunView<D>& frame, const std::vector<BodySums<D>>& now);
+  void add_step(const RunView<D>& view, const std::vector<BodySums<D>>& now);
 
   bool wanted_;
   std::vector<BodySums<D>> sums_;

@@ -93,6 +93,11 @@ void must(bool holds, const char* what)
     throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
 }
 
+/// Parts of a state whose rows are written as arrays, not as fields.
+template <class Part>
+constexpr bool is_of_particles =
+    std::is_same_v<Part, Particles<2>> || std::is_same_v<Part, Particles<3>> || std::is_same_v<Part, std::vector<AnyBatch>>;
+
 /// A list of which set-up has as many: looked at before its items, of which not all is kept, are replaced.
 void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
 {
@@ -179,57 +184,57 @@ bool Checkpoints<D>::due(const Clock& clock) const
 }
 
 template <int D>
-void Checkpoints<D>::see(const RunView<D>& frame, const Recorder<D>& recorder)
+void Checkpoints<D>::see(const RunView<D>& view, const Recorder<D>& recorder)
 {
   if (!at_)
-    at_ = frame.clock;
+    at_ = view.state.clock;
   std::string reason = StopRequests::received();
   if (!reason.empty())
     reason = "by " + reason;
-  else if (until_ && frame.clock.step >= *until_)
+  else if (until_ && view.state.clock.step >= *until_)
     reason = "as asked";
   // Signals and clocks on the wall differ from rank to rank.
   enum : std::int64_t { go_on, write_one, stop };
-  const std::int64_t wish = !reason.empty() ? stop : frame.ranks->is_root() && due(frame.clock) ? write_one : go_on;
-  const std::int64_t what = frame.ranks->max(wish);
+  const std::int64_t wish = !reason.empty() ? stop : view.problem.ranks->is_root() && due(view.state.clock) ? write_one : go_on;
+  const std::int64_t what = view.problem.ranks->max(wish);
   if (what == go_on)
     return;
   if (what == stop)
-    reason = frame.ranks->first(reason);
-  write(frame, recorder);
+    reason = view.problem.ranks->first(reason);
+  write(view, recorder);
   if (!reason.empty())
-    throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, frame.clock.step + 1, frame.clock.time,
-                              last_.string()));
+    throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, view.state.clock.step + 1,
+                              view.state.clock.time, last_.string()));
 }
 
 template <int D>
-void Checkpoints<D>::see_end_of_stage(const RunView<D>& frame, const Recorder<D>& recorder, Index n_stages)
+void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, const Recorder<D>& recorder, Index n_stages)
 {
-  if (spec_.at_end && frame.stage_number + 1 == n_stages)
-    write(frame, recorder);
+  if (spec_.at_end && view.state.stage.number + 1 == n_stages)
+    write(view, recorder);
 }
 
 template <int D>
-void Checkpoints<D>::write(const RunView<D>& frame, const Recorder<D>& recorder)
+void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
 {
-  const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, frame.clock.step, suffix);
-  frame.ranks->together([&] {
+  const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, view.state.clock.step, suffix);
+  view.problem.ranks->together([&] {
     require_results(folder_);
     recorder.flush();  // what the checkpoint says is written is on the disk before it
   });
-  on_slices(frame, [&](const RunView<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
+  on_slices(view, [&](const State<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
     std::vector<SharedArray> arrays;
     share_columns("particles", slice.particles, rows, arrays);
     for (std::size_t b = 0; b < bodies.size(); ++b)
       share_history(history_of(b), slice.materials[b], rows_of_body(bodies[b], slice.bodies[b], rows), arrays);
-    write_arrays(*frame.ranks, file, arrays, [&](ArrayWriter& rest) {
+    write_arrays(*view.problem.ranks, file, arrays, [&](ArrayWriter& rest) {
       save(rest, "format", written_format);
       save(rest, "run", identity_);
       for_each_part(slice, [&](const std::string& name, const auto& part) {
         using Part = std::decay_t<decltype(part)>;
         if constexpr (std::is_same_v<Part, std::vector<Body>>)
           save(rest, name, bodies);
-        else if constexpr (!std::is_same_v<Part, Particles<D>>)
+        else if constexpr (!is_of_particles<Part>)
           save(rest, name, part);
       });
       for (std::size_t b = 0; b < bodies.size(); ++b)
@@ -238,9 +243,9 @@ void Checkpoints<D>::write(const RunView<D>& frame, const Recorder<D>& recorder)
     });
   });
   last_ = file;
-  at_ = frame.clock;
+  at_ = view.state.clock;
   when_ = Watch::now();
-  if (!frame.ranks->is_root())
+  if (!view.problem.ranks->is_root())
     return;
   const auto all = checkpoints_in(folder_ / checkpoint_folder);
   const auto manifest = Manifest::of(folder_);
@@ -347,7 +352,7 @@ try {
 }  // namespace
 
 template <int D>
-fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
+fs::path CheckpointList::take_over(State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const
 {
   Communicator& ranks = world();
   const auto columns = filled_columns(state.particles);
@@ -356,7 +361,7 @@ fs::path CheckpointList::take_over(const State<D>& state, Recorder<D>& recorder,
     check_count(arrays, "walls/wall", state.walls.walls().size(), "walls");
     for_each_part(state, [&](const std::string& name, auto& part) {
       using Part = std::decay_t<decltype(part)>;
-      if constexpr (!std::is_same_v<Part, std::vector<Body>> && !std::is_same_v<Part, Particles<D>>)
+      if constexpr (!std::is_same_v<Part, std::vector<Body>> && !is_of_particles<Part>)
         load(arrays, name, part);
     });
     take_laws_of(state.stage, limits.laws, state.materials);
@@ -406,8 +411,8 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& saved) const
 
 template class Checkpoints<2>;
 template class Checkpoints<3>;
-template fs::path CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
-template fs::path CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+template fs::path CheckpointList::take_over<2>(State<2>&, Recorder<2>&, const StateLimits&) const;
+template fs::path CheckpointList::take_over<3>(State<3>&, Recorder<3>&, const StateLimits&) const;
 template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
 template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 

@@ -4,7 +4,7 @@
 
 #include "app/observers/recorder.hpp"
 #include "io/checkpoint/array_file.hpp"
-#include "solver/state.hpp"
+#include "solver/model/model.hpp"
 
 namespace talus {
 
@@ -43,11 +43,11 @@ class Checkpoints {
 
   /// Before each step: writes one if it is due.  Stopped after writing one because of a signal, or where steps are done `until` which the
   /// run was to go.  EnvironmentError: it could not be written; older ones are left as they are.
-  void see(const RunView<D>& frame, const Recorder<D>& recorder);
+  void see(const RunView<D>& view, const Recorder<D>& recorder);
   /// After a stage, the recorder knowing its result: writes one at the end of the run if the scene wants it.
-  void see_end_of_stage(const RunView<D>& frame, const Recorder<D>& recorder, Index n_stages);
+  void see_end_of_stage(const RunView<D>& view, const Recorder<D>& recorder, Index n_stages);
   /// Writes one now.  EnvironmentError.
-  void write(const RunView<D>& frame, const Recorder<D>& recorder);
+  void write(const RunView<D>& view, const Recorder<D>& recorder);
   /// The last one written, empty if there is none, and the steps done then.
   const std::filesystem::path& last() const noexcept { return last_; }
   std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
@@ -100,7 +100,7 @@ class CheckpointList {
   /// error, and the one before it is taken.  Of several ranks each takes a slice of the particles, whose cells are of the whole mesh: see
   /// adopt_state().  EnvironmentError: none is whole and fits.
   template <int D>
-  std::filesystem::path take_over(const State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
+  std::filesystem::path take_over(State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
   /// Which file was read, and why newer ones were not.
   struct Read {
     std::filesystem::path file;
@@ -129,8 +129,8 @@ std::vector<std::filesystem::path> set_aside_newer(const std::filesystem::path& 
 
 extern template class Checkpoints<2>;
 extern template class Checkpoints<3>;
-extern template std::filesystem::path CheckpointList::take_over<2>(const State<2>&, Recorder<2>&, const StateLimits&) const;
-extern template std::filesystem::path CheckpointList::take_over<3>(const State<3>&, Recorder<3>&, const StateLimits&) const;
+extern template std::filesystem::path CheckpointList::take_over<2>(State<2>&, Recorder<2>&, const StateLimits&) const;
+extern template std::filesystem::path CheckpointList::take_over<3>(State<3>&, Recorder<3>&, const StateLimits&) const;
 extern template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
 extern template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 

@@ -115,7 +115,7 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 {
   std::vector<CsvColumn> all = common_columns(D);
   const auto add = [&](const std::vector<CsvColumn>& more) { all.insert(all.end(), more.begin(), more.end()); };
-  for (const Wall<D>& wall : start.walls.walls())
+  for (const Wall<D>& wall : start.state.walls.walls())
     add(reaction_columns(wall.name, D));
   for (const PointSpec& point : spec.points)
     add(columns_of(point, D));
@@ -133,69 +133,70 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start) : spec_(std::move(spec))
 {
-  start.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
-  state_.impulse.assign(start.walls.walls().size(), Vec<D>::Zero());
-  state_.angular.assign(start.walls.walls().size(), Vec3::Zero());
+  start.problem.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
+  state_.impulse.assign(start.state.walls.walls().size(), Vec<D>::Zero());
+  state_.angular.assign(start.state.walls.walls().size(), Vec3::Zero());
   state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
-    state_.followed.push_back(nearest_particle(point, start.bodies, start.particles, *start.ranks));
+    state_.followed.push_back(nearest_particle(point, start.state.bodies, start.state.particles, *start.problem.ranks));
 }
 
 template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& now, HistoryState<D> state)
     : spec_(std::move(spec)), state_(std::move(state))
 {
-  now.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.clock.time)); });
+  now.problem.ranks->together([&] { file_.emplace(HistoryFile::resume(file, columns(spec_, now), now.state.clock.time)); });
 }
 
 template <int D>
-void HistoryWriter<D>::append(const RunView<D>& frame, const BalanceHistory<D>& accounts, const BodyForces<D>& forces)
+void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& accounts, const BodyForces<D>& forces)
 {
-  const Totals<D> sums = totals(frame);
-  const Clock& clock = frame.clock;
-  std::vector<Real> row{clock.time, static_cast<Real>(clock.step), clock.dt, static_cast<Real>(frame.stage_number), sums.mass};
+  const Totals<D> sums = totals(view);
+  const Clock& clock = view.state.clock;
+  std::vector<Real> row{clock.time, static_cast<Real>(clock.step), clock.dt, static_cast<Real>(view.state.stage.number), sums.mass};
   put<D>(sums.momentum, row);
   for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
     row.push_back(sums.angular[d]);
   put<D>(sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry)), row);
-  const EnergyNow e = accounts.energy(frame);
+  const EnergyNow e = accounts.energy(view);
   row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
-                         e.defect, frame.residual});
+                         e.defect, view.state.residual});
   const Real elapsed = clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
-    const Vec<D>& impulse = frame.walls.walls()[w].impulse;
+    const Vec<D>& impulse = view.state.walls.walls()[w].impulse;
     put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
   }
   FollowedRows followed(state_.followed);
-  followed.find(frame.particles.id);
+  followed.find(view.state.particles.id);
   for (std::size_t k = 0; k < spec_.points.size(); ++k)
-    add_point(frame, spec_.points[k], followed.row(state_.followed[k]), row);
+    add_point(view, spec_.points[k], followed.row(state_.followed[k]), row);
   for (const FrontSpec& spec : spec_.fronts)
-    row.push_back(front(spec, frame.bodies, frame.particles, *frame.ranks));
+    row.push_back(front(spec, view.state.bodies, view.state.particles, *view.problem.ranks));
   for (const WallSpec& spec : spec_.walls)
-    add_wall(frame, spec, elapsed, row);
+    add_wall(view, spec, elapsed, row);
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
-    state_.impulse[w] = frame.walls.walls()[w].impulse;
-    state_.angular[w] = frame.walls.walls()[w].angular;
+    state_.impulse[w] = view.state.walls.walls()[w].impulse;
+    state_.angular[w] = view.state.walls.walls()[w].angular;
   }
   for (const MovedSpec& spec : spec_.moved)
-    row.push_back(moved(spec, frame.bodies, frame.particles, *frame.ranks));
+    row.push_back(moved(spec, view.state.bodies, view.state.particles, *view.problem.ranks));
   for (std::size_t k = 0; k < spec_.bodies.size(); ++k)
-    add_body(frame, forces, k, elapsed, row);
-  frame.ranks->together([&] { file_->append(row); });
+    add_body(view, forces, k, elapsed, row);
+  view.problem.ranks->together([&] { file_->append(row); });
   state_.time = clock.time;
 }
 
 template <int D>
-void HistoryWriter<D>::add_body(const RunView<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
+void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
 {
-  const auto named = std::find_if(frame.bodies.begin(), frame.bodies.end(), [&](const Body& body) { return body.name == spec_.bodies[k]; });
-  const auto b = static_cast<std::size_t>(named - frame.bodies.begin());
+  const auto named =
+      std::find_if(view.state.bodies.begin(), view.state.bodies.end(), [&](const Body& body) { return body.name == spec_.bodies[k]; });
+  const auto b = static_cast<std::size_t>(named - view.state.bodies.begin());
   const BodySums<D>& sums = forces.sums()[b];
   const BodyImpulse<D>&before = state_.given[k], &now = forces.impulses()[b];
   ExactSums<Real> plastic;
-  add_plastic_work(frame.materials[b], frame.order, static_cast<Index>(b), frame.particles.volume0, plastic);
-  frame.ranks->sum(plastic);
+  add_plastic_work(view.state.materials[b], view.order, static_cast<Index>(b), view.state.particles.volume0, plastic);
+  view.problem.ranks->sum(plastic);
   row.push_back(sums.mass);
   put<D>(sums.momentum, row);
   row.insert(row.end(), {sums.kinetic, plastic.value()});
@@ -210,20 +211,21 @@ void HistoryWriter<D>::add_body(const RunView<D>& frame, const BodyForces<D>& fo
 
 /// Its mean push since the row before, where the line of that push crosses the wall, and on how much of the wall there is mass now.
 template <int D>
-void HistoryWriter<D>::add_wall(const RunView<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
+void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
 {
-  const auto walls = frame.walls.walls();
+  const auto walls = view.state.walls.walls();
   const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall<D>& one) { return one.name == spec.on; });
   const auto w = static_cast<std::size_t>(wall - walls.begin());
-  const MeshTraction<D> on_nodes = carried_by_mesh<D>(frame.mesh, facets_of_wall(frame.mesh, spec.on).value_or(std::vector<Facet>()));
+  const MeshTraction<D> on_nodes =
+      carried_by_mesh<D>(view.problem.mesh, facets_of_wall(view.problem.mesh, spec.on).value_or(std::vector<Facet>()));
   ExactSums<Touched<D>> sum;
   for (std::size_t i = 0; i < on_nodes.node.size(); ++i) {
     const Index n = on_nodes.node[i];
-    const bool counted = frame.share.alone() || frame.share.owns_node(n);
-    if (counted && frame.nodes.active[static_cast<std::size_t>(n)] != 0)
-      sum.add({on_nodes.area[i], on_nodes.measure[i] * frame.mesh.node(n), on_nodes.measure[i]});
+    const bool counted = view.problem.share.alone() || view.problem.share.owns_node(n);
+    if (counted && view.nodes.active[static_cast<std::size_t>(n)] != 0)
+      sum.add({on_nodes.area[i], on_nodes.measure[i] * view.problem.mesh.node(n), on_nodes.measure[i]});
   }
-  frame.ranks->sum(sum);
+  view.problem.ranks->sum(sum);
   const Touched<D> touched = sum.value();
   const Real area = touched.area.norm();
   const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // on the wall
@@ -244,24 +246,25 @@ void HistoryWriter<D>::follow_anew(const std::string& body, const RunView<D>& no
 {
   for (std::size_t k = 0; k < spec_.points.size(); ++k)
     if (spec_.points[k].body == body)
-      state_.followed[k] = nearest_particle(spec_.points[k], now.bodies, now.particles, *now.ranks);
+      state_.followed[k] = nearest_particle(spec_.points[k], now.state.bodies, now.state.particles, *now.problem.ranks);
 }
 
 template <int D>
-void HistoryWriter<D>::add_point(const RunView<D>& frame, const PointSpec& point_spec, Index at, std::vector<Real>& row)
+void HistoryWriter<D>::add_point(const RunView<D>& view, const PointSpec& point_spec, Index at, std::vector<Real>& row)
 {
   std::vector<Real> here;
-  const bool is_there = at != none && (point_spec.body.empty() || frame.bodies[body_of(frame.bodies, at)].name == point_spec.body);
+  const bool is_there =
+      at != none && (point_spec.body.empty() || view.state.bodies[body_of(view.state.bodies, at)].name == point_spec.body);
   if (is_there) {
     const auto p = static_cast<std::size_t>(at);
-    put<D>(frame.particles.x[p], here);
-    put<D>(frame.particles.x[p] - frame.particles.x0[p], here);
-    put<D>(frame.particles.v[p], here);
-    const Sym3 stress = frame.particles.stress[p];
+    put<D>(view.state.particles.x[p], here);
+    put<D>(view.state.particles.x[p] - view.state.particles.x0[p], here);
+    put<D>(view.state.particles.v[p], here);
+    const Sym3 stress = view.state.particles.stress[p];
     here.insert(here.end(), stress.begin(), stress.end());
   }
   std::vector<Real> point(3 * D + 6, empty_entry);
-  for (const std::vector<Real>& of_rank : gather_rows<Real>(*frame.ranks, here))
+  for (const std::vector<Real>& of_rank : gather_rows<Real>(*view.problem.ranks, here))
     if (!of_rank.empty())
       point = of_rank;
   row.insert(row.end(), point.begin(), point.end());

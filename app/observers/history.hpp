@@ -51,16 +51,16 @@ class HistoryWriter {
   const HistoryState<D>& state() const noexcept { return state_; }
   /// Points of this body follow the particle that is nearest now.
   void follow_anew(const std::string& body, const RunView<D>& now);
-  void append(const RunView<D>& frame, const BalanceHistory<D>& accounts, const BodyForces<D>& forces);
+  void append(const RunView<D>& view, const BalanceHistory<D>& accounts, const BodyForces<D>& forces);
   void flush() const { file_->flush(); }                          ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const RunView<D>& start);
 
  private:
   /// Of a body: its sums, and the mean force on it; no force where that is not known of a step.
-  void add_body(const RunView<D>& frame, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
-  void add_wall(const RunView<D>& frame, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
-  static void add_point(const RunView<D>& frame, const PointSpec& point, Index at, std::vector<Real>& row);
+  void add_body(const RunView<D>& view, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
+  void add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
+  static void add_point(const RunView<D>& view, const PointSpec& point, Index at, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;

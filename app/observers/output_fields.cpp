@@ -46,12 +46,12 @@ Column tensors(std::string_view name, std::string_view unit, std::span<const Ind
 }
 
 template <int D>
-Column history_column(const RunView<D>& frame, std::span<const Index> rows, std::string_view name)
+Column history_column(const State<D>& state, std::span<const Index> rows, std::string_view name)
 {
   Column column{std::string(name), 1, {}, ""};
   const auto each = [&](auto&& f) {
-    for (std::size_t b = 0; b < frame.materials.size(); ++b)
-      for_each_history(frame.materials[b], [&](std::string_view key, std::string_view unit, std::string_view, const auto& history) {
+    for (std::size_t b = 0; b < state.materials.size(); ++b)
+      for_each_history(state.materials[b], [&](std::string_view key, std::string_view unit, std::string_view, const auto& history) {
         if (key == name)
           f(b, unit, history);
       });
@@ -64,9 +64,9 @@ Column history_column(const RunView<D>& frame, std::span<const Index> rows, std:
   column.values.assign(width * rows.size(), 0);
   each([&](std::size_t b, std::string_view, const auto& history) {
     for (std::size_t i = 0; i < rows.size(); ++i)
-      if (body_of(frame.bodies, rows[i]) == b)
+      if (body_of(state.bodies, rows[i]) == b)
         for (std::size_t k = 0; k < width; ++k)
-          column.values[i * width + k] = static_cast<float>(history.component(rows[i] - frame.bodies[b].begin, static_cast<int>(k)));
+          column.values[i * width + k] = static_cast<float>(history.component(rows[i] - state.bodies[b].begin, static_cast<int>(k)));
   });
   return column;
 }
@@ -84,9 +84,9 @@ std::vector<std::string> particle_fields_of(const OutputSpec& outputs)
 }
 
 template <int D>
-Column particle_column(const RunView<D>& frame, std::span<const Index> rows, std::string_view name)
+Column particle_column(const State<D>& state, std::span<const Index> rows, std::string_view name)
 {
-  const Particles<D>& p = frame.particles;
+  const Particles<D>& p = state.particles;
   if (name == "velocity")
     return vectors<D>(name, "m/s", rows, [&](std::size_t r) { return p.v[r]; });
   if (name == "displacement")
@@ -115,18 +115,18 @@ Column particle_column(const RunView<D>& frame, std::span<const Index> rows, std
   if (name == "cell")
     return scalars(name, "", rows, [&](std::size_t r) { return p.cell[r]; });
   if (name == "body")
-    return scalars(name, "", rows, [&](std::size_t r) { return body_of(frame.bodies, static_cast<Index>(r)); });
+    return scalars(name, "", rows, [&](std::size_t r) { return body_of(state.bodies, static_cast<Index>(r)); });
   if (name == "F")
     return tensors(name, "", rows, [&](std::size_t r) { return p.F[r]; });
   if (name == "velocity_gradient")
     return tensors(name, "1/s", rows, [&](std::size_t r) { return embed(p.L[r]); });
-  return history_column(frame, rows, name);
+  return history_column(state, rows, name);
 }
 
 template <int D>
-Column node_column(const RunView<D>& frame, std::string_view name)
+Column node_column(const RunView<D>& view, std::string_view name)
 {
-  const Nodes<D>& nodes = frame.nodes;
+  const Nodes<D>& nodes = view.nodes;
   std::vector<Index> rows(nodes.sum.size());
   std::iota(rows.begin(), rows.end(), Index{0});
   if (name == "mass")
@@ -164,8 +164,8 @@ std::vector<Real> positions(const Particles<D>& particles, std::span<const Index
   return places;
 }
 
-template Column particle_column<2>(const RunView<2>&, std::span<const Index>, std::string_view);
-template Column particle_column<3>(const RunView<3>&, std::span<const Index>, std::string_view);
+template Column particle_column<2>(const State<2>&, std::span<const Index>, std::string_view);
+template Column particle_column<3>(const State<3>&, std::span<const Index>, std::string_view);
 template Column node_column<2>(const RunView<2>&, std::string_view);
 template Column node_column<3>(const RunView<3>&, std::string_view);
 template std::vector<Index> rows_by_id<2>(const Particles<2>&);

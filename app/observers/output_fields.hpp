@@ -12,11 +12,11 @@ std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
 /// A field of all particles in the order of `rows`.  Names: those of io/scene/scene_rules.hpp, `body` (its number), and every history
 /// variable, which is 0 for bodies whose law does not have it.
 template <int D>
-Column particle_column(const RunView<D>& frame, std::span<const Index> rows, std::string_view name);
+Column particle_column(const State<D>& state, std::span<const Index> rows, std::string_view name);
 
 /// Of all nodes: mass, velocity, force (internal and loads), reaction (of all walls), as the last step left them.
 template <int D>
-Column node_column(const RunView<D>& frame, std::string_view name);
+Column node_column(const RunView<D>& view, std::string_view name);
 
 /// Rows in the order of their ids, which does not change during a run.
 template <int D>
@@ -26,8 +26,8 @@ std::vector<Index> rows_by_id(const Particles<D>& particles);
 template <int D>
 std::vector<Real> positions(const Particles<D>& particles, std::span<const Index> rows);
 
-extern template Column particle_column<2>(const RunView<2>&, std::span<const Index>, std::string_view);
-extern template Column particle_column<3>(const RunView<3>&, std::span<const Index>, std::string_view);
+extern template Column particle_column<2>(const State<2>&, std::span<const Index>, std::string_view);
+extern template Column particle_column<3>(const State<3>&, std::span<const Index>, std::string_view);
 extern template Column node_column<2>(const RunView<2>&, std::string_view);
 extern template Column node_column<3>(const RunView<3>&, std::string_view);
 extern template std::vector<Index> rows_by_id<2>(const Particles<2>&);

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "io/output/progress_json.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 
 namespace talus {
 

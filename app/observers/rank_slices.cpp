@@ -89,9 +89,9 @@ std::vector<T> dealt(Communicator& ranks, const Slices& slices, std::span<const 
 }
 
 template <int D>
-Slices slices_of_nodes(const RunView<D>& frame, std::int64_t piece)
+Slices slices_of_nodes(const RunView<D>& view, std::int64_t piece)
 {
-  return {frame.share.alone() ? frame.mesh.n_nodes() : frame.share.whole_nodes, frame.ranks->size(), piece};
+  return {view.problem.share.alone() ? view.problem.mesh.n_nodes() : view.problem.share.whole_nodes, view.problem.ranks->size(), piece};
 }
 
 }  // namespace
@@ -107,22 +107,22 @@ std::optional<std::int64_t> doubled_id(Communicator& ranks, std::span<const std:
 }
 
 template <int D>
-ParticleSlice<D> slice_of_particles(const RunView<D>& frame, std::int64_t piece)
+ParticleSlice<D> slice_of_particles(const RunView<D>& view, std::int64_t piece)
 {
-  Communicator& ranks = *frame.ranks;
-  const std::vector<std::int64_t> number = numbers_by_id(ranks, frame.particles.id);
+  Communicator& ranks = *view.problem.ranks;
+  const std::vector<std::int64_t> number = numbers_by_id(ranks, view.state.particles.id);
   const Slices slices{ranks.sum(static_cast<std::int64_t>(number.size())), ranks.size(), piece};
   std::vector<int> rank_of_row;
   for (const std::int64_t n : number)
     rank_of_row.push_back(slices.rank_of(n));
 
-  ParticleSlice<D> slice{frame.particles, frame.bodies, frame.materials, frame.bodies, slices.of(ranks.rank())};
-  if (!frame.share.alone())
-    for (Index& cell : slice.particles.cell)
-      cell = frame.share.whole_cell(cell);
-  redistribute(ranks, rank_of_row, slice.bodies, slice.materials, slice.particles);
+  ParticleSlice<D> slice{view.state, view.state.bodies, slices.of(ranks.rank())};
+  if (!view.problem.share.alone())
+    for (Index& cell : slice.state.particles.cell)
+      cell = view.problem.share.whole_cell(cell);
+  redistribute(ranks, rank_of_row, slice.state.bodies, slice.state.materials, slice.state.particles);
   std::vector<std::int64_t> sizes;
-  for (const Body& body : frame.bodies)
+  for (const Body& body : view.state.bodies)
     sizes.push_back(body.size());
   ranks.sum(sizes);
   Index end = 0;
@@ -134,12 +134,12 @@ ParticleSlice<D> slice_of_particles(const RunView<D>& frame, std::int64_t piece)
 }
 
 template <int D>
-MeshSlice slice_of_mesh(const RunView<D>& frame, std::int64_t piece)
+MeshSlice slice_of_mesh(const RunView<D>& view, std::int64_t piece)
 {
-  Communicator& ranks = *frame.ranks;
-  const Subdomain& share = frame.share;
-  const Mesh<D>& mesh = frame.mesh;
-  const Slices nodes = slices_of_nodes(frame, piece);
+  Communicator& ranks = *view.problem.ranks;
+  const Subdomain& share = view.problem.share;
+  const Mesh<D>& mesh = view.problem.mesh;
+  const Slices nodes = slices_of_nodes(view, piece);
   const Slices cells{share.alone() ? mesh.n_cells() : share.whole_cells, ranks.size(), piece};
   std::vector<Index> number;
   std::vector<Real> positions;
@@ -163,20 +163,20 @@ MeshSlice slice_of_mesh(const RunView<D>& frame, std::int64_t piece)
 }
 
 template <int D>
-Column slice_of_column(const RunView<D>& frame, Column held, std::int64_t piece)
+Column slice_of_column(const RunView<D>& view, Column held, std::int64_t piece)
 {
-  if (frame.share.alone())
+  if (view.problem.share.alone())
     return held;
   const auto width = static_cast<std::size_t>(held.components);
   std::vector<Index> number;
   std::vector<float> own;
-  for (Index n = 0; n < frame.mesh.n_nodes(); ++n)
-    if (frame.share.owns_node(n)) {
-      number.push_back(frame.share.node[static_cast<std::size_t>(n)]);
+  for (Index n = 0; n < view.problem.mesh.n_nodes(); ++n)
+    if (view.problem.share.owns_node(n)) {
+      number.push_back(view.problem.share.node[static_cast<std::size_t>(n)]);
       const auto values = std::span(held.values).subspan(static_cast<std::size_t>(n) * width, width);
       own.insert(own.end(), values.begin(), values.end());
     }
-  held.values = dealt<float>(*frame.ranks, slices_of_nodes(frame, piece), number, own, width);
+  held.values = dealt<float>(*view.problem.ranks, slices_of_nodes(view, piece), number, own, width);
   return held;
 }
 

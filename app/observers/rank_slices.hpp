@@ -9,60 +9,33 @@ namespace talus {
 /// The rows of a file that this rank has of the particles of all, which stand in the order of bodies and ids.
 template <int D>
 struct ParticleSlice {
-  Particles<D> particles;  ///< in cells of the whole mesh
-  std::vector<Body> bodies;
-  std::vector<AnyBatch> materials;
+  State<D> state;                  ///< with these particles alone, in cells of the whole mesh
   std::vector<Body> whole_bodies;  ///< rows of the file
   Slice rows;
 };
 
 /// Every rank has to ask.  `piece`: smaller in tests only.
 template <int D>
-ParticleSlice<D> slice_of_particles(const RunView<D>& frame, std::int64_t piece = rows_of_a_piece);
+ParticleSlice<D> slice_of_particles(const RunView<D>& view, std::int64_t piece = rows_of_a_piece);
 
-/// f(frame, bodies, rows) on all ranks: a frame whose particles are those of the slice, without an order, the bodies of the file and which rows
-/// of it the particles are.  The mesh and what is on it are those of each rank.  A rank that is alone has its rows as they stand.
+/// f(state, bodies, rows) on all ranks: the state with the particles of the slice, the bodies of the file and which rows of it the particles are.
+/// A rank that is alone has its rows as they are.
 template <int D, class F>
-void on_slices(const RunView<D>& frame, F&& f)
+void on_slices(const RunView<D>& view, F&& f)
 {
-  if (frame.ranks->alone())
-    return f(frame, frame.bodies, Slice{0, frame.particles.size()});
-  const ParticleSlice<D> slice = slice_of_particles(frame);
-  const CellOrder no_order;
-  f(RunView<D>{.mesh = frame.mesh,
-               .share = frame.share,
-               .particles = slice.particles,
-               .bodies = slice.bodies,
-               .materials = slice.materials,
-               .order = no_order,
-               .ranks = frame.ranks,
-               .nodes = frame.nodes,
-               .walls = frame.walls,
-               .loads = frame.loads,
-               .clock = frame.clock,
-               .stage = frame.stage,
-               .stage_name = frame.stage_name,
-               .stage_number = frame.stage_number,
-               .energy = frame.energy,
-               .mass = frame.mass,
-               .momentum = frame.momentum,
-               .watched = frame.watched,
-               .guards = frame.guards,
-               .timings = frame.timings,
-               .residual = frame.residual,
-               .crossing = frame.crossing,
-               .migrated = frame.migrated,
-               .nodes_as_corners = frame.nodes_as_corners},
-    slice.whole_bodies, slice.rows);
+  if (view.problem.ranks->alone())
+    return f(view.state, view.state.bodies, Slice{0, view.state.particles.size()});
+  const ParticleSlice<D> slice = slice_of_particles(view);
+  f(slice.state, slice.whole_bodies, slice.rows);
 }
 
 /// Nodes and cells of the whole mesh.  Every rank has to ask.
 template <int D>
-MeshSlice slice_of_mesh(const RunView<D>& frame, std::int64_t piece = rows_of_a_piece);
+MeshSlice slice_of_mesh(const RunView<D>& view, std::int64_t piece = rows_of_a_piece);
 
 /// Of the nodes of the whole mesh, from a column of the nodes held here.  As above.
 template <int D>
-Column slice_of_column(const RunView<D>& frame, Column held, std::int64_t piece = rows_of_a_piece);
+Column slice_of_column(const RunView<D>& view, Column held, std::int64_t piece = rows_of_a_piece);
 
 /// A number that more than one row of all ranks has in `ids`, the least.  Every rank has to ask.
 std::optional<std::int64_t> doubled_id(Communicator& ranks, std::span<const std::int64_t> ids);

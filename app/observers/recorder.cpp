@@ -1,5 +1,7 @@
 #include "app/observers/recorder.hpp"
 
+#include "solver/stop_watch.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -40,42 +42,42 @@ struct Content {
 };
 
 template <int D>
-BodySummary summary_of(const RunView<D>& frame, std::size_t b)
+BodySummary summary_of(const RunView<D>& view, std::size_t b)
 {
-  const Body& body = frame.bodies[b];
+  const Body& body = view.state.bodies[b];
   ExactSums<Content> sum;
   const auto number = static_cast<Index>(b);
-  add_particles(frame.order, {number, number + 1}, sum, [&](Index row) {
-    return Content{1, frame.particles.mass[static_cast<std::size_t>(row)]};
+  add_particles(view.order, {number, number + 1}, sum, [&](Index row) {
+    return Content{1, view.state.particles.mass[static_cast<std::size_t>(row)]};
   });
-  frame.ranks->sum(sum);
+  view.problem.ranks->sum(sum);
   const Content content = sum.value();
-  return {body.name, std::visit([](const auto& batch) { return batch.name; }, frame.materials[b]),
-          std::string(law_name(frame.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
+  return {body.name, std::visit([](const auto& batch) { return batch.name; }, view.state.materials[b]),
+          std::string(law_name(view.state.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
 }
 
 /// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.
 template <int D>
-RanksSummary ranks_of(const RunView<D>& frame, const Traffic& begin, std::int64_t step_begin)
+RanksSummary ranks_of(const RunView<D>& view, const Traffic& begin, std::int64_t step_begin)
 {
-  Communicator& ranks = *frame.ranks;
+  Communicator& ranks = *view.problem.ranks;
   RanksSummary summary{.count = ranks.size()};
   if (ranks.alone())
     return summary;
   const Traffic now = ranks.traffic();
-  const auto steps = static_cast<Real>(std::max(frame.clock.step - step_begin, std::int64_t{1}));
+  const auto steps = static_cast<Real>(std::max(view.state.clock.step - step_begin, std::int64_t{1}));
   const auto a_step = [&](std::int64_t from, std::int64_t to) { return ranks.max(static_cast<Real>(to - from) / steps); };
   Index own = 0;
-  for (Index c = 0; c < frame.mesh.n_cells(); ++c)
-    own += frame.share.owns_cell(c) ? 1 : 0;
-  const std::int64_t here = frame.particles.size(), all = std::max(ranks.sum(here), std::int64_t{1});
+  for (Index c = 0; c < view.problem.mesh.n_cells(); ++c)
+    own += view.problem.share.owns_cell(c) ? 1 : 0;
+  const std::int64_t here = view.state.particles.size(), all = std::max(ranks.sum(here), std::int64_t{1});
   summary.imbalance = static_cast<Real>(ranks.max(here)) * ranks.size() / static_cast<Real>(all);
-  summary.cells_held = ranks.max(own > 0 ? static_cast<Real>(frame.mesh.n_cells()) / own : Real{1});
+  summary.cells_held = ranks.max(own > 0 ? static_cast<Real>(view.problem.mesh.n_cells()) / own : Real{1});
   summary.messages = a_step(begin.messages, now.messages);
   summary.bytes = a_step(begin.bytes, now.bytes);
   summary.collectives = a_step(begin.calls, now.calls);
   summary.collective_bytes = a_step(begin.bytes_to_all, now.bytes_to_all);
-  summary.particles_moved = static_cast<Real>(ranks.sum(frame.migrated)) / 2 / steps / static_cast<Real>(all);
+  summary.particles_moved = static_cast<Real>(ranks.sum(view.migrated)) / 2 / steps / static_cast<Real>(all);
   return summary;
 }
 
@@ -99,14 +101,14 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
 {}
 
 template <int D>
-void Recorder<D>::open(const RunView<D>& frame)
+void Recorder<D>::open(const RunView<D>& view)
 {
-  traffic_begin_ = frame.ranks->traffic();
-  bytes_per_particle_ = talus::bytes_per_particle(frame);
-  for (std::size_t b = 0; b < frame.bodies.size(); ++b)
-    bodies_.push_back(summary_of(frame, b));
+  traffic_begin_ = view.problem.ranks->traffic();
+  bytes_per_particle_ = talus::bytes_per_particle(view);
+  for (std::size_t b = 0; b < view.state.bodies.size(); ++b)
+    bodies_.push_back(summary_of(view, b));
   if (outputs_.history) {
-    history_.emplace(folder_ / "history.csv", *outputs_.history, frame);
+    history_.emplace(folder_ / "history.csv", *outputs_.history, view);
     history_state_ = history_->state();
   }
   name_lists();
@@ -114,14 +116,14 @@ void Recorder<D>::open(const RunView<D>& frame)
 
 /// Bodies that were not there before.
 template <int D>
-void Recorder<D>::welcome(const RunView<D>& frame)
+void Recorder<D>::welcome(const RunView<D>& view)
 {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (bodies_[b].particles > 0)
       continue;
-    bodies_[b] = summary_of(frame, b);
+    bodies_[b] = summary_of(view, b);
     if (history_ && bodies_[b].particles > 0)
-      history_->follow_anew(bodies_[b].name, frame);
+      history_->follow_anew(bodies_[b].name, view);
   }
   if (history_)
     history_state_ = history_->state();
@@ -142,26 +144,26 @@ void Recorder<D>::name_lists()
 }
 
 template <int D>
-void Recorder<D>::go_on(const RunView<D>& frame)
+void Recorder<D>::go_on(const RunView<D>& view)
 {
-  traffic_begin_ = frame.ranks->traffic(), step_begin_ = frame.clock.step;
+  traffic_begin_ = view.problem.ranks->traffic(), step_begin_ = view.state.clock.step;
   if (outputs_.history)
-    history_.emplace(folder_ / "history.csv", *outputs_.history, frame, history_state_);
-  runout_.go_on(frame);
-  progress_.resume(done_before_ + frame.clock.time - stage_start_, frame.timings.particle_steps);
+    history_.emplace(folder_ / "history.csv", *outputs_.history, view, history_state_);
+  runout_.go_on(view);
+  progress_.resume(done_before_ + view.state.clock.time - stage_start_, view.state.timings.particle_steps);
 }
 
 template <int D>
-std::vector<std::string> Recorder<D>::resume(const RunView<D>& frame)
+std::vector<std::string> Recorder<D>::resume(const RunView<D>& view)
 {
-  go_on(frame);
+  go_on(view);
   std::vector<std::string> missing;
-  frame.ranks->together([&] { missing = drop_later(frame); });
+  view.problem.ranks->together([&] { missing = drop_later(view); });
   return missing;
 }
 
 template <int D>
-std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& frame)
+std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& view)
 {
   std::vector<std::string> missing;
   for (const std::string& file : files())
@@ -169,8 +171,8 @@ std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& frame)
       missing.push_back(fmt::format("{} is not there any more", (folder_ / file).string()));
   if (history_ && history_time_ > elsewhere_.time && history_->last_time() != history_time_)
     missing.push_back(fmt::format("{} lacks what was there up to t = {:.6g} s", (folder_ / "history.csv").string(), history_time_));
-  particle_series_.resume(frame.clock.time);
-  mesh_series_.resume(frame.clock.time);
+  particle_series_.resume(view.state.clock.time);
+  mesh_series_.resume(view.state.clock.time);
   const auto check_series = [&](const PvdSeries& series, int written, const char* name) {
     if (series.size() != static_cast<std::size_t>(written))
       missing.push_back(fmt::format("{} names {} files, {} had been written", (folder_ / name).string(), series.size(), written));
@@ -193,10 +195,10 @@ std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& frame)
 }
 
 template <int D>
-void Recorder<D>::begin_again(const RunView<D>& frame)
+void Recorder<D>::begin_again(const RunView<D>& view)
 {
-  go_on(frame);
-  elsewhere_ = {static_cast<std::int64_t>(files_.size()), particle_files_, mesh_files_, frame.clock.time};
+  go_on(view);
+  elsewhere_ = {static_cast<std::int64_t>(files_.size()), particle_files_, mesh_files_, view.state.clock.time};
   last_output_.clear();
   name_lists();
 }
@@ -223,92 +225,92 @@ void Recorder<D>::flush() const
 }
 
 template <int D>
-void Recorder<D>::watch(const RunView<D>& frame, RunEvent moment)
+void Recorder<D>::watch(const RunView<D>& view, RunEvent moment)
 {
   if (moment == RunEvent::step_begins || moment == RunEvent::given_up)
     return;
-  accounts_.see(frame, moment);
-  body_forces_.see(frame, moment);
-  const bool first = moment == RunEvent::stage_begins && frame.stage_number == 0;
+  accounts_.see(view, moment);
+  body_forces_.see(view, moment);
+  const bool first = moment == RunEvent::stage_begins && view.state.stage.number == 0;
   if (first)
-    open(frame);
+    open(view);
   else if (moment == RunEvent::stage_begins)
-    welcome(frame);
+    welcome(view);
   if (moment == RunEvent::stage_begins)
-    stage_start_ = frame.clock.time;
-  if (moment == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && frame.stage_name != "geostatic") {
-    runout_.begin(frame);
+    stage_start_ = view.state.clock.time;
+  if (moment == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_name != "geostatic") {
+    runout_.begin(view);
     name("runout.csv");
   }
   if (moment == RunEvent::step_done)
-    progress_.step(done_before_ + frame.clock.time - stage_start_,
-                   done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(frame.stage_number))),
-                   frame.clock, frame.stage_name, frame.timings.particle_steps);
+    progress_.step(done_before_ + view.state.clock.time - stage_start_,
+                   done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(view.state.stage.number))),
+                   view.state.clock, view.stage_name, view.state.timings.particle_steps);
 
   StopWatch watch;
   if (first || moment != RunEvent::stage_begins)  // the beginning of a later stage is the end of the one before
-    write(frame, moment == RunEvent::stage_done);
-  write_runout(frame, moment == RunEvent::stage_done);
+    write(view, moment == RunEvent::stage_done);
+  write_runout(view, moment == RunEvent::stage_done);
   watch.lap(output_seconds_);
 
-  warn(frame);
-  last_.clock = frame.clock;
-  last_.timings = frame.timings;
-  last_.mass = frame.mass;
-  last_.watched = frame.watched;
+  warn(view);
+  last_.clock = view.state.clock;
+  last_.timings = view.state.timings;
+  last_.mass = view.state.mass;
+  last_.watched = view.state.watched;
   if (moment != RunEvent::stage_done)
     return;
-  done_before_ += frame.clock.time - stage_start_;  // a stage that seeks rest may end before its time
-  last_.mass_there = totals(frame).mass;
-  last_.energy = accounts_.energy(frame);
-  last_.momentum = accounts_.momentum(frame);
-  ranks_ = ranks_of(frame, traffic_begin_, step_begin_);
+  done_before_ += view.state.clock.time - stage_start_;  // a stage that seeks rest may end before its time
+  last_.mass_there = totals(view).mass;
+  last_.energy = accounts_.energy(view);
+  last_.momentum = accounts_.momentum(view);
+  ranks_ = ranks_of(view, traffic_begin_, step_begin_);
 }
 
 /// Of what the guards see and let pass, the first time.
 template <int D>
-void Recorder<D>::warn(const RunView<D>& frame) const
+void Recorder<D>::warn(const RunView<D>& view) const
 {
-  if (!frame.ranks->is_root())
+  if (!view.problem.ranks->is_root())
     return;
-  const LimitMonitor &now = frame.watched, &before = last_.watched;
+  const LimitMonitor &now = view.state.watched, &before = last_.watched;
   const auto warning = [&](const std::string& what) {
-    say(stderr, "warning: step {}, t = {:.6g} s: {}\n", frame.clock.step, frame.clock.time, what);
+    say(stderr, "warning: step {}, t = {:.6g} s: {}\n", view.state.clock.step, view.state.clock.time, what);
   };
-  if (const Index failed = frame.mass.failed_count - last_.mass.failed_count; failed > 0)
+  if (const Index failed = view.state.mass.failed_count - last_.mass.failed_count; failed > 0)
     warning(fmt::format("failed and deleted: {}{}", now.failure, failed > 1 ? fmt::format("; and {} more", failed - 1) : ""));
   if (now.speeding > 0 && before.speeding == 0)
-    warning(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, frame.guards.speed));
+    warning(fmt::format("a particle moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", now.fastest, view.problem.limits.speed));
   if (now.gaining > 0 && before.gaining == 0)
     warning(fmt::format("the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
-                        now.gain, frame.guards.gain));
+                        now.gain, view.problem.limits.gain));
 }
 
 template <int D>
-void Recorder<D>::write(const RunView<D>& frame, bool last)
+void Recorder<D>::write(const RunView<D>& view, bool last)
 {
-  const Real time = frame.clock.time;
+  const Real time = view.state.clock.time;
   const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
-  const bool mesh = frame.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
+  const bool mesh = view.state.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
   const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
   if (particles || mesh || history)
-    frame.ranks->together([&] { require_results(folder_); });
+    view.problem.ranks->together([&] { require_results(folder_); });
   if (particles)
-    write_particles_file(frame);
+    write_particles_file(view);
   if (mesh)
-    write_mesh_file(frame);
+    write_mesh_file(view);
   if (history) {
-    history_->append(frame, accounts_, body_forces_);
+    history_->append(view, accounts_, body_forces_);
     history_state_ = history_->state();
     history_time_ = time;
   }
 }
 
 template <int D>
-void Recorder<D>::write_particles_file(const RunView<D>& frame)
+void Recorder<D>::write_particles_file(const RunView<D>& view)
 {
   const auto file = particle_file(particle_files_++);
-  on_slices(frame, [&](const RunView<D>& slice, const std::vector<Body>&, const Slice& of_file) {
+  on_slices(view, [&](const State<D>& slice, const std::vector<Body>&, const Slice& of_file) {
     const auto rows = rows_by_id(slice.particles);
     std::vector<Column> columns;
     for (const std::string& name : particle_fields_of(outputs_))
@@ -317,36 +319,36 @@ void Recorder<D>::write_particles_file(const RunView<D>& frame)
     ids.reserve(rows.size());
     for (const Index row : rows)
       ids.push_back(slice.particles.id[static_cast<std::size_t>(row)]);
-    write_particles(*frame.ranks, file, frame.clock.time, of_file, positions(slice.particles, rows), ids, columns, made_by_);
+    write_particles(*view.problem.ranks, file, view.state.clock.time, of_file, positions(slice.particles, rows), ids, columns, made_by_);
   });
-  frame.ranks->together([&] { particle_series_.append(frame.clock.time, file); });
-  particle_time_ = frame.clock.time;
+  view.problem.ranks->together([&] { particle_series_.append(view.state.clock.time, file); });
+  particle_time_ = view.state.clock.time;
   files_.push_back(file.filename().string());
   last_output_ = files_.back();
 }
 
 template <int D>
-void Recorder<D>::write_mesh_file(const RunView<D>& frame)
+void Recorder<D>::write_mesh_file(const RunView<D>& view)
 {
   std::vector<Column> columns;
   for (const std::string& name : outputs_.mesh->fields_wanted)
-    columns.push_back(slice_of_column(frame, node_column(frame, name)));
+    columns.push_back(slice_of_column(view, node_column(view, name)));
   const auto file = mesh_file(mesh_files_++);
-  write_mesh(*frame.ranks, file, frame.clock.time, slice_of_mesh(frame), columns, {}, made_by_);
-  frame.ranks->together([&] { mesh_series_.append(frame.clock.time, file); });
-  mesh_time_ = frame.clock.time;
+  write_mesh(*view.problem.ranks, file, view.state.clock.time, slice_of_mesh(view), columns, {}, made_by_);
+  view.problem.ranks->together([&] { mesh_series_.append(view.state.clock.time, file); });
+  mesh_time_ = view.state.clock.time;
   files_.push_back(file.filename().string());
 }
 
 template <int D>
-void Recorder<D>::write_runout(const RunView<D>& frame, bool last)
+void Recorder<D>::write_runout(const RunView<D>& view, bool last)
 {
   if (!runout_.has_begun())
     return;
-  for (const std::string& file : runout_.see(frame, last))
+  for (const std::string& file : runout_.see(view, last))
     name(file);
   if (last)
-    for (const std::string& file : runout_.write_maps(frame))
+    for (const std::string& file : runout_.write_maps(view))
       name(file);
 }
 

@@ -49,14 +49,14 @@ class Recorder {
   /// `outputs` and the stages must outlive the recorder.  `made_by` is told in each file for ParaView.
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
-  void watch(const RunView<D>& frame, RunEvent moment);
+  void watch(const RunView<D>& view, RunEvent moment);
   /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
-  /// the frame is dropped.  Says in words what should be there and is not, on the root.
-  std::vector<std::string> resume(const RunView<D>& frame);
+  /// the view is dropped.  Says in words what should be there and is not, on the root.
+  std::vector<std::string> resume(const RunView<D>& view);
   /// Whether fields() that were taken over may be those of a run with so many walls and bodies, and particles at the start.
   bool fits(std::size_t walls, std::size_t bodies, Index particles) const;
   /// Goes on from such a state with files of its own, in another folder.
-  void begin_again(const RunView<D>& frame);
+  void begin_again(const RunView<D>& view);
   /// What has been written is on the disk when it returns.
   void flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
@@ -102,16 +102,16 @@ class Recorder {
   }
 
  private:
-  void open(const RunView<D>& frame);
-  void welcome(const RunView<D>& frame);
-  void go_on(const RunView<D>& frame);
-  std::vector<std::string> drop_later(const RunView<D>& frame);
+  void open(const RunView<D>& view);
+  void welcome(const RunView<D>& view);
+  void go_on(const RunView<D>& view);
+  std::vector<std::string> drop_later(const RunView<D>& view);
   void name_lists();
-  void warn(const RunView<D>& frame) const;
-  void write(const RunView<D>& frame, bool last);
-  void write_particles_file(const RunView<D>& frame);
-  void write_mesh_file(const RunView<D>& frame);
-  void write_runout(const RunView<D>& frame, bool last);
+  void warn(const RunView<D>& view) const;
+  void write(const RunView<D>& view, bool last);
+  void write_particles_file(const RunView<D>& view);
+  void write_mesh_file(const RunView<D>& view);
+  void write_runout(const RunView<D>& view, bool last);
   void name(const std::string& file);
   std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }

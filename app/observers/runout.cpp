@@ -38,13 +38,13 @@ struct NodeSizes {
 
 /// Mean size of the cells of the whole mesh [m].
 template <int D>
-Real mean_size(const RunView<D>& frame)
+Real mean_size(const RunView<D>& view)
 {
   ExactSums<NodeSizes> sum;
-  for (Index n = 0; n < frame.mesh.n_nodes(); ++n)
-    if (frame.share.alone() || frame.share.owns_node(n))
-      sum.add({frame.mesh.node_size(n), 1});
-  frame.ranks->sum(sum);
+  for (Index n = 0; n < view.problem.mesh.n_nodes(); ++n)
+    if (view.problem.share.alone() || view.problem.share.owns_node(n))
+      sum.add({view.problem.mesh.node_size(n), 1});
+  view.problem.ranks->sum(sum);
   const NodeSizes all = sum.value();
   return all.size / all.count;
 }
@@ -144,15 +144,15 @@ Runout<D>::Runout(fs::path folder, const std::optional<RunoutSpec>& spec)
 
 /// What follows from the mesh and the spec.
 template <int D>
-void Runout<D>::lay_out(const RunView<D>& frame)
+void Runout<D>::lay_out(const RunView<D>& view)
 {
-  axes_ = plan_axes<D>(frame.loads.gravity.acceleration);
-  map_ = frame.mesh.map();
-  const Real cell = spec_->cell ? *spec_->cell : mean_size(frame);
+  axes_ = plan_axes<D>(view.problem.loads.gravity.acceleration);
+  map_ = view.problem.mesh.map();
+  const Real cell = spec_->cell ? *spec_->cell : mean_size(view);
   constexpr Real round_off = 1e-9;
   const auto fit = [&](Index axis, Real& begin, Real& d, Index& n) {
-    const Real extent = frame.mesh.high()[axis] - frame.mesh.low()[axis];
-    begin = frame.mesh.low()[axis];
+    const Real extent = view.problem.mesh.high()[axis] - view.problem.mesh.low()[axis];
+    begin = view.problem.mesh.low()[axis];
     constexpr Real most = std::numeric_limits<Index>::max();  // for which there is no memory
     n = static_cast<Index>(std::clamp(std::ceil(extent / cell - round_off), Real{1}, most));
     d = extent / n;
@@ -194,11 +194,11 @@ std::vector<Real> Runout<D>::joined(Communicator& ranks, const std::vector<Real>
 
 /// How high particles reach over each cell, whether they have moved or not.
 template <int D>
-std::vector<Real> Runout<D>::tops(const RunView<D>& frame) const
+std::vector<Real> Runout<D>::tops(const RunView<D>& view) const
 {
   std::vector<Real> top(grid_.size(), no_value);
   std::vector<CellShare> shares;
-  const Particles<D>& p = frame.particles;
+  const Particles<D>& p = view.state.particles;
   for (std::size_t row = 0; row < p.id.size(); ++row) {
     const Vec3 x = in_space<D>(p.x[row]);
     const Real side = D == 2 ? std::sqrt(p.volume[row]) : std::cbrt(p.volume[row]);
@@ -206,25 +206,25 @@ std::vector<Real> Runout<D>::tops(const RunView<D>& frame) const
     for (const CellShare& in : shares)
       top[in.cell] = std::fmax(top[in.cell], elevation(x) + side / 2);
   }
-  return joined(*frame.ranks, top, [](Real a, Real b) { return std::max(a, b); });
+  return joined(*view.problem.ranks, top, [](Real a, Real b) { return std::max(a, b); });
 }
 
 template <int D>
-void Runout<D>::begin(const RunView<D>& frame)
+void Runout<D>::begin(const RunView<D>& view)
 {
-  lay_out(frame);
+  lay_out(view);
   begun_ = true;
-  start_ = frame.clock.time;
+  start_ = view.state.clock.time;
   std::vector<Real> lowest(grid_.size(), no_value), terrain = lowest;
-  for (const Facet facet : frame.mesh.boundary_facets())
-    if (in_space<D>(frame.mesh.area_vector(facet)).dot(axes_.up) < 0)
-      for_each_cell_of(frame.mesh, facet, grid_, axes_, [&](std::size_t c, Real z) { lowest[c] = std::fmin(lowest[c], z); });
-  const auto of_terrain = frame.mesh.facet_set(terrain_group);
+  for (const Facet facet : view.problem.mesh.boundary_facets())
+    if (in_space<D>(view.problem.mesh.area_vector(facet)).dot(axes_.up) < 0)
+      for_each_cell_of(view.problem.mesh, facet, grid_, axes_, [&](std::size_t c, Real z) { lowest[c] = std::fmin(lowest[c], z); });
+  const auto of_terrain = view.problem.mesh.facet_set(terrain_group);
   for (const Facet facet : of_terrain.value_or(std::vector<Facet>()))
-    for_each_cell_of(frame.mesh, facet, grid_, axes_, [&](std::size_t c, Real z) { terrain[c] = std::fmax(terrain[c], z); });
-  base_ = joined(*frame.ranks, lowest, [](Real a, Real b) { return std::min(a, b); });
-  terrain = joined(*frame.ranks, terrain, [](Real a, Real b) { return std::max(a, b); });
-  surface_ = tops(frame);
+    for_each_cell_of(view.problem.mesh, facet, grid_, axes_, [&](std::size_t c, Real z) { terrain[c] = std::fmax(terrain[c], z); });
+  base_ = joined(*view.problem.ranks, lowest, [](Real a, Real b) { return std::min(a, b); });
+  terrain = joined(*view.problem.ranks, terrain, [](Real a, Real b) { return std::max(a, b); });
+  surface_ = tops(view);
   raise(surface_, base_);
   ground_ = surface_;
   if (of_terrain)
@@ -236,20 +236,21 @@ void Runout<D>::begin(const RunView<D>& frame)
     map->assign(n, 0);
   arrival_.assign(n, no_value);
   still_since_ = start_;
-  frame.ranks->together([&] { file_.emplace(folder_ / "runout.csv", columns_of_file()); });
+  view.problem.ranks->together([&] { file_.emplace(folder_ / "runout.csv", columns_of_file()); });
 }
 
 template <int D>
-void Runout<D>::go_on(const RunView<D>& frame)
+void Runout<D>::go_on(const RunView<D>& view)
 {
   if (!begun_)
     return;
-  lay_out(frame);
+  lay_out(view);
   for (const auto* map : {&ground_, &base_, &surface_, &surface_max_, &thickness_, &thickness_max_, &speed_max_, &intensity_max_, &arrival_,
                           &source_, &erosion_})
     if (map->size() != grid_.size())
       throw EnvironmentError(fmt::format("the maps of the checkpoint have {} cells, those of the scene {}", map->size(), grid_.size()));
-  frame.ranks->together([&] { file_.emplace(HistoryFile::resume(folder_ / "runout.csv", columns_of_file(), frame.clock.time)); });
+  view.problem.ranks->together(
+      [&] { file_.emplace(HistoryFile::resume(folder_ / "runout.csv", columns_of_file(), view.state.clock.time)); });
 }
 
 template <int D>
@@ -268,14 +269,14 @@ void Runout<D>::flush() const
 }
 
 template <int D>
-std::vector<typename Runout<D>::Moved> Runout<D>::gather_moved(const RunView<D>& frame) const
+std::vector<typename Runout<D>::Moved> Runout<D>::gather_moved(const RunView<D>& view) const
 {
   const auto among = [](const std::vector<std::string>& names, const Body& body) {
     return std::find(names.begin(), names.end(), body.name) != names.end();
   };
-  const Particles<D>& p = frame.particles;
+  const Particles<D>& p = view.state.particles;
   std::vector<Moved> here;
-  for (const Body& body : frame.bodies) {
+  for (const Body& body : view.state.bodies) {
     if (!spec_->bodies.empty() && !among(spec_->bodies, body))
       continue;
     const std::int64_t eroded = among(spec_->eroded, body) ? 1 : 0;
@@ -292,7 +293,7 @@ std::vector<typename Runout<D>::Moved> Runout<D>::gather_moved(const RunView<D>&
     }
   }
   std::vector<Moved> all;
-  for (const std::vector<Moved>& of_rank : gather_rows<Moved>(*frame.ranks, here))
+  for (const std::vector<Moved>& of_rank : gather_rows<Moved>(*view.problem.ranks, here))
     all.insert(all.end(), of_rank.begin(), of_rank.end());
   std::sort(all.begin(), all.end(), [](const Moved& a, const Moved& b) { return a.id < b.id; });
   return all;
@@ -373,12 +374,12 @@ bool Runout<D>::at_rest() const
 }
 
 template <int D>
-void Runout<D>::look(const RunView<D>& frame, bool with_frame)
+void Runout<D>::look(const RunView<D>& view, bool with_frame)
 {
-  const std::vector<Moved> moved = gather_moved(frame);
-  std::vector<Real> top = tops(frame);
-  time_ = frame.clock.time;
-  frame.ranks->together([&] {
+  const std::vector<Moved> moved = gather_moved(view);
+  std::vector<Real> top = tops(view);
+  time_ = view.state.clock.time;
+  view.problem.ranks->together([&] {
     raise(top, base_);
     surface_ = std::move(top);
     raise(surface_max_, surface_);
@@ -397,18 +398,18 @@ void Runout<D>::look(const RunView<D>& frame, bool with_frame)
 }
 
 template <int D>
-std::vector<std::string> Runout<D>::see(const RunView<D>& frame, bool last)
+std::vector<std::string> Runout<D>::see(const RunView<D>& view, bool last)
 {
-  const Real since_start = frame.clock.time - start_;
+  const Real since_start = view.state.clock.time - start_;
   const bool due = times_.due(since_start), frame_due = frame_times_.due(since_start);
-  if ((due || frame_due || last) && time_ != frame.clock.time) {
-    frame.ranks->together([&] { require_results(folder_); });
-    look(frame, frame_due);
+  if ((due || frame_due || last) && time_ != view.state.clock.time) {
+    view.problem.ranks->together([&] { require_results(folder_); });
+    look(view, frame_due);
   }
   if (!frame_due)
     return {};
   const fs::path file = frame_file(frames_++);
-  frame.ranks->together([&] { write_map(file, raster(without_zeros(thickness_), "m")); });
+  view.problem.ranks->together([&] { write_map(file, raster(without_zeros(thickness_), "m")); });
   return {fs::path(map_folder) / file.filename()};
 }
 
@@ -509,13 +510,13 @@ void walk(const std::vector<std::array<Real, 2>>& corners, Real step, std::vecto
 }  // namespace
 
 template <int D>
-std::vector<std::string> Runout<D>::write_maps(const RunView<D>& frame)
+std::vector<std::string> Runout<D>::write_maps(const RunView<D>& view)
 {
   std::vector<std::string> files;
   const auto write_section = [&](const std::string& name, const std::vector<std::array<Real, 2>>& places,
                                  const std::vector<Real>& distances) {
     const fs::path file = fs::path(section_folder) / (name + ".csv");
-    frame.ranks->together([&] { write_whole(folder_ / file, section_text(places, distances)); });
+    view.problem.ranks->together([&] { write_whole(folder_ / file, section_text(places, distances)); });
     files.push_back(file);
   };
   std::vector<std::array<Real, 2>> places;
@@ -533,7 +534,7 @@ std::vector<std::string> Runout<D>::write_maps(const RunView<D>& frame)
       if (ending == std::string_view(".csv") && !spec_->csv)
         continue;
       const fs::path file = fs::path(map_folder) / (std::string(map.kind.name) + ending);
-      frame.ranks->together([&] { write_map(folder_ / file, raster(map.values, map.kind.unit)); });
+      view.problem.ranks->together([&] { write_map(folder_ / file, raster(map.values, map.kind.unit)); });
       files.push_back(file);
     }
   const std::array<Real, 2> origin = map_ ? map_->origin : std::array<Real, 2>{0, 0};
@@ -583,13 +584,13 @@ std::vector<CsvColumn> Runout<D>::columns() const
   return all;
 }
 
-/// With the number of the frame that was written at a look.
+/// With the number of the view that was written at a look.
 template <int D>
 std::vector<CsvColumn> Runout<D>::columns_of_file() const
 {
   std::vector<CsvColumn> all = columns();
   if (spec_->frames_every)
-    all.push_back({"frame"});
+    all.push_back({"view"});
   return all;
 }
 

@@ -69,15 +69,15 @@ class Runout {
   Runout(std::filesystem::path folder, const std::optional<RunoutSpec>& spec);
 
   /// From the beginning of the first stage that is not geostatic on.  Every rank has to ask, here and below.
-  void begin(const RunView<D>& frame);
+  void begin(const RunView<D>& view);
   bool has_begun() const noexcept { return begun_; }
-  /// A look, if one is due or it is the last of a stage, and a frame where these are wanted.  Returns the files of frames that it wrote.
-  std::vector<std::string> see(const RunView<D>& frame, bool last);
+  /// A look, if one is due or it is the last of a stage, and a view where these are wanted.  Returns the files of frames that it wrote.
+  std::vector<std::string> see(const RunView<D>& view, bool last);
   /// The maps and sections as of the last look; their files, relative to the folder.
-  std::vector<std::string> write_maps(const RunView<D>& frame);
+  std::vector<std::string> write_maps(const RunView<D>& view);
 
   /// Goes on with the files of a run whose state has been taken over.
-  void go_on(const RunView<D>& frame);
+  void go_on(const RunView<D>& view);
   /// On the root: frames that are later than the state are removed; whether runout.csv has all that had been written.
   bool drop_later() const;
   void flush() const;
@@ -116,12 +116,12 @@ class Runout {
     MapKind kind;
     std::vector<Real> values;
   };
-  void lay_out(const RunView<D>& frame);
-  void look(const RunView<D>& frame, bool with_frame);
-  std::vector<Moved> gather_moved(const RunView<D>& frame) const;
+  void lay_out(const RunView<D>& view);
+  void look(const RunView<D>& view, bool with_frame);
+  std::vector<Moved> gather_moved(const RunView<D>& view) const;
   template <class Pick>
   std::vector<Real> joined(Communicator& ranks, const std::vector<Real>& here, Pick&& pick) const;
-  std::vector<Real> tops(const RunView<D>& frame) const;
+  std::vector<Real> tops(const RunView<D>& view) const;
   void count_on_cells(const std::vector<Moved>& moved, Real since_start);
   void count_altogether(const std::vector<Moved>& moved);
   bool at_rest() const;

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "materials/batch.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 
 namespace talus {
 

@@ -1,4 +1,5 @@
 #include "app/run/cost_estimate.hpp"
+#include "solver/stop_watch.hpp"
 
 #include <fmt/format.h>
 
@@ -42,17 +43,17 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
   }
   std::vector<Timed> timed(whole.size());
   StopWatch watch;
-  RunCallbacks<D> audience{[&](const RunView<D>& frame, RunEvent moment) {
+  RunCallbacks<D> audience{[&](const RunView<D>& view, RunEvent moment) {
                              if (moment != RunEvent::step_done && moment != RunEvent::step_begins)
                                return;
                              Real seconds = 0;
                              watch.lap(seconds);
-                             const bool counts = frame.clock.step - frame.stage.first_step > trial_warm_up;
+                             const bool counts = view.state.clock.step - view.state.stage.first_step > trial_warm_up;
                              if (moment == RunEvent::step_begins || !counts)
                                return;
-                             Timed& stage = timed[static_cast<std::size_t>(frame.stage_number)];
+                             Timed& stage = timed[static_cast<std::size_t>(view.state.stage.number)];
                              stage.seconds.push_back(seconds);
-                             stage.time += frame.clock.dt;
+                             stage.time += view.state.clock.dt;
                            },
                            [](const RunView<D>&, const StageResult&) {}};
   std::optional<std::string> trouble;

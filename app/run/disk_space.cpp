@@ -37,24 +37,24 @@ std::string megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / 1e6)
 }  // namespace
 
 template <int D>
-FileSizes file_sizes(const RunView<D>& frame, const OutputSpec& outputs)
+FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs)
 {
   FileSizes sizes;
-  const auto particles = static_cast<Real>(frame.ranks->sum(static_cast<std::int64_t>(frame.particles.size())));
-  const Index n_nodes = frame.share.alone() ? frame.mesh.n_nodes() : frame.share.whole_nodes;
-  const Index n_cells = frame.share.alone() ? frame.mesh.n_cells() : frame.share.whole_cells;
+  const auto particles = static_cast<Real>(view.problem.ranks->sum(static_cast<std::int64_t>(view.state.particles.size())));
+  const Index n_nodes = view.problem.share.alone() ? view.problem.mesh.n_nodes() : view.problem.share.whole_nodes;
+  const Index n_cells = view.problem.share.alone() ? view.problem.mesh.n_cells() : view.problem.share.whole_cells;
   if (outputs.particles) {
-    const Real fields = bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(frame, {}, name); });
+    const Real fields = bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(view.state, {}, name); });
     sizes.particles = vtk_header + particles * (place_bytes + id_bytes + vertex_bytes + fields);
   }
   if (outputs.mesh) {
-    const Real fields = bytes_of_fields(outputs.mesh->fields_wanted, [&](const auto& name) { return node_column(frame, name); });
+    const Real fields = bytes_of_fields(outputs.mesh->fields_wanted, [&](const auto& name) { return node_column(view, name); });
     const Real corners = (D + 2) * sizeof(int) + 1;  // with where they end, and the kind of the cell
     sizes.mesh = vtk_header + n_nodes * (place_bytes + fields) + n_cells * corners;
   }
   if (outputs.history)
-    sizes.history_row = history_number * static_cast<Real>(HistoryWriter<D>::columns(*outputs.history, frame).size());
-  sizes.checkpoint = checkpoint_header + particles * bytes_per_particle(frame);
+    sizes.history_row = history_number * static_cast<Real>(HistoryWriter<D>::columns(*outputs.history, view).size());
+  sizes.checkpoint = checkpoint_header + particles * bytes_per_particle(view);
   return sizes;
 }
 
@@ -100,11 +100,11 @@ void compare_with_free_space(const std::filesystem::path& folder, const FileSize
 }  // namespace
 
 template <int D>
-void check_disk_space(const std::filesystem::path& folder, const RunView<D>& frame, const OutputSpec& outputs, Real time_left)
+void check_disk_space(const std::filesystem::path& folder, const RunView<D>& view, const OutputSpec& outputs, Real time_left)
 {
-  const FileSizes one = file_sizes(frame, outputs);
-  const bool begins = frame.clock.step == 0;  // then it takes the place of the results that are there, whose room counts as free
-  frame.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left, begins); });
+  const FileSizes one = file_sizes(view, outputs);
+  const bool begins = view.state.clock.step == 0;  // then it takes the place of the results that are there, whose room counts as free
+  view.problem.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left, begins); });
 }
 
 template FileSizes file_sizes<2>(const RunView<2>&, const OutputSpec&);

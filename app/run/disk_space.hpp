@@ -12,7 +12,7 @@ struct FileSizes {
   Real particles{}, mesh{}, history_row{}, checkpoint{};
 };
 template <int D>
-FileSizes file_sizes(const RunView<D>& frame, const OutputSpec& outputs);
+FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs);
 
 /// What a run writes in `time` [s], besides its mesh and its summary: how often each kind, and bytes of all of it as if nothing were
 /// compressed.
@@ -25,7 +25,7 @@ DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time);
 /// EnvironmentError: the disk of `folder` has no room for a checkpoint and one file of each kind.  A warning on standard error: it has none
 /// for all that will be written in `time_left` [s].
 template <int D>
-void check_disk_space(const std::filesystem::path& folder, const RunView<D>& frame, const OutputSpec& outputs, Real time_left);
+void check_disk_space(const std::filesystem::path& folder, const RunView<D>& view, const OutputSpec& outputs, Real time_left);
 
 extern template FileSizes file_sizes<2>(const RunView<2>&, const OutputSpec&);
 extern template FileSizes file_sizes<3>(const RunView<3>&, const OutputSpec&);

@@ -5,7 +5,7 @@
 #include "app/run/disk_space.hpp"
 #include "app/setup/checks/shared_nodes.hpp"
 #include "app/setup/setup.hpp"
-#include "solver/state.hpp"
+#include "solver/run_view.hpp"
 
 namespace talus {
 
@@ -15,7 +15,7 @@ struct RunCallbacks {
   std::function<void(const RunView<D>&, RunEvent)> watch;
   std::function<void(const RunView<D>&, const StageResult&)> stage_done;
   /// If set: puts the state of an earlier run in the place of that at the start.
-  std::function<void(const State<D>&)> take_over = {};
+  std::function<void(State<D>&)> take_over = {};
   /// Told what a stage has changed, before it begins.
   std::function<void(const RunView<D>&, const Stage&, const StageReport&)> changed = [](const RunView<D>&, const Stage&,
                                                                                         const StageReport&) {};

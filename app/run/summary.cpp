@@ -185,7 +185,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.dimension = scene.dimension;
   s.kernel = scene.kernel;
   s.transfer = fmt::format("{}{}", enum_names(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
-                           setup.transfer.musl ? ", musl" : "");
+                           setup.conditions.transfer.musl ? ", musl" : "");
   s.precision = enum_names(scene.precision)[static_cast<std::size_t>(scene.precision)];
   s.ranks.count = world().size();
   s.threads = threads();
@@ -194,8 +194,8 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.scene_digest = scene_digest(scene);
   s.mesh_digest = digest_text(mesh_digest);
   s.mesh_quality = named(quality(mesh));
-  s.watch.speed_limit = setup.guards.speed;
-  s.watch.gain_limit = setup.guards.gain;
+  s.watch.speed_limit = setup.conditions.limits.speed;
+  s.watch.gain_limit = setup.conditions.limits.gain;
   s.warnings = setup.warnings;
   s.origin = setup.origin;
   return s;

@@ -22,12 +22,12 @@ struct Waves {
 template <int D>
 Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 {
-  const Particles<D>& particles = setup.particles;
+  const Particles<D>& particles = setup.state.particles;
   CellOrder order;
-  sort_by_cell(particles.cell, particles.id, setup.bodies, mesh.n_cells(), order);
+  sort_by_cell(particles.cell, particles.id, setup.state.bodies, mesh.n_cells(), order);
   Real least = std::numeric_limits<Real>::infinity();  // minus the speed of the fastest
   ExactSums<Real> energy;
-  for (Index b = 0; b < static_cast<Index>(setup.materials.size()); ++b)
+  for (Index b = 0; b < static_cast<Index>(setup.state.materials.size()); ++b)
     std::visit(
         [&](const auto& batch) {
           const auto speed = [&](Index i) { return batch.wave_speed(i, particles.F[static_cast<std::size_t>(batch.begin + i)]); };
@@ -37,7 +37,7 @@ Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
             return 0.5 * particles.mass[static_cast<std::size_t>(row)] * c * c;
           });
         },
-        setup.materials[static_cast<std::size_t>(b)]);
+        setup.state.materials[static_cast<std::size_t>(b)]);
   ranks.sum(energy);
   return {std::max(Real{0}, -ranks.min(least)), energy.value()};
 }
@@ -46,26 +46,27 @@ Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 template <int D>
 Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 {
-  if (!setup.loads.of_place.empty())
+  if (!setup.conditions.loads.of_place.empty())
     return std::numeric_limits<Real>::infinity();
   const Real size = (mesh.high() - mesh.low()).norm();
   Real speed = 0;
-  for (const Wall<D>& wall : setup.walls.walls()) {
+  for (const Wall<D>& wall : setup.state.walls.walls()) {
     const Real of_wave = wall.kind == WallKind::compliant_base ? 2 : 1;  // it meets the one that is thrown back
     speed = std::max(speed, of_wave * wall.velocity.norm() * (wall.record ? wall.record->peak_velocity() : largest_factor(wall.table)));
   }
-  speed += std::sqrt(2 * setup.loads.gravity.acceleration.norm() * largest_factor(setup.loads.gravity.table) * size);
+  speed += std::sqrt(2 * setup.conditions.loads.gravity.acceleration.norm() * largest_factor(setup.conditions.loads.gravity.table) * size);
   Real pressure = 0;  // on the thinnest layer that carries it, over the size of the mesh
   const auto press = [&](const auto& load) {
     pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure)) * largest_factor(load.table));
   };
-  std::for_each(setup.loads.on_particles.begin(), setup.loads.on_particles.end(), press);
-  std::for_each(setup.loads.on_mesh.begin(), setup.loads.on_mesh.end(), press);
+  std::for_each(setup.conditions.loads.on_particles.begin(), setup.conditions.loads.on_particles.end(), press);
+  std::for_each(setup.conditions.loads.on_mesh.begin(), setup.conditions.loads.on_mesh.end(), press);
   if (pressure > 0) {
     Real layer = std::numeric_limits<Real>::infinity();  // [kg/m^2]
-    for (Index row = 0; row < setup.particles.size(); ++row) {
+    for (Index row = 0; row < setup.state.particles.size(); ++row) {
       const auto p = static_cast<std::size_t>(row);
-      layer = std::min(layer, setup.particles.mass[p] / setup.particles.volume0[p] * mesh.altitude(setup.particles.cell[p]));
+      layer =
+          std::min(layer, setup.state.particles.mass[p] / setup.state.particles.volume0[p] * mesh.altitude(setup.state.particles.cell[p]));
     }
     speed += std::sqrt(2 * pressure * size / ranks.min(layer));
   }
@@ -82,8 +83,8 @@ RunLimits guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& set
   const LimitsSpec& spec = scene.watch;
   const Waves waves = waves_in(mesh, setup, ranks);
   Real start = 0;
-  for (Index row = 0; row < setup.particles.size(); ++row)
-    start = std::max(start, setup.particles.v[static_cast<std::size_t>(row)].norm());
+  for (Index row = 0; row < setup.state.particles.size(); ++row)
+    start = std::max(start, setup.state.particles.v[static_cast<std::size_t>(row)].norm());
   start = ranks.max(start);
   RunLimits guards;
   if (spec.on_speed != LimitAction::ignore)

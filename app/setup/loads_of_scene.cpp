@@ -50,7 +50,7 @@ class LoadBuilder {
       : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), complaints_(complaints), setup_(setup)
   {}
 
-  void operator()(const GravitySpec& spec) { setup_.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
+  void operator()(const GravitySpec& spec) { setup_.conditions.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
   void operator()(const BodyForceSpec& spec)
   {
     std::vector<Formula> formulas;
@@ -75,7 +75,7 @@ class LoadBuilder {
           accelerations[i][d] = values[i];
       }
     };
-    setup_.loads.of_place.push_back({evaluate_all, spec.place == PlaceOf::start});
+    setup_.conditions.loads.of_place.push_back({evaluate_all, spec.place == PlaceOf::start});
   }
   void operator()(const TractionSpec& spec)
   {
@@ -95,11 +95,11 @@ class LoadBuilder {
       setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
                                             to_string(spec.where), 100 * (1 - loaded / area), spec.on));
     if (spec.carried_by == Carrier::particles) {
-      auto load = carried_by_particles<D>(mesh_, facets, setup_.particles);
+      auto load = carried_by_particles<D>(mesh_, facets, setup_.state.particles);
       join(ranks_, load);
-      setup_.loads.on_particles.push_back(filled(std::move(load), spec));
+      setup_.conditions.loads.on_particles.push_back(filled(std::move(load), spec));
     } else {
-      setup_.loads.on_mesh.push_back(filled(carried_by_mesh<D>(mesh_, facets), spec));
+      setup_.conditions.loads.on_mesh.push_back(filled(carried_by_mesh<D>(mesh_, facets), spec));
     }
   }
 

@@ -9,17 +9,17 @@ template <int D>
 Real passage_time(const Setup<D>& setup, const Vec<D>& up)
 {
   Real low = std::numeric_limits<Real>::infinity(), high = -low, volume = 0, slowness = 0;
-  for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
-    const Body& body = setup.bodies[b];
+  for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
+    const Body& body = setup.state.bodies[b];
     Real of_body = 0;
     for (Index row = body.begin; row < body.end; ++row) {
       const auto p = static_cast<std::size_t>(row);
-      const Real at = up.dot(setup.particles.x[p]);
+      const Real at = up.dot(setup.state.particles.x[p]);
       low = std::min(low, at), high = std::max(high, at);
-      of_body += setup.particles.volume0[p];
+      of_body += setup.state.particles.volume0[p];
     }
     volume += of_body;
-    slowness += of_body > 0 ? of_body / wave_speed(setup.materials[b], Mat3::Identity()) : 0;
+    slowness += of_body > 0 ? of_body / wave_speed(setup.state.materials[b], Mat3::Identity()) : 0;
   }
   return volume > 0 ? (high - low) * slowness / volume : 0;
 }

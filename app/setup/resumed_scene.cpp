@@ -20,7 +20,7 @@ Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes
     const bool of_stage = begins("stages[") && (change.find("].duration=") != change.npos || change.find("].residual=") != change.npos);
     return of_stage || std::any_of(whole.begin(), whole.end(), begins);
   };
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   for (const std::string& change : changes)
     if (!is_free(change))
       problems.push_back(
@@ -38,7 +38,7 @@ Scene read_again(const RunIdentity& run, const std::vector<std::string>& changes
 void check_durations(const CheckpointList& from, const std::vector<Stage>& stages, const std::vector<std::string>& changes)
 {
   const StageState& now = from.stage();
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   for (const std::string& change : changes) {
     const bool of_time = change.starts_with("time.end="), of_stage = change.starts_with("stages[");
     if (!of_time && !of_stage)

@@ -19,9 +19,9 @@
 
 namespace talus {
 
-Transfer transfer_of(const TransferSpec& spec)
+TransferOptions transfer_of(const TransferSpec& spec)
 {
-  Transfer transfer;
+  TransferOptions transfer;
   constexpr Scheme schemes[] = {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip};  // in the order of TransferScheme
   transfer.scheme = schemes[static_cast<std::size_t>(spec.scheme)];
   transfer.musl = spec.musl.value_or(transfer.increments());
@@ -56,11 +56,11 @@ namespace {
 template <int D>
 std::uint64_t digest_of_files(const Setup<D>& setup)
 {
-  std::vector<Real> numbers = setup.water.table;
+  std::vector<Real> numbers = setup.conditions.water.table;
   for (const StageChange<D>& change : setup.changes)
     if (change.table)
       numbers.insert(numbers.end(), change.table->begin(), change.table->end());
-  for (const Wall<D>& wall : setup.walls.walls())
+  for (const Wall<D>& wall : setup.state.walls.walls())
     if (wall.record)
       for (const std::vector<Real>* part : {&wall.record->time, &wall.record->velocity, &wall.record->acceleration})
         numbers.insert(numbers.end(), part->begin(), part->end());
@@ -81,13 +81,13 @@ bool wants_displacement(const OutputSpec& outputs)
 template <int D>
 void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
 {
-  const std::vector<std::uint8_t>& drained = setup.water.drained;
+  const std::vector<std::uint8_t>& drained = setup.conditions.water.drained;
   if (std::none_of(drained.begin(), drained.end(), [](std::uint8_t is) { return is != 0; }))
     return;
   std::int64_t wet = 0;
-  for (std::size_t b = 0; b < setup.bodies.size(); ++b)
-    if (setup.water.drains(static_cast<Index>(b)))
-      wet += count_wet(mesh, setup.water, setup.bodies[b], setup.particles);
+  for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
+    if (setup.conditions.water.drains(static_cast<Index>(b)))
+      wet += count_wet(mesh, setup.conditions.water, setup.state.bodies[b], setup.state.particles);
   if (ranks.sum(wet) == 0)
     setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
 }
@@ -140,41 +140,42 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   Setup<D> setup;
   setup.warnings = mesh.notes();
   Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
-  setup.particles = std::move(seeds.particles);
+  setup.state.particles = std::move(seeds.particles);
   setup.n_particles = seeds.n_particles;
-  setup.bodies = std::move(seeds.bodies);
-  setup.materials = std::move(seeds.materials);
+  setup.state.bodies = std::move(seeds.bodies);
+  setup.state.materials = std::move(seeds.materials);
   setup.origin = std::move(seeds.origin);
-  setup.lag = seeds.lag;
-  setup.largest_before = seeds.largest_before;
-  const CellOccupancy<D> has_particles(mesh, setup.particles, setup.bodies, ranks, [](const std::string&) { return true; });
-  const CellOccupancy<D> at_start(mesh, setup.particles, setup.bodies, ranks,
+  setup.state.clock.lag = seeds.lag;
+  setup.state.energy.largest_before = seeds.largest_before;
+  const CellOccupancy<D> has_particles(mesh, setup.state.particles, setup.state.bodies, ranks, [](const std::string&) { return true; });
+  const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
-  add_walls(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.walls);
+  add_walls(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.state.walls);
   add_loads(scene, mesh, has_particles, at_start, ranks, complaints, setup);
   set_stages(scene, complaints, setup);
-  setup.water = water_of(
-      scene, mesh, setup.bodies, [&](Index cell) { return at_start(cell); }, complaints, setup.warnings);
-  saturate(scene, 0, mesh, setup.water, setup.bodies, setup.particles);
-  if (setup.water.any())
+  setup.conditions.water = water_of(
+      scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, complaints, setup.warnings);
+  saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
+  if (setup.conditions.water.any())
     warn_if_dry(mesh, ranks, setup);
   check_laws(scene, complaints);
   check_room(scene, mesh, setup, ranks, complaints);
   check_picture(scene, complaints);
-  check_outputs<D>(scene, mesh, setup.loads.gravity.acceleration, complaints);
+  check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, complaints);
   ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
 
-  setup.transfer = transfer_of(scene.transfer);
-  setup.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
+  setup.conditions.transfer = transfer_of(scene.transfer);
+  setup.conditions.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
   setup.limits.cfl = scene.time.cfl.value();
   setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
   setup.limits.shortest = scene.time.min_step;
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
-  if (setup.particles.x0.empty() &&
-      (wants_displacement(scene.outputs) || std::any_of(setup.loads.of_place.begin(), setup.loads.of_place.end(), from_start)))
-    setup.particles.x0 = setup.particles.x;
-  setup.guards = guards_of(scene, mesh, setup, ranks);
+  if (setup.state.particles.x0.empty() &&
+      (wants_displacement(scene.outputs) ||
+       std::any_of(setup.conditions.loads.of_place.begin(), setup.conditions.loads.of_place.end(), from_start)))
+    setup.state.particles.x0 = setup.state.particles.x;
+  setup.conditions.limits = guards_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);
   setup.from_files = digest_of_files(setup);
   return setup;
@@ -183,9 +184,9 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
 template <int D>
 void restrict_to(const Subdomain& share, Setup<D>& setup)
 {
-  setup.walls.restrict_to(share);
-  restrict_to(share, setup.water);
-  for (MeshTraction<D>& load : setup.loads.on_mesh)
+  setup.state.walls.restrict_to(share);
+  restrict_to(share, setup.conditions.water);
+  for (MeshTraction<D>& load : setup.conditions.loads.on_mesh)
     restrict_to(share, load);
 }
 

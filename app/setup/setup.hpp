@@ -11,25 +11,16 @@ namespace talus {
 
 template <int D>
 struct Setup {
-  Particles<D> particles;  ///< of the bodies that are there at the start
-  Index n_particles = 0;   ///< of all bodies, on all ranks
-  std::vector<Body> bodies;
-  std::vector<AnyBatch> materials;
-  BoundaryConditions<D> walls;
-  Loads<D> loads;
-  Water water;
-  Transfer transfer;
-  Exits exits;
+  State<D> state;         ///< at the start, with the particles of the bodies that are there then
+  Index n_particles = 0;  ///< of all bodies, on all ranks
+  Conditions<D> conditions;
   std::vector<Stage> stages;
   std::vector<StageChange<D>> changes;      ///< of each stage
   std::vector<std::vector<AnyBatch>> laws;  ///< of all bodies in each stage, without particles
   StepLimits limits;
-  RunLimits guards;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;       ///< worth knowing before a run, such as how strong a record is
   std::optional<OriginSummary> origin;  ///< of bodies that come from another run
-  Real lag = 0;                         ///< by how much their velocities are behind its time, Clock::lag [s]
-  Real largest_before = 0;              ///< largest term of the energy of that run [J]
   std::uint64_t from_files = 0;         ///< digest of what files beside scene and mesh tell the steps: records, the water table
 };
 
@@ -53,7 +44,7 @@ Vec<D> vector_of(const std::vector<Real>& numbers)
 }
 
 /// The scheme of a scene, with the defaults that go with it.
-Transfer transfer_of(const TransferSpec& spec);
+TransferOptions transfer_of(const TransferSpec& spec);
 
 /// A line for each body that comes from another run, and where that is.
 std::string describe(const OriginSummary& origin);

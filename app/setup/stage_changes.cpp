@@ -42,7 +42,7 @@ void drop_viscosity(const Body& body, Particles<D>& particles)
 }  // namespace
 
 template <int D>
-void vanish(const std::vector<Index>& bodies, const State<D>& state, Communicator& ranks, StageReport& news)
+void vanish(const std::vector<Index>& bodies, State<D>& state, Communicator& ranks, StageReport& news)
 {
   const ParticleSet<D> gone = extract_bodies(std::span(bodies), state.bodies, state.materials, state.particles);
   for (const Index b : bodies) {
@@ -55,8 +55,7 @@ void vanish(const std::vector<Index>& bodies, const State<D>& state, Communicato
 }
 
 template <int D>
-void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Communicator& ranks,
-           StageReport& news)
+void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, State<D>& state, Communicator& ranks, StageReport& news)
 {
   constexpr Real worth_a_word = 0.01;
   Particles<D>& particles = state.particles;
@@ -94,7 +93,7 @@ void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, c
 
 template <int D>
 void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
-            const State<D>& state, Communicator& ranks, StageReport& news)
+            State<D>& state, Communicator& ranks, StageReport& news)
 {
   const auto all = [](Index) { return true; };
   CellOrder order_of_coming;
@@ -117,13 +116,13 @@ void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<
   insert_particles(std::move(coming), state.bodies, state.materials, state.particles);
 }
 
-template void vanish<2>(const std::vector<Index>&, const State<2>&, Communicator&, StageReport&);
-template void vanish<3>(const std::vector<Index>&, const State<3>&, Communicator&, StageReport&);
-template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Communicator&, StageReport&);
-template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Communicator&, StageReport&);
-template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&,
-                        Communicator&, StageReport&);
-template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&,
-                        Communicator&, StageReport&);
+template void vanish<2>(const std::vector<Index>&, State<2>&, Communicator&, StageReport&);
+template void vanish<3>(const std::vector<Index>&, State<3>&, Communicator&, StageReport&);
+template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<2>&, Communicator&, StageReport&);
+template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<3>&, Communicator&, StageReport&);
+template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, State<2>&, Communicator&,
+                        StageReport&);
+template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, State<3>&, Communicator&,
+                        StageReport&);
 
 }  // namespace talus

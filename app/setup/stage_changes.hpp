@@ -1,7 +1,9 @@
 #pragma once
 // What stages of a scene change between two steps: bodies appear, vanish and become another material, other walls act, the water table moves.
+#include "solver/model/model.hpp"
+#include "solver/particles/redistribute.hpp"
 #include "solver/particles/staged_bodies.hpp"
-#include "solver/state.hpp"
+#include "solver/stages.hpp"
 
 namespace talus {
 
@@ -41,53 +43,51 @@ std::string describe(const Overlap<D>& overlap)
 
 /// The verbs; each books mass and momentum.  Every rank has to ask.
 template <int D>
-void vanish(const std::vector<Index>& bodies, const State<D>& state, Communicator& ranks, StageReport& news);
+void vanish(const std::vector<Index>& bodies, State<D>& state, Communicator& ranks, StageReport& news);
 /// The bodies keep their stress as in app/setup/initial.hpp.  `laws` are those of all bodies in the stage.
 template <int D>
-void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, const State<D>& state, Communicator& ranks,
-           StageReport& news);
+void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, State<D>& state, Communicator& ranks, StageReport& news);
 /// RunError naming `stage`: the place is taken.  Cells are those of this rank's mesh; `order` is that of the particles that are there.
 template <int D>
 void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
-            const State<D>& state, Communicator& ranks, StageReport& news);
+            State<D>& state, Communicator& ranks, StageReport& news);
 
 /// The walls of a stage, of the whole mesh, take the place of those that acted; what is kept of these stays.
-template <int D, Kernel<D> K>
-void take_walls(Model<D, K>& m, BoundaryConditions<D> walls)
+template <int D>
+void take_walls(Model<D>& m, BoundaryConditions<D> walls)
 {
-  if (!m.share.alone())
-    walls.restrict_to(m.share);
-  walls.go_on_from(m.walls);
-  m.walls = std::move(walls);
-  bind_walls(m);
+  if (!m.problem.share.alone())
+    walls.restrict_to(m.problem.share);
+  walls.go_on_from(m.state.walls);
+  m.state.walls = std::move(walls);
+  bind_boundary_conditions(m);
 }
 
 /// The water table of a stage, of the whole mesh, takes the place of that which was.  Pore pressures follow when the stage begins.
-template <int D, Kernel<D> K>
-void take_table(Model<D, K>& m, const std::vector<Real>& table)
+template <int D>
+void take_table(Model<D>& m, const std::vector<Real>& table)
 {
-  m.water.table = m.share.alone() ? table : part_of_table(m.share, table);
+  m.problem.water.table = m.problem.share.alone() ? table : part_of_table(m.problem.share, table);
 }
 
 /// Does all that the stage changes, between two steps, before the stage begins.  What comes is moved out of `change`.
-template <int D, Kernel<D> K>
-StageReport enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
+template <int D>
+StageReport enter(Model<D>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
 {
   StageReport news{.told = change.told, .warnings = {}};
-  const State<D> state = state_of(m);
   if (!change.vanish.empty()) {
-    vanish(change.vanish, state, *m.ranks, news);
-    take_rows(m);
+    vanish(change.vanish, m.state, *m.problem.ranks, news);
+    update_rows(m);
   }
   if (!change.renew.empty())
-    renew(change.renew, laws, state, *m.ranks, news);
+    renew(change.renew, laws, m.state, *m.problem.ranks, news);
   if (!change.appear.empty()) {
     ParticleSet<D> coming = std::exchange(change.coming, {});
-    if (!m.share.alone())
-      receive_owned_particles(*m.ranks, m.share, coming.bodies, coming.materials, coming.particles);
-    fill_columns(m.columns, coming.particles);
-    appear(change.appear, std::move(coming), m.mesh, m.order, stage, state, *m.ranks, news);
-    take_rows(m);
+    if (!m.problem.share.alone())
+      receive_owned_particles(*m.problem.ranks, m.problem.share, coming.bodies, coming.materials, coming.particles);
+    fill_columns(m.problem.columns, coming.particles);
+    appear(change.appear, std::move(coming), m.problem.mesh, m.work.order, stage, m.state, *m.problem.ranks, news);
+    update_rows(m);
   }
   if (change.walls)
     take_walls(m, *change.walls);
@@ -96,13 +96,13 @@ StageReport enter(Model<D, K>& m, StageChange<D>& change, std::span<const AnyBat
   return news;
 }
 
-extern template void vanish<2>(const std::vector<Index>&, const State<2>&, Communicator&, StageReport&);
-extern template void vanish<3>(const std::vector<Index>&, const State<3>&, Communicator&, StageReport&);
-extern template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<2>&, Communicator&, StageReport&);
-extern template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, const State<3>&, Communicator&, StageReport&);
-extern template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, const State<2>&,
+extern template void vanish<2>(const std::vector<Index>&, State<2>&, Communicator&, StageReport&);
+extern template void vanish<3>(const std::vector<Index>&, State<3>&, Communicator&, StageReport&);
+extern template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<2>&, Communicator&, StageReport&);
+extern template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<3>&, Communicator&, StageReport&);
+extern template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, State<2>&,
                                Communicator&, StageReport&);
-extern template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, const State<3>&,
+extern template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, State<3>&,
                                Communicator&, StageReport&);
 
 }  // namespace talus

@@ -88,14 +88,14 @@ void set_stages(const Scene& scene, SceneErrorCollector& complaints, Setup<D>& s
       continue;
     stage.start_stress = start_stress_of_bodies(*spec->initial_stress, scene, complaints);
     if (s > 0)
-      stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.bodies);
-    for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
-      const Index from = presence_of(setup.bodies[b].name, scene.stages).from;
-      if (std::cmp_equal(from, s) && !can_start_from_stress(setup.materials[b]))
+      stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.state.bodies);
+    for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
+      const Index from = presence_of(setup.state.bodies[b].name, scene.stages).from;
+      if (std::cmp_equal(from, s) && !can_start_from_stress(setup.state.materials[b]))
         complaints.add(
             stage.where, "initial_stress",
             fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
-                        law_name(setup.materials[b]), setup.bodies[b].name));
+                        law_name(setup.state.materials[b]), setup.state.bodies[b].name));
     }
   }
 }
@@ -137,10 +137,10 @@ void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, 
   for (std::size_t s = 1; s < scene.stages.size(); ++s)
     for (const std::string& name : changes_of(scene.stages[s]).appear) {
       if (order.row.empty())
-        sort_by_cell(setup.particles.cell, setup.particles.id, setup.bodies, mesh.n_cells(), order);
+        sort_by_cell(setup.state.particles.cell, setup.state.particles.id, setup.state.bodies, mesh.n_cells(), order);
       const auto volumes = [&](const auto& chosen) {
-        return volume_in_cells(mesh, setup.particles, order,
-                               [&](Index b) { return chosen(setup.bodies[static_cast<std::size_t>(b)].name); });
+        return volume_in_cells(mesh, setup.state.particles, order,
+                               [&](Index b) { return chosen(setup.state.bodies[static_cast<std::size_t>(b)].name); });
       };
       const auto its = volumes([&](const std::string& body) { return body == name; });
       const auto there =
@@ -168,21 +168,22 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   SceneErrorCollector complaints(scene);
   for (std::size_t s = 1; s < n; ++s) {
     StageChange<D>& change = setup.changes[s];
-    change.appear = numbers_of(said(s).appear, setup.bodies);
-    change.vanish = numbers_of(said(s).vanish, setup.bodies);
+    change.appear = numbers_of(said(s).appear, setup.state.bodies);
+    change.vanish = numbers_of(said(s).vanish, setup.state.bodies);
     for (std::size_t b = 0; b < scene.bodies.size(); ++b)
       if (std::string becomes = renewal(scene, scene.bodies[b], static_cast<Index>(s)); !becomes.empty())
         change.renew.push_back({static_cast<Index>(b), std::move(becomes)});
     if (tables_differ)  // in every stage, so that a run that goes on in any of them finds the one that holds there
-      change.table = setup.changes[s - 1].table ? setup.changes[s - 1].table : setup.water.table;
+      change.table = setup.changes[s - 1].table ? setup.changes[s - 1].table : setup.conditions.water.table;
     if (!walls_differ && !said(s).water)
       continue;
     const auto there = [&](const std::string& body) { return presence_of(body, scene.stages).in(static_cast<Index>(s)); };
-    const CellOccupancy<D> filled(mesh, setup.particles, setup.bodies, ranks, there);
+    const CellOccupancy<D> filled(mesh, setup.state.particles, setup.state.bodies, ranks, there);
     if (said(s).water) {
       change.table = table_of_stage(
           scene, *said(s).water, mesh, [&](Index cell) { return filled(cell); }, complaints, setup.warnings);
-      change.told.push_back(moved_table(mesh, setup.changes[s - 1].table ? *setup.changes[s - 1].table : setup.water.table, *change.table));
+      change.told.push_back(
+          moved_table(mesh, setup.changes[s - 1].table ? *setup.changes[s - 1].table : setup.conditions.water.table, *change.table));
     }
     if (!walls_differ)
       continue;
@@ -197,13 +198,14 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
   for (std::size_t s = 1; s < n; ++s)
     if (!setup.changes[s].appear.empty()) {
-      Water water = setup.water;
+      Water water = setup.conditions.water;
       water.table = setup.changes[s].table.value_or(water.table);
-      saturate(scene, static_cast<Index>(s), mesh, water, setup.bodies, setup.particles);
+      saturate(scene, static_cast<Index>(s), mesh, water, setup.state.bodies, setup.state.particles);
     }
   for (std::size_t s = 1; s < n; ++s)
     if (!setup.changes[s].appear.empty())
-      setup.changes[s].coming = extract_bodies<D>(setup.changes[s].appear, setup.bodies, setup.materials, setup.particles);
+      setup.changes[s].coming =
+          extract_bodies<D>(setup.changes[s].appear, setup.state.bodies, setup.state.materials, setup.state.particles);
 }
 
 template void set_stages<2>(const Scene&, SceneErrorCollector&, Setup<2>&);

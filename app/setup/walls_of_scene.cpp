@@ -68,7 +68,7 @@ class WallBuilder {
         if (lowest == none || mesh_.node(n).dot(up_) < mesh_.node(lowest).dot(up_))
           lowest = n;
     }
-    const auto column = column_beside<D>(mesh_, facets, up_, setup_.particles, setup_.materials, ranks_);
+    const auto column = column_beside<D>(mesh_, facets, up_, setup_.state.particles, setup_.state.materials, ranks_);
     wall.foot = lowest == none ? none : walls_.holder_of(lowest);
     if (!column)
       return complaints_.add(

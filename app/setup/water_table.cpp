@@ -25,7 +25,7 @@ Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& m
 {
   const bool on_map = D == 3 || (scene.mesh.terrain && scene.mesh.terrain->section);
   MapPlan plan{.directory = folder_of(scene), .crs = mesh.map() ? mesh.map()->crs : "", .is_line = !on_map, .ground = {}};
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   std::vector<std::string> repairs;
   std::optional<SurfaceRead> read;
   try {
@@ -33,7 +33,7 @@ Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& m
   } catch (const EnvironmentError& e) {
     complaints.add(spec.where, "file", e.what());
   }
-  for (const Problem& problem : problems)
+  for (const SceneError& problem : problems)
     complaints.add(problem.where, "", problem.message);
   for (const std::string& repair : repairs)
     warnings.push_back(fmt::format("{}: {}", to_string(spec.where), repair));

@@ -167,9 +167,9 @@ std::string packed(const std::exception_ptr& error)
   const auto kind = static_cast<Kind>(text.front());
   text.remove_prefix(1);
   if (kind == Kind::scene) {
-    std::vector<Problem> problems;
+    std::vector<SceneError> problems;
     while (!text.empty()) {
-      Problem& problem = problems.emplace_back();
+      SceneError& problem = problems.emplace_back();
       problem.where.file = take(text);
       problem.where.line = std::stoi(take(text));
       problem.where.column = std::stoi(take(text));

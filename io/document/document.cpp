@@ -85,7 +85,7 @@ SourceLocation to_where(const Place& place, std::string path)
   return where;
 }
 
-Problem problem_at(const Place& place, std::string path, std::string message)
+SceneError problem_at(const Place& place, std::string path, std::string message)
 {
   std::string source_line;
   const auto line = static_cast<std::size_t>(place.line);

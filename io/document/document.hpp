@@ -66,7 +66,7 @@ std::string path_to(const std::string& parent, std::string_view key);
 std::string path_to(const std::string& parent, std::size_t i, const Node& entry);
 
 /// What is wrong at a place, with the line that stands there.
-Problem problem_at(const Place& place, std::string path, std::string message);
+SceneError problem_at(const Place& place, std::string path, std::string message);
 
 /// A value in one line of YAML, as --set takes it.
 std::string in_one_line(const Node& value);
@@ -76,12 +76,12 @@ class Problems {
  public:
   void add(const Place& place, std::string path, std::string message);
   std::size_t size() const noexcept { return list_.size(); }
-  const std::vector<Problem>& list() const noexcept { return list_; }
+  const std::vector<SceneError>& list() const noexcept { return list_; }
   /// Throws SceneErrors with all of them, if there are any.
   void throw_if_any() const;
 
  private:
-  std::vector<Problem> list_;
+  std::vector<SceneError> list_;
 };
 
 struct Document {

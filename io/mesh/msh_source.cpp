@@ -60,7 +60,7 @@ void MshSource::fail(const std::string& complaint) const
     line = {};
   const auto number = 1 + std::count(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
   const SourceLocation where{file_.string(), static_cast<int>(number), static_cast<int>(mark_ - begin) + 1, ""};
-  throw SceneErrors({Problem{where, complaint + asked, std::string(line)}});
+  throw SceneErrors({SceneError{where, complaint + asked, std::string(line)}});
 }
 
 void MshSource::fail_file(const std::string& complaint) const

@@ -255,10 +255,10 @@ Document read_document(const std::filesystem::path& file, std::string text, std:
 /// Notes broken rules at the values they are about, unless these values are wrong already.
 void add_findings(Document& document, const std::vector<Finding>& findings)
 {
-  const std::vector<Problem> before = document.problems.list();
+  const std::vector<SceneError> before = document.problems.list();
   for (const auto& [path, message] : findings) {
     const Found found = find_nearest(document.root, path);
-    const bool known = std::any_of(before.begin(), before.end(), [&](const Problem& p) { return is_within(p.where.path, found.path); });
+    const bool known = std::any_of(before.begin(), before.end(), [&](const SceneError& p) { return is_within(p.where.path, found.path); });
     if (!known)
       document.problems.add(found.node->place, found.path, message);
   }

@@ -56,7 +56,7 @@ Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
 {
   const std::string text = read_text(file);
   std::vector<Real> time, value;
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   int number = 0;
   bool heading_passed = false;
   for (const std::string_view line : lines_of(text)) {

@@ -18,8 +18,8 @@ constexpr std::array<std::string_view, 4> enum_names(Combine) { return {"grid", 
 /// A text of the file, and where it stands.
 struct Written {
   std::string text;
-  Problem at;  ///< without a message
-  Problem problem(std::string message) const { return {at.where, std::move(message), at.source_line}; }
+  SceneError at;  ///< without a message
+  SceneError problem(std::string message) const { return {at.where, std::move(message), at.source_line}; }
 };
 
 /// A key of the scene as --set takes it, and its values.

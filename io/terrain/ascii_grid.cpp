@@ -123,7 +123,7 @@ bool is_ascii_grid(const fs::path& file)
 
 std::vector<std::string> check_ascii_grid(const fs::path& file)
 {
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   constexpr std::size_t most_problems = 20;  // a file of another kind has one in every word
   const auto complain = [&](const GridWord& word, const std::string& what) {
     problems.push_back({{file.string(), word.line, word.column, ""}, what, {}});

@@ -95,7 +95,7 @@ std::vector<std::array<Real, 3>> read_points(const std::filesystem::path& file)
   if (text.starts_with("\xEF\xBB\xBF"))  // a byte order mark
     text.remove_prefix(3);
   std::vector<std::array<Real, 3>> points;
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   constexpr std::size_t most_problems = 5;
   bool first = true;
   for (int number = 1; !text.empty() && problems.size() < most_problems; ++number) {

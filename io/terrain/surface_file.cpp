@@ -39,7 +39,7 @@ MapBox extent_of(const std::vector<std::array<Real, 3>>& points)
 /// A file, and whoever wants to know of it.
 class FileReader {
  public:
-  FileReader(const std::string& file, const SourceLocation& where, MapPlan& plan, std::vector<Problem>& problems,
+  FileReader(const std::string& file, const SourceLocation& where, MapPlan& plan, std::vector<SceneError>& problems,
              std::vector<std::string>& repairs)
       : file_(file), where_(where), plan_(plan), problems_(problems), repairs_(repairs), path_(plan.directory / file)
   {}
@@ -66,7 +66,7 @@ class FileReader {
   const std::string& file_;
   const SourceLocation& where_;
   MapPlan& plan_;
-  std::vector<Problem>& problems_;
+  std::vector<SceneError>& problems_;
   std::vector<std::string>& repairs_;
   fs::path path_;
 };
@@ -81,7 +81,7 @@ std::optional<SurfaceRead> FileReader::read()
   try {
     return kind == ".stl" ? read_stl_surface() : of_points ? read_point_surface() : read_raster_surface();
   } catch (const SceneErrors& wrong) {  // at places in the file
-    for (Problem problem : wrong.problems()) {
+    for (SceneError problem : wrong.problems()) {
       problem.message += fmt::format(" ({})", to_string(where_));
       problems_.push_back(std::move(problem));
     }
@@ -324,7 +324,7 @@ Surface line_through(std::vector<std::vector<Real>> points)
   };
 }
 
-std::optional<SurfaceRead> read_given_points(const SurfaceSpec& spec, const MapPlan& plan, std::vector<Problem>& problems,
+std::optional<SurfaceRead> read_given_points(const SurfaceSpec& spec, const MapPlan& plan, std::vector<SceneError>& problems,
                                              std::vector<std::string>& repairs)
 {
   const std::size_t numbers = plan.is_line ? 2 : 3, fewest = numbers, before = problems.size();
@@ -376,7 +376,7 @@ MapBox extent_of(const MapRing& ring)
 
 }  // namespace
 
-std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, std::vector<Problem>& problems,
+std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, std::vector<SceneError>& problems,
                                         std::vector<std::string>& repairs)
 {
   if (!spec.file.empty())
@@ -393,7 +393,7 @@ std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, 
 }
 
 void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
-                 std::vector<Problem>& problems)
+                 std::vector<SceneError>& problems)
 {
   if (outline.size() < 3)
     return;
@@ -442,7 +442,7 @@ void check_cover(const SurfaceRead& surface, const SourceLocation& where, const 
 }
 
 std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
-                                      std::vector<Problem>& problems, std::vector<std::string>& repairs)
+                                      std::vector<SceneError>& problems, std::vector<std::string>& repairs)
 {
   gdal();  // that it cannot be loaded is no fault of the scene
   PolygonFile read;

@@ -32,16 +32,16 @@ inline constexpr Index largest_hole_filled = 10;
 
 /// Nothing where something is wrong: `problems` then has what.  What was mended, or taken for granted, is in `repairs`, one sentence each.
 /// `plan.crs` becomes that of the file where it was empty.  EnvironmentError: GDAL cannot be loaded.
-std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, std::vector<Problem>& problems,
+std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, std::vector<SceneError>& problems,
                                         std::vector<std::string>& repairs);
 
 /// A problem, if the surface has no value somewhere within the outline: which extents it has and which are wanted, or where the hole is.
 /// `of`: what is so named, "domain".
 void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
-                 std::vector<Problem>& problems);
+                 std::vector<SceneError>& problems);
 
 /// The polygons of a file, on the map: reprojected where the file has another coordinate system.  Empty where something is wrong.
 std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
-                                      std::vector<Problem>& problems, std::vector<std::string>& repairs);
+                                      std::vector<SceneError>& problems, std::vector<std::string>& repairs);
 
 }  // namespace talus

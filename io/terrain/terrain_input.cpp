@@ -174,7 +174,7 @@ class TerrainReader {
   TerrainInput input_;
   MapPlan map_;
   std::optional<SurfaceRead> ground_;
-  std::vector<Problem> problems_;
+  std::vector<SceneError> problems_;
 };
 
 }  // namespace

@@ -87,7 +87,7 @@ void tell(const LayerSpec& layer, const LayerCells& fates, const std::string& up
 }  // namespace
 
 template <int D>
-TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainInput& input, std::vector<Problem>& problems)
+TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainInput& input, std::vector<SceneError>& problems)
 {
   TerrainLayers layers;
   std::vector<Real> above = plan.ground;
@@ -126,7 +126,7 @@ std::string domain_in_words(const TerrainInput& input)
   return fmt::format("{:.10g} to {:.10g} east, {:.10g} to {:.10g} north", low[0], high[0], low[1], high[1]);
 }
 
-template TerrainLayers lay<2>(const TerrainSpec&, const SurveyedPlan<2>&, TerrainInput&, std::vector<Problem>&);
-template TerrainLayers lay<3>(const TerrainSpec&, const SurveyedPlan<3>&, TerrainInput&, std::vector<Problem>&);
+template TerrainLayers lay<2>(const TerrainSpec&, const SurveyedPlan<2>&, TerrainInput&, std::vector<SceneError>&);
+template TerrainLayers lay<3>(const TerrainSpec&, const SurveyedPlan<3>&, TerrainInput&, std::vector<SceneError>&);
 
 }  // namespace talus

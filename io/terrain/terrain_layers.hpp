@@ -17,12 +17,12 @@ struct TerrainLayers {
 
 /// From the ground down.  What is wrong is added to `problems`, what gave way, in words, to the notes.
 template <int D>
-TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainInput& input, std::vector<Problem>& problems);
+TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainInput& input, std::vector<SceneError>& problems);
 
 /// What is meshed, "512000 to 512060 east, 5180000 to 5180030 north".
 std::string domain_in_words(const TerrainInput& input);
 
-extern template TerrainLayers lay<2>(const TerrainSpec&, const SurveyedPlan<2>&, TerrainInput&, std::vector<Problem>&);
-extern template TerrainLayers lay<3>(const TerrainSpec&, const SurveyedPlan<3>&, TerrainInput&, std::vector<Problem>&);
+extern template TerrainLayers lay<2>(const TerrainSpec&, const SurveyedPlan<2>&, TerrainInput&, std::vector<SceneError>&);
+extern template TerrainLayers lay<3>(const TerrainSpec&, const SurveyedPlan<3>&, TerrainInput&, std::vector<SceneError>&);
 
 }  // namespace talus

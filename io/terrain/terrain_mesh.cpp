@@ -329,7 +329,7 @@ class TerrainMaker {
   TerrainLayers layers_;
   Marks has_air_;                        // by plan cell
   std::vector<Index> obstacle_of_cell_;  // by plan cell; none
-  std::vector<Problem> problems_;
+  std::vector<SceneError> problems_;
 };
 
 }  // namespace

@@ -174,7 +174,7 @@ struct RemovedParticles {
   Real held_count{};  ///< set back onto a closed wall
 };
 template <int D>
-void book(const RemovedParticles<D>& gone, MassLedger<D>& mass, EnergyLedger& energy) noexcept
+void record_removed(const RemovedParticles<D>& gone, MassLedger<D>& mass, EnergyLedger& energy) noexcept
 {
   mass.deleted += gone.mass, mass.failed += gone.failed;
   mass.on_nodes -= gone.failed;  // it took part in the step in which it failed

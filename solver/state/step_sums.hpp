@@ -28,4 +28,31 @@ struct StepSums {
   }
 };
 
+/// Adds the sums of a step to the balances, all ranks together; gravity [m/s^2] acted over `kick` [s].
+template <int D>
+void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLedger<D>& mass, MomentumLedger<D>& momentum,
+              EnergyLedger& energy)
+{
+  record_removed(sums.departed.value(), mass, energy);
+  const NodeWork<D> nodes = sums.nodes.value();
+  const BoundaryWork boundary = sums.at_nodes.value(), beyond = sums.beyond_nodes.value();
+  const ForceAndMoment<D> tractions = sums.on_particles.value() + sums.on_mesh.value();
+  mass.on_nodes = nodes.mass;
+  momentum.loads += ForceAndMoment<D>::of(kick * nodes.mass * gravity, kick * moment<D>(nodes.first_moment, gravity)) + kick * tractions;
+  momentum.damping += nodes.damped;
+  momentum.on_nodes += nodes.turned + beyond.turned;
+  energy.gravity += nodes.gravity;
+  energy.damping += nodes.damping;
+  energy.walls += boundary.moved + beyond.moved;
+  energy.arrival += boundary.arrival + beyond.arrival;
+  energy.friction += boundary.friction + beyond.friction;
+  energy.waves += boundary.waves;
+  energy.nodes += nodes.kinetic_after - nodes.kinetic_before - boundary.arrival + beyond.friction + beyond.moved;
+  energy.remap += sums.remap.value();
+  energy.loads += sums.work_on_mesh.value() + sums.work_on_particles.value();
+  energy.internal += sums.internal.value();
+  energy.internal_ahead = sums.internal.value() / 2;
+  energy.loads_ahead = sums.work_on_particles.value() / 2;
+}
+
 }  // namespace talus

@@ -117,7 +117,7 @@ struct SmallRun {
     walls.add(std::move(floor), mesh, held);
   }
   void sort() { sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order); }
-  RunView<2> frame() const
+  RunView<2> view() const
   {
     return {.mesh = mesh,
             .share = share,
@@ -156,7 +156,7 @@ void go_on(const CheckpointList& checkpoints)
   SmallRun run;
   checkpoints.take_over(run.state(), run.recorder, run.limits);
   run.sort();
-  run.recorder.resume(run.frame());
+  run.recorder.resume(run.view());
 }
 
 /// As a scene begins with the bodies: each row is read.
@@ -184,10 +184,10 @@ std::string good_checkpoint()
   every_step.steps = 1;
   Checkpoints<2> checkpoints(run_folder(), every_step,
                              {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, 2, ""});
-  run.recorder.watch(run.frame(), RunEvent::stage_begins);
-  checkpoints.see(run.frame(), run.recorder);
+  run.recorder.watch(run.view(), RunEvent::stage_begins);
+  checkpoints.see(run.view(), run.recorder);
   ++run.clock.step;
-  checkpoints.see(run.frame(), run.recorder);
+  checkpoints.see(run.view(), run.recorder);
   const CheckpointList good(checkpoints.last());  // refused, it would be of no use to what follows
   go_on(good);
   begin_with(good);

@@ -18,7 +18,7 @@ void take_surface(std::string_view bytes, const std::string& extension)
   spec.where = {"scene.yaml", 1, 1, "mesh.terrain.ground"};
   MapPlan plan;
   plan.directory = file.path().parent_path();
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   std::vector<std::string> repairs;
   if (const auto surface = read_surface(spec, plan, problems, repairs))
     check_cover(*surface, spec.where, {{0, 0}, {10, 0}, {10, 10}, {0, 10}}, "domain", problems);
@@ -36,7 +36,7 @@ void fuzz_outlines(std::string_view bytes)
   MapPlan plan;
   plan.directory = file.path().parent_path();
   plan.crs = "EPSG:32633";
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   std::vector<std::string> repairs;
   read_outlines(file.path().filename().string(), {"scene.yaml", 1, 1, "mesh.terrain.domain_file"}, plan, problems, repairs);
 }

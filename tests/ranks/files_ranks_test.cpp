@@ -146,7 +146,7 @@ struct RankOfRun {
     for (Index& cell : mine.particles.cell)
       cell = share.local_cell(cell);
   }
-  RunView<2> frame() const
+  RunView<2> view() const
   {
     return {mesh,       share, mine.particles, mine.bodies, mine.materials, order,   &ranks, nodes,   walls,    loads,    clock, stage,
             "the only", 0,     energy,         mass,        momentum,       watched, guards, timings, residual, crossing, 0,     0};
@@ -239,7 +239,7 @@ TEST_F(Files, RowsAreDealtOutWithAllThatIsTheirs)
 TEST_F(Files, SlicesHaveTheRowsOfTheFile)
 {
   const RankOfRun run(1000);
-  const auto slice = slice_of_particles(run.frame(), small_piece);
+  const auto slice = slice_of_particles(run.view(), small_piece);
   const Slices slices{1000, ranks.size(), small_piece};
   EXPECT_EQ(slice.rows.first, slices.begin(ranks.rank()));
   EXPECT_EQ(slice.rows.of_all, 1000);
@@ -267,7 +267,7 @@ TEST_F(Files, ParticlesAreWrittenAsByOneRank)
     }
     write_particles(by, file, 0.5, rows, positions(particles, in_order), ids, std::vector<Column>{heat, speed}, "this test");
   };
-  const auto slice = slice_of_particles(run.frame(), small_piece);
+  const auto slice = slice_of_particles(run.view(), small_piece);
   write(ranks, slice.particles, slice.rows, folder / "all.vtp");
   if (!ranks.is_root())
     return;
@@ -288,8 +288,8 @@ TEST_F(Files, MeshesAreWrittenAsByOneRank)
   Column held{"number", 1, {}, "m"};
   for (Index n = 0; n < run.mesh.n_nodes(); ++n)
     held.values.push_back(static_cast<float>(ranks.alone() ? n : run.share.node[static_cast<std::size_t>(n)]));
-  Column column = slice_of_column(run.frame(), held, small_piece);
-  write_mesh(ranks, folder / "all.vtu", 0.5, slice_of_mesh(run.frame(), small_piece), std::vector<Column>{column}, {});
+  Column column = slice_of_column(run.view(), held, small_piece);
+  write_mesh(ranks, folder / "all.vtu", 0.5, slice_of_mesh(run.view(), small_piece), std::vector<Column>{column}, {});
   if (!ranks.is_root())
     return;
   column.values.clear();
@@ -324,7 +324,7 @@ void write_cloud(Communicator& by, const fs::path& file, const Cloud& cloud, con
 TEST_F(Files, ArraysAreWrittenAsByOneRankAndReadInSlices)
 {
   const RankOfRun run(1000);
-  const auto slice = slice_of_particles(run.frame(), small_piece);
+  const auto slice = slice_of_particles(run.view(), small_piece);
   write_cloud(ranks, folder / "all.h5", {slice.particles, slice.bodies, slice.materials}, slice.whole_bodies, slice.rows);
   Cloud whole = run.make([](std::int64_t) { return true; });
   redistribute(one_rank(), std::vector<int>(1000, 0), whole.bodies, whole.materials, whole.particles);
@@ -371,7 +371,7 @@ TEST_F(Files, ArraysAreWrittenAsByOneRankAndReadInSlices)
 TEST_F(Files, AFullDiskOfOneRankIsToldByAllAndLeavesWhatWasThere)
 {
   const RankOfRun run(5000);
-  const auto slice = slice_of_particles(run.frame(), small_piece);
+  const auto slice = slice_of_particles(run.view(), small_piece);
   const auto write = [&](const fs::path& file) {
     write_cloud(ranks, file, {slice.particles, slice.bodies, slice.materials}, slice.whole_bodies, slice.rows);
   };
@@ -412,9 +412,9 @@ TEST_F(Files, ACheckpointIsTakenOverInSlicesAndRefusedByAllWhereOneOfThemIsDamag
   if (ranks.is_root())
     write_whole(folder / "summary.json", "{}\n");
   Checkpoints<2> checkpoints(folder, CheckpointSpec{}, {"0.1", "commit", "compiler", "build", "scene.yaml", "", {}, false, 1, 2, ""});
-  checkpoints.write(run.frame(), recorder);
+  checkpoints.write(run.view(), recorder);
   run.clock.step = 1;
-  checkpoints.write(run.frame(), recorder);
+  checkpoints.write(run.view(), recorder);
   const fs::path newest = checkpoints.last();
 
   RankOfRun other(n);

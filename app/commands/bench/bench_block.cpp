@@ -5,6 +5,7 @@
 #include "app/commands/bench/bench_laws.hpp"
 #include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
+#include "solver/stable_step.hpp"
 
 namespace talus {
 
@@ -75,7 +76,7 @@ Particles<D> bench_particles(const Mesh<D>& mesh, int per_cell, Real density)
   return p;
 }
 
-Transfer bench_transfer(const std::string& name)
+TransferOptions bench_transfer(const std::string& name)
 {
   TransferSpec spec;
   for (std::size_t i = 0; i < enum_names(TransferScheme{}).size(); ++i)
@@ -99,22 +100,23 @@ void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
       wall.friction = 0.3;
     }
     if (setting.option == bench_options::traction) {
-      auto load = carried_by_particles<D>(block.mesh, facets, setup.particles);
+      auto load = carried_by_particles<D>(block.mesh, facets, setup.state.particles);
       load.pressure = pressure;
-      setup.loads.on_particles.push_back(std::move(load));
+      setup.conditions.loads.on_particles.push_back(std::move(load));
     }
-    setup.walls.add(wall, block.mesh, facets);
+    setup.state.walls.add(wall, block.mesh, facets);
   }
   if (setting.option == bench_options::body_force)
-    setup.loads.of_place.push_back({[](std::span<const Vec<D>> places, Real, std::span<Vec<D>> accelerations) {
-                                      std::ranges::transform(places, accelerations.begin(), [](const Vec<D>& x) { return Vec<D>(-x); });
-                                    },
-                                    false});
+    setup.conditions.loads.of_place.push_back({[](std::span<const Vec<D>> places, Real, std::span<Vec<D>> accelerations) {
+                                                 std::ranges::transform(places, accelerations.begin(),
+                                                                        [](const Vec<D>& x) { return Vec<D>(-x); });
+                                               },
+                                               false});
   if (setting.option == bench_options::history) {
     HistoryOutputSpec history;
     history.points.push_back({"middle", std::vector<Real>(D, 0.5), "", {}});
     block.scene.outputs.history = std::move(history);
-    setup.particles.x0 = setup.particles.x;
+    setup.state.particles.x0 = setup.state.particles.x;
   }
 }
 
@@ -137,11 +139,11 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   block.scene.precision = setting.precision == "single" ? Precision::single : Precision::full;
   Setup<D>& setup = block.setup;
   const AnyLaw law = bench_law(setting.law);
-  setup.particles = bench_particles<D>(block.mesh, setting.per_cell, std::visit([](const auto& l) { return l.density; }, law));
-  setup.particles.keep_in(block.scene.precision);
-  const Index n = setup.particles.size();
-  setup.bodies.push_back({"block", 0, n, {}});
-  setup.materials.push_back(std::visit([&](const auto& l) { return make_any_batch(l, 0, n, setting.law); }, law));
+  setup.state.particles = bench_particles<D>(block.mesh, setting.per_cell, std::visit([](const auto& l) { return l.density; }, law));
+  setup.state.particles.keep_in(block.scene.precision);
+  const Index n = setup.state.particles.size();
+  setup.state.bodies.push_back({"block", 0, n, {}});
+  setup.state.materials.push_back(std::visit([&](const auto& l) { return make_any_batch(l, 0, n, setting.law); }, law));
   Real wave = 0, pressure = 0;
   std::visit(
       [&]<class L>(Batch<L>& batch) {
@@ -151,13 +153,13 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
         wave = batch.wave_speed(0, Mat3::Identity());
         pressure = 1e-3 * batch.law.density * wave * wave;  // strains of the order of 0.1 %
       },
-      setup.materials.front());
-  set_swirling<D>(bench_swirl * wave, setup.particles);
-  setup.transfer = bench_transfer(setting.transfer);
+      setup.state.materials.front());
+  set_swirling<D>(bench_swirl * wave, setup.state.particles);
+  setup.conditions.transfer = bench_transfer(setting.transfer);
   close_in(setting, pressure, block);
 
   setup.limits.cfl = 1;  // bends to nothing but a state four times as stiff: `longest` decides
-  setup.limits.longest = bench_cfl * shortest_crossing(block.mesh, setup.materials, setup.particles);
+  setup.limits.longest = bench_cfl * shortest_crossing(block.mesh, setup.state.materials, setup.state.particles);
   setup.limits.shortest = 0;
   Stage stage;
   stage.name = "run";

@@ -21,7 +21,7 @@ std::vector<std::string> names_of(Choice choice)
 
 /// The words given, or else `usual`.  Adds a problem for each that is not known.
 std::vector<std::string> chosen(const std::string& option, const std::vector<std::string>& given, const std::vector<std::string>& usual,
-                                const std::vector<std::string>& known, std::vector<Problem>& problems)
+                                const std::vector<std::string>& known, std::vector<SceneError>& problems)
 {
   for (const std::string& word : given)
     if (std::find(known.begin(), known.end(), word) == known.end())
@@ -37,7 +37,7 @@ struct Axes {
 
 Axes axes_of(const BenchOptions& o, int all_threads)
 {
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   const bool all = o.all;
   Axes axes;
   axes.kernels = chosen("--kernel", o.kernels, all ? kernel_names() : std::vector<std::string>{"projected", "umls", "linear"},

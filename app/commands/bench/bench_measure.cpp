@@ -36,7 +36,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
   auto block = bench_block<D>(setting, plan.particles, plan.all_steps());
   BenchResult result;
   result.setting = setting;
-  result.particles = block.setup.particles.size();
+  result.particles = block.setup.state.particles.size();
   std::optional<Scratch> scratch;
   std::optional<Recorder<D>> recorder;
   const std::vector<Stage> stages = block.setup.stages;
@@ -48,15 +48,15 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
   }
   Laps laps(plan);
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),
-              {[&](const RunView<D>& frame, RunEvent moment) {
+              {[&](const RunView<D>& view, RunEvent moment) {
                  if (recorder)
-                   recorder->watch(frame, moment);
+                   recorder->watch(view, moment);
                  if (moment == RunEvent::stage_done) {
-                   result.bytes_held = bytes_per_particle(frame);
-                   result.bytes_moved = bytes_moved(frame);
+                   result.bytes_held = bytes_per_particle(view);
+                   result.bytes_moved = bytes_moved(view);
                  }
                  if (moment == RunEvent::step_done)
-                   laps.step_done(frame.timings.particle_steps, phases_of(frame.timings));
+                   laps.step_done(view.state.timings.particle_steps, phases_of(view.state.timings));
                },
                [](const RunView<D>&, const StageResult&) {}});
   laps.fill(result);
@@ -112,24 +112,24 @@ void Laps::fill(BenchResult& result) const
 }
 
 template <int D>
-Real bytes_moved(const RunView<D>& frame)
+Real bytes_moved(const RunView<D>& view)
 {
   constexpr std::array<std::string_view, 5> constants{"id", "cell", "mass", "volume0", "start"};
   const auto bytes = [](const auto& column) { return static_cast<Real>(column.size() * sizeof(column[0])); };
   Real total = 0;
-  frame.particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
+  view.state.particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
     const bool changes = std::find(constants.begin(), constants.end(), name) == constants.end();
     total += (changes ? 2 : 1) * bytes(column);
   });
-  for (const AnyBatch& material : frame.materials)
+  for (const AnyBatch& material : view.state.materials)
     std::visit(
         [&]<class L>(const Batch<L>& batch) {
           if constexpr (!std::is_empty_v<typename L::State>)
             total += 2 * bytes(batch.history);
         },
         material);
-  total += 2 * (bytes(frame.nodes.sum) + bytes(frame.nodes.motion));
-  return total / static_cast<Real>(frame.particles.size());
+  total += 2 * (bytes(view.nodes.sum) + bytes(view.nodes.motion));
+  return total / static_cast<Real>(view.state.particles.size());
 }
 
 template Real bytes_moved<2>(const RunView<2>&);

@@ -49,6 +49,6 @@ BenchResult measure(const BenchSetting& setting, const BenchPlan& plan);
 /// What memory has to bring and take for a step at least, per particle [B]: each column in use and the history once in, all that a step
 /// changes once out, sums and motion of the nodes once in and once out.
 template <int D>
-Real bytes_moved(const RunView<D>& frame);
+Real bytes_moved(const RunView<D>& view);
 
 }  // namespace talus

@@ -48,23 +48,23 @@ std::vector<Real> seconds_between(const RankMark& from, const RankMark& to, int 
 
 /// Of this rank, in the order of rank_columns.
 template <int D>
-std::vector<Real> holdings(const RunView<D>& frame, const RankMark& from, const RankMark& to, int steps, const Estimate& memory)
+std::vector<Real> holdings(const RunView<D>& view, const RankMark& from, const RankMark& to, int steps, const Estimate& memory)
 {
-  const bool alone = frame.share.alone();
-  const auto owns_cell = [&](Index c) { return alone || frame.share.owns_cell(c); };
+  const bool alone = view.problem.share.alone();
+  const auto owns_cell = [&](Index c) { return alone || view.problem.share.owns_cell(c); };
   Index cells = 0, nodes = 0, shared = 0;
-  for (Index c = 0; c < frame.mesh.n_cells(); ++c)
+  for (Index c = 0; c < view.problem.mesh.n_cells(); ++c)
     cells += owns_cell(c) ? 1 : 0;
-  for (Index n = 0; n < frame.mesh.n_nodes(); ++n) {
-    nodes += alone || frame.share.owns_node(n) ? 1 : 0;
-    const auto around = frame.mesh.cells_of_node()[n];
+  for (Index n = 0; n < view.problem.mesh.n_nodes(); ++n) {
+    nodes += alone || view.problem.share.owns_node(n) ? 1 : 0;
+    const auto around = view.problem.mesh.cells_of_node()[n];
     shared += std::any_of(around.begin(), around.end(), owns_cell) && !std::all_of(around.begin(), around.end(), owns_cell) ? 1 : 0;
   }
   const auto a_step = [&](std::int64_t before, std::int64_t now) { return static_cast<Real>(now - before) / steps; };
   const Traffic &before = from.traffic, &now = to.traffic;
-  return {static_cast<Real>(frame.particles.size()),
+  return {static_cast<Real>(view.state.particles.size()),
           static_cast<Real>(cells),
-          static_cast<Real>(frame.mesh.n_cells()),
+          static_cast<Real>(view.problem.mesh.n_cells()),
           static_cast<Real>(nodes),
           static_cast<Real>(shared),
           a_step(before.messages, now.messages),
@@ -108,18 +108,18 @@ template <int D>
 void keep_part(const Mesh<D>& mesh, Setup<D>& setup)
 {
   const IndexRange filled = cells_to_fill(mesh, world());
-  setup.n_particles = setup.particles.size();
-  for (Index& cell : setup.particles.cell)
+  setup.n_particles = setup.state.particles.size();
+  for (Index& cell : setup.state.particles.cell)
     if (cell < filled.begin || cell >= filled.end)
       cell = none;
-  drop_lost(setup.bodies, setup.materials, setup.particles);
+  drop_lost(setup.state.bodies, setup.state.materials, setup.state.particles);
 }
 
 template <int D>
 void measure_ranks(const BenchSetting& setting, const BenchPlan& plan, RanksReport& report)
 {
   auto block = bench_block<D>(setting, plan.particles, plan.all_steps());
-  report.particles = block.setup.particles.size();
+  report.particles = block.setup.state.particles.size();
   keep_part(block.mesh, block.setup);
   report.cells = block.mesh.n_cells(), report.nodes = block.mesh.n_nodes();
   const Estimate memory = estimate<D>(block.scene, block.mesh, block.setup);  // of the part of this rank
@@ -128,15 +128,15 @@ void measure_ranks(const BenchSetting& setting, const BenchPlan& plan, RanksRepo
   std::size_t n_times = 0;
   int done = 0;
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),
-              {[&](const RunView<D>& frame, RunEvent moment) {
+              {[&](const RunView<D>& view, RunEvent moment) {
                  if (moment != RunEvent::step_done)
                    return;
                  ++done;
                  if (done >= plan.warm_up && (done - plan.warm_up) % plan.steps == 0)
-                   marks.push_back(
-                       {std::chrono::steady_clock::now(), std::clock(), phases_of(frame.timings), frame.ranks->traffic(), frame.migrated});
+                   marks.push_back({std::chrono::steady_clock::now(), std::clock(), phases_of(view.state.timings),
+                                    view.problem.ranks->traffic(), view.migrated});
                  if (done == plan.all_steps())
-                   held = holdings(frame, marks.front(), marks.back(), plan.repeats * plan.steps, memory);
+                   held = holdings(view, marks.front(), marks.back(), plan.repeats * plan.steps, memory);
                },
                [](const RunView<D>&, const StageResult&) {}});
   for (std::size_t i = 1; i < marks.size(); ++i) {

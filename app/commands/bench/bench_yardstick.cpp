@@ -4,6 +4,7 @@
 
 #include "core/parallel/threads.hpp"
 #include "core/simd.hpp"
+#include "solver/stop_watch.hpp"
 
 namespace talus {
 

@@ -55,7 +55,7 @@ void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
   for (const std::string& name : options.bodies)
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error(fmt::format("--bodies: in the state at rest there is no body \"{}\"{}", name, suggestion(name, known)));
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   for (const BodySpec& body : there) {
     const Index number = material_number(scene, body.material);
     const MaterialSpec& material = scene.materials[static_cast<std::size_t>(number)];
@@ -95,13 +95,13 @@ AtRest measured(const FosPlan& plan)
   const Vec<D> up = upright_of(scene).template head<D>();
   Real low = std::numeric_limits<Real>::infinity(), high = -low;
   before.wave_speed = low;
-  for (std::size_t b = 0; b < setup.bodies.size(); ++b) {
-    const Body& body = setup.bodies[b];
+  for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
+    const Body& body = setup.state.bodies[b];
     if (std::find(plan.bodies.begin(), plan.bodies.end(), body.name) == plan.bodies.end())
       continue;
-    before.wave_speed = std::min(before.wave_speed, wave_speed(setup.materials[b], Mat3::Identity()));
+    before.wave_speed = std::min(before.wave_speed, wave_speed(setup.state.materials[b], Mat3::Identity()));
     for (Index row = body.begin; row < body.end; ++row) {
-      const Real at = up.dot(setup.particles.x[static_cast<std::size_t>(row)]);
+      const Real at = up.dot(setup.state.particles.x[static_cast<std::size_t>(row)]);
       low = std::min(low, at), high = std::max(high, at);
     }
   }
@@ -159,7 +159,7 @@ std::string in_quotes(const fs::path& path)
 void keep_stages(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
 {
   Rewritten stages(options, "stages");
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   for (std::size_t i = 0; i < n_stages; ++i) {
     const StageSpec& stage = plan.spec.stages[i];
     if (const StageChanges& changes = changes_of(stage); !changes.change.empty() || !changes.weaken.empty())
@@ -229,8 +229,8 @@ std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string
 try {
   return scene_digest(read_scene(plan.scene, changes));
 } catch (const SceneErrors& e) {
-  std::vector<Problem> problems;
-  for (const Problem& problem : e.problems()) {
+  std::vector<SceneError> problems;
+  for (const SceneError& problem : e.problems()) {
     SourceLocation where = plan.spec.where;
     where.path = problem.where.path;
     problems.push_back({where, "a run that talus fos makes of this scene is refused: " + problem.message, ""});

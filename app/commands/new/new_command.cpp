@@ -99,7 +99,7 @@ Answers given_answers(const SceneTemplate& from, const std::vector<std::string>&
   for (const Question& question : from.head.questions)
     known.push_back(question.name);
   Answers given;
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   for (const std::string& text : set) {
     const std::size_t equals = text.find('=');
     const std::string name = text.substr(0, equals);
@@ -120,7 +120,7 @@ Answers given_answers(const SceneTemplate& from, const std::vector<std::string>&
 Answers take_given(const SceneTemplate& from, const std::vector<std::string>& set)
 {
   const Answers given = given_answers(from, set);
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   Answers answers;
   while (const auto open = next_question(from, answers)) {
     const std::string& name = open->question->name;

@@ -25,11 +25,11 @@ class CaseErrors {
  public:
   void add(const SweepCase& one, const SceneErrors& errors)
   {
-    for (const Problem& problem : errors.problems()) {
+    for (const SceneError& problem : errors.problems()) {
       const auto change = std::find_if(one.changes.begin(), one.changes.end(),
                                        [&](const std::string& set) { return problem.where.file == "--set " + set; });
       const bool of_value = change != one.changes.end();
-      Problem here = problem;
+      SceneError here = problem;
       if (of_value) {
         here = one.values[static_cast<std::size_t>(change - one.changes.begin())].problem(problem.message);
         here.where.path = problem.where.path;
@@ -44,7 +44,7 @@ class CaseErrors {
   /// SceneErrors, if there are any.
   void throw_if_any(std::size_t n_cases) const
   {
-    std::vector<Problem> problems;
+    std::vector<SceneError> problems;
     for (const Entry& entry : all_) {
       problems.push_back(entry.problem);
       if (entry.of_value || entry.cases.size() == n_cases)
@@ -62,7 +62,7 @@ class CaseErrors {
 
  private:
   struct Entry {
-    Problem problem;
+    SceneError problem;
     bool of_value;
     std::vector<int> cases;
     SweepCase first;  // of them

@@ -30,7 +30,7 @@ void SceneErrorCollector::add(SourceLocation where, std::string_view key, std::s
 
 void SceneErrorCollector::add(const SourceLocation& where, std::string_view key, const SceneErrors& in_file)
 {
-  for (const Problem& problem : in_file.problems()) {
+  for (const SceneError& problem : in_file.problems()) {
     if (problem.where.line == 0)
       add(where, key, fmt::format("{}: {}", problem.where.file, problem.message));
     else

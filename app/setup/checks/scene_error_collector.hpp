@@ -22,7 +22,7 @@ class SceneErrorCollector {
 
  private:
   const Scene* scene_;
-  std::vector<Problem> problems_;
+  std::vector<SceneError> problems_;
 };
 
 }  // namespace talus

@@ -7,7 +7,7 @@
 #include "app/setup/checks/scene_error_collector.hpp"
 #include "core/parallel/communicator.hpp"
 #include "io/scene/scene.hpp"
-#include "solver/model.hpp"
+#include "solver/model/model.hpp"
 
 namespace talus {
 

@@ -185,7 +185,7 @@ TEST(Reader, PointsToEveryProblemOnce)
   } catch (const SceneErrors& errors) {
     const auto& list = errors.problems();
     ASSERT_EQ(list.size(), 9U);
-    EXPECT_TRUE(std::is_sorted(list.begin(), list.end(), [](const Problem& a, const Problem& b) {
+    EXPECT_TRUE(std::is_sorted(list.begin(), list.end(), [](const SceneError& a, const SceneError& b) {
       return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
     }));
     EXPECT_EQ(list[5].where.path, "materials[0] \"clay\".poisson_ratio");
@@ -264,7 +264,7 @@ TEST(Reader, AnswersEveryDamagedSceneWithASceneOrWithErrors)
       } catch (const SceneErrors& errors) {
         ++refused;
         ASSERT_FALSE(errors.problems().empty()) << text;
-        for (const Problem& problem : errors.problems())
+        for (const SceneError& problem : errors.problems())
           ASSERT_THAT(problem.where.file, testing::EndsWith("mutant.yaml")) << text;
       }
     }

@@ -77,7 +77,7 @@ class SurfaceFile : public testing::Test {
 
   ScratchFolder folder;
   MapPlan plan{folder.path(), "", false, {}};
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   std::vector<std::string> repairs;
 };
 

@@ -102,7 +102,7 @@ TEST(MassLedgers, BookEverythingThatDeletedParticlesTakeAlong)
   gone.mass = 256, gone.failed = 512, gone.count = 1024, gone.failed_count = 2048, gone.held_count = 4096;
   gone.kinetic = 8192, gone.plastic = 16384;
   gone.momentum = ForceAndMoment<3>::of({3, 0, 4}, {0, 0, 2});
-  book(gone, mass, energy);
+  record_removed(gone, mass, energy);
   EXPECT_EQ(mass.deleted, 1 + 256);
   EXPECT_EQ(mass.failed, 2 + 512);
   EXPECT_EQ(mass.on_nodes, 4 - 512);

@@ -1,8 +1,8 @@
 // Rows of nodes and hats: how they add up and when they count as seen; the share of PIC.
 #include <gtest/gtest.h>
 
+#include "solver/model/transfer_options.hpp"
 #include "solver/state/nodes.hpp"
-#include "solver/state/transfer.hpp"
 
 namespace talus::node_rows_test {
 namespace {

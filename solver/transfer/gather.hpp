@@ -1,6 +1,6 @@
 #pragma once
 // Nodes -> particles (G2P): velocity, velocity gradient and the move.
-#include "solver/scatter.hpp"
+#include "solver/transfer/scatter.hpp"
 
 namespace talus {
 namespace detail {
@@ -41,15 +41,15 @@ void move(const ParticlePackOf<S>& pack, const Pack (&x)[D], const Pack (&v)[D],
 /// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read; ask(p) before, see RowsAhead; then
 /// done(body), body by body.
 template <int D, Kernel<D> K, class Ask, class F, class Done>
-void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typename Through<D, K>::Motion>& motion, Ask&& ask, F&& f,
-                          Done&& done)
+void for_each_reading_run(const Model<D>& m, const KernelRows<D, K>& of, Index b,
+                          const std::vector<typename KernelRows<D, K>::Motion>& motion, Ask&& ask, F&& f, Done&& done)
 {
-  Through<D, K> through(m.kernel);
+  typename KernelRows<D, K>::Through through(of.kernel);
   for (Index body = 0; body < m.n_bodies(); ++body) {
     for_each_run(
-        m.order.rows(body, b), m.particles.cell,
+        m.work.order.rows(body, b), m.state.particles.cell,
         [&](Index c, std::span<const Index> run) {
-          through.enter(m.mesh, c);
+          through.enter(m.problem.mesh, c);
           through.read(motion);
           f(c, run, through);
         },
@@ -60,26 +60,28 @@ void for_each_reading_run(const Model<D, K>& m, Index b, const std::vector<typen
 
 /// What own particles read of nodes of other ranks; hats have it by now.
 template <int D, Kernel<D> K>
-void take_motion([[maybe_unused]] Model<D, K>& m)
+void take_motion([[maybe_unused]] Model<D>& m, KernelRows<D, K>& of)
 {
   if constexpr (!HasNodeOperators<K, D>)
-    m.copies.motion.take(m.nodes.motion, Whole{});
+    of.ghosts.motion.take(m.work.nodes.motion, Whole{});
 }
 
 template <class S, bool increments, int D, Kernel<D> K, class Then>
-void gather(Model<D, K>& m, Real dt, Then&& then)
+void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then)
 {
-  const Real pic = m.transfer.pic_share(dt, m.crossing);
+  const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
   for_each_reading_block(
-      m.halo, [&] { take_motion(m); },
+      of.halo, [&] { take_motion(m, of); },
       [&](Index b) {
         for_each_reading_run(
-            m, b, m.motion(), [&](std::size_t p) { Prefetch<S>::row(p, m.particles.x, m.particles.v, m.particles.L); },
+            m, of, b, of.motion(m.work.nodes),
+            [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.L); },
             [&](Index, std::span<const Index> run, auto& through) {
-              for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+              for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
                 through.place(pack, x);
-                const Seen<D> seen = take_velocity<increments, true, false>(through, m.transfer.scheme, pic, pack, m.particles);
-                move(pack, x, seen.v, dt, m.particles);
+                const Seen<D> seen =
+                    take_velocity<increments, true, false>(through, m.problem.transfer.scheme, pic, pack, m.state.particles);
+                move(pack, x, seen.v, dt, m.state.particles);
               });
             },
             [&](Index body) { then(body, b); });
@@ -87,25 +89,26 @@ void gather(Model<D, K>& m, Real dt, Then&& then)
 }
 
 template <class S, bool increments, bool affine, int D, Kernel<D> K>
-void gather_and_return_momentum(Model<D, K>& m, Real dt)
+void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 {
-  const Real pic = m.transfer.pic_share(dt, m.crossing);
-  take_motion(m);  // blocks that read nodes of others have rows for them, which must be on their way first
-  for_each_own_block<MomentumAlone>(m.blocks, m.halo, [&](Index b) {
-    if (!m.blocks.occupied[static_cast<std::size_t>(b)])
+  const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
+  take_motion(m, of);  // blocks that read nodes of others have rows for them, which must be on their way first
+  for_each_own_block<MomentumAlone>(of.blocks, of.halo, [&](Index b) {
+    if (!of.blocks.occupied[static_cast<std::size_t>(b)])
       return;
-    const auto rows = m.blocks.rows(b);
-    std::fill(rows.begin(), rows.end(), typename Through<D, K>::Sum{});
+    const auto row = of.blocks.rows(b);
+    std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});
     for_each_reading_run(
-        m, b, m.motion(), [&](std::size_t p) { Prefetch<S>::row(p, m.particles.x, m.particles.v, m.particles.affine_fields()); },
+        m, of, b, of.motion(m.work.nodes),
+        [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields()); },
         [&](Index c, std::span<const Index> run, auto& through) {
           through.clear();
-          for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+          for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
             through.place(pack, x);
-            take_velocity<increments, affine, true>(through, m.transfer.scheme, pic, pack, m.particles);
-            through.template deposit<affine, false, false>(m.particles, pack, x, m.particles.affine_fields());
+            take_velocity<increments, affine, true>(through, m.problem.transfer.scheme, pic, pack, m.state.particles);
+            through.template deposit<affine, false, false>(m.state.particles, pack, x, m.state.particles.affine_fields());
           });
-          through.template add_to<affine, false, false>(rows, m.blocks.slots(c), NodeSum<D>::unseen);
+          through.template add_to<affine, false, false>(row, of.blocks.slots(c), NodeSum<D>::unseen);
         },
         [](Index) {});
   });
@@ -119,41 +122,42 @@ struct Nothing {
 /// v_p, L_p, the affine field, and x_p <- x_p + dt sum w v.  then(body, block) is called when the particles of a body in a block have
 /// been told: they are still in the cache.
 template <int D, Kernel<D> K, class Then = Nothing>
-void gather(Model<D, K>& m, Real dt, Then&& then = {})
+void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then = {})
 {
-  in_numbers_of(m.particles, [&]<class S>(S) {
-    m.transfer.increments() ? detail::gather<S, true>(m, dt, then) : detail::gather<S, false>(m, dt, then);
+  in_numbers_of(m.state.particles, [&]<class S>(S) {
+    m.problem.transfer.increments() ? detail::gather<S, true>(m, of, dt, then) : detail::gather<S, false>(m, of, dt, then);
   });
 }
 
 /// MUSL, first half: v_p and the affine field, whose momentum goes back at once to the rows of the blocks with the weights at hand.
 template <int D, Kernel<D> K>
-void gather_and_return_momentum(Model<D, K>& m, Real dt)
+void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 {
-  in_numbers_of(m.particles, [&]<class S>(S) {
-    if (!m.transfer.affine())
-      detail::gather_and_return_momentum<S, true, false>(m, dt);
+  in_numbers_of(m.state.particles, [&]<class S>(S) {
+    if (!m.problem.transfer.affine())
+      detail::gather_and_return_momentum<S, true, false>(m, of, dt);
     else
-      m.transfer.increments() ? detail::gather_and_return_momentum<S, true, true>(m, dt)
-                              : detail::gather_and_return_momentum<S, false, true>(m, dt);
+      m.problem.transfer.increments() ? detail::gather_and_return_momentum<S, true, true>(m, of, dt)
+                                      : detail::gather_and_return_momentum<S, false, true>(m, of, dt);
   });
 }
 
 /// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
 /// What they read holds the remapped velocity, or its gradient, and the step's own velocity in `change`; arrive(): that of other ranks.
 template <int D, Kernel<D> K, class Arrive, class Then>
-void gather_gradient(Model<D, K>& m, const std::vector<typename Through<D, K>::Motion>& remapped, Arrive&& arrive, Real dt, Then&& then)
+void gather_gradient(Model<D>& m, KernelRows<D, K>& of, const std::vector<typename KernelRows<D, K>::Motion>& remapped, Arrive&& arrive,
+                     Real dt, Then&& then)
 {
-  in_numbers_of(m.particles, [&]<class S>(S) {
-    for_each_reading_block(m.halo, arrive, [&](Index b) {
+  in_numbers_of(m.state.particles, [&]<class S>(S) {
+    for_each_reading_block(of.halo, arrive, [&](Index b) {
       detail::for_each_reading_run(
-          m, b, remapped, [&](std::size_t p) { Prefetch<S>::row(p, m.particles.L); },
+          m, of, b, remapped, [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.L); },
           [&](Index, std::span<const Index> run, auto& through) {
-            for_each_placed_bunch<S, D>(run, m.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+            for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
               through.place(pack, x);
               const Seen<D> seen = through.template see<true, true>(pack);
-              pack.store(matrix_of(seen.L), m.particles.L);
-              detail::move(pack, x, seen.change, dt, m.particles);
+              pack.store(matrix_of(seen.L), m.state.particles.L);
+              detail::move(pack, x, seen.change, dt, m.state.particles);
             });
           },
           [&](Index body) { then(body, b); });

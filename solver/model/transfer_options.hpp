@@ -1,5 +1,6 @@
 #pragma once
-// How momentum travels between particles and nodes: a value, not a class hierarchy.
+// How momentum travels between particles and nodes: what a scene chooses.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 
@@ -14,7 +15,7 @@ enum class Scheme : std::uint8_t {
   aflip,  ///< increments as flip, affine field as tpic                  [affine FLIP, Fei et al. 2021, ACM Trans. Graph. 40]
 };
 
-struct Transfer {
+struct TransferOptions {
   Scheme scheme = Scheme::flip;
   bool musl = true;                           ///< momentum goes back to the nodes before L is taken   [Sulsky, Zhou & Schreyer 1995]
   std::optional<Real> pic_damping_time;       ///< flip, aflip: each step takes the share dt/time of the velocity from the nodes [s]

@@ -2,8 +2,8 @@
 // The nodes' equation of motion.
 #include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
-#include "solver/boundary/boundary_conditions.hpp"
 #include "solver/state/node_work.hpp"
+#include "solver/state/nodes.hpp"
 
 namespace talus {
 

@@ -1,0 +1,221 @@
+#include "solver/advance.hpp"
+
+#include "solver/state/integrate.hpp"
+#include "solver/stop_watch.hpp"
+#include "solver/stress/average_volume.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Cells, ranks and rows of the particles.
+template <int D>
+void locate_particles(Model<D>& m)
+{
+  auto& [problem, state, work, transfer] = m;
+  bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
+                          work.sums, work.health);
+  changed |= work.migration(problem.share, state.bodies, state.materials, state.particles, work.order);
+  changed |= sort_by_cell(state.bodies, state.materials, state.particles, work.order);
+  if (changed)
+    update_tracked_rows(m);
+}
+
+/// Whether all ranks go on; asked before anything is changed that could not be undone.
+template <int D>
+bool particles_valid(Model<D>& m)
+{
+  m.work.health.take(m.problem.ranks->min(m.work.health.word()));
+  if (!m.work.health.worst())
+    return true;
+  m.problem.ranks->sum(m.work.sums.departed);
+  record_removed(m.work.sums.departed.value(), m.state.mass, m.state.energy);
+  return false;
+}
+
+/// Forces on single particles.
+template <int D>
+void apply_particle_loads(Model<D>& m)
+{
+  const Real time = m.state.clock.time;
+  apply(m.problem.loads, time, m.state.stage.ramp(time), m.work.followed, m.work.order, m.state.particles, m.work.sums.on_particles);
+}
+
+/// Tractions on facets of the mesh.
+template <int D>
+void apply_nodal_loads(Model<D>& m)
+{
+  const Real time = m.state.clock.time;
+  apply(m.problem.loads, time, m.state.stage.ramp(time), m.problem.mesh, m.problem.own, std::span(m.work.nodes.sum), m.work.sums.on_mesh);
+}
+
+/// v <- v + (lag + dt/2) (f/m + g).
+template <int D>
+void integrate_momentum(Model<D>& m, Real dt)
+{
+  const Clock& clock = m.state.clock;
+  integrate(m.problem.loads.gravity(clock.time, m.state.stage.ramp(clock.time)), clock.lag + dt / 2, m.work.nodes);
+}
+
+/// Dashpots, then prescribed velocities, planes and friction.
+template <int D>
+void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
+{
+  m.state.walls.apply_dashpots(kick.to, dt, *m.problem.ranks, m.work.nodes);
+  m.state.walls.apply(kick, m.work.nodes, m.work.sums.at_nodes);
+}
+
+/// Local damping in stages that seek rest, by the net acceleration as particles feel it.
+template <int D>
+void apply_local_damping(Model<D>& m)
+{
+  if (!m.state.stage.seeks_rest)
+    return;
+  find_net_acceleration(m.work.nodes);
+  m.transfer->filter_acceleration(m);
+  if (m.state.stage.damping > 0)
+    damp(m.state.stage.damping, m.work.nodes);
+}
+
+/// Nodes of small mass move with the nodes around; then the motion of all nodes is known.
+template <int D>
+void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
+{
+  m.work.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.walls, m.work.nodes.motion, m.work.sums.beyond_nodes);
+  m.transfer->send_motion(m);
+}
+
+/// Energy, impulses and balance of forces of the own nodes.
+template <int D>
+void record_node_sums(Model<D>& m)
+{
+  auto& [problem, state, work, transfer] = m;
+  const auto blocks = std::span<const IndexRange>(problem.own.of_block);
+  const Real time = state.clock.time;
+  add_ranges(blocks, work.sums.nodes, [&](Index n) { return node_work(state.stage.damping, problem.mesh, work.nodes, n); });
+  add_ranges(blocks, work.sums.balance, [&](Index n) { return balance_at(state.stage.seeks_rest, work.nodes, n); });
+  add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
+}
+
+/// Stress of the particles of a body in a block, unless their law must know those of other blocks first.
+template <int D>
+void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
+{
+  auto& [problem, state, work, transfer] = m;
+  AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
+  if (const auto rows = work.order.rows(body, block); !rows.empty() && !averages_volume(material))
+    work.stress_sums[work.order.key(body, block)] =
+        update_stress(problem.mesh, material, rows, dt, state.stage.elastic, work.averaged, pore_water(m, body, state.clock.time + dt),
+                      state.particles, work.health);
+}
+
+/// Whether the body averages its volume ratio with bodies before it, or else, into `bodies`, with which of those that follow.
+template <int D>
+bool averages_with_earlier(const Model<D>& m, Index body, std::vector<Index>& bodies)
+{
+  const auto group = [&](Index b) { return averages_with(m.state.materials[static_cast<std::size_t>(b)]); };
+  bodies.assign(1, body);
+  if (group(body) == none)
+    return false;
+  for (Index other = 0; other < body; ++other)
+    if (group(other) == group(body))
+      return true;
+  for (Index other = body + 1; other < m.n_bodies(); ++other)
+    if (group(other) == group(body))
+      bodies.push_back(other);
+  return false;
+}
+
+/// What concerns a body as a whole: volumes averaged before the stress, heat after it; and the extremes that particles report.
+template <int D>
+void update_stress_bodies(Model<D>& m, Real dt)
+{
+  auto& [problem, state, work, transfer] = m;
+  for (Index body = 0; body < m.n_bodies(); ++body) {
+    AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
+    if (averages_volume(material)) {
+      if (!averages_with_earlier(m, body, work.averaged_bodies))
+        average_volume(problem.mesh, work.order, work.averaged_bodies, dt, state.particles, *work.stars, work.averaged);
+      parallel_for_uneven(work.order.blocks, [&](Index block) {
+        work.stress_sums[work.order.key(body, block)] =
+            update_stress(problem.mesh, material, work.order.rows(body, block), dt, state.stage.elastic, work.averaged,
+                          pore_water(m, body, state.clock.time + dt), state.particles, work.health);
+      });
+    }
+    if (work.heat)
+      conduct_heat(problem.mesh, material, work.order, body, dt, state.particles, *work.heat);
+  }
+  StressSums most;
+  for (const StressSums& sums : work.stress_sums) {
+    work.sums.internal.add(sums.work);
+    most.take_extremes(sums);
+  }
+  state.crossing = most.crossing;
+  state.watched.speed = most.speed;
+  state.timings.stress += most.seconds / threads();
+  state.timings.gather -= most.seconds / threads();
+}
+
+/// The sums of the step, of all ranks, into the balances; the extremes that bound the next step, and what is wrong with particles.
+template <int D>
+void update_balances(Model<D>& m)
+{
+  auto& [problem, state, work, transfer] = m;
+  StepSums<D>& sums = work.sums;
+  add_work(work.order, state.particles, sums.work_on_particles);
+  sums.particles.add(static_cast<Real>(state.particles.size()));
+  problem.ranks->sum(sums.digits, sums.departed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes,
+                     sums.balance, sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles,
+                     state.walls.pushed());
+  state.walls.keep_impulses();
+  std::array<Real, 3> extremes{state.crossing, -state.watched.speed, -sums.largest_set_back};
+  std::int64_t health = work.health.word();
+  problem.ranks->least(extremes, health);
+  work.health.take(health);
+  state.crossing = extremes[0];
+  state.watched.speed = -extremes[1];
+  state.mass.largest_set_back = std::max(state.mass.largest_set_back, -extremes[2]);
+  add_step(sums, work.nodes.gravity, work.nodes.kick, state.mass, state.momentum, state.energy);
+  state.timings.particle_steps += sums.particles.value();
+  state.residual = unbalanced(sums.balance.value(), (sums.on_particles.value() + sums.on_mesh.value()).size);
+}
+
+}  // namespace
+
+// The numbers are those of docs/theory/algorithm.md.
+template <int D>
+void advance(Model<D>& m, Real dt)
+{
+  auto& [problem, state, work, transfer] = m;
+  const Kick kick{state.clock.time - state.clock.lag, state.clock.time + dt / 2};
+  StopWatch watch;
+
+  work.sums.clear();
+  locate_particles(m);        //  1
+  if (!particles_valid(m))
+    return;
+  apply_particle_loads(m);    //  2
+  watch.lap(state.timings.locate);
+  transfer->particles_to_nodes(m);  //  3
+  watch.lap(state.timings.scatter);
+  transfer->assemble_nodes(m);      //  4
+  apply_nodal_loads(m);
+  work.small_mass_nodes.lump(problem.mesh, problem.own, work.nodes);  //  5
+  integrate_momentum(m, dt);               //  6
+  apply_boundary_conditions(m, kick, dt);  //  7
+  apply_local_damping(m);
+  extrapolate_to_small_masses(m, kick);    //  8
+  record_node_sums(m);
+  watch.lap(state.timings.nodes);
+  work.stress_sums.assign(work.order.first.size(), {});
+  transfer->nodes_to_particles(m, kick, dt, [&m, dt](Index body, Index block) { update_stress_block(m, body, block, dt); });  //  9 to 12
+  update_stress_bodies(m, dt);             // 12
+  update_balances(m);
+  watch.lap(state.timings.gather);  // update_stress_bodies() tells the share of stresses apart
+  state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};
+}
+
+template void advance(Model<2>&, Real);
+template void advance(Model<3>&, Real);
+
+}  // namespace talus

@@ -1,0 +1,145 @@
+#include "solver/model/model.hpp"
+
+#include <algorithm>
+
+#include "solver/particles/redistribute.hpp"
+
+namespace talus {
+
+template <int D>
+void Model<D>::join(Communicator& others, Subdomain part)
+{
+  problem.ranks = &others;
+  problem.share = std::move(part);
+  problem.own = own_nodes(problem.mesh, problem.share);
+  work.migration = Migration<D>(others, problem.share);
+  work.small_mass_nodes = SmallMassNodes<D>(others, problem.mesh, problem.share, problem.own);
+  transfer->join(problem);
+}
+
+template <int D>
+void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
+{
+  const auto n = particles.id.size();
+  if (wanted.affine && particles.C.empty())
+    particles.C = particles.L;
+  if (wanted.applied)
+    particles.applied.assign(n, Vec<D>::Zero()), particles.applied_at.assign(n, 0);
+  if (wanted.volume_ratio)
+    particles.volume_ratio.resize(n, 1);
+  if (wanted.viscous && particles.viscous.empty())
+    particles.viscous.assign(n, 0);
+  if (wanted.pore && particles.pore.empty())
+    particles.pore.assign(n, 0);
+}
+
+template <int D>
+void update_tracked_rows(Model<D>& m)
+{
+  m.work.averaged_bodies.reserve(m.state.bodies.size());
+  if (m.work.stars)
+    m.work.averaged.resize(m.state.particles.id.size());
+  m.work.followed.find(m.state.particles.id);
+}
+
+template <int D>
+void update_rows(Model<D>& m)
+{
+  sort_by_cell(m.state.particles.cell, m.state.particles.id, m.state.bodies, m.problem.mesh.n_cells(), m.work.order);
+  update_tracked_rows(m);
+  if (!m.problem.share.alone())
+    m.work.migration.agree_on_columns(m.state.particles);
+}
+
+template <int D>
+void adopt_state(Model<D>& m)
+{
+  if (!m.problem.share.alone())
+    receive_owned_particles(*m.problem.ranks, m.problem.share, m.state.bodies, m.state.materials, m.state.particles);
+  update_rows(m);
+}
+
+template <int D>
+void bind_boundary_conditions(Model<D>& m)
+{
+  auto& [problem, state, work, transfer] = m;
+  state.walls.settle();
+  work.nodes.bound.resize(work.nodes.sum.size());
+  for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
+    work.nodes.bound[static_cast<std::size_t>(node)] = state.walls.binds(node) ? 1 : 0;
+  problem.exits.closed.assign(static_cast<std::size_t>(problem.mesh.n_cells()), 0);
+  for (const Facet facet : state.walls.closed_facets(problem.mesh))
+    problem.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
+}
+
+template <int D>
+void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come)
+{
+  auto& [problem, state, work, transfer] = m;
+  if (state.particles.volume.empty())
+    state.particles.volume = state.particles.volume0;
+  const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) {
+    const auto any_of = [&](const std::vector<AnyBatch>& laws) { return std::any_of(laws.begin(), laws.end(), has); };
+    return any_of(state.materials) || std::any_of(to_come.begin(), to_come.end(), any_of);
+  };
+  problem.columns = {.affine = problem.transfer.own_affine_field(),
+                     .applied = problem.loads.any_on_particles(),
+                     .volume_ratio = any_material(averages_volume),
+                     .viscous = any_material(has_bulk_viscosity),
+                     .pore = problem.water.any()};
+  fill_columns(problem.columns, state.particles);
+  const bool alone = problem.share.alone();
+  if (any_material(conducts_heat))
+    alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.share);
+  if (problem.columns.volume_ratio)
+    alone ? work.stars.emplace(problem.mesh) : work.stars.emplace(*problem.ranks, problem.mesh, problem.share);
+  transfer->prepare(problem.transfer);
+  work.followed = FollowedRows(ids_of(problem.loads.on_particles));
+  bind_boundary_conditions(m);
+  const LeastShares least = transfer->least_shares();
+  work.nodes.least_share_of_gross = least.of_gross;
+  work.nodes.least_share = least.of_particles;
+  update_rows(m);
+  state.mass.start = totals(m).mass;
+}
+
+template <int D>
+std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time)
+{
+  if (!m.problem.water.drains(body))
+    return std::nullopt;
+  return PoreWater{m.problem.water, m.state.stage.ramp(time) * m.problem.loads.gravity.table(time)};
+}
+
+template <int D>
+Totals<D> totals(const Model<D>& m)
+{
+  return totals(m.state.particles, m.work.order, *m.problem.ranks);
+}
+
+template <int D>
+Real plastic_work(const std::vector<AnyBatch>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks)
+{
+  ExactSums<Real> sum;
+  for (std::size_t b = 0; b < materials.size(); ++b)
+    add_plastic_work(materials[b], order, static_cast<Index>(b), particles.volume0, sum);
+  ranks.sum(sum);
+  return sum.value();
+}
+
+#define TALUS_INSTANTIATE(D)                                                                              \
+  template struct Model<D>;                                                                               \
+  template void fill_columns(const WantedColumns&, Particles<D>&);                                        \
+  template void make_ready(Model<D>&, std::span<const std::vector<AnyBatch>>);                            \
+  template void update_tracked_rows(Model<D>&);                                                           \
+  template void update_rows(Model<D>&);                                                                   \
+  template void adopt_state(Model<D>&);                                                                   \
+  template void bind_boundary_conditions(Model<D>&);                                                      \
+  template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);                             \
+  template Totals<D> totals(const Model<D>&);                                                             \
+  template Real plastic_work(const std::vector<AnyBatch>&, const CellOrder&, const Particles<D>&, Communicator&);
+TALUS_INSTANTIATE(2)
+TALUS_INSTANTIATE(3)
+#undef TALUS_INSTANTIATE
+
+}  // namespace talus

@@ -1,0 +1,62 @@
+#pragma once
+// What no step changes: the mesh and its part of this rank, loads, limits and options.  Stages may change it between two steps.
+#include <limits>
+#include <utility>
+
+#include "core/parallel/communicator.hpp"
+#include "core/particles.hpp"
+#include "mesh/locate.hpp"
+#include "mesh/part.hpp"
+#include "solver/loads/loads.hpp"
+#include "solver/loads/water.hpp"
+#include "solver/model/transfer_options.hpp"
+#include "solver/particles/relocate.hpp"
+#include "solver/state/owned_nodes.hpp"
+
+namespace talus {
+
+/// What no state may pass; see solver/run_limits.hpp.
+struct RunLimits {
+  Real speed = std::numeric_limits<Real>::infinity();  ///< of any particle [m/s]
+  Real gain = std::numeric_limits<Real>::infinity();   ///< energy that nothing worked for, over the largest term
+  Real mass = 1e-9;                                    ///< between particles and nodes, over all of it
+  Real least_energy = 0;                               ///< smaller gains are round-off [J]
+  Real failed = 0;                                     ///< mass of particles that may fail and be deleted, over all of it
+  bool speed_stops = true, gain_stops = true;          ///< otherwise it is only counted
+};
+
+/// Columns of particles that not every run has.
+struct WantedColumns {
+  bool affine = false;        ///< an affine field of its own
+  bool applied = false;       ///< forces on particles
+  bool volume_ratio = false;  ///< a law averages its volume
+  bool viscous = false;       ///< a law has bulk viscosity
+  bool pore = false;          ///< there is water
+};
+/// What a scene prescribes besides the bodies and their boundary conditions.
+template <int D>
+struct Conditions {
+  TransferOptions transfer;
+  Loads<D> loads;
+  Water water;
+  Exits exits;
+  RunLimits limits;
+};
+
+template <int D>
+struct Problem : Conditions<D> {
+  Mesh<D> mesh;
+  Locator<D> locator;
+  Communicator* ranks = &one_rank();  ///< of the run
+  Subdomain share;                    ///< of this rank
+  OwnNodes own;
+  WantedColumns columns;
+
+  explicit Problem(Mesh<D> m) : mesh(std::move(m)), locator(mesh), own(all_nodes(mesh)) {}
+};
+
+/// Rings of cells to be held around own ones.  Stencils and the rows of operators reach one ring, what operators are made from one more; and the
+/// nodes of small mass of other ranks that may hang on own nodes are two rings away, with all the cells around them.
+inline constexpr int rings_held = 3;
+
+}  // namespace talus

@@ -1,0 +1,43 @@
+#pragma once
+// What a step needs and no restart saves: it follows from the state, or is written anew in every step.
+#include <optional>
+#include <vector>
+
+#include "core/particle_errors.hpp"
+#include "solver/boundary/small_mass_nodes.hpp"
+#include "solver/particles/migrate.hpp"
+#include "solver/state/cell_order.hpp"
+#include "solver/state/nodes.hpp"
+#include "solver/state/step_sums.hpp"
+#include "solver/state/tracked_particles.hpp"
+#include "solver/stress/conduct_heat.hpp"
+#include "solver/stress/update_stress.hpp"
+
+namespace talus {
+
+template <int D>
+struct Workspace {
+  CellOrder order;
+  FollowedRows followed;  ///< particles that carry tractions
+  Migration<D> migration;
+  ParticleErrors health;
+
+  Nodes<D> nodes;
+  SmallMassNodes<D> small_mass_nodes;
+  StepSums<D> sums;                     ///< of the step at hand
+  std::vector<StressSums> stress_sums;  ///< of the particles of each body in each block
+
+  std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
+  std::vector<Real> averaged;           ///< volume ratios of average_volume()
+  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() takes as one
+  std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
+
+  explicit Workspace(Index n_nodes)
+  {
+    nodes.sum.resize(static_cast<std::size_t>(n_nodes));
+    nodes.motion.resize(nodes.sum.size());
+    nodes.active.resize(nodes.sum.size());
+  }
+};
+
+}  // namespace talus

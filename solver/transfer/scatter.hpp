@@ -1,0 +1,67 @@
+#pragma once
+// Particles -> rows of their block of cells (P2G).
+#include <utility>
+
+#include "solver/model/model.hpp"
+#include "solver/transfer/kernel_rows.hpp"
+
+namespace talus {
+namespace detail {
+
+template <class S, int D>
+float lightest_of(const Particles<D>& particles, std::span<const Index> run) noexcept
+{
+  const S* const mass = particles.mass.template rows<S>();
+  float lightest = NodeSum<D>::unseen;
+  for (const Index p : run)
+    lightest = std::min(lightest, static_cast<float>(mass[p]));
+  return lightest;
+}
+
+template <class S, bool affine, bool loaded, int D, Kernel<D> K>
+void scatter(Model<D>& m, KernelRows<D, K>& of)
+{
+  for_each_own_block<Whole>(of.blocks, of.halo, [&](Index b) {
+    const auto row = of.blocks.rows(b);
+    typename KernelRows<D, K>::Through through(of.kernel);
+    bool occupied = false;
+    const auto ask = [&](std::size_t p) {
+      Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields(), m.state.particles.stress,
+                       m.state.particles.mass, m.state.particles.volume);
+    };
+    for (Index body = 0; body < m.n_bodies(); ++body)
+      for_each_run(
+          m.work.order.rows(body, b), m.state.particles.cell,
+          [&](Index c, std::span<const Index> run) {
+            if (!std::exchange(occupied, true))
+              std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});
+            through.enter(m.problem.mesh, c);
+            through.clear();
+            for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+              through.place(pack, x);
+              through.template deposit<affine, loaded, true>(m.state.particles, pack, x, m.state.particles.affine_fields());
+            });
+            through.template add_to<affine, loaded, true>(row, of.blocks.slots(c), lightest_of<S>(m.state.particles, run));
+          },
+          ask);
+    if (std::exchange(of.blocks.occupied[static_cast<std::size_t>(b)], occupied ? 1 : 0) && !occupied)
+      std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});  // nothing left for others to read
+  });
+}
+
+}  // namespace detail
+
+/// Mass, momentum and force of every particle, into the rows of its block.
+template <int D, Kernel<D> K>
+void scatter(Model<D>& m, KernelRows<D, K>& of)
+{
+  const bool loaded = !m.state.particles.applied.empty();
+  in_numbers_of(m.state.particles, [&]<class S>(S) {
+    if (m.problem.transfer.affine())
+      loaded ? detail::scatter<S, true, true>(m, of) : detail::scatter<S, true, false>(m, of);
+    else
+      loaded ? detail::scatter<S, false, true>(m, of) : detail::scatter<S, false, false>(m, of);
+  });
+}
+
+}  // namespace talus

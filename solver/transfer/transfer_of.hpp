@@ -1,0 +1,188 @@
+#pragma once
+// Transfer<D> for one kernel.  A kernel of the list is compiled once, in transfer_<kernel>.cpp; any other wherever it is used.
+#include <algorithm>
+#include <utility>
+
+#include "solver/state/integrate.hpp"
+#include "solver/transfer/gather.hpp"
+
+namespace talus {
+
+/// A node with less than this share of the lightest particle around moves with its neighbours.  Where weights may be negative, sums
+/// cancel and a small mass says nothing about the momentum beside it: there the cut lies above the negative share that moving
+/// least squares reach beside a boundary (0.012 of a particle).
+inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
+
+/// Cells whose weights have different signs may leave a node next to nothing of what they bring; velocity and acceleration are then
+/// quotients of two small differences.  Measured on two grids that become 4 and two that become 10 times finer from one cell to the
+/// next: with 0.1 particles turn inside out on one, with 0.5 one gains 35 times its energy, with 0.3 none breaks.  Where all weights
+/// are positive it never matters.
+inline constexpr Real least_share_of_cells = 0.3;
+/// With a node part, rows of nodes on a wall stay in the wall: a node beside a wall that carries a film has next to no mass, but the
+/// film's stress pulls at it.  Its mass is measured by that of the hats around.  On a regular lattice it has 0.4 of their mean under a film
+/// half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
+inline constexpr Real least_share_of_hats = 0.2;
+
+template <int D, Kernel<D> K>
+class TransferOf final : public Transfer<D> {
+ public:
+  using Rows = KernelRows<D, K>;
+  TransferOf(const Mesh<D>& mesh, const Options<K>& options) : rows_(mesh, options) {}
+
+  const K& kernel() const noexcept { return rows_.kernel; }
+  const ProjectedNodes<D>& projected() const noexcept { return rows_.projected; }
+
+  void join(const Problem<D>& problem) override
+  {
+    Communicator& ranks = *problem.ranks;
+    rows_.halo = Halo(ranks, problem.mesh, problem.share, rows_.blocks);
+    const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
+      return copies_of_nodes(ranks, problem.share, topic, wanted);
+    };
+    std::vector<std::uint8_t> read = nodes_read(problem.share, rows_.blocks);
+    if constexpr (Rows::projects) {
+      std::vector<std::uint8_t> collected = spread_by_rings(problem.mesh, problem.own.owned, 1);
+      for (std::size_t n = 0; n < read.size(); ++n)
+        collected[n] |= read[n];
+      rows_.ghosts.sums = copy(MessageTag::sums, collected);
+      rows_.ghosts.motion = copy(MessageTag::motion, spread_by_rings(problem.mesh, read, 1));
+      rows_.ghosts.felt = copy(MessageTag::felt, spread_by_rings(problem.mesh, problem.own.owned, 2));
+      rows_.projected.find_late(problem.mesh, problem.own);
+    } else {
+      rows_.ghosts.motion = copy(MessageTag::motion, read);
+    }
+  }
+
+  void prepare(const TransferOptions& options) override
+  {
+    if (options.musl)
+      rows_.remapped.resize(static_cast<std::size_t>(rows_.blocks.rows_of_node.size()));
+  }
+
+  void particles_to_nodes(Model<D>& m) override { scatter(m, rows_); }
+
+  void assemble_nodes(Model<D>& m) override
+  {
+    if constexpr (Rows::projects) {
+      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, rows_.projected.sum);
+      project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, true, m.work.nodes.sum);
+    } else {
+      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, m.work.nodes.sum);
+    }
+  }
+
+  void filter_acceleration([[maybe_unused]] Model<D>& m) override
+  {
+    if constexpr (Rows::projects) {
+      std::vector<Vec<D>>& felt = m.work.nodes.felt;
+      rows_.ghosts.felt.send(felt, Numbers{});
+      talus::filter_acceleration(
+          rows_.kernel.node_operators(), m.problem.own, [&] { rows_.ghosts.felt.take(felt, Numbers{}); }, rows_.projected, felt);
+    }
+  }
+
+  void send_motion(Model<D>& m) override { rows_.ghosts.motion.send(m.work.nodes.motion, Whole{}); }
+
+  void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const typename Transfer<D>::StressUpdate& update) override
+  {
+    project_to_particles(m, kick);
+    if (m.problem.transfer.musl) {
+      gather_and_return_momentum(m, rows_, dt);
+      gather_from_remapped(m, kick.to, dt, update);
+    } else {
+      gather(m, rows_, dt, update);
+    }
+  }
+
+  LeastShares least_shares() const override
+  {
+    return {.of_particles = rows_.kernel.claims().non_negative ? least_share : least_share_of_signed_weights,
+            .of_gross = Rows::projects ? least_share_of_hats : least_share_of_cells};
+  }
+
+  void add_nodes_of_cell(const Mesh<D>& mesh, Index cell, std::vector<Index>& nodes) const override
+  {
+    for (const Index n : rows_.kernel.stencil(mesh, cell))
+      if constexpr (Rows::projects)
+        rows_.kernel.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
+          if (S != 0)
+            nodes.push_back(v);
+        });
+      else
+        nodes.push_back(n);
+  }
+
+  std::int64_t nodes_as_corners([[maybe_unused]] const OwnNodes& own) const override
+  {
+    if constexpr (requires { rows_.kernel.nodes_as_corners(); })
+      return std::ranges::count_if(rows_.kernel.nodes_as_corners(), [&](Index n) { return own.has(n); });
+    else
+      return 0;
+  }
+
+  std::int64_t bytes() const override
+  {
+    const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
+    std::int64_t bytes = of(rows_.projected.sum) + of(rows_.projected.motion) + of(rows_.blocks.row) + of(rows_.blocks.slot);
+    if constexpr (Rows::projects)
+      bytes += static_cast<std::int64_t>(rows_.kernel.node_operators().size_bytes());
+    return bytes;
+  }
+
+ private:
+  /// Motion of the nodes -> what particles read: the same, or that of projected nodes, on which boundary conditions act once more where
+  /// their values mix those of nodes.
+  void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] const Kick& kick)
+  {
+    if constexpr (Rows::projects) {
+      project_motion(
+          rows_.kernel.node_operators(), m.work.nodes.motion, [&] { rows_.ghosts.motion.take(m.work.nodes.motion, Whole{}); },
+          rows_.projected);
+      m.state.walls.apply(kick, rows_.projected.sum, rows_.projected.motion, m.work.sums.beyond_nodes);
+    }
+  }
+
+  /// MUSL: momentum of the new particle velocities on the nodes, held by the boundaries; then L_p from these velocities, while the
+  /// particles move with those of the step itself.
+  void gather_from_remapped(Model<D>& m, Real mid, Real dt, const typename Transfer<D>::StressUpdate& update)
+  {
+    auto& [problem, state, work, transfer] = m;
+    const auto [mesh, own, nodes, remapped] = std::tie(problem.mesh, problem.own, work.nodes, rows_.remapped);
+    if constexpr (Rows::projects) {
+      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, rows_.projected.sum);
+      project_momentum(rows_.kernel.node_operators(), mesh, own, rows_.projected.sum, nodes.sum);
+    } else {
+      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, nodes.sum);
+    }
+    work.small_mass_nodes.lump_momentum(mesh, own, nodes);
+    parallel_for(static_cast<Index>(remapped.size()), [&](Index n) {
+      const auto i = static_cast<std::size_t>(n);
+      const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
+      remapped[i] = {v, nodes.motion[i].v};
+    });
+    state.walls.hold(mid, remapped);
+    work.small_mass_nodes.extrapolate_velocity(mesh, own, state.walls, mid, remapped);
+    rows_.ghosts.motion.send(remapped, Whole{});
+    add_ranges(std::span<const IndexRange>(own.of_block), work.sums.remap, [&](Index n) { return remap_work(nodes, remapped, n); });
+    const auto arrive = [&] { rows_.ghosts.motion.take(remapped, Whole{}); };
+    if constexpr (Rows::projects) {
+      project_gradient(rows_.kernel.node_operators(), remapped, arrive, rows_.projected);
+      gather_gradient(
+          m, rows_, rows_.projected.motion, [] {}, dt, update);
+    } else {
+      gather_gradient(m, rows_, remapped, arrive, dt, update);
+    }
+  }
+
+  Rows rows_;
+};
+
+/// A model of one rank without particles, for a kernel that is known here.
+template <template <int> class K, int D>
+Model<D> make_model(Mesh<D> mesh, const Options<K<D>>& options = {})
+{
+  auto transfer = std::make_unique<TransferOf<D, K<D>>>(mesh, options);
+  return Model<D>(std::move(mesh), std::move(transfer));
+}
+
+}  // namespace talus
