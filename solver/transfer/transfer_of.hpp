@@ -29,8 +29,8 @@ class TransferOf final : public Transfer<D> {
   using Rows = KernelRows<D, K>;
   TransferOf(const Mesh<D>& mesh, const Options<K>& options) : rows_(mesh, options) {}
 
-  const K& kernel() const noexcept { return rows_.kernel; }
-  const ProjectedNodes<D>& projected() const noexcept { return rows_.projected; }
+  Rows& rows() noexcept { return rows_; }
+  const Rows& rows() const noexcept { return rows_; }
 
   void join(const Problem<D>& problem) override
   {
@@ -129,7 +129,6 @@ class TransferOf final : public Transfer<D> {
     return bytes;
   }
 
- private:
   /// Motion of the nodes -> what particles read: the same, or that of projected nodes, on which boundary conditions act once more where
   /// their values mix those of nodes.
   void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] const Kick& kick)
@@ -142,6 +141,7 @@ class TransferOf final : public Transfer<D> {
     }
   }
 
+ private:
   /// MUSL: momentum of the new particle velocities on the nodes, held by the boundaries; then L_p from these velocities, while the
   /// particles move with those of the step itself.
   void gather_from_remapped(Model<D>& m, Real mid, Real dt, const typename Transfer<D>::StressUpdate& update)
@@ -178,10 +178,10 @@ class TransferOf final : public Transfer<D> {
 };
 
 /// A model of one rank without particles, for a kernel that is known here.
-template <template <int> class K, int D>
-Model<D> make_model(Mesh<D> mesh, const Options<K<D>>& options = {})
+template <class K, int D>
+Model<D> make_model(Mesh<D> mesh, const Options<K>& options = {})
 {
-  auto transfer = std::make_unique<TransferOf<D, K<D>>>(mesh, options);
+  auto transfer = std::make_unique<TransferOf<D, K>>(mesh, options);
   return Model<D>(std::move(mesh), std::move(transfer));
 }
 

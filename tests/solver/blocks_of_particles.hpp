@@ -5,29 +5,31 @@
 #include "kernels/kernels.hpp"
 #include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
+#include "solver/advance.hpp"
 #include "solver/stages.hpp"
+#include "solver/transfer/transfer_of.hpp"
 
 namespace talus::testing {
 
 /// Fills the cells whose centroid `inside` accepts with `per_cell` particles of `law`, as one more body of the model.
-template <int D, Kernel<D> K, class L>
+template <int D, class L>
 void add_body(
-    Model<D, K>& m, const std::string& name, const L& law, int per_cell, const std::function<bool(const Vec<D>&)>& inside,
+    Model<D>& m, const std::string& name, const L& law, int per_cell, const std::function<bool(const Vec<D>&)>& inside,
     const std::function<Vec<D>(const Vec<D>&)>& velocity = [](const Vec<D>&) { return Vec<D>(Vec<D>::Zero()); })
 {
-  auto& p = m.particles;
+  auto& p = m.state.particles;
   const Index begin = p.size();
   const auto points = seeding_points<D>(per_cell).value();
-  for (Index c = 0; c < m.mesh.n_cells(); ++c) {
+  for (Index c = 0; c < m.problem.mesh.n_cells(); ++c) {
     Vec<D> centre = Vec<D>::Zero();
-    for (const Index n : m.mesh.cell(c))
-      centre += m.mesh.node(n) / (D + 1);
+    for (const Index n : m.problem.mesh.cell(c))
+      centre += m.problem.mesh.node(n) / (D + 1);
     if (!inside(centre))
       continue;
     for (const auto& B : points) {
       Vec<D> x = Vec<D>::Zero();
       for (std::size_t k = 0; k <= D; ++k)
-        x += B[k] * m.mesh.node(m.mesh.cell(c)[k]);
+        x += B[k] * m.problem.mesh.node(m.problem.mesh.cell(c)[k]);
       p.id.push_back(p.size());
       p.cell.push_back(c);
       p.x.push_back(x);
@@ -35,13 +37,20 @@ void add_body(
       p.L.push_back(Mat<D>::Zero());
       p.F.push_back(Mat3::Identity());
       p.stress.push_back(Sym3::Zero());
-      const Real volume = m.mesh.volume(c) / per_cell;
+      const Real volume = m.problem.mesh.volume(c) / per_cell;
       p.volume0.push_back(volume);
       p.mass.push_back(law.density * volume);
     }
   }
-  m.bodies.push_back({name, begin, p.size(), {}});
-  m.materials.push_back(make_any_batch(law, begin, p.size(), name));
+  m.state.bodies.push_back({name, begin, p.size(), {}});
+  m.state.materials.push_back(make_any_batch(law, begin, p.size(), name));
+}
+
+/// The transfer of a model whose kernel is known.
+template <class K, int D>
+TransferOf<D, K>& transfer_of(Model<D>& m)
+{
+  return dynamic_cast<TransferOf<D, K>&>(*m.transfer);
 }
 
 /// Every row of a column, f(row) -> its value, in order.
@@ -53,14 +62,14 @@ void set_each(Column& column, F&& f)
 }
 
 /// Seeds the affine field too, so that a rigid or linear motion starts exact.
-template <int D, Kernel<D> K>
-void set_velocity(Model<D, K>& m, const Mat<D>& A, const Vec<D>& b)
+template <int D>
+void set_velocity(Model<D>& m, const Mat<D>& A, const Vec<D>& b)
 {
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    m.particles.v.set(p, A * m.particles.x[p] + b);
-    m.particles.L.set(p, A);
-    if (!m.particles.C.empty())
-      m.particles.C.set(p, A);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    m.state.particles.v.set(p, A * m.state.particles.x[p] + b);
+    m.state.particles.L.set(p, A);
+    if (!m.state.particles.C.empty())
+      m.state.particles.C.set(p, A);
   }
 }
 
@@ -73,21 +82,21 @@ inline Stage test_stage(Real duration)
 }
 
 /// Steps of the stable size until `end`.
-template <int D, Kernel<D> K>
-void run_until(Model<D, K>& m, Real end, Real cfl = 0.4)
+template <int D>
+void run_until(Model<D>& m, Real end, Real cfl = 0.4)
 {
-  run_stage(m, test_stage(end - m.clock.time), StepLimits{.cfl = cfl}, [](const auto&, RunEvent) {});
+  run_stage(m, test_stage(end - m.state.clock.time), StepLimits{.cfl = cfl}, [](const auto&, RunEvent) {});
 }
 
 /// A wall on the facets of a set of the mesh, such as "y_min".
-template <int D, class K>
-void close_off(Model<D, K>& m, const std::string& facets, WallKind kind, Real friction = 0)
+template <int D>
+void close_off(Model<D>& m, const std::string& facets, WallKind kind, Real friction = 0)
 {
   Wall<D> wall;
   wall.name = facets;
   wall.kind = kind;
   wall.friction = friction;
-  m.walls.add(wall, m.mesh, *m.mesh.facet_set(facets));
+  m.state.walls.add(wall, m.problem.mesh, *m.problem.mesh.facet_set(facets));
 }
 
 inline NeoHookean rubber(Real youngs_modulus, Real poisson_ratio, Real density)

@@ -54,16 +54,16 @@ constexpr bool stable = C::musl || !std::is_same_v<typename C::K, Linear<C::D>>;
 
 /// A rubber block that flies, spins and swings in the middle of a jittered box; nothing touches it.
 template <class C>
-Model<C::D, typename C::K> flying_block(Precision precision = Precision::full)
+Model<C::D> flying_block(Precision precision = Precision::full)
 {
   constexpr int D = C::D;
-  Model<D, typename C::K> m(unit_box<D>(D == 2 ? 12 : 7, 0.2));
-  m.transfer = {.scheme = C::scheme, .musl = C::musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  auto m = make_model<typename C::K>(unit_box<D>(D == 2 ? 12 : 7, 0.2));
+  m.problem.transfer = {.scheme = C::scheme, .musl = C::musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
   if (C::scheme == Scheme::aflip)
-    m.transfer.pic_damping_crossings = 25;
+    m.problem.transfer.pic_damping_crossings = 25;
   const auto inside = [](const Vec<D>& x) { return (x.array() > 0.3).all() && (x.array() < 0.7).all(); };
   add_body<D>(m, "block", rubber(1e4, 0.3, 1000), D == 2 ? 3 : 4, inside);
-  m.particles.keep_in(precision);
+  m.state.particles.keep_in(precision);
   make_ready(m);
   Mat<D> A = Mat<D>::Zero();
   A(0, 1) = -0.6;
@@ -82,8 +82,8 @@ TYPED_TEST(EveryKernelAndTransfer, KeepMassAndMomentumOfAFreeBlock)
   EXPECT_NEAR(before.mass, after.mass, 1e-14 * before.mass) << "rows are sorted anew, so the sum may round differently";
   const Real scale = 0.2 * before.mass;  // speeds are of this order
   EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12 * scale);
-  EXPECT_GT(m.clock.step, 8);
-  EXPECT_GT(m.particles.stress[0].norm(), 1) << "the block must have been strained for this to mean anything";
+  EXPECT_GT(m.state.clock.step, 8);
+  EXPECT_GT(m.state.particles.stress[0].norm(), 1) << "the block must have been strained for this to mean anything";
 }
 
 /// Nodes of very small mass hand their forces on to places nearby: a small moment.
@@ -92,8 +92,8 @@ TYPED_TEST(EveryKernelAndTransfer, InternalForcesExertNoMoment)
   auto m = flying_block<TypeParam>();
   run_until(m, stable<TypeParam> ? 0.2 : 0.05);
   const Real scale = 0.04 * totals(m).mass;  // of what moves at 0.2 m/s at a distance of 0.2 m
-  EXPECT_LT(m.momentum.on_nodes.norm(), (m.small_mass_nodes.size() > 0 ? 5e-3 : 1e-13) * scale);
-  EXPECT_GT(m.particles.stress[0].norm(), 1);
+  EXPECT_LT(m.state.momentum.on_nodes.norm(), (m.work.small_mass_nodes.size() > 0 ? 5e-3 : 1e-13) * scale);
+  EXPECT_GT(m.state.particles.stress[0].norm(), 1);
 }
 
 TYPED_TEST(EveryKernelAndTransfer, DoInSingleWhatTheyDoInDoubleToItsRounding)
@@ -142,7 +142,7 @@ TYPED_TEST(EveryKernelAndTransfer, GiveTheSameBitsForAnyNumberOfThreads)
       for (std::size_t i = 0; i < column.size() * sizeof(column[0]); ++i)
         h = (h ^ bytes[i]) * 1099511628211ull;
     };
-    m.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { mix(column); });
+    m.state.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { mix(column); });
     return h;
   };
   const auto one = hash(1, Precision::full);
@@ -156,7 +156,7 @@ TYPED_TEST(EveryKernelAndTransfer, AllocateNothingInAStep)
 {
   set_threads(2);
   auto m = flying_block<TypeParam>();
-  const Real dt = 0.3 * shortest_crossing(m.mesh, m.materials, m.particles);
+  const Real dt = 0.3 * shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
   for (int step = 0; step < 30; ++step)
     advance(m, dt);
   const long before = allocations;
@@ -171,17 +171,17 @@ TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalanceWhileStable)
   if (!stable<TypeParam>)
     return;
   auto m = flying_block<TypeParam>();
-  m.energy = {.kinetic_start = totals(m).kinetic};
-  const Real start = m.energy.kinetic_start;
-  const Real dt = 0.05 * shortest_crossing(m.mesh, m.materials, m.particles);  // the balance is first order in the step
+  m.state.energy = {.kinetic_start = totals(m).kinetic};
+  const Real start = m.state.energy.kinetic_start;
+  const Real dt = 0.05 * shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);  // the balance is first order in the step
   Real strained = 0;
-  while (m.clock.time < 0.2) {
+  while (m.state.clock.time < 0.2) {
     advance(m, dt);
-    strained = std::max(strained, std::abs(m.energy.internal));
+    strained = std::max(strained, std::abs(m.state.energy.internal));
   }
   const Real kinetic = totals(m).kinetic;
   EXPECT_GT(strained, 1e-3 * start) << "at some time of the swing, or there is no balance to close";
-  EXPECT_LT(std::abs(m.energy.at_velocities().defect(kinetic)), 0.01 * start);
+  EXPECT_LT(std::abs(m.state.energy.at_velocities().defect(kinetic)), 0.01 * start);
 }
 
 }  // namespace

@@ -36,21 +36,21 @@ struct Dice {
 
 /// A ball of particles anywhere in their cells, with any velocity, affine field and stress.
 template <class C>
-Model<C::D, typename C::K> any_ball(Precision precision)
+Model<C::D> any_ball(Precision precision)
 {
   constexpr int D = C::D;
-  Model<D, typename C::K> m(unit_box<D>(D == 2 ? 8 : 5, 0.2));
-  m.transfer = {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  auto m = make_model<typename C::K>(unit_box<D>(D == 2 ? 8 : 5, 0.2));
+  m.problem.transfer = {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   add_body<D>(m, "ball", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.4; });
   Dice dice;
-  for (auto& x : m.particles.x)
+  for (auto& x : m.state.particles.x)
     x += 1e-3 * dice.any<Vec<D>>();
-  m.particles.keep_in(precision);
+  m.state.particles.keep_in(precision);
   make_ready(m);
   advance(m, 1e-12);  // sorts
-  set_each(m.particles.v, [&](std::size_t) { return dice.any<Vec<D>>(); });
-  set_each(m.particles.L, [&](std::size_t) { return dice.any<Mat<D>>(); });
-  set_each(m.particles.stress, [&](std::size_t) { return dice.any<Sym3>(); });
+  set_each(m.state.particles.v, [&](std::size_t) { return dice.any<Vec<D>>(); });
+  set_each(m.state.particles.L, [&](std::size_t) { return dice.any<Mat<D>>(); });
+  set_each(m.state.particles.stress, [&](std::size_t) { return dice.any<Sym3>(); });
   return m;
 }
 
@@ -68,12 +68,12 @@ Real difference(const std::vector<Value>& a, const std::vector<Value>& b)
 
 /// f(p, i, v, w_v, G_v) for every particle p and node v = probe.number(i) that it sees; first(p, sum w_v x_v) for every particle.
 template <int D, class K, class First, class F>
-void for_each_weight(const Model<D, K>& m, First&& first, F&& f)
+void for_each_weight(const Model<D>& m, First&& first, F&& f)
 {
-  Probe<K, D> probe(m.kernel, m.mesh);
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    probe.enter(m.particles.cell[p]);
-    probe.evaluate(m.particles.x[p]);
+  Probe<K, D> probe(m.kernel, m.problem.mesh);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    probe.enter(m.state.particles.cell[p]);
+    probe.evaluate(m.state.particles.x[p]);
     Vec<D> place = Vec<D>::Zero();
     for (int i = 0; i < probe.size(); ++i)
       place += probe.value(i) * probe.node(i);
@@ -89,26 +89,26 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
 {
   constexpr int D = TypeParam::D;
   auto m = any_ball<TypeParam>(Precision::full);
-  scatter(m);
-  assemble_nodes(m);
+  m.transfer->particles_to_nodes(m);
+  m.transfer->assemble_nodes(m);
   using Mass = Eigen::Matrix<Real, 1, 1>;
-  const std::size_t n = m.nodes.sum.size();
+  const std::size_t n = m.work.nodes.sum.size();
   std::vector<Mass> mass(n, Mass::Zero()), summed_mass(n);
   std::vector<Vec<D>> momentum(n, Vec<D>::Zero()), force = momentum, summed_momentum(n), summed_force(n);
   Vec<D> read_at;
   for_each_weight(
       m, [&](std::size_t, const Vec<D>& place) { read_at = place; },
       [&](std::size_t p, std::size_t v, Real w, const Vec<D>& G) {
-        const Real m_p = m.particles.mass[p];
-        const Mat<D> sigma = unpack(m.particles.stress[p]).template topLeftCorner<D, D>();
+        const Real m_p = m.state.particles.mass[p];
+        const Mat<D> sigma = unpack(m.state.particles.stress[p]).template topLeftCorner<D, D>();
         mass[v][0] += w * m_p;
-        momentum[v] += w * m_p * (m.particles.v[p] + m.particles.L[p] * (m.mesh.node(static_cast<Index>(v)) - read_at));
-        force[v] -= m.particles.volume[p] * sigma * G;
+        momentum[v] += w * m_p * (m.state.particles.v[p] + m.state.particles.L[p] * (m.problem.mesh.node(static_cast<Index>(v)) - read_at));
+        force[v] -= m.state.particles.volume[p] * sigma * G;
       });
   for (std::size_t v = 0; v < n; ++v) {
-    summed_mass[v][0] = m.nodes.sum[v].mass;
-    summed_momentum[v] = m.nodes.sum[v].momentum;
-    summed_force[v] = m.nodes.sum[v].force;
+    summed_mass[v][0] = m.work.nodes.sum[v].mass;
+    summed_momentum[v] = m.work.nodes.sum[v].momentum;
+    summed_force[v] = m.work.nodes.sum[v].force;
   }
   EXPECT_LT(difference(summed_mass, mass), rounding_of_sums);
   EXPECT_LT(difference(summed_momentum, momentum), rounding_of_sums);
@@ -121,31 +121,31 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticlesInBothPrecisi
   for (const Precision precision : {Precision::full, Precision::single})
     for (const Scheme scheme : {Scheme::tpic, Scheme::flip}) {
       auto m = any_ball<TypeParam>(precision);
-      m.transfer.scheme = scheme;
-      scatter(m);
-      assemble_nodes(m);
+      m.problem.transfer.scheme = scheme;
+      m.transfer->particles_to_nodes(m);
+      m.transfer->assemble_nodes(m);
       Dice dice;
-      for (auto& node : m.nodes.motion)
+      for (auto& node : m.work.nodes.motion)
         node = {.v = dice.any<Vec<D>>(), .change = dice.any<Vec<D>>()};
       project_to_particles(m, Kick{});
-      const std::size_t n = m.particles.id.size();
+      const std::size_t n = m.state.particles.id.size();
       const Real dt = 0.25;
-      std::vector<Vec<D>> v(n, Vec<D>::Zero()), x(m.particles.x.begin(), m.particles.x.end()), read_v(n), read_x(n);
+      std::vector<Vec<D>> v(n, Vec<D>::Zero()), x(m.state.particles.x.begin(), m.state.particles.x.end()), read_v(n), read_x(n);
       std::vector<Mat<D>> L(n, Mat<D>::Zero()), read_L(n);
       for (std::size_t p = 0; p < n; ++p)
         if (scheme == Scheme::flip)
-          v[p] = m.particles.v[p];
+          v[p] = m.state.particles.v[p];
       for_each_weight(
           m, [](std::size_t, const Vec<D>&) {},
           [&](std::size_t p, std::size_t node, Real w, const Vec<D>& G) {
-            const NodeMotion<D>& motion = m.nodes.motion[node];
+            const NodeMotion<D>& motion = m.work.nodes.motion[node];
             v[p] += w * (scheme == Scheme::flip ? motion.change : motion.v);
             x[p] += dt * w * motion.v;
             L[p] += motion.v * G.transpose();
           });
       gather(m, dt);
       for (std::size_t p = 0; p < n; ++p)
-        read_v[p] = m.particles.v[p], read_x[p] = m.particles.x[p], read_L[p] = m.particles.L[p];
+        read_v[p] = m.state.particles.v[p], read_x[p] = m.state.particles.x[p], read_L[p] = m.state.particles.L[p];
       const Real rounding = precision == Precision::full ? rounding_of_sums : rounding_of_single;
       EXPECT_LT(difference(read_v, v), rounding);
       EXPECT_LT(difference(read_L, L), rounding);

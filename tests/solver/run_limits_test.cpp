@@ -8,11 +8,11 @@ namespace talus::testing::guards_test {
 namespace {
 
 using ::testing::HasSubstr;
-using M = Model<2, Projected<2>>;
+using M = Model<2>;
 
 M flying_block()
 {
-  M m(unit_box<2>(8, 0.1));
+  M m = make_model<Projected<2>>(unit_box<2>(8, 0.1));
   add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>& x) { return (x.array() > 0.3).all() && (x.array() < 0.7).all(); });
   make_ready(m);
   set_velocity<2>(m, Mat<2>::Zero(), Vec<2>(1, 0.5));
@@ -36,18 +36,18 @@ std::string stopped(M& m, int* shown = nullptr)
 TEST(RunLimits, ASoundRunPasses)
 {
   M m = flying_block();
-  m.guards.speed = 3, m.guards.gain = 0.01;
+  m.problem.limits.speed = 3, m.problem.limits.gain = 0.01;
   begin_stage(m, test_stage(0.2), 0);
   EXPECT_EQ(stopped(m), "");
-  EXPECT_NEAR(m.watched.fastest, std::sqrt(1.25), 1e-6);
-  EXPECT_LT(m.watched.mass, 1e-12);
-  EXPECT_LT(m.watched.gain, 1e-6);
+  EXPECT_NEAR(m.state.watched.fastest, std::sqrt(1.25), 1e-6);
+  EXPECT_LT(m.state.watched.mass, 1e-12);
+  EXPECT_LT(m.state.watched.gain, 1e-6);
 }
 
 TEST(RunLimits, MassThatIsNotThereIsMissed)
 {
   M m = flying_block();
-  m.mass.start *= 1 + 1e-6;
+  m.state.mass.start *= 1 + 1e-6;
   begin_stage(m, test_stage(0.2), 0);
   int shown = 0;
   EXPECT_THAT(stopped(m, &shown), HasSubstr("the mass does not add up"));
@@ -58,12 +58,12 @@ TEST(RunLimits, EnergyFromNowhereIsSeen)
 {
   const auto with_a_push = [](Real gain, bool stops) {
     M m = flying_block();
-    m.guards.gain = gain, m.guards.gain_stops = stops;
+    m.problem.limits.gain = gain, m.problem.limits.gain_stops = stops;
     begin_stage(m, test_stage(0.2), 0);
-    for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-      m.particles.v.set(p, 1.2 * m.particles.v[p]);
+    for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+      m.state.particles.v.set(p, 1.2 * m.state.particles.v[p]);
     const std::string message = stopped(m);
-    return std::pair{message, m.watched};
+    return std::pair{message, m.state.watched};
   };
   constexpr Real gained = 0.44 / 1.44;
   EXPECT_THAT(with_a_push(0.9 * gained, true).first, HasSubstr("energy grows by what nothing did work for, 0.306 of its largest term"));
@@ -87,10 +87,10 @@ TEST(RunLimits, TheEndOfAStageIsLookedAt)
     return {};
   };
   M fast = flying_block();
-  fast.guards.speed = 1;
+  fast.problem.limits.speed = 1;
   EXPECT_THAT(short_stage(fast), HasSubstr("beyond watch.speed"));
-  EXPECT_EQ(fast.clock.step, 1);
-  EXPECT_EQ(fast.watched.speeding, 0) << "it is looked at again when the run goes on";
+  EXPECT_EQ(fast.state.clock.step, 1);
+  EXPECT_EQ(fast.state.watched.speeding, 0) << "it is looked at again when the run goes on";
   M light = flying_block();
   light.mass.start *= 1 + 1e-6;
   EXPECT_THAT(short_stage(light), HasSubstr("the mass does not add up"));
@@ -108,9 +108,9 @@ M with_a_failed_particle(Real allowed)
   M m = flying_block();
   Mat3 F = Mat3::Identity();
   F(0, 0) = -1;
-  m.guards.failed = allowed;
+  m.problem.limits.failed = allowed;
   begin_stage(m, test_stage(0.2), 0);
-  m.particles.F.set(5, F);
+  m.state.particles.F.set(5, F);
   return m;
 }
 
@@ -138,8 +138,8 @@ TEST(RunLimits, WhatFailedInTheLastStepIsNotMissed)
   const Stage stage = test_stage(1e-4);
   begin_stage(m, stage, 0);
   EXPECT_NO_THROW(finish_stage(m, stage, {}, [](const M&, RunEvent) {}));
-  EXPECT_EQ(m.mass.failed_count, 1);
-  EXPECT_EQ(m.clock.step, 1);
+  EXPECT_EQ(m.state.mass.failed_count, 1);
+  EXPECT_EQ(m.state.clock.step, 1);
 }
 
 TEST(RunLimits, NoMoreMayFailThanIsAllowed)

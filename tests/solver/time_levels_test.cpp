@@ -8,15 +8,15 @@
 namespace talus::testing::time_levels_test {
 namespace {
 
-using Bar = Model<2, Linear<2>>;
+using Bar = Model<2>;
 constexpr Real end = 0.05;     // [s]
 constexpr Real w = 4.4 / end;  // of what swells [1/s]; over a whole period the errors of equal steps would cancel
 
 /// A block of rubber, 1/2 m wide and 1/2 m high, in the middle of a square; it keeps what it gets.
 Bar floating_block()
 {
-  Bar m(unit_box<2>(8, 0));
-  m.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  Bar m = make_model<Linear<2>>(unit_box<2>(8, 0));
+  m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>& x) { return (x.array() > 0.25).all() && (x.array() < 0.75).all(); });
   return m;
 }
@@ -51,7 +51,7 @@ Real way(int steps, const SetUp& set_up)
   const Real from = centre(m)[0];
   for (int k = 0; k < steps; ++k)
     advance(m, end / steps);
-  EXPECT_FALSE(m.health.worst());
+  EXPECT_FALSE(m.work.health.worst());
   return centre(m)[0] - from;
 }
 
@@ -82,32 +82,32 @@ void load_particles(Bar& m)  // of the rightmost column of cells
 {
   ParticleTraction<2> load;
   load.traction = traction, load.table = swelling();
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    if (m.particles.x[p][0] > 0.625)
-      load.id.push_back(m.particles.id[p]);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    if (m.state.particles.x[p][0] > 0.625)
+      load.id.push_back(m.state.particles.id[p]);
   load.area.assign(load.id.size(), Vec<2>(0.5 / static_cast<Real>(load.id.size()), 0));
-  m.loads.on_particles.push_back(load);
+  m.problem.loads.on_particles.push_back(load);
 }
 
 void load_mesh(Bar& m)
 {
   MeshTraction<2> load;
   load.traction = traction, load.table = swelling();
-  for (Index n = 0; n < m.mesh.n_nodes(); ++n)
-    if (std::abs(m.mesh.node(n)[0] - 0.625) < 1e-9 && std::abs(m.mesh.node(n)[1] - 0.5) < 0.2)
+  for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
+    if (std::abs(m.problem.mesh.node(n)[0] - 0.625) < 1e-9 && std::abs(m.problem.mesh.node(n)[1] - 0.5) < 0.2)
       load.node.push_back(n);
   load.area.assign(load.node.size(), Vec<2>::Zero());
   load.measure.assign(load.node.size(), 0.5 / static_cast<Real>(load.node.size()));
-  m.loads.on_mesh.push_back(load);
+  m.problem.loads.on_mesh.push_back(load);
 }
 
 void move_all(Bar& m)
 {
-  std::vector<Index> all(static_cast<std::size_t>(m.mesh.n_nodes()));
+  std::vector<Index> all(static_cast<std::size_t>(m.problem.mesh.n_nodes()));
   std::iota(all.begin(), all.end(), Index{0});
   Wall<2> wall;
   wall.name = "all", wall.kind = WallKind::velocity, wall.velocity = Vec<2>(pull * end, 0), wall.table = swelling();
-  m.walls.add(wall, m.mesh, all);
+  m.state.walls.add(wall, m.problem.mesh, all);
 }
 
 std::vector<Case> cases()
@@ -118,10 +118,10 @@ std::vector<Case> cases()
   };
   return {{"gravity",
            [](Bar& m) {
-             m.loads.gravity = {Vec<2>(pull, 0), swelling()};
+             m.problem.loads.gravity = {Vec<2>(pull, 0), swelling()};
            },
            accelerated},
-          {"forces_of_place", [place](Bar& m) { m.loads.of_place.push_back({place}); }, accelerated},
+          {"forces_of_place", [place](Bar& m) { m.problem.loads.of_place.push_back({place}); }, accelerated},
           {"tractions_on_particles", load_particles, accelerated},
           {"tractions_on_the_mesh", load_mesh, accelerated},
           {"moving_walls", move_all, moved}};
@@ -136,17 +136,17 @@ INSTANTIATE_TEST_SUITE_P(Of, TimeLevels, ::testing::ValuesIn(cases()), name_of);
 TEST(TimeLevelsOfAStep, ABlockFallsAsItShouldInStepsOfAnyLength)
 {
   Bar m = floating_block();
-  m.loads.gravity.acceleration = Vec<2>(0, -9.81);
+  m.problem.loads.gravity.acceleration = Vec<2>(0, -9.81);
   make_ready(m);
   set_velocity<2>(m, Mat<2>::Zero(), Vec<2>(0.3, 0.2));
   const Vec<2> from = centre(m);
   for (const Real dt : {0.002, 0.001, 0.004, 0.004, 0.0005, 0.003}) {
     advance(m, dt);
-    const Real t = m.clock.time, then = t - m.clock.lag;
+    const Real t = m.state.clock.time, then = t - m.state.clock.lag;
     EXPECT_NEAR(centre(m)[0] - from[0], 0.3 * t, 1e-15);
     EXPECT_NEAR(centre(m)[1] - from[1], 0.2 * t - 9.81 / 2 * t * t, 1e-15);
-    EXPECT_NEAR(m.particles.v[0][1], 0.2 - 9.81 * then, 1e-14) << "velocities are of the middle of the step";
-    EXPECT_EQ(m.clock.lag, dt / 2);
+    EXPECT_NEAR(m.state.particles.v[0][1], 0.2 - 9.81 * then, 1e-14) << "velocities are of the middle of the step";
+    EXPECT_EQ(m.state.clock.lag, dt / 2);
   }
 }
 
@@ -161,31 +161,31 @@ TEST(TimeLevelsOfAStep, WorkOfAStepIsTheKineticEnergyThatComesOfIt)
     set_velocity<2>(m, Mat<2>::Zero(), Vec<2>(-0.02, 0.01));
     begin_stage(m, test_stage(1), 0);
     advance(m, 0.01);
-    EXPECT_GT(std::abs(m.energy.*term), 1e-6);
-    return std::abs(m.energy.*term / m.energy.nodes - 1);
+    EXPECT_GT(std::abs(m.state.energy.*term), 1e-6);
+    return std::abs(m.state.energy.*term / m.state.energy.nodes - 1);
   };
-  EXPECT_LT(unaccounted(&EnergyLedger::gravity, [](Bar& m) { m.loads.gravity.acceleration = Vec<2>(pull, 1); }), 1e-12);
+  EXPECT_LT(unaccounted(&EnergyLedger::gravity, [](Bar& m) { m.problem.loads.gravity.acceleration = Vec<2>(pull, 1); }), 1e-12);
   EXPECT_LT(unaccounted(&EnergyLedger::loads,
                         [](Bar& m) {
                           MeshTraction<2> load;
                           load.traction = Vec<2>(pull * 1000, 500);
-                          for (Index n = 0; n < m.mesh.n_nodes(); ++n)
-                            if (std::abs(m.mesh.node(n)[0] - 0.625) < 1e-9)
+                          for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
+                            if (std::abs(m.problem.mesh.node(n)[0] - 0.625) < 1e-9)
                               load.node.push_back(n);
                           load.area.assign(load.node.size(), Vec<2>::Zero());
                           load.measure.assign(load.node.size(), 0.1);
-                          m.loads.on_mesh.push_back(load);
+                          m.problem.loads.on_mesh.push_back(load);
                         }),
             1e-12);
   EXPECT_LT(unaccounted(&EnergyLedger::walls,
                         [](Bar& m) {
                           std::vector<Index> some;
-                          for (Index n = 0; n < m.mesh.n_nodes(); ++n)
-                            if (std::abs(m.mesh.node(n)[0] - 0.375) < 1e-9 && std::abs(m.mesh.node(n)[1] - 0.5) < 0.2)
+                          for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
+                            if (std::abs(m.problem.mesh.node(n)[0] - 0.375) < 1e-9 && std::abs(m.problem.mesh.node(n)[1] - 0.5) < 0.2)
                               some.push_back(n);
                           Wall<2> wall;
                           wall.name = "some", wall.kind = WallKind::velocity, wall.velocity = Vec<2>(0.5, 0.1);
-                          m.walls.add(wall, m.mesh, some);
+                          m.state.walls.add(wall, m.problem.mesh, some);
                         }),
             1e-12);
 }

@@ -11,41 +11,41 @@ constexpr int per_cell = 8;
 
 /// Rubber that swirls about the middle.
 template <class K>
-Model<3, K> swirl(const Transfer& transfer)
+Model<3> swirl(const TransferOptions& transfer)
 {
-  Model<3, K> m(unit_box<3>(cells_a_side, 0.15));
-  m.transfer = transfer;
+  auto m = make_model<K>(unit_box<3>(cells_a_side, 0.15));
+  m.problem.transfer = transfer;
   add_body<3>(
       m, "block", rubber(1e5, 0.3, 1000), per_cell, [](const Vec3&) { return true; },
       [](const Vec3& x) { return Vec3(std::sin(M_PI * x[0]) * std::cos(M_PI * x[1]), -std::cos(M_PI * x[0]) * std::sin(M_PI * x[1]), 0); });
-  for (const auto& name : m.mesh.facet_set_names()) {
+  for (const auto& name : m.problem.mesh.facet_set_names()) {
     Wall<3> wall;
     wall.name = name;
     wall.kind = WallKind::roller;
-    m.walls.add(wall, m.mesh, *m.mesh.facet_set(name));
+    m.state.walls.add(wall, m.problem.mesh, *m.problem.mesh.facet_set(name));
   }
   make_ready(m);
   return m;
 }
 
 template <class K>
-void steps(benchmark::State& state, const Transfer& transfer, int n_threads)
+void steps(benchmark::State& state, const TransferOptions& transfer, int n_threads)
 {
   set_threads(n_threads);
   auto m = swirl<K>(transfer);
-  const Real dt = 0.4 * shortest_crossing(m.mesh, m.materials, m.particles);
+  const Real dt = 0.4 * shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
   advance(m, dt);  // sorts the particles and sizes all buffers
   for (auto _ : state)
     advance(m, dt);
-  if (m.health.worst())
+  if (m.work.health.worst())
     state.SkipWithError("the state is no longer sound");
-  state.SetItemsProcessed(state.iterations() * m.particles.size());
+  state.SetItemsProcessed(state.iterations() * m.state.particles.size());
 }
 
 template <class K>
 void add()
 {
-  const std::pair<const char*, Transfer> transfers[] = {
+  const std::pair<const char*, TransferOptions> transfers[] = {
       {"tpic", {.scheme = Scheme::tpic, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}}},
       {"flip", {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}}},
       {"aflip_musl", {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25}},

@@ -14,13 +14,13 @@ namespace {
 
 /// Two particles of 2 kg and 4 kg, of a metal that has dissipated something in 2 m^3 of the first.
 struct Scene {
-  Model<2, Linear<2>> m{Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(1, 1), {1, 1}))};
+  auto m = make_model<Linear<2>>(Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(1, 1), {1, 1})));
   Stage stage;
   BalanceHistory<2> accounts;
 
   Scene()
   {
-    auto& p = m.particles;
+    auto& p = m.state.particles;
     p.id = {0, 1};
     p.mass.push_back(2), p.mass.push_back(4);
     p.x.push_back({1, 3}), p.x.push_back({-2, 1});
@@ -28,15 +28,15 @@ struct Scene {
     p.volume0.push_back(2), p.volume0.push_back(1);
     VonMises law;
     law.density = 1, law.youngs_modulus = 1, law.yield_stress = 1;
-    m.bodies.push_back({"body", 0, 2, {}});
-    m.materials.push_back(make_any_batch(law, 0, 2, "body"));
-    m.order.row = {0, 1}, m.order.first = {0, 2}, m.order.blocks = 1;
+    m.state.bodies.push_back({"body", 0, 2, {}});
+    m.state.materials.push_back(make_any_batch(law, 0, 2, "body"));
+    m.work.order.row = {0, 1}, m.work.order.first = {0, 2}, m.work.order.blocks = 1;
   }
   /// The first particle moves at `speed`, so that the kinetic energy is its square.
   void now(Real speed, Real plastic_work)
   {
-    m.particles.v.set(0, Vec<2>(speed, 0));
-    std::get<Batch<VonMises>>(m.materials[0]).history[0].plastic_work = plastic_work / 2;
+    m.state.particles.v.set(0, Vec<2>(speed, 0));
+    std::get<Batch<VonMises>>(m.state.materials[0]).history[0].plastic_work = plastic_work / 2;
   }
   void see(RunEvent moment) { accounts.see(frame_of(m, stage), moment); }
   EnergyNow energy() const { return accounts.energy(frame_of(m, stage)); }

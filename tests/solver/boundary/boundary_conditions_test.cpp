@@ -96,20 +96,20 @@ struct Incline {
   {
     return {std::cos(angle) * x[0] - std::sin(angle) * x[1], std::sin(angle) * x[0] + std::cos(angle) * x[1]};
   }
-  Model<2, Umls<2>> block(Real mu) const
+  Model<2> block(Real mu) const
   {
     MeshData<2> data = jittered(box<2>({0, 0}, {12, 2}, {36, 6}), 0.15, 1);
     for (Vec<2>& x : data.nodes)
       x = Vec<2>(std::cos(angle) * x[0] + std::sin(angle) * x[1], -std::sin(angle) * x[0] + std::cos(angle) * x[1]);
-    Model<2, Umls<2>> m{Mesh<2>(std::move(data))};
+    auto m = make_model<Umls<2>>(Mesh<2>(std::move(data)));
     add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 4,
                 [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
-    m.walls.add(wall<2>(WallKind::friction, "floor", mu), m.mesh, *m.mesh.facet_set("y_min"));
-    m.loads.gravity.acceleration = {0, -10};
+    m.state.walls.add(wall<2>(WallKind::friction, "floor", mu), m.problem.mesh, *m.problem.mesh.facet_set("y_min"));
+    m.problem.loads.gravity.acceleration = {0, -10};
     make_ready(m);
     return m;
   }
-  Vec<2> centre(const Model<2, Umls<2>>& m) const
+  Vec<2> centre(const Model<2>& m) const
   {
     const auto t = totals(m);
     return along(t.centre / t.mass);
@@ -141,7 +141,7 @@ TEST(RestingBlock, DoesNotCreepBelowTheFrictionAngle)
   rest.residual = 1e-3;
   run_stage(m, rest, StepLimits{.cfl = 0.5}, [](const auto&, RunEvent) {});
   const Vec<2> start = incline.centre(m);
-  run_until(m, m.clock.time + 1);
+  run_until(m, m.state.clock.time + 1);
   EXPECT_LT((incline.centre(m) - start).norm(), 1e-6);  // of a block 4 m long
 }
 

@@ -18,9 +18,9 @@ Table growing()
 }
 
 /// The unit square, two by two, full of particles.
-Model<2, Linear<2>> square(int per_cell = 3)
+Model<2> square(int per_cell = 3)
 {
-  Model<2, Linear<2>> m{Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {2, 2}))};
+  auto m = make_model<Linear<2>>(Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {2, 2})));
   add_body<2>(m, "square", rubber(1e5, 0.3, 1000), per_cell, [](const Vec<2>&) { return true; });
   return m;
 }
@@ -54,28 +54,28 @@ TEST(Loads, AreOnParticlesIfTheyAreOfPlaceOrCarried)
 TEST(Loads, CarriedTractionsFollowTheDeformationOfTheirParticles)
 {
   auto m = square();
-  ParticleTraction<2> carried = carried_by_particles(m.mesh, *m.mesh.facet_set("y_max"), m.particles);
+  ParticleTraction<2> carried = carried_by_particles(m.problem.mesh, *m.problem.mesh.facet_set("y_max"), m.state.particles);
   ASSERT_EQ(carried.id.size(), 6u) << "three in each of the two cells below";
   for (const Vec<2>& area : carried.area)
     expect_near(area, {0, 0.5 / 3});
   carried.traction = {7, 5}, carried.pressure = 11, carried.table = growing();
-  m.loads.on_particles.push_back(carried);
+  m.problem.loads.on_particles.push_back(carried);
   make_ready(m);
   Mat3 F = Mat3::Identity();
   F.topLeftCorner<2, 2>() << 1.5, 0.25, 0.5, 2;
-  set_each(m.particles.F, [&](std::size_t) { return F; });
+  set_each(m.state.particles.F, [&](std::size_t) { return F; });
   ExactSums<ForceAndMoment<2>> total;
-  apply(m.loads, 4.0, 0.5, m.followed, m.order, m.particles, total);
+  apply(m.problem.loads, 4.0, 0.5, m.work.followed, m.work.order, m.state.particles, total);
 
   const Vec<2> surface(-0.5 * 0.5 / 3, 1.5 * 0.5 / 3);  // across (1.5, 0.5), what a tangent becomes
   const Vec<2> force = 0.5 * 4 * (0.5 / 3 * Vec<2>(7, 5) - 11 * surface);
   Vec<2> linear = Vec<2>::Zero();
   Real angular = 0, sizes = 0;
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    const bool carries = std::find(carried.id.begin(), carried.id.end(), m.particles.id[p]) != carried.id.end();
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    const bool carries = std::find(carried.id.begin(), carried.id.end(), m.state.particles.id[p]) != carried.id.end();
     const Vec<2> here = carries ? force : Vec<2>(0, 0);
-    expect_near(m.particles.applied[p], here);
-    linear += here, angular += turning(m.particles.x[p], here), sizes += here.norm();
+    expect_near(m.state.particles.applied[p], here);
+    linear += here, angular += turning(m.state.particles.x[p], here), sizes += here.norm();
   }
   const ForceAndMoment<2> sum = total.value();
   expect_near(sum.linear, linear);
@@ -84,10 +84,10 @@ TEST(Loads, CarriedTractionsFollowTheDeformationOfTheirParticles)
 
   // what is moved works, against where it was
   const Vec<2> way(0.01, -0.03);
-  for (Vec<2>& x : m.particles.x)
+  for (Vec<2>& x : m.state.particles.x)
     x += way;
   ExactSums<Real> work;
-  add_work(m.order, m.particles, work);
+  add_work(m.work.order, m.state.particles, work);
   EXPECT_NEAR(work.value(), 6 * force.dot(way), rounding);
 }
 
@@ -95,12 +95,12 @@ TEST(Loads, TwoTractionsOfOneParticleAddUp)
 {
   auto m = square();
   for (int times = 0; times < 2; ++times) {
-    m.loads.on_particles.push_back(carried_by_particles(m.mesh, *m.mesh.facet_set("y_max"), m.particles));
-    m.loads.on_particles.back().traction = {0, times + 1.0};
+    m.problem.loads.on_particles.push_back(carried_by_particles(m.problem.mesh, *m.problem.mesh.facet_set("y_max"), m.state.particles));
+    m.problem.loads.on_particles.back().traction = {0, times + 1.0};
   }
   make_ready(m);
   ExactSums<ForceAndMoment<2>> total;
-  apply(m.loads, 0.0, 1.0, m.followed, m.order, m.particles, total);
+  apply(m.problem.loads, 0.0, 1.0, m.work.followed, m.work.order, m.state.particles, total);
   expect_near(total.value().linear, {0, 3});
 }
 
@@ -108,7 +108,7 @@ TEST(Loads, TwoTractionsOfOneParticleAddUp)
 TEST(Loads, ForcesOfPlaceAreTheMassTimesTheAccelerationThere)
 {
   for (const bool at_start : {false, true}) {
-    Model<2, Linear<2>> m{unit_box<2>(10, 0)};
+    auto m = make_model<Linear<2>>(unit_box<2>(10, 0));
     add_body<2>(m, "square", rubber(1e5, 0.3, 1000), 3, [](const Vec<2>&) { return true; });
     const auto acceleration = [](const Vec<2>& x, Real time) { return Vec<2>(x[1] * time, 2 - x[0]); };
     BodyForce<2> of_place;
@@ -118,21 +118,21 @@ TEST(Loads, ForcesOfPlaceAreTheMassTimesTheAccelerationThere)
       for (std::size_t i = 0; i < places.size(); ++i)
         accelerations[i] = acceleration(places[i], time);
     };
-    m.loads.of_place = {of_place, of_place};
+    m.problem.loads.of_place = {of_place, of_place};
     if (at_start)
-      m.particles.x0 = m.particles.x;
+      m.state.particles.x0 = m.state.particles.x;
     make_ready(m);
-    const std::vector<Vec<2>> start(m.particles.x.begin(), m.particles.x.end());
+    const std::vector<Vec<2>> start(m.state.particles.x.begin(), m.state.particles.x.end());
     ASSERT_EQ(start.size(), 600u);
-    for (Vec<2>& x : m.particles.x)
+    for (Vec<2>& x : m.state.particles.x)
       x += Vec<2>(0.01, 0.02);
     ExactSums<ForceAndMoment<2>> total;
-    apply(m.loads, 3.0, 0.5, m.followed, m.order, m.particles, total);
+    apply(m.problem.loads, 3.0, 0.5, m.work.followed, m.work.order, m.state.particles, total);
     Vec<2> sum = Vec<2>::Zero();
     for (std::size_t p = 0; p < start.size(); ++p) {
-      const Vec<2> place = at_start ? start[p] : Vec<2>(m.particles.x[p]);
-      const Vec<2> force = 2 * 0.5 * m.particles.mass[p] * acceleration(place, 3);  // of two such loads
-      expect_near(m.particles.applied[p], force);
+      const Vec<2> place = at_start ? start[p] : Vec<2>(m.state.particles.x[p]);
+      const Vec<2> force = 2 * 0.5 * m.state.particles.mass[p] * acceleration(place, 3);  // of two such loads
+      expect_near(m.state.particles.applied[p], force);
       sum += force;
     }
     EXPECT_LT((total.value().linear - sum).norm(), 1e-9);

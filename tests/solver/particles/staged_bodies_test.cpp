@@ -12,55 +12,55 @@ namespace {
 
 using testing::add_body;
 using testing::rubber;
-using M = Model<2, Linear<2>>;
+using M = Model<2>;
 
 /// Three bodies side by side, each in a third of the width.
 M three_bodies()
 {
-  M m(Mesh<2>(box<2>({0, 0}, {3, 1}, {6, 2})));
+  M m = make_model<Linear<2>>(Mesh<2>(box<2>({0, 0}, {3, 1}, {6, 2})));
   for (const int third : {0, 1, 2})
     add_body<2>(m, std::string(1, static_cast<char>('a' + third)), rubber(1e5, 0.3, 1000 + third), 3,
                 [third](const Vec<2>& x) { return x[0] > third && x[0] < third + 1; });
   make_ready(m);
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    m.particles.v.set(p, {static_cast<Real>(p), 0});
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    m.state.particles.v.set(p, {static_cast<Real>(p), 0});
   return m;
 }
 
 TEST(BodiesOfStages, AreTheSameAfterTheyWentAndCame)
 {
   M m = three_bodies();
-  const Particles<2> before = m.particles;
-  const std::vector<Body> bodies = m.bodies;
+  const Particles<2> before = m.state.particles;
+  const std::vector<Body> bodies = m.state.bodies;
   const std::vector<Index> goes{1};
-  ParticleSet<2> out = extract_bodies<2>(goes, m.bodies, m.materials, m.particles);
-  EXPECT_EQ(m.bodies[1].size(), 0);
-  EXPECT_EQ(m.particles.size(), before.size() - bodies[1].size());
+  ParticleSet<2> out = extract_bodies<2>(goes, m.state.bodies, m.state.materials, m.state.particles);
+  EXPECT_EQ(m.state.bodies[1].size(), 0);
+  EXPECT_EQ(m.state.particles.size(), before.size() - bodies[1].size());
   EXPECT_EQ(out.particles.size(), bodies[1].size());
   EXPECT_EQ(out.particles.id.front(), bodies[1].begin) << "its number";
-  std::visit([&](const auto& batch) { EXPECT_EQ(batch.begin, m.bodies[2].begin); }, m.materials[2]);
+  std::visit([&](const auto& batch) { EXPECT_EQ(batch.begin, m.state.bodies[2].begin); }, m.state.materials[2]);
 
-  insert_particles(std::move(out), m.bodies, m.materials, m.particles);
-  EXPECT_EQ(m.particles.id, before.id);
-  EXPECT_EQ(m.particles.cell, before.cell);
-  for (std::size_t b = 0; b < m.bodies.size(); ++b) {
-    EXPECT_EQ(m.bodies[b].begin, bodies[b].begin);
-    EXPECT_EQ(m.bodies[b].end, bodies[b].end);
-    std::visit([&](const auto& batch) { EXPECT_EQ(batch.size(), m.bodies[b].size()); }, m.materials[b]);
+  insert_particles(std::move(out), m.state.bodies, m.state.materials, m.state.particles);
+  EXPECT_EQ(m.state.particles.id, before.id);
+  EXPECT_EQ(m.state.particles.cell, before.cell);
+  for (std::size_t b = 0; b < m.state.bodies.size(); ++b) {
+    EXPECT_EQ(m.state.bodies[b].begin, bodies[b].begin);
+    EXPECT_EQ(m.state.bodies[b].end, bodies[b].end);
+    std::visit([&](const auto& batch) { EXPECT_EQ(batch.size(), m.state.bodies[b].size()); }, m.state.materials[b]);
   }
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    EXPECT_EQ(m.particles.v[p][0], static_cast<Real>(p));
-    EXPECT_EQ(m.particles.x[p], before.x[p]);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    EXPECT_EQ(m.state.particles.v[p][0], static_cast<Real>(p));
+    EXPECT_EQ(m.state.particles.x[p], before.x[p]);
   }
 }
 
 TEST(BodiesOfStages, OverlapIsWhatCellsHoldBeyondTheirVolume)
 {
   const M m = three_bodies();
-  const auto volumes = [&](Index body) { return volume_in_cells(m.mesh, m.particles, m.order, [body](Index b) { return b == body; }); };
+  const auto volumes = [&](Index body) { return volume_in_cells(m.problem.mesh, m.state.particles, m.work.order, [body](Index b) { return b == body; }); };
   const auto a = volumes(0), b = volumes(1);
   EXPECT_NEAR(std::accumulate(a.begin(), a.end(), Real{0}), 1, 1e-12);
-  const Overlap<2> none_at_all = overlap<2>(m.mesh, a, b, one_rank()), all = overlap<2>(m.mesh, a, a, one_rank());
+  const Overlap<2> none_at_all = overlap<2>(m.problem.mesh, a, b, one_rank()), all = overlap<2>(m.problem.mesh, a, a, one_rank());
   EXPECT_EQ(none_at_all.cells, 0);
   EXPECT_EQ(none_at_all.share(), 0);
   EXPECT_EQ(none_at_all.place, "");

@@ -9,19 +9,19 @@
 namespace talus::testing::audit_test {
 namespace {
 
-using Block = Model<2, Projected<2>>;
+using Block = Model<2>;
 
 /// Defaults of a scene: projected, aflip, musl.
 Block with_defaults(Index cells)
 {
-  Block m(Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(8, 4), {2 * cells, cells})));
-  m.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
+  Block m = make_model<Projected<2>>(Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(8, 4), {2 * cells, cells})));
+  m.problem.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
   return m;
 }
 
 Real largest_term(const Block& m, Real kinetic)
 {
-  const EnergyLedger& e = m.energy;
+  const EnergyLedger& e = m.state.energy;
   Real largest = 0;
   for (const Real term : {e.kinetic_start, kinetic, e.internal, e.friction, e.gravity, e.loads, e.walls})
     largest = std::max(largest, std::abs(term));
@@ -31,10 +31,10 @@ Real largest_term(const Block& m, Real kinetic)
 /// Moment of internal forces, which is what is left of what nodes got, over what was given.
 Real moment_of_internal_forces(const Block& m)
 {
-  ForceAndMoment<2> given = m.momentum.loads + m.momentum.damping;
-  for (const Wall<2>& wall : m.walls.walls())
+  ForceAndMoment<2> given = m.state.momentum.loads + m.state.momentum.damping;
+  for (const Wall<2>& wall : m.state.walls.walls())
     given += ForceAndMoment<2>::of(wall.impulse, wall.angular);
-  return (m.momentum.on_nodes - given.angular).norm() / given.turn;
+  return (m.state.momentum.on_nodes - given.angular).norm() / given.turn;
 }
 
 /// Of 2 m x 2 m, that gravity shakes on a rough floor.  What forces do in the part of the nodes' velocities that the remap takes out was
@@ -45,14 +45,14 @@ TEST(EnergyAudit, ClosesForAnElasticBlockOnARoughFloor)
     Block m = with_defaults(cells);
     add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 1 && x[0] < 3 && x[1] < 2; });
     close_off(m, "y_min", WallKind::friction, 0.4);
-    m.loads.gravity.acceleration = Vec<2>(0, -9.81);
+    m.problem.loads.gravity.acceleration = Vec<2>(0, -9.81);
     make_ready(m);
     run_until(m, 0.5);
     const Real kinetic = totals(m).kinetic, largest = largest_term(m, kinetic);
-    EXPECT_GT(m.energy.internal, 10);
-    EXPECT_GT(m.energy.remap, 0.05 * largest) << "or there was nothing to be booked";
-    EXPECT_LT(std::abs(m.energy.at_velocities().defect(kinetic)), 0.05 * largest) << "cells " << cells;
-    EXPECT_GT(m.energy.transfer(kinetic), 0) << "damping by the transfer takes energy";
+    EXPECT_GT(m.state.energy.internal, 10);
+    EXPECT_GT(m.state.energy.remap, 0.05 * largest) << "or there was nothing to be booked";
+    EXPECT_LT(std::abs(m.state.energy.at_velocities().defect(kinetic)), 0.05 * largest) << "cells " << cells;
+    EXPECT_GT(m.state.energy.transfer(kinetic), 0) << "damping by the transfer takes energy";
     EXPECT_LT(moment_of_internal_forces(m), 1e-12);
   }
 }
@@ -64,16 +64,16 @@ TEST(EnergyAudit, WallsThatStayWhereTheyAreDoNoWork)
   add_body<2>(m, "beam", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 5 && x[1] > 2 && x[1] < 3; });
   Wall<2> clamp;
   clamp.name = "clamp", clamp.kind = WallKind::fixed;
-  m.walls.add(clamp, m.mesh, *m.mesh.node_set("x_min"));
-  m.loads.gravity.acceleration = Vec<2>(0, -2);
+  m.state.walls.add(clamp, m.problem.mesh, *m.problem.mesh.node_set("x_min"));
+  m.problem.loads.gravity.acceleration = Vec<2>(0, -2);
   make_ready(m);
   run_until(m, 0.6);
   const Real kinetic = totals(m).kinetic;
-  EXPECT_EQ(m.energy.walls, 0);
-  EXPECT_LT(m.energy.arrival, 0);
-  EXPECT_GT(m.walls.walls()[0].impulse[1], 100);
+  EXPECT_EQ(m.state.energy.walls, 0);
+  EXPECT_LT(m.state.energy.arrival, 0);
+  EXPECT_GT(m.state.walls.walls()[0].impulse[1], 100);
   EXPECT_LT(moment_of_internal_forces(m), 1e-12);
-  EXPECT_LT(std::abs(m.energy.at_velocities().defect(kinetic)), 0.03 * largest_term(m, kinetic));
+  EXPECT_LT(std::abs(m.state.energy.at_velocities().defect(kinetic)), 0.03 * largest_term(m, kinetic));
 }
 
 /// A wall that moves evenly does its impulse times its velocity.
@@ -83,14 +83,14 @@ TEST(EnergyAudit, AMovingWallDoesItsImpulseTimesItsVelocity)
   add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 2 && x[1] > 1 && x[1] < 3; });
   Wall<2> ram;
   ram.name = "ram", ram.kind = WallKind::velocity, ram.velocity = Vec<2>(0.4, -0.1);
-  m.walls.add(ram, m.mesh, *m.mesh.node_set("x_min"));
+  m.state.walls.add(ram, m.problem.mesh, *m.problem.mesh.node_set("x_min"));
   make_ready(m);
   run_until(m, 0.1);
-  const Real kinetic = totals(m).kinetic, work = m.walls.walls()[0].impulse.dot(ram.velocity);
+  const Real kinetic = totals(m).kinetic, work = m.state.walls.walls()[0].impulse.dot(ram.velocity);
   EXPECT_GT(work, 100);
-  EXPECT_NEAR(m.energy.walls, work, 1e-12 * work);
+  EXPECT_NEAR(m.state.energy.walls, work, 1e-12 * work);
   EXPECT_LT(moment_of_internal_forces(m), 1e-12);
-  EXPECT_LT(std::abs(m.energy.at_velocities().defect(kinetic)), 0.03 * largest_term(m, kinetic));
+  EXPECT_LT(std::abs(m.state.energy.at_velocities().defect(kinetic)), 0.03 * largest_term(m, kinetic));
 }
 
 /// The size of a balance is that of the largest term there has been: gravity that turns round half way sets a block in motion and stops it again,
@@ -100,15 +100,15 @@ TEST(EnergyAudit, IsMeasuredByTheLargestTermThereHasBeen)
   Block m = with_defaults(8);
   const Real g = 10, half = 0.15;
   add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 1 && x[0] < 3 && x[1] > 1.5 && x[1] < 3; });
-  m.loads.gravity.acceleration = Vec<2>(0, -g);
-  m.loads.gravity.table.points = {{0, 1}, {half, 1}, {half + 1e-9, -1}, {1, -1}};
+  m.problem.loads.gravity.acceleration = Vec<2>(0, -g);
+  m.problem.loads.gravity.table.points = {{0, 1}, {half, 1}, {half + 1e-9, -1}, {1, -1}};
   make_ready(m);
   run_until(m, 2 * half);
   const Totals<2> end = totals(m);
   const Real fastest = 0.5 * end.mass * std::pow(g * half, 2);
-  EXPECT_LT(m.energy.largest_term(end.kinetic), 0.1 * fastest);
-  EXPECT_GT(m.energy.largest_seen, 0.5 * fastest) << "every ten of the eighty steps are looked at";
-  EXPECT_LT(m.energy.largest_seen, 1.05 * fastest);
+  EXPECT_LT(m.state.energy.largest_term(end.kinetic), 0.1 * fastest);
+  EXPECT_GT(m.state.energy.largest_seen, 0.5 * fastest) << "every ten of the eighty steps are looked at";
+  EXPECT_LT(m.state.energy.largest_seen, 1.05 * fastest);
 }
 
 /// A stage has a ledger of its own, and goes on where the one before has left off: with the half step that stress is ahead of the velocities, and
@@ -118,20 +118,20 @@ TEST(EnergyAudit, AStageGoesOnWhereTheOneBeforeLeftOff)
   Block m = with_defaults(4);
   add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 1 && x[0] < 3 && x[1] < 2; });
   close_off(m, "y_min", WallKind::friction, 0.4);
-  m.loads.gravity.acceleration = Vec<2>(0, -9.81);
+  m.problem.loads.gravity.acceleration = Vec<2>(0, -9.81);
   make_ready(m);
   run_until(m, 0.1);
-  const EnergyLedger before = m.energy;
+  const EnergyLedger before = m.state.energy;
   const Real kinetic = totals(m).kinetic, largest = before.largest_term(kinetic);
   EXPECT_GT(largest, 100);
   EXPECT_NE(before.internal_ahead, 0);
   begin_stage(m, test_stage(1), 1);
-  EXPECT_EQ(m.energy.largest_before, largest);
-  EXPECT_GE(m.energy.largest_seen, largest);
-  EXPECT_EQ(m.energy.internal, before.internal_ahead);
-  EXPECT_EQ(m.energy.gravity, 0);
-  EXPECT_EQ(m.energy.kinetic_start, kinetic);
-  EXPECT_EQ(m.energy.largest_term(kinetic), largest);
+  EXPECT_EQ(m.state.energy.largest_before, largest);
+  EXPECT_GE(m.state.energy.largest_seen, largest);
+  EXPECT_EQ(m.state.energy.internal, before.internal_ahead);
+  EXPECT_EQ(m.state.energy.gravity, 0);
+  EXPECT_EQ(m.state.energy.kinetic_start, kinetic);
+  EXPECT_EQ(m.state.energy.largest_term(kinetic), largest);
 }
 
 /// The step at the start of soft bodies under strong loads is bounded by these too; a usual one is that of the waves.
@@ -141,13 +141,13 @@ TEST(StepLength, IsBoundedByLoadsOnlyWhereCellsWeighMoreThanTheirStiffness)
     Block m = with_defaults(8);
     add_body<2>(m, "block", rubber(modulus, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 2 && x[1] < 2; });
     if (on_particles)
-      m.loads.of_place.push_back(
+      m.problem.loads.of_place.push_back(
           {[=](std::span<const Vec<2>>, Real, std::span<Vec<2>> accelerations) { std::ranges::fill(accelerations, Vec<2>(0, -gravity)); }});
     else
-      m.loads.gravity.acceleration = Vec<2>(0, -gravity);
+      m.problem.loads.gravity.acceleration = Vec<2>(0, -gravity);
     make_ready(m);
     begin_stage(m, test_stage(1), 0);
-    return std::array{wanted_step(m, StepLimits{}), 0.4 * m.crossing, 0.4 * std::sqrt(least_altitude(m.mesh, m.particles) / gravity)};
+    return std::array{wanted_step(m, StepLimits{}), 0.4 * m.state.crossing, 0.4 * std::sqrt(least_altitude(m.problem.mesh, m.state.particles) / gravity)};
   };
   for (const bool on_particles : {false, true}) {
     const auto [usual, of_waves, not_of_loads] = step_of_waves(1e6, 9.81, on_particles);

@@ -57,23 +57,23 @@ TEST(SmallMassNodes, HandOnEverythingTheyHoldAndMoveWithTheirMasters)
 template <class K>
 void drag_across_a_vertex(Scheme scheme)
 {
-  Model<2, K> m(unit_box<2>(4, 0.2));
-  m.transfer = {.scheme = scheme, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  auto m = make_model<K>(unit_box<2>(4, 0.2));
+  m.problem.transfer = {.scheme = scheme, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   const auto one_cell = [&, done = false](const Vec<2>& x) mutable { return !done && x[0] > 0.3 && x[1] > 0.3 ? (done = true) : false; };
   add_body<2>(m, "grain", rubber(1000, 0.3, 1000), 1, one_cell);
-  ASSERT_EQ(m.particles.size(), 1);
+  ASSERT_EQ(m.state.particles.size(), 1);
   Index vertex = 0;
-  for (Index n = 0; n < m.mesh.n_nodes(); ++n)
-    if ((m.mesh.node(n) - Vec<2>(0.5, 0.5)).norm() < (m.mesh.node(vertex) - Vec<2>(0.5, 0.5)).norm())
+  for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
+    if ((m.problem.mesh.node(n) - Vec<2>(0.5, 0.5)).norm() < (m.problem.mesh.node(vertex) - Vec<2>(0.5, 0.5)).norm())
       vertex = n;
   const Vec<2> v(1, 0.4);
-  m.particles.x[0] = m.mesh.node(vertex) - 0.02 * v;
-  m.particles.cell[0] = m.locator(m.mesh, m.particles.x[0], none).value();
-  m.particles.v.set(0, v);
+  m.state.particles.x[0] = m.problem.mesh.node(vertex) - 0.02 * v;
+  m.state.particles.cell[0] = m.locator(m.problem.mesh, m.state.particles.x[0], none).value();
+  m.state.particles.v.set(0, v);
   make_ready(m);
   for (int step = 0; step < 40; ++step)  // hits the vertex exactly after half of them
     advance(m, 1e-3);
-  EXPECT_LT((m.particles.v[0] - v).norm(), 1e-12);
+  EXPECT_LT((m.state.particles.v[0] - v).norm(), 1e-12);
 }
 
 TEST(SmallMassNodes, LeaveALoneParticleItsVelocityAcrossAVertex)
@@ -128,25 +128,25 @@ TEST(SmallMassNodes, BeginJustBelowTheirShareOfTheLightestParticleAndOfWhatCells
 
 TEST(SmallMassNodes, LendANodeWithoutMassTheMotionAroundIt)
 {
-  Model<3, Linear<3>> m(unit_box<3>(2, 0));
-  m.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  auto m = make_model<Linear<3>>(unit_box<3>(2, 0));
+  m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   add_body<3>(
       m, "dust", rubber(1000, 0.3, 1000), 1, [](const Vec<3>&) { return true; }, [](const Vec<3>&) { return Vec<3>(1, 0.4, 0.2); });
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    const auto& vertices = m.mesh.cell(m.particles.cell[p]);
-    m.particles.x[p] = (m.mesh.node(vertices[0]) + m.mesh.node(vertices[1]) + m.mesh.node(vertices[2])) / 3;
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    const auto& vertices = m.problem.mesh.cell(m.state.particles.cell[p]);
+    m.state.particles.x[p] = (m.problem.mesh.node(vertices[0]) + m.problem.mesh.node(vertices[1]) + m.problem.mesh.node(vertices[2])) / 3;
   }
   make_ready(m);
   advance(m, 1e-4);
-  for (std::size_t p = 0; p < m.particles.L.size(); ++p)
-    EXPECT_LT(m.particles.L[p].norm(), 1e-11) << "all move alike, and nothing is strained";
+  for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
+    EXPECT_LT(m.state.particles.L[p].norm(), 1e-11) << "all move alike, and nothing is strained";
 }
 
 /// How far the bounces of a light block have strained it, alone or beside one a thousand times as dense that it never meets.
 template <class K>
 std::vector<Mat3> strained(bool beside_a_heavy_one)
 {
-  Model<2, K> m(unit_box<2>(12, 0.1));
+  auto m = make_model<K>(unit_box<2>(12, 0.1));
   add_body<2>(
       m, "light", rubber(100, 0.3, 1), 3, [](const Vec<2>& x) { return x[0] < 0.4; },
       [](const Vec<2>& x) { return Vec<2>(0.5 * x[0], -0.3 * x[1]); });
@@ -155,9 +155,9 @@ std::vector<Mat3> strained(bool beside_a_heavy_one)
   make_ready(m);
   for (int step = 0; step < 50; ++step)
     advance(m, 1e-3);
-  std::vector<Mat3> F(static_cast<std::size_t>(m.bodies[0].size()));
+  std::vector<Mat3> F(static_cast<std::size_t>(m.state.bodies[0].size()));
   for (std::size_t p = 0; p < F.size(); ++p)  // the first body has the first ids
-    F[static_cast<std::size_t>(m.particles.id[p])] = m.particles.F[p];
+    F[static_cast<std::size_t>(m.state.particles.id[p])] = m.state.particles.F[p];
   return F;
 }
 template <class K>
@@ -248,10 +248,10 @@ TEST(CellOrder, DisorderIsTheShareOfRowsThatDoNotFollow)
 }
 
 /// A block that flies to the right, out of the mesh.
-Model<2, Linear<2>> leaving(OnExitPolicy policy, bool wall)
+Model<2> leaving(OnExitPolicy policy, bool wall)
 {
-  Model<2, Linear<2>> m(unit_box<2>(6, 0.1));
-  m.exits.policy = policy;
+  auto m = make_model<Linear<2>>(unit_box<2>(6, 0.1));
+  m.problem.exits.policy = policy;
   add_body<2>(
       m, "block", rubber(100, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.6; }, [](const Vec<2>&) { return Vec<2>(2, 0); });
   if (wall)
@@ -277,47 +277,47 @@ TEST(Exits, StopNamesTheParticleTheBodyAndThePlace)
 TEST(Exits, DeleteKeepsAccountOfTheMass)
 {
   auto m = leaving(OnExitPolicy::remove, false);
-  const Index before = m.particles.size();
-  m.followed = FollowedRows(m.particles.id);
+  const Index before = m.state.particles.size();
+  m.work.followed = FollowedRows(m.state.particles.id);
   run_until(m, 0.3);
-  EXPECT_GT(m.mass.deleted_count, 5);
-  EXPECT_EQ(m.particles.size() + m.mass.deleted_count, before);
-  EXPECT_NEAR(totals(m).mass + m.mass.deleted, m.mass.start, 1e-12 * m.mass.start);
+  EXPECT_GT(m.state.mass.deleted_count, 5);
+  EXPECT_EQ(m.state.particles.size() + m.state.mass.deleted_count, before);
+  EXPECT_NEAR(totals(m).mass + m.state.mass.deleted, m.state.mass.start, 1e-12 * m.state.mass.start);
   Index found = 0;
   for (Index id = 0; id < before; ++id)
-    if (const Index row = m.followed.row(id); row != none) {
-      EXPECT_EQ(m.particles.id[static_cast<std::size_t>(row)], id);
+    if (const Index row = m.work.followed.row(id); row != none) {
+      EXPECT_EQ(m.state.particles.id[static_cast<std::size_t>(row)], id);
       ++found;
     }
-  EXPECT_EQ(found, m.particles.size());
+  EXPECT_EQ(found, m.state.particles.size());
 }
 
 TEST(Exits, AClosedWallKeepsParticlesIn)
 {
   auto m = leaving(OnExitPolicy::stop, true);
-  m.particles.x[0] = {1 + 1e-4, 0.5};  // as weights off the wall may carry it
+  m.state.particles.x[0] = {1 + 1e-4, 0.5};  // as weights off the wall may carry it
   advance(m, 1e-4);
-  EXPECT_FALSE(m.health.worst());
-  EXPECT_EQ(m.mass.held_count, 1);
-  EXPECT_NEAR(m.mass.largest_set_back, 1e-4, 1e-8);
+  EXPECT_FALSE(m.work.health.worst());
+  EXPECT_EQ(m.state.mass.held_count, 1);
+  EXPECT_NEAR(m.state.mass.largest_set_back, 1e-4, 1e-8);
 }
 
 TEST(InitialStress, CarriesTheWeightAbove)
 {
-  Model<2, Linear<2>> m(unit_box<2>(8, 0.2));
+  auto m = make_model<Linear<2>>(unit_box<2>(8, 0.2));
   LinearElastic soil;
   soil.density = 2000;
   soil.youngs_modulus = 1e6;
   soil.poisson_ratio = 0.3;
   add_body<2>(m, "soil", soil, 3, [](const Vec<2>&) { return true; });
   make_ready(m);
-  set_start_stress<2>(m.mesh, m.share, *m.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}}, m.order, m.bodies, m.materials,
-                      m.particles);
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    const Real weight = 2000 * 10 * (1 - m.particles.x[p][1]);
-    EXPECT_NEAR(m.particles.stress[p][1], -weight, 1e-9 * 2e4);
-    EXPECT_NEAR(m.particles.stress[p][0], -0.5 * weight, 1e-9 * 2e4);
-    EXPECT_NEAR(m.particles.stress[p][2], -0.5 * weight, 1e-9 * 2e4);
+  set_start_stress<2>(m.problem.mesh, m.problem.share, *m.problem.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}}, m.work.order, m.state.bodies, m.state.materials,
+                      m.state.particles);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    const Real weight = 2000 * 10 * (1 - m.state.particles.x[p][1]);
+    EXPECT_NEAR(m.state.particles.stress[p][1], -weight, 1e-9 * 2e4);
+    EXPECT_NEAR(m.state.particles.stress[p][0], -0.5 * weight, 1e-9 * 2e4);
+    EXPECT_NEAR(m.state.particles.stress[p][2], -0.5 * weight, 1e-9 * 2e4);
   }
 }
 
@@ -325,7 +325,7 @@ TEST(InitialStress, CarriesTheWeightAbove)
 template <class Put>
 void squeeze(Put&& put)
 {
-  Model<2, Umls<2>> m(Mesh<2>(jittered(box<2>({0, 0}, {1, 2}, {4, 8}), 0.15, 1)));
+  auto m = make_model<Umls<2>>(Mesh<2>(jittered(box<2>({0, 0}, {1, 2}, {4, 8}), 0.15, 1)));
   add_body<2>(m, "column", rubber(1e5, 0.0, 1000), 3, [](const Vec<2>& x) { return x[1] < 1.5; });
   for (const char* side : {"x_min", "x_max", "y_min"})
     close_off(m, side, WallKind::roller);
@@ -334,34 +334,34 @@ void squeeze(Put&& put)
   Stage rest = test_stage(10);
   rest.damping = 0.7;
   rest.ramp = 0.2;
-  m.stage.damping = 0.7;
+  m.state.stage.damping = 0.7;
   run_stage(m, rest, StepLimits{.cfl = 0.5}, [](const auto&, RunEvent) {});
   Real mean = 0, n = 0;
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    if (m.particles.x[p][1] < 0.8) {
-      mean += m.particles.stress[p][1];
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    if (m.state.particles.x[p][1] < 0.8) {
+      mean += m.state.particles.stress[p][1];
       n += 1;
     }
   EXPECT_NEAR(mean / n, -1000, 10);
-  EXPECT_GT(m.energy.loads, 0);
+  EXPECT_GT(m.state.energy.loads, 0);
 }
 
 TEST(Loads, PressureOnParticlesIsTheStressBelow)
 {
   squeeze([](auto& m) {
     std::vector<Facet> top;  // upper faces of the cells that hold the column's top
-    for (Index c = 0; c < m.mesh.n_cells(); ++c)
+    for (Index c = 0; c < m.problem.mesh.n_cells(); ++c)
       for (Index k = 0; k < 3; ++k) {
         const Facet f{c, k};
-        const auto nodes = m.mesh.nodes_of(f);
-        if (std::abs(m.mesh.node(nodes[0])[1] - 1.5) < 0.06 && std::abs(m.mesh.node(nodes[1])[1] - 1.5) < 0.06 &&
-            m.mesh.area_vector(f)[1] > 0)
+        const auto nodes = m.problem.mesh.nodes_of(f);
+        if (std::abs(m.problem.mesh.node(nodes[0])[1] - 1.5) < 0.06 && std::abs(m.problem.mesh.node(nodes[1])[1] - 1.5) < 0.06 &&
+            m.problem.mesh.area_vector(f)[1] > 0)
           top.push_back(f);
       }
     ASSERT_EQ(top.size(), 4U);
-    auto load = carried_by_particles<2>(m.mesh, top, m.particles);
+    auto load = carried_by_particles<2>(m.problem.mesh, top, m.state.particles);
     load.pressure = 1000;
-    m.loads.on_particles.push_back(load);
+    m.problem.loads.on_particles.push_back(load);
   });
 }
 

@@ -18,11 +18,11 @@ using testing::set_each;
 using testing::unit_box;
 
 template <int D, class L>
-Model<D, Linear<D>> block(const L& law, Index cells, Real jitter = 0.2)
+Model<D> block(const L& law, Index cells, Real jitter = 0.2)
 {
-  Model<D, Linear<D>> m(unit_box<D>(cells, jitter));
+  auto m = make_model<Linear<D>>(unit_box<D>(cells, jitter));
   add_body<D>(m, "block", law, D + 1, [](const Vec<D>&) { return true; });
-  m.transfer.musl = false;
+  m.problem.transfer.musl = false;
   return m;
 }
 
@@ -30,18 +30,18 @@ constexpr std::array<Index, 1> only_body{0};
 
 /// Sorts the particles by cell, as a step does before anything else.
 template <int D>
-void sort(Model<D, Linear<D>>& m)
+void sort(Model<D>& m)
 {
-  sort_by_cell(m.particles.cell, m.particles.id, m.bodies, m.mesh.n_cells(), m.order);
+  sort_by_cell(m.state.particles.cell, m.state.particles.id, m.state.bodies, m.problem.mesh.n_cells(), m.work.order);
 }
 
 /// Stress of all particles of the only body.
 template <int D, class K>
-void update_all(Model<D, K>& m, Real dt)
+void update_all(Model<D>& m, Real dt)
 {
-  std::vector<Index> rows(m.particles.id.size());
+  std::vector<Index> rows(m.state.particles.id.size());
   std::iota(rows.begin(), rows.end(), 0);
-  update_stress(m.mesh, m.materials[0], rows, dt, false, m.averaged, {}, m.particles, m.health);
+  update_stress(m.problem.mesh, m.state.materials[0], rows, dt, false, m.work.averaged, {}, m.state.particles, m.work.health);
 }
 
 JohnsonCook metal(std::optional<Real> conductivity)
@@ -63,15 +63,15 @@ template <int D>
 void averages_volumes()
 {
   auto m = block<D>(rubber(1e5, 0.3, 1000), 4);
-  m.particles.volume = m.particles.volume0;
+  m.state.particles.volume = m.state.particles.volume0;
   sort(m);
-  StarSums<D, 2> sums(m.mesh);
-  std::vector<Real> averaged(m.particles.id.size());
+  StarSums<D, 2> sums(m.problem.mesh);
+  std::vector<Real> averaged(m.state.particles.id.size());
   constexpr Real dt = 1e-3;
 
   const Mat<D> uniform = -5 * Mat<D>::Identity();
-  m.particles.L.assign(m.particles.L.size(), uniform);
-  average_volume(m.mesh, m.order, only_body, dt, m.particles, sums, averaged);
+  m.state.particles.L.assign(m.state.particles.L.size(), uniform);
+  average_volume(m.problem.mesh, m.work.order, only_body, dt, m.state.particles, sums, averaged);
   const Real ratio = (Mat<D>::Identity() + dt * uniform).determinant();
   for (const Real J : averaged)
     EXPECT_NEAR(J, ratio, 1e-14);
@@ -80,12 +80,12 @@ void averages_volumes()
   std::uniform_real_distribution<Real> any_rate(-20, 20);
   Real volume = 0, saved = 0, spread = 0, spread_averaged = 0;
   for (std::size_t p = 0; p < averaged.size(); ++p)
-    m.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
-  average_volume(m.mesh, m.order, only_body, dt, m.particles, sums, averaged);
+    m.state.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
+  average_volume(m.problem.mesh, m.work.order, only_body, dt, m.state.particles, sums, averaged);
   for (std::size_t p = 0; p < averaged.size(); ++p) {
-    const Real own = (Mat<D>::Identity() + dt * m.particles.L[p]).determinant();
-    volume += own * m.particles.volume0[p];
-    saved += averaged[p] * m.particles.volume0[p];
+    const Real own = (Mat<D>::Identity() + dt * m.state.particles.L[p]).determinant();
+    volume += own * m.state.particles.volume0[p];
+    saved += averaged[p] * m.state.particles.volume0[p];
     spread += std::pow(own - 1, 2);
     spread_averaged += std::pow(averaged[p] - 1, 2);
   }
@@ -97,15 +97,15 @@ TEST(AverageVolume, KeepsUniformRatiosAndTheTotalAndSmoothsTheRestIn3D) { averag
 
 /// The block drawn as one body, or as three that meet in a rough line and in an island.
 template <int D>
-Model<D, Linear<D>> drawn_as(int bodies, const auto& law)
+Model<D> drawn_as(int bodies, const auto& law)
 {
-  Model<D, Linear<D>> m(unit_box<D>(6, 0.2));
+  auto m = make_model<Linear<D>>(unit_box<D>(6, 0.2));
   const auto part = [bodies](const Vec<D>& x) {
     return bodies == 1 ? 0 : (x - Vec<D>::Constant(0.3)).norm() < 0.2 ? 2 : x[0] < 0.5 ? 1 : 0;
   };
   for (int b = 0; b < bodies; ++b)
     add_body<D>(m, "part", law, D + 1, [&, b](const Vec<D>& x) { return part(x) == b; });
-  m.transfer.musl = false;
+  m.problem.transfer.musl = false;
   return m;
 }
 
@@ -126,18 +126,18 @@ void averages_as_one()
 {
   const auto ratios = [](int bodies) {
     auto m = drawn_as<D>(bodies, rubber(1e5, 0.3, 1000));
-    m.particles.volume = m.particles.volume0;
+    m.state.particles.volume = m.state.particles.volume0;
     sort(m);
     std::mt19937 bits(3);
     std::uniform_real_distribution<Real> any_rate(-20, 20);
-    for (const std::size_t p : by_place(m.particles))
-      m.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
-    StarSums<D, 2> sums(m.mesh);
-    std::vector<Real> averaged(m.particles.id.size()), in_order;
+    for (const std::size_t p : by_place(m.state.particles))
+      m.state.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
+    StarSums<D, 2> sums(m.problem.mesh);
+    std::vector<Real> averaged(m.state.particles.id.size()), in_order;
     std::vector<Index> together(static_cast<std::size_t>(bodies));
     std::iota(together.begin(), together.end(), 0);
-    average_volume(m.mesh, m.order, together, 1e-3, m.particles, sums, averaged);
-    for (const std::size_t p : by_place(m.particles))
+    average_volume(m.problem.mesh, m.work.order, together, 1e-3, m.state.particles, sums, averaged);
+    for (const std::size_t p : by_place(m.state.particles))
       in_order.push_back(averaged[p]);
     return in_order;
   };
@@ -150,15 +150,15 @@ TEST(AverageVolume, OfASoilDrawnAsSeveralBodiesIsThatOfOneIn3D) { averages_as_on
 std::vector<Real> pressure_after_steps(int bodies, std::initializer_list<Index> groups)
 {
   auto m = drawn_as<2>(bodies, rubber(1e5, 0.49, 1000));
-  for (std::size_t b = 0; b < m.materials.size(); ++b)
-    std::visit([&](auto& batch) { batch.averages_volume = true, batch.averages_with = std::data(groups)[b]; }, m.materials[b]);
+  for (std::size_t b = 0; b < m.state.materials.size(); ++b)
+    std::visit([&](auto& batch) { batch.averages_volume = true, batch.averages_with = std::data(groups)[b]; }, m.state.materials[b]);
   testing::close_off(m, "y_min", WallKind::fixed);
-  m.loads.gravity.acceleration = {0, -9.81};
+  m.problem.loads.gravity.acceleration = {0, -9.81};
   make_ready(m);
   testing::run_until(m, 0.02);
   std::vector<Real> pressure;
-  for (const std::size_t p : by_place(m.particles))
-    pressure.push_back(m.particles.stress[p][0] + m.particles.stress[p][1] + m.particles.stress[p][2]);
+  for (const std::size_t p : by_place(m.state.particles))
+    pressure.push_back(m.state.particles.stress[p][0] + m.state.particles.stress[p][1] + m.state.particles.stress[p][2]);
   return pressure;
 }
 
@@ -180,17 +180,17 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
 {
   const auto stress_of = [](const auto& law) {
     auto m = block<2>(law, 3);
-    std::visit([](auto& batch) { batch.averages_volume = true; }, m.materials[0]);
+    std::visit([](auto& batch) { batch.averages_volume = true; }, m.state.materials[0]);
     make_ready(m);
     sort(m);
     std::mt19937 bits(2);
     std::uniform_real_distribution<Real> any_rate(-10, 10);
     for (int step = 0; step < 5; ++step) {
-      set_each(m.particles.L, [&](std::size_t) { return Mat<2>(Mat<2>::NullaryExpr([&] { return any_rate(bits); })); });
-      average_volume(m.mesh, m.order, only_body, 1e-3, m.particles, *m.stars, m.averaged);
+      set_each(m.state.particles.L, [&](std::size_t) { return Mat<2>(Mat<2>::NullaryExpr([&] { return any_rate(bits); })); });
+      average_volume(m.problem.mesh, m.work.order, only_body, 1e-3, m.state.particles, *m.work.stars, m.work.averaged);
       update_all(m, 1e-3);
     }
-    return m.particles.stress;
+    return m.state.particles.stress;
   };
   Hencky total;
   VonMises incremental;
@@ -208,12 +208,12 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
   const auto stretched = [] {
     auto m = block<2>(rubber(1e6, 0.3, 1000), 2);
     make_ready(m);
-    for (std::size_t p = 0; p < m.particles.L.size(); ++p)
-      m.particles.L.set(p, (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}});
+    for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
+      m.state.particles.L.set(p, (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}});
     return m;
   };
   const auto update = [](auto& m, std::span<const Index> rows) {
-    return update_stress(m.mesh, m.materials[0], rows, 1e-3, false, m.averaged, {}, m.particles, m.health);
+    return update_stress(m.problem.mesh, m.state.materials[0], rows, 1e-3, false, m.work.averaged, {}, m.state.particles, m.work.health);
   };
   const std::vector<Index> rows{7, 2, 3, 11, 5, 0};
   for (std::size_t n = 1; n <= rows.size(); ++n) {
@@ -229,8 +229,8 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
     EXPECT_NEAR(sums.work, one_by_one.work, 1e-14 * one_by_one.work) << n;
     EXPECT_EQ(sums.crossing, one_by_one.crossing) << n;
     for (std::size_t p = 0; p < alone.particles.F.size(); ++p) {
-      EXPECT_EQ(together.particles.F[p], alone.particles.F[p]);
-      EXPECT_EQ(together.particles.stress[p], alone.particles.stress[p]);
+      EXPECT_EQ(together.state.particles.F[p], alone.particles.F[p]);
+      EXPECT_EQ(together.state.particles.stress[p], alone.particles.stress[p]);
     }
   }
 }
@@ -265,20 +265,20 @@ TEST(BulkViscosity, ShortensTheStep)
 {
   auto m = block<2>(rubber(1e6, 0, 1000), 2, 0);
   make_ready(m);
-  m.particles.L.assign(m.particles.L.size(), -Mat<2>::Identity());
-  const Real without = shortest_crossing(m.mesh, m.materials, m.particles);
-  std::visit([](auto& batch) { batch.viscosity = BulkViscosity{.linear = 1, .quadratic = 0}; }, m.materials[0]);
-  const Real with = shortest_crossing(m.mesh, m.materials, m.particles);
+  m.state.particles.L.assign(m.state.particles.L.size(), -Mat<2>::Identity());
+  const Real without = shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
+  std::visit([](auto& batch) { batch.viscosity = BulkViscosity{.linear = 1, .quadratic = 0}; }, m.state.materials[0]);
+  const Real with = shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
   EXPECT_NEAR(without / with, 1 + std::sqrt(2), 1e-12);  // Q = c:  Q + sqrt(Q^2 + c^2)
 }
 
 /// Mean of T cos(pi x) over the block, twice: the amplitude of the first mode.
 template <int D>
-Real first_mode(const Model<D, Linear<D>>& m, const auto& history)
+Real first_mode(const Model<D>& m, const auto& history)
 {
   Real sum = 0;
   for (std::size_t p = 0; p < history.size(); ++p)
-    sum += 2 * m.particles.volume0[p] * history[p].temperature * std::cos(std::numbers::pi * m.particles.x[p][0]);
+    sum += 2 * m.state.particles.volume0[p] * history[p].temperature * std::cos(std::numbers::pi * m.state.particles.x[p][0]);
   return sum;
 }
 
@@ -288,20 +288,20 @@ TEST(ConductHeat, DecaysAsTheHeatEquationSaysAndKeepsTheHeat)
   auto m = block<2>(law, 20);
   make_ready(m);
   sort(m);
-  auto& batch = std::get<Batch<JohnsonCookOf<false, false>>>(m.materials[0]);
+  auto& batch = std::get<Batch<JohnsonCookOf<false, false>>>(m.state.materials[0]);
   for (std::size_t p = 0; p < batch.history.size(); ++p)
-    batch.history[p].temperature = 400 + 50 * std::cos(std::numbers::pi * m.particles.x[p][0]);
+    batch.history[p].temperature = 400 + 50 * std::cos(std::numbers::pi * m.state.particles.x[p][0]);
   const auto heat = [&] {
     Real sum = 0;
     for (std::size_t p = 0; p < batch.history.size(); ++p)
-      sum += m.particles.mass[p] * batch.history[p].temperature;
+      sum += m.state.particles.mass[p] * batch.history[p].temperature;
     return sum;
   };
   const Real before = heat(), mode_before = first_mode(m, batch.history);
   const Real diffusivity = 200.0 / (8000 * 400), duration = 0.5 / (diffusivity * std::pow(std::numbers::pi, 2));
   constexpr int steps = 300;
   for (int step = 0; step < steps; ++step)
-    conduct_heat(m.mesh, m.materials[0], m.order, 0, duration / steps, m.particles, *m.heat);
+    conduct_heat(m.problem.mesh, m.state.materials[0], m.work.order, 0, duration / steps, m.state.particles, *m.work.heat);
   EXPECT_NEAR(heat() / before, 1, 1e-13);
   EXPECT_NEAR(first_mode(m, batch.history) / mode_before, std::exp(-0.5), 0.005 * std::exp(-0.5));  // twenty cells a half wave: h^2 terms
 }
@@ -312,16 +312,16 @@ TEST(ConductHeat, NeedsAConductivity)
   EXPECT_FALSE(conducts_heat(make_any_batch(metal(std::nullopt), 0, 1, "rod")));
   auto m = block<2>(metal(std::nullopt), 2);
   make_ready(m);
-  EXPECT_FALSE(m.heat.has_value());
+  EXPECT_FALSE(m.work.heat.has_value());
 }
 
 TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
 {
   auto m = block<2>(rubber(1e6, 0, 1000), 4, 0);
   testing::close_off(m, "x_min", WallKind::roller);
-  auto load = carried_by_particles<2>(m.mesh, *m.mesh.facet_set("x_max"), m.particles);
+  auto load = carried_by_particles<2>(m.problem.mesh, *m.problem.mesh.facet_set("x_max"), m.state.particles);
   load.traction = {-100, 0};
-  m.loads.on_particles.push_back(std::move(load));
+  m.problem.loads.on_particles.push_back(std::move(load));
   make_ready(m);
   Stage stage = testing::test_stage(10);
   stage.damping = 0.5;
@@ -329,14 +329,14 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
   const StageResult result = run_stage(m, stage, StepLimits{}, [](const auto&, RunEvent) {});
   EXPECT_LT(result.end, 10);
   Real inside = 0, outside = 0;  // virial: sum V stress_xx = sum f_x x, the roller being at x = 0
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
-    inside += m.particles.stress[p][0] * m.particles.volume[p];
-    outside += m.particles.applied[p][0] * m.particles.x[p][0];
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
+    inside += m.state.particles.stress[p][0] * m.state.particles.volume[p];
+    outside += m.state.particles.applied[p][0] * m.state.particles.x[p][0];
   }
   EXPECT_NEAR(inside, outside, 0.01 * 100);
   EXPECT_LT(outside, -80);
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    EXPECT_EQ(m.particles.v[p].norm() + m.particles.L[p].norm(), 0) << "the next stage starts from rest, in its affine part too";
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    EXPECT_EQ(m.state.particles.v[p].norm() + m.state.particles.L[p].norm(), 0) << "the next stage starts from rest, in its affine part too";
 }
 
 }  // namespace

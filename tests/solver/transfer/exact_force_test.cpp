@@ -19,35 +19,35 @@ TYPED_TEST_SUITE(ExactForceIn, Dimensions);
 
 /// A block of particles with random stress, its forces summed on the nodes.
 template <int D>
-Model<D, Umls<D>> stressed_block(UmlsGradient gradient)
+Model<D> stressed_block(UmlsGradient gradient)
 {
-  Model<D, Umls<D>> m(unit_box<D>(D == 2 ? 8 : 5, 0.2), UmlsOptions{gradient});
-  m.transfer = {.scheme = Scheme::flip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  auto m = make_model<Umls<D>>(unit_box<D>(D == 2 ? 8 : 5, 0.2), UmlsOptions{gradient});
+  m.problem.transfer = {.scheme = Scheme::flip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = {}};
   const auto inside = [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.35; };
   add_body<D>(m, "block", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 4, inside);
   make_ready(m);
   advance(m, 1e-12);
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(-1, 1);
-  set_each(m.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
-  scatter(m);
-  assemble_nodes(m);
+  set_each(m.state.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
+  m.transfer->particles_to_nodes(m);
+  m.transfer->assemble_nodes(m);
   return m;
 }
 
 template <int D>
-Mat<D> tension(const Model<D, Umls<D>>& m, std::size_t p)
+Mat<D> tension(const Model<D>& m, std::size_t p)
 {
-  return m.particles.volume[p] * unpack(m.particles.stress[p]).template topLeftCorner<D, D>();
+  return m.state.particles.volume[p] * unpack(m.state.particles.stress[p]).template topLeftCorner<D, D>();
 }
 
 /// sum_p |V sigma| times the slope of a weight, 1/h: the scale of forces.
 template <int D>
-Real scale(const Model<D, Umls<D>>& m)
+Real scale(const Model<D>& m)
 {
   Real sum = 0;
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    sum += tension(m, p).norm() / m.mesh.altitude(m.particles.cell[p]);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    sum += tension(m, p).norm() / m.problem.mesh.altitude(m.state.particles.cell[p]);
   return sum;
 }
 
@@ -55,15 +55,15 @@ TYPED_TEST(ExactForceIn, IsMinusTheStressOfParticlesOnTheSlopesOfTheValues)
 {
   constexpr int D = TypeParam::D;
   const auto m = stressed_block<D>(UmlsGradient::exact_force);
-  std::vector<Vec<D>> expected(m.nodes.sum.size(), Vec<D>::Zero());
+  std::vector<Vec<D>> expected(m.work.nodes.sum.size(), Vec<D>::Zero());
   typename Umls<D>::Cell cell;
   Weights<D, Umls<D>::max_nodes> weights;
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     Pack x[D];
     for (int d = 0; d < D; ++d)
-      x[d] = broadcast(m.particles.x[p][d]);
+      x[d] = broadcast(m.state.particles.x[p][d]);
     alignas(64) Real slopes[D][Umls<D>::max_nodes];
-    m.kernel.open(m.mesh, m.particles.cell[p], cell);
+    m.kernel.open(m.problem.mesh, m.state.particles.cell[p], cell);
     m.kernel.evaluate(cell, x, 1, weights);
     m.kernel.slopes_of_values(cell, x, 0, weights, slopes);
     for (std::size_t i = 0; i < cell.nodes.size(); ++i)
@@ -72,7 +72,7 @@ TYPED_TEST(ExactForceIn, IsMinusTheStressOfParticlesOnTheSlopesOfTheValues)
   }
   Real largest = 0;
   for (std::size_t n = 0; n < expected.size(); ++n) {
-    EXPECT_LE((m.nodes.sum[n].force - expected[n]).norm(), 1e-14 * scale(m)) << "node " << n;
+    EXPECT_LE((m.work.nodes.sum[n].force - expected[n]).norm(), 1e-14 * scale(m)) << "node " << n;
     largest = std::max(largest, expected[n].norm());
   }
   EXPECT_GT(largest, 1e-4 * scale(m));
@@ -88,19 +88,19 @@ TYPED_TEST(ExactForceIn, SumsToZeroAndDoesTheWorkOfLinearMotionsOnly)
     auto m = stressed_block<D>(gradient);
     Vec<D> total = Vec<D>::Zero();
     Real linear = 0, power = 0, stress_power = 0;
-    for (Index n = 0; n < m.mesh.n_nodes(); ++n) {
-      const Vec<D>& f = m.nodes.sum[static_cast<std::size_t>(n)].force;
-      NodeMotion<D>& node = m.nodes.motion[static_cast<std::size_t>(n)];
+    for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n) {
+      const Vec<D>& f = m.work.nodes.sum[static_cast<std::size_t>(n)].force;
+      NodeMotion<D>& node = m.work.nodes.motion[static_cast<std::size_t>(n)];
       total += f;
-      linear += f.dot(A * m.mesh.node(n));
+      linear += f.dot(A * m.problem.mesh.node(n));
       for (int d = 0; d < D; ++d)
         node.change[d] = node.v[d] = number(random);
       power += f.dot(node.v);
     }
     gather(m, 0);
-    for (std::size_t p = 0; p < m.particles.id.size(); ++p) {
+    for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
       linear += tension(m, p).cwiseProduct(A).sum();
-      stress_power += tension(m, p).cwiseProduct(m.particles.L[p]).sum();
+      stress_power += tension(m, p).cwiseProduct(m.state.particles.L[p]).sum();
     }
     EXPECT_LE(total.norm(), 1e-14 * scale(m));
     EXPECT_LE(std::abs(linear), 1e-13 * scale(m));
@@ -117,14 +117,14 @@ TYPED_TEST(ExactForceIn, KeepsTheMomentumOfAFreeBlock)
 {
   constexpr int D = TypeParam::D;
   auto m = stressed_block<D>(UmlsGradient::exact_force);
-  m.particles.stress.assign(m.particles.stress.size(), Sym3::Zero());
+  m.state.particles.stress.assign(m.state.particles.stress.size(), Sym3::Zero());
   Mat<D> A = Mat<D>::Zero();
   A(0, 1) = -0.6;
   A(0, 0) = 0.3;
   set_velocity<D>(m, A, Vec<D>::Constant(-0.1));
   const auto before = totals(m);
   run_until(m, 0.2);
-  EXPECT_FALSE(m.health.worst());
+  EXPECT_FALSE(m.work.health.worst());
   EXPECT_LT((totals(m).momentum - before.momentum).norm(), 1e-12 * 0.2 * before.mass);
   EXPECT_LT(totals(m).kinetic, before.kinetic) << "some of it has gone into strain";
 }

@@ -85,7 +85,7 @@ TEST(NodeRows, OfHatsHaveMomentumIfTheyHaveAnAffineField)
 
 TEST(Transfer, TheShareOfPicIsTheStepByItsTimeAndAtMostOne)
 {
-  Transfer transfer;
+  TransferOptions transfer;
   EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0);
   transfer.pic_damping_time = 2;
   EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0.25);
@@ -100,9 +100,9 @@ TEST(Transfer, TheShareOfPicIsTheStepByItsTimeAndAtMostOne)
 TEST(Transfer, KindsOfSchemes)
 {
   const auto of = [](Scheme scheme, bool musl) {
-    return Transfer{.scheme = scheme, .musl = musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
+    return TransferOptions{.scheme = scheme, .musl = musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
   };
-  EXPECT_TRUE(Transfer{}.musl);
+  EXPECT_TRUE(TransferOptions{}.musl);
   for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip})
     for (const bool musl : {false, true}) {
       const Transfer transfer = of(scheme, musl);

@@ -9,10 +9,10 @@ namespace talus::testing::read_back_test {
 namespace {
 
 template <class K>
-Model<2, K> block(const Transfer& transfer)
+Model<2> block(const TransferOptions& transfer)
 {
-  Model<2, K> m(unit_box<2>(6, 0.2));
-  m.transfer = transfer;
+  auto m = make_model<K>(unit_box<2>(6, 0.2));
+  m.problem.transfer = transfer;
   add_body<2>(m, "block", rubber(1e4, 0.3, 1000), 3, [](const Vec<2>& x) { return (x - Vec<2>(0.5, 0.5)).norm() < 0.35; });
   return m;
 }
@@ -23,12 +23,12 @@ std::vector<Vec<2>> after_a_step(Scheme scheme, bool musl, std::optional<Real> t
   auto m = block<Umls<2>>({.scheme = scheme, .musl = musl, .pic_damping_time = time, .pic_damping_crossings = {}});
   std::mt19937 random(5);
   std::uniform_real_distribution<Real> number(-1, 1);
-  set_each(m.particles.v, [&](std::size_t) { return Vec<2>(number(random), number(random)); });
+  set_each(m.state.particles.v, [&](std::size_t) { return Vec<2>(number(random), number(random)); });
   make_ready(m);
   advance(m, 1e-3);
   std::vector<Vec<2>> v;
-  for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-    v.push_back(m.particles.v[p]);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    v.push_back(m.state.particles.v[p]);
   return v;
 }
 
@@ -95,17 +95,17 @@ void falls_as_in_gravity()
   const auto velocities = [&](bool of_place) {
     auto m = block<K>({.scheme = Scheme::flip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = {}});
     if (of_place)
-      m.loads.of_place.push_back({[&](std::span<const Vec<2>> places, Real, std::span<Vec<2>> accelerations) {
+      m.problem.loads.of_place.push_back({[&](std::span<const Vec<2>> places, Real, std::span<Vec<2>> accelerations) {
         std::fill_n(accelerations.begin(), places.size(), g);
       }});
     else
-      m.loads.gravity.acceleration = g;
+      m.problem.loads.gravity.acceleration = g;
     make_ready(m);
     for (int step = 0; step < 5; ++step)
       advance(m, 1e-3);
     std::vector<Vec<2>> v;
-    for (std::size_t p = 0; p < m.particles.id.size(); ++p)
-      v.push_back(m.particles.v[p]);
+    for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+      v.push_back(m.state.particles.v[p]);
     return v;
   };
   const auto by_place = velocities(true), by_gravity = velocities(false);
