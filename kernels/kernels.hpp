@@ -3,15 +3,14 @@
 #include "core/type_list.hpp"
 #include "kernels/linear.hpp"
 #include "kernels/projected.hpp"
-#include "kernels/umls_projected.hpp"
+#include "kernels/umls.hpp"
 
 namespace talus {
 
 /// Kernels on meshes of dimension D, one line each.
 template <int D>
-using Kernels = TypeList<Linear<D>,          // hats
-                         Umls<D>,            // moving least squares
-                         Projected<D>,       // hats with operators at the nodes
-                         UmlsProjected<D>>;  // values of the second, gradient of the third
+using Kernels = TypeList<Linear<D>,      // linear shape functions
+                         Umls<D>,        // moving least squares
+                         Projected<D>>;  // linear shape functions with operators at the nodes
 
 }  // namespace talus

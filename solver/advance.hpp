@@ -113,7 +113,7 @@ void assemble_nodes(Model<D, K>& m)
 {
   if constexpr (HasNodeOperators<K, D>) {
     assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.projected.sum);
-    project_sums(m.kernel.node_operators(), m.mesh, m.own, m.projected.sum, !HasOwnValues<K, D>, m.nodes.sum);
+    project_sums(m.kernel.node_operators(), m.mesh, m.own, m.projected.sum, m.nodes.sum);
   } else {
     assemble<Whole>(m.blocks, m.own, m.halo, m.copies.sums, m.nodes.sum);
   }
@@ -124,7 +124,7 @@ template <int D, Kernel<D> K>
 void damp_towards_rest(Model<D, K>& m)
 {
   find_net_acceleration(m.nodes);
-  if constexpr (HasNodeOperators<K, D> && !HasOwnValues<K, D>) {
+  if constexpr (HasNodeOperators<K, D>) {
     m.copies.felt.send(m.nodes.felt, Numbers{});
     filter_acceleration(
         m.kernel.node_operators(), m.own, [&] { m.copies.felt.take(m.nodes.felt, Numbers{}); }, m.projected, m.nodes.felt);
@@ -140,8 +140,7 @@ void project_to_particles([[maybe_unused]] Model<D, K>& m, [[maybe_unused]] cons
   if constexpr (HasNodeOperators<K, D>) {
     project_motion(
         m.kernel.node_operators(), m.nodes.motion, [&] { m.copies.motion.take(m.nodes.motion, Whole{}); }, m.projected);
-    if constexpr (!HasOwnValues<K, D>)
-      m.walls.apply(kick, m.projected.sum, m.projected.motion, m.sums.beyond_nodes);
+    m.walls.apply(kick, m.projected.sum, m.projected.motion, m.sums.beyond_nodes);
   }
 }
 

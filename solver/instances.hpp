@@ -9,10 +9,8 @@ namespace talus {
 extern template void advance(Model<2, Linear<2>>&, Real);
 extern template void advance(Model<2, Umls<2>>&, Real);
 extern template void advance(Model<2, Projected<2>>&, Real);
-extern template void advance(Model<2, UmlsProjected<2>>&, Real);
 extern template void advance(Model<3, Linear<3>>&, Real);
 extern template void advance(Model<3, Umls<3>>&, Real);
 extern template void advance(Model<3, Projected<3>>&, Real);
-extern template void advance(Model<3, UmlsProjected<3>>&, Real);
 
 }  // namespace talus

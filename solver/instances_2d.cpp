@@ -6,6 +6,5 @@ namespace talus {
 template void advance(Model<2, Linear<2>>&, Real);
 template void advance(Model<2, Umls<2>>&, Real);
 template void advance(Model<2, Projected<2>>&, Real);
-template void advance(Model<2, UmlsProjected<2>>&, Real);
 
 }  // namespace talus

@@ -6,6 +6,5 @@ namespace talus {
 template void advance(Model<3, Linear<3>>&, Real);
 template void advance(Model<3, Umls<3>>&, Real);
 template void advance(Model<3, Projected<3>>&, Real);
-template void advance(Model<3, UmlsProjected<3>>&, Real);
 
 }  // namespace talus

@@ -16,7 +16,8 @@
 #include "solver/state/transfer.hpp"
 #include "solver/stress/conduct_heat.hpp"
 #include "solver/stress/update_stress.hpp"
-#include "solver/transfer/mixed_transfer.hpp"
+#include "solver/transfer/direct_transfer.hpp"
+#include "solver/transfer/projected_transfer.hpp"
 
 namespace talus {
 
@@ -82,8 +83,7 @@ struct Timings {
 
 /// The way of a kernel's particles to the nodes and back; what they deposit is its `Sum`, what they read its `Motion`.
 template <int D, Kernel<D> K>
-using Through = std::conditional_t<HasOwnValues<K, D>, MixedTransfer<D, K>,
-                                   std::conditional_t<HasNodeOperators<K, D>, ProjectedTransfer<D, K>, DirectTransfer<D, K>>>;
+using Through = std::conditional_t<HasNodeOperators<K, D>, ProjectedTransfer<D, K>, DirectTransfer<D, K>>;
 
 /// What no state may pass; see guards.hpp.
 struct RunLimits {
@@ -347,7 +347,7 @@ void make_ready(Model<D, K>& m, std::span<const std::vector<AnyBatch>> to_come =
     m.remapped.resize(m.nodes.sum.size());
   m.followed = FollowedRows(ids_of(m.loads.on_particles));
   bind_walls(m);
-  m.nodes.least_share_of_gross = HasNodeOperators<K, D> && !HasOwnValues<K, D> ? least_share_of_hats : least_share_of_cells;
+  m.nodes.least_share_of_gross = HasNodeOperators<K, D> ? least_share_of_hats : least_share_of_cells;
   m.nodes.least_share = m.kernel.claims().non_negative ? least_share : least_share_of_signed_weights;
   take_rows(m);
   m.mass.start = totals(m).mass;

@@ -354,7 +354,7 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
       cost.node_bytes += static_cast<std::int64_t>(m.kernel.node_operators().size_bytes());
     cost.shared_nodes = find_shared_nodes<D>(m.mesh, m.particles, m.bodies, [&m](Index c, std::vector<Index>& nodes) {
       for (const Index n : m.kernel.stencil(m.mesh, c))
-        if constexpr (HasNodeOperators<K, D> && !HasOwnValues<K, D>)
+        if constexpr (HasNodeOperators<K, D>)
           m.kernel.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
             if (S != 0)
               nodes.push_back(v);
