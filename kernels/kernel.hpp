@@ -124,15 +124,11 @@ K make_kernel(const Mesh<D>& mesh, [[maybe_unused]] const Options<K>& options)
 template <int D>
 class NodeOperators;
 
-/// A kernel with a node part: operators stand between hats and unknowns; its weights are those of hats, unless it HasOwnValues.
+/// A kernel with a node part: operators stand between hats and unknowns; its weights are those of hats.
 template <class K, int D>
 concept HasNodeOperators = requires(const K k) {
   { k.node_operators() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
-
-/// A node part for the gradient alone: values are those of the cell part, S = I, and the stencil begins with the vertices of the cell.
-template <class K, int D>
-concept HasOwnValues = HasNodeOperators<K, D> && requires { requires K::own_values; };
 
 /// A kernel that knows grad w_v [1/m] of the weights at hand, with those up to weights.padded_size[lane] set, and may want it for the force.
 template <class K, int D>

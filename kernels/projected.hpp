@@ -7,7 +7,8 @@
 
 namespace talus {
 
-/// With the hats N_n of the cell's vertices, S the value stencil and D the averaged gradient (kernels/node_operators.hpp):
+/// With the hats N_n of the cell's vertices, S the values of largest entropy (kernels/value_stencils.hpp) and D the averaged gradient
+/// (kernels/node_operators.hpp):
 ///
 ///     w_v(x) = sum_n N_n(x) S_nv          G_v(x) = sum_n N_n(x) D_nv
 ///
@@ -27,8 +28,8 @@ class Projected {
 
   Claims claims() const noexcept
   {
-    return {.non_negative = values_ != ValueStencil::mls,
-            .linear_values = values_ != ValueStencil::l2,  // maxent: up to walls that are flat
+    return {.non_negative = true,
+            .linear_values = true,  // up to walls that are flat
             .linear_gradients = true,
             .continuous_values = true,
             .continuous_gradient = true,
@@ -44,14 +45,13 @@ class Projected {
     hats_.evaluate(cell, x, count, out);
   }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
-  /// Nodes that have no positive weights which keep linear fields, and are treated as corners (maxent), ascending.
+  /// Nodes that have no positive weights which keep linear fields, and are treated as corners, ascending.
   std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }
 
  private:
-  Projected(const Mesh<D>& mesh, ValueStencil values, MaxentValues rows);
+  Projected(const Mesh<D>& mesh, MaxentValues rows);
 
   Linear<D> hats_;
-  ValueStencil values_;
   std::vector<Index> as_corners_;
   NodeOperators<D> node_part_;
 };

@@ -1,4 +1,4 @@
-// Value stencils of a node part: lumped L2, moving least squares, largest entropy.
+// The value stencil of a node part: weights of largest entropy.
 #include "kernels/value_stencils.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -97,52 +97,6 @@ std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Place
 }  // namespace
 
 template <int D>
-std::vector<Real> identity_values(const Mesh<D>& mesh)
-{
-  std::vector<Real> S(mesh.ring_of_node().item.size(), 0);
-  for (Index n = 0; n < mesh.n_nodes(); ++n)
-    S[entry_of(mesh.ring_of_node(), n, n)] = 1;
-  return S;
-}
-
-template <int D>
-std::vector<Real> l2_values(const Mesh<D>& mesh)
-{
-  const Csr& ring = mesh.ring_of_node();
-  const auto volumes = hat_volumes(mesh);
-  std::vector<Real> S(ring.item.size(), 0.0);
-  for_each_cell_of_ring(mesh, [&](Index n, Index c, std::size_t a, std::size_t entry) {
-    const bool own = mesh.cell(c)[a] == n;
-    S[entry] += (own ? 2.0 : 1.0) * mesh.volume(c) / ((D + 1) * (D + 2) * volumes[static_cast<std::size_t>(n)]);
-  });
-  return S;
-}
-
-template <int D>
-std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha)
-{
-  std::vector<Real> S(mesh.ring_of_node().item.size());
-  parallel_for(mesh.n_nodes(), [&](Index n) {
-    if (!mesh.is_whole(n))
-      return;  // another rank's
-    const RingOf<D> ring(mesh, n);
-    Real sum = 0;
-    Vec<D> centre = Vec<D>::Zero();
-    Mat<D> spread = Mat<D>::Zero();
-    const auto sample = [&](std::size_t i) { return ring.nodes[i] == n ? Real{1} : alpha; };
-    for (std::size_t i = 0; i < ring.r.size(); ++i)
-      sum += sample(i), centre += sample(i) * ring.r[i];
-    centre /= sum;
-    for (std::size_t i = 0; i < ring.r.size(); ++i)
-      spread += sample(i) * (ring.r[i] - centre) * (ring.r[i] - centre).transpose();
-    const Vec<D> k = spread.inverse() * centre;
-    for (std::size_t i = 0; i < ring.r.size(); ++i)
-      S[ring.first + i] = sample(i) * (1 / sum - k.dot(ring.r[i] - centre));
-  });
-  return S;
-}
-
-template <int D>
 MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha)
 {
   std::vector<std::vector<Facet>> facets(static_cast<std::size_t>(mesh.n_nodes()));
@@ -181,12 +135,6 @@ MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha)
   return values;
 }
 
-template std::vector<Real> identity_values<2>(const Mesh<2>&);
-template std::vector<Real> identity_values<3>(const Mesh<3>&);
-template std::vector<Real> l2_values<2>(const Mesh<2>&);
-template std::vector<Real> l2_values<3>(const Mesh<3>&);
-template std::vector<Real> mls_values<2>(const Mesh<2>&, Real);
-template std::vector<Real> mls_values<3>(const Mesh<3>&, Real);
 template MaxentValues maxent_values<2>(const Mesh<2>&, Real);
 template MaxentValues maxent_values<3>(const Mesh<3>&, Real);
 

@@ -4,20 +4,6 @@
 
 namespace talus {
 
-/// S = I, for a kernel whose cell part has values of its own.
-template <int D>
-std::vector<Real> identity_values(const Mesh<D>& mesh);
-
-/// The lumped L2 projection on hats, S_nv = int N_n N_v dx / V_n.  Positive everywhere; linear fields are exact only where the
-/// star of the node is symmetric.
-template <int D>
-std::vector<Real> l2_values(const Mesh<D>& mesh);
-
-/// Moving least squares at the node over its ring, with sample weight 1 for the node itself and `alpha` for its neighbours.  Linear
-/// fields are exact everywhere; weights turn negative at the boundary of the mesh.
-template <int D>
-std::vector<Real> mls_values(const Mesh<D>& mesh, Real alpha);
-
 /// Rows of largest entropy, and the nodes for which there are none.
 struct MaxentValues {
   std::vector<Real> S;  ///< rows on the entries of mesh.ring_of_node()

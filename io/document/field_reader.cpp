@@ -43,10 +43,12 @@ const Node* Mapping::find_required(std::string_view key, std::string_view unit)
 void Mapping::close()
 {
   for (const auto& [key, place] : node_.keys)
-    if (!any_key_ && std::find(known_.begin(), known_.end(), key) == known_.end())
+    if (!any_key_ && std::find(known_.begin(), known_.end(), key) == known_.end()) {
+      const std::string_view removed = removed_choice(path_of(key)), reason = removed.empty() ? not_computed(key) : removed;
       problems_.add(place, path_,
-                    not_computed(key).empty() ? fmt::format("unknown key \"{}\"{}", key, suggestion(key, known_))
-                                              : fmt::format("unknown key \"{}\": {}", key, not_computed(key)));
+                    reason.empty() ? fmt::format("unknown key \"{}\"{}", key, suggestion(key, known_))
+                                   : fmt::format("unknown key \"{}\": {}", key, reason));
+    }
   if (problems_.size() > before_)
     return;
   std::vector<std::string> broken;

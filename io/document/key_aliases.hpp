@@ -12,6 +12,17 @@ constexpr std::string_view other_word_for(std::string_view key) noexcept { retur
 /// Whether such a reader has made this of the key `on`.
 constexpr bool was_on(std::string_view key) noexcept { return key == "true" || key == "True"; }
 
+/// Says what to use instead of a choice that Talus had and has no longer: the path of a key ("projected.values") or a kernel.  Empty for
+/// any other choice.
+constexpr std::string_view removed_choice(std::string_view choice) noexcept
+{
+  if (choice == "projected.values")
+    return "the kernel has one kind of values, those of largest entropy (maxent): leave the key out";
+  if (choice == "umls_projected")
+    return "this kernel was taken away: take projected, which has the same gradient, or umls, which has the same values";
+  return "";
+}
+
 /// What is to be said of a key that no mapping has, because it belongs to something that Talus does not compute; empty of any other key.
 constexpr std::string_view not_computed(std::string_view key) noexcept
 {

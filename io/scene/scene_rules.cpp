@@ -6,6 +6,7 @@
 #include <map>
 
 #include "core/word_match.hpp"
+#include "io/document/key_aliases.hpp"
 #include "io/scene/history_columns.hpp"
 #include "kernels/kernels.hpp"
 
@@ -33,7 +34,10 @@ class Rules {
  private:
   void kernel()
   {
-    known_word("kernel", "kernel", scene_.kernel, kernel_names());
+    if (const std::string_view removed = removed_choice(scene_.kernel); !removed.empty())
+      add("kernel", fmt::format("there is no kernel \"{}\": {}", scene_.kernel, removed));
+    else
+      known_word("kernel", "kernel", scene_.kernel, kernel_names());
     const auto only_of = [&](std::string_view kernel, bool given) {
       if (given && scene_.kernel != kernel)
         add(std::string(kernel), fmt::format("these are choices of the kernel {}; the scene's is {}", kernel, scene_.kernel));

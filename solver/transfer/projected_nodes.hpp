@@ -24,10 +24,11 @@ struct ProjectedNodes {
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
 /// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
-/// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  `by_hats_around`: the mass of a node is to be measured by theirs.
+/// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  What the mass of
+/// a node is measured by is the mean mass of the hats around.
 template <int D>
 void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
-                  const std::vector<ProjectedNodeSum<D>>& projected, bool by_hats_around, std::vector<NodeSum<D>>& sum)
+                  const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
 {
   for_each_node(std::span(sum), [&](Index v) {
     NodeSum<D> total;
@@ -42,13 +43,11 @@ void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const 
       if (!hat.is_seen())
         return;
       total.mass += S * hat.mass;
-      total.gross += static_cast<float>(std::abs(S)) * hat.gross;
       total.lightest = std::min(total.lightest, hat.lightest);
       total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
       total.force += S * hat.force - hat.tension * gradient;
     });
-    if (by_hats_around)
-      total.gross = static_cast<float>(around / ring);
+    total.gross = static_cast<float>(around / ring);
     return total;
   });
 }

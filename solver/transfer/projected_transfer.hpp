@@ -131,7 +131,6 @@ void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::
     }
     if constexpr (forces) {
       row.mass += of[Of::mass];
-      row.gross += static_cast<float>(of[Of::mass]);
       for (int k = 0; k < Symmetric<D>::size; ++k)
         row.tension.entry[k] += of[Of::tension + k];
     }

@@ -65,7 +65,7 @@ class TransferOf final : public Transfer<D> {
   {
     if constexpr (Rows::projects) {
       assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, rows_.projected.sum);
-      project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, true, m.work.nodes.sum);
+      project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, m.work.nodes.sum);
     } else {
       assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, m.work.nodes.sum);
     }

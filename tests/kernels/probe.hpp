@@ -91,7 +91,7 @@ std::vector<std::array<Real, D + 1>> trial_points(std::uint32_t seed)
 }
 
 /// The weights of one point over the nodes that matter to it.  With a node part these are the rings of the cell's vertices, and the
-/// weights are those of the hats carried on by the operators; where the kernel has values of its own, the gradients alone.
+/// weights are those of the hats carried on by the operators.
 template <class K, int D>
 class Probe {
  public:
@@ -118,11 +118,6 @@ class Probe {
     gradients_.assign(nodes_.size(), Vec<D>::Zero());
     for (int a = 0; a < cell.size; ++a)
       add(a);
-    if constexpr (HasOwnValues<K, D>) {
-      const auto hats = mesh_.barycentric(cell.cell, x);
-      for (std::size_t a = 0; a <= D; ++a)
-        add_row(cell.nodes[a], 0, hats[a]);
-    }
   }
   int size() const { return static_cast<int>(nodes_.size()); }
   Real value(int i) const { return values_[static_cast<std::size_t>(i)]; }
@@ -137,10 +132,8 @@ class Probe {
   void add(int a)
   {
     const auto i = static_cast<std::size_t>(a);
-    if constexpr (HasOwnValues<K, D>) {
-      values_[entry(cell.nodes[i])] = weights.w[a];
-    } else if constexpr (HasNodeOperators<K, D>) {
-      add_row(cell.nodes[i], weights.w[a], weights.w[a]);
+    if constexpr (HasNodeOperators<K, D>) {
+      add_row(cell.nodes[i], weights.w[a]);
     } else {
       values_[i] = weights.w[a];
       for (int d = 0; d < D; ++d)
@@ -149,11 +142,11 @@ class Probe {
   }
 
   std::size_t entry(Index v) const { return static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin()); }
-  /// `value` of the row of n in S, `hat` of that in D.
-  void add_row(Index n, Real value, Real hat)
+  /// The share `hat` of the rows of n in S and D.
+  void add_row(Index n, Real hat)
   {
     kernel_.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
-      values_[entry(v)] += value * S;
+      values_[entry(v)] += hat * S;
       gradients_[entry(v)] += hat * gradient;
     });
   }

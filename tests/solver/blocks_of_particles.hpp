@@ -6,7 +6,9 @@
 #include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
 #include "solver/advance.hpp"
+#include "solver/stable_step.hpp"
 #include "solver/stages.hpp"
+#include "solver/stress/average_volume.hpp"
 #include "solver/transfer/transfer_of.hpp"
 
 namespace talus::testing {
@@ -51,6 +53,14 @@ template <class K, int D>
 TransferOf<D, K>& transfer_of(Model<D>& m)
 {
   return dynamic_cast<TransferOf<D, K>&>(*m.transfer);
+}
+
+/// Velocity, velocity gradient and position of the particles from the motion of the nodes, without MUSL and without stress.
+template <int D>
+void read_nodes(Model<D>& m, Real dt)
+{
+  m.problem.transfer.musl = false;
+  m.transfer->nodes_to_particles(m, Kick{}, dt, [](Index, Index) {});
 }
 
 /// Every row of a column, f(row) -> its value, in order.

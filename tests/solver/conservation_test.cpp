@@ -43,9 +43,7 @@ using Cases = ::testing::Types<
     Case<3, Umls<3>, Scheme::apic, false>, Case<3, Umls<3>, Scheme::tpic, false>, Case<2, Umls<2>, Scheme::aflip, true>,
     Case<2, Projected<2>, Scheme::flip, true>, Case<2, Projected<2>, Scheme::flip, false>, Case<2, Projected<2>, Scheme::tpic, false>,
     Case<2, Projected<2>, Scheme::aflip, true>, Case<2, Projected<2>, Scheme::aflip, false>, Case<3, Projected<3>, Scheme::flip, true>,
-    Case<3, Projected<3>, Scheme::tpic, true>, Case<3, Projected<3>, Scheme::aflip, true>, Case<2, UmlsProjected<2>, Scheme::flip, true>,
-    Case<2, UmlsProjected<2>, Scheme::apic, false>, Case<2, UmlsProjected<2>, Scheme::aflip, true>,
-    Case<3, UmlsProjected<3>, Scheme::tpic, false>>;
+    Case<3, Projected<3>, Scheme::tpic, true>, Case<3, Projected<3>, Scheme::aflip, true>>;
 TYPED_TEST_SUITE(EveryKernelAndTransfer, Cases);
 
 /// Hats have no bound on force over mass at a node that a particle has only just come to see: without MUSL they live a short time.
@@ -100,26 +98,26 @@ TYPED_TEST(EveryKernelAndTransfer, DoInSingleWhatTheyDoInDoubleToItsRounding)
 {
   auto twofold = flying_block<TypeParam>(), single = flying_block<TypeParam>(Precision::single);
   const auto before = totals(single);
-  const Real dt = 0.3 * shortest_crossing(twofold.mesh, twofold.materials, twofold.particles);
+  const Real dt = 0.3 * shortest_crossing(twofold.problem.mesh, twofold.state.materials, twofold.state.particles);
   for (int step = 0; step < 40; ++step) {
     advance(twofold, dt);
     advance(single, dt);
   }
-  ASSERT_FALSE(single.health.worst());
+  ASSERT_FALSE(single.work.health.worst());
   constexpr Real rounding = 6e-8;  // 2^-24
   Real path = 0, stress = 0, wrong_place = 0, wrong_stress = 0, wrong_F = 0;
-  for (std::size_t p = 0; p < twofold.particles.id.size(); ++p) {
-    path = std::max(path, 40 * dt * twofold.particles.v[p].norm());
-    stress = std::max(stress, twofold.particles.stress[p].norm());
+  for (std::size_t p = 0; p < twofold.state.particles.id.size(); ++p) {
+    path = std::max(path, 40 * dt * twofold.state.particles.v[p].norm());
+    stress = std::max(stress, twofold.state.particles.stress[p].norm());
   }
-  std::vector<std::size_t> row_of_id(twofold.particles.id.size());  // orders may differ
+  std::vector<std::size_t> row_of_id(twofold.state.particles.id.size());  // orders may differ
   for (std::size_t p = 0; p < row_of_id.size(); ++p)
-    row_of_id[static_cast<std::size_t>(twofold.particles.id[p])] = p;
+    row_of_id[static_cast<std::size_t>(twofold.state.particles.id[p])] = p;
   for (std::size_t p = 0; p < row_of_id.size(); ++p) {
-    const std::size_t other = row_of_id[static_cast<std::size_t>(single.particles.id[p])];
-    wrong_place = std::max(wrong_place, (single.particles.x[p] - twofold.particles.x[other]).norm());
-    wrong_stress = std::max(wrong_stress, (single.particles.stress[p] - twofold.particles.stress[other]).norm());
-    wrong_F = std::max(wrong_F, (single.particles.F[p] - twofold.particles.F[other]).norm());
+    const std::size_t other = row_of_id[static_cast<std::size_t>(single.state.particles.id[p])];
+    wrong_place = std::max(wrong_place, (single.state.particles.x[p] - twofold.state.particles.x[other]).norm());
+    wrong_stress = std::max(wrong_stress, (single.state.particles.stress[p] - twofold.state.particles.stress[other]).norm());
+    wrong_F = std::max(wrong_F, (single.state.particles.F[p] - twofold.state.particles.F[other]).norm());
   }
   EXPECT_GT(wrong_place, 0) << "single precision was not used";
   EXPECT_LT(wrong_place, 10 * rounding * path);

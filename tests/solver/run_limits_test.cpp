@@ -92,14 +92,14 @@ TEST(RunLimits, TheEndOfAStageIsLookedAt)
   EXPECT_EQ(fast.state.clock.step, 1);
   EXPECT_EQ(fast.state.watched.speeding, 0) << "it is looked at again when the run goes on";
   M light = flying_block();
-  light.mass.start *= 1 + 1e-6;
+  light.state.mass.start *= 1 + 1e-6;
   EXPECT_THAT(short_stage(light), HasSubstr("the mass does not add up"));
   M sound = flying_block();
   EXPECT_EQ(short_stage(sound), "");
-  EXPECT_NEAR(sound.watched.fastest, std::sqrt(1.25), 1e-6);
-  sound.guards.speed = 1, sound.guards.speed_stops = false;
+  EXPECT_NEAR(sound.state.watched.fastest, std::sqrt(1.25), 1e-6);
+  sound.problem.limits.speed = 1, sound.problem.limits.speed_stops = false;
   EXPECT_EQ(short_stage(sound), "");
-  EXPECT_EQ(sound.watched.speeding, 1) << "once for each step, and none for the state that the stage began with";
+  EXPECT_EQ(sound.state.watched.speeding, 1) << "once for each step, and none for the state that the stage began with";
 }
 
 /// One particle is turned inside out before the first step.
@@ -122,14 +122,14 @@ TEST(RunLimits, AFailedParticleStopsTheRunUnlessItMayGo)
   EXPECT_THAT(message, HasSubstr("turned inside out"));
 
   M without = with_a_failed_particle(0.1);
-  const Index before = without.particles.size();
+  const Index before = without.state.particles.size();
   EXPECT_EQ(stopped(without), "");
-  EXPECT_EQ(without.particles.size(), before - 1);
-  EXPECT_EQ(without.mass.failed_count, 1);
-  EXPECT_NEAR(totals(without).mass + without.mass.failed, without.mass.start, 1e-12 * without.mass.start);
-  EXPECT_THAT(without.watched.failure, HasSubstr("particle 5"));
-  EXPECT_TRUE(std::isfinite(without.energy.internal));
-  EXPECT_NEAR(without.energy.carried_away, 0.5 * without.mass.failed * 1.25, 1e-2 * without.mass.failed);
+  EXPECT_EQ(without.state.particles.size(), before - 1);
+  EXPECT_EQ(without.state.mass.failed_count, 1);
+  EXPECT_NEAR(totals(without).mass + without.state.mass.failed, without.state.mass.start, 1e-12 * without.state.mass.start);
+  EXPECT_THAT(without.state.watched.failure, HasSubstr("particle 5"));
+  EXPECT_TRUE(std::isfinite(without.state.energy.internal));
+  EXPECT_NEAR(without.state.energy.carried_away, 0.5 * without.state.mass.failed * 1.25, 1e-2 * without.state.mass.failed);
 }
 
 TEST(RunLimits, WhatFailedInTheLastStepIsNotMissed)

@@ -40,8 +40,7 @@ TEST_F(ManualOf, LawsTypesKernelsBlocksWordsAndHistoryVariablesAreFound)
               AllOf(HasSubstr("Drucker-Prager cone"), HasSubstr("dilation_angle"), HasSubstr("opened_volume")));
   EXPECT_THAT(talus("manual friction").out, HasSubstr("Keys of boundaries (type: friction)"));
   EXPECT_THAT(talus("manual umls").out, AllOf(HasSubstr("kernel: umls"), HasSubstr("Keys of umls")));
-  EXPECT_THAT(talus("manual kernel").out,
-              AllOf(HasSubstr("kernel: linear"), HasSubstr("kernel: projected"), HasSubstr("kernel: umls_projected")));
+  EXPECT_THAT(talus("manual kernel").out, AllOf(HasSubstr("kernel: linear"), HasSubstr("kernel: projected"), HasSubstr("kernel: umls")));
   EXPECT_THAT(talus("manual outputs").out, AllOf(HasSubstr("Keys of outputs"), HasSubstr("outputs.history.fronts")));
   EXPECT_THAT(talus("manual geostatic").out, HasSubstr("Keys of stages (type: geostatic)"));
   EXPECT_THAT(talus("manual box").out, HasSubstr("corner with the smallest coordinates"));

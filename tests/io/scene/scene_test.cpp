@@ -51,7 +51,6 @@ TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
   const Scene s = scene("solid.yaml");
   EXPECT_EQ(s.kernel, "projected");
   ASSERT_TRUE(s.projected.has_value());
-  EXPECT_EQ(s.projected->values, ValueStencil::mls);
   EXPECT_EQ(s.projected->alpha, 0.25);
   EXPECT_EQ(s.transfer.scheme, TransferScheme::aflip);
   EXPECT_EQ(s.transfer.pic_damping_crossings, 3);

@@ -68,7 +68,7 @@ void drag_across_a_vertex(Scheme scheme)
       vertex = n;
   const Vec<2> v(1, 0.4);
   m.state.particles.x[0] = m.problem.mesh.node(vertex) - 0.02 * v;
-  m.state.particles.cell[0] = m.locator(m.problem.mesh, m.state.particles.x[0], none).value();
+  m.state.particles.cell[0] = m.problem.locator(m.problem.mesh, m.state.particles.x[0], none).value();
   m.state.particles.v.set(0, v);
   make_ready(m);
   for (int step = 0; step < 40; ++step)  // hits the vertex exactly after half of them
@@ -311,8 +311,8 @@ TEST(InitialStress, CarriesTheWeightAbove)
   soil.poisson_ratio = 0.3;
   add_body<2>(m, "soil", soil, 3, [](const Vec<2>&) { return true; });
   make_ready(m);
-  set_start_stress<2>(m.problem.mesh, m.problem.share, *m.problem.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}}, m.work.order, m.state.bodies, m.state.materials,
-                      m.state.particles);
+  set_start_stress<2>(m.problem.mesh, m.problem.share, *m.problem.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}},
+                      m.work.order, m.state.bodies, m.state.materials, m.state.particles);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     const Real weight = 2000 * 10 * (1 - m.state.particles.x[p][1]);
     EXPECT_NEAR(m.state.particles.stress[p][1], -weight, 1e-9 * 2e4);

@@ -36,7 +36,7 @@ void sort(Model<D>& m)
 }
 
 /// Stress of all particles of the only body.
-template <int D, class K>
+template <int D>
 void update_all(Model<D>& m, Real dt)
 {
   std::vector<Index> rows(m.state.particles.id.size());
@@ -228,9 +228,9 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
     EXPECT_GT(sums.work, 0);
     EXPECT_NEAR(sums.work, one_by_one.work, 1e-14 * one_by_one.work) << n;
     EXPECT_EQ(sums.crossing, one_by_one.crossing) << n;
-    for (std::size_t p = 0; p < alone.particles.F.size(); ++p) {
-      EXPECT_EQ(together.state.particles.F[p], alone.particles.F[p]);
-      EXPECT_EQ(together.state.particles.stress[p], alone.particles.stress[p]);
+    for (std::size_t p = 0; p < alone.state.particles.F.size(); ++p) {
+      EXPECT_EQ(together.state.particles.F[p], alone.state.particles.F[p]);
+      EXPECT_EQ(together.state.particles.stress[p], alone.state.particles.stress[p]);
     }
   }
 }
@@ -243,21 +243,21 @@ TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
   law.poisson_ratio = 0;
   auto plain = block<2>(law, 2, 0), viscous = block<2>(law, 2, 0);
   const BulkViscosity viscosity{.linear = 0.3, .quadratic = 2};
-  std::visit([&](auto& batch) { batch.viscosity = viscosity; }, viscous.materials[0]);
+  std::visit([&](auto& batch) { batch.viscosity = viscosity; }, viscous.state.materials[0]);
   make_ready(plain);
   make_ready(viscous);
   constexpr Real dt = 1e-4, rate = 3;
   for (const Real sign : {-1.0, -1.0, 1.0, 0.0}) {
     for (auto* m : {&plain, &viscous}) {
-      m->particles.L.assign(m->particles.L.size(), Mat<2>{{sign * rate, 0}, {0, 0}});
+      m->state.particles.L.assign(m->state.particles.L.size(), Mat<2>{{sign * rate, 0}, {0, 0}});
       update_all(*m, dt);
     }
-    const Real h = viscous.mesh.altitude(viscous.particles.cell[0]);
-    const Real density = viscous.particles.mass[0] / viscous.particles.volume[0];
-    const Real c = wave_speed(viscous.materials[0], viscous.particles.F[0]);
+    const Real h = viscous.problem.mesh.altitude(viscous.state.particles.cell[0]);
+    const Real density = viscous.state.particles.mass[0] / viscous.state.particles.volume[0];
+    const Real c = wave_speed(viscous.state.materials[0], viscous.state.particles.F[0]);
     const Real q = sign < 0 ? density * h * rate * (viscosity.quadratic * h * rate + viscosity.linear * c) : 0;
     for (int k = 0; k < 3; ++k)
-      EXPECT_NEAR(plain.particles.stress[0][k] - viscous.particles.stress[0][k], q, 1e-12 * 1e6);
+      EXPECT_NEAR(plain.state.particles.stress[0][k] - viscous.state.particles.stress[0][k], q, 1e-12 * 1e6);
   }
 }
 
@@ -336,7 +336,8 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
   EXPECT_NEAR(inside, outside, 0.01 * 100);
   EXPECT_LT(outside, -80);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
-    EXPECT_EQ(m.state.particles.v[p].norm() + m.state.particles.L[p].norm(), 0) << "the next stage starts from rest, in its affine part too";
+    EXPECT_EQ(m.state.particles.v[p].norm() + m.state.particles.L[p].norm(), 0)
+        << "the next stage starts from rest, in its affine part too";
 }
 
 }  // namespace

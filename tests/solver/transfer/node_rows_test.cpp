@@ -105,7 +105,7 @@ TEST(Transfer, KindsOfSchemes)
   EXPECT_TRUE(TransferOptions{}.musl);
   for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip})
     for (const bool musl : {false, true}) {
-      const Transfer transfer = of(scheme, musl);
+      const TransferOptions transfer = of(scheme, musl);
       EXPECT_EQ(transfer.affine(), scheme != Scheme::flip);
       EXPECT_EQ(transfer.increments(), scheme == Scheme::flip || scheme == Scheme::aflip);
       EXPECT_EQ(transfer.own_affine_field(), scheme == Scheme::apic || (musl && scheme != Scheme::flip));

@@ -120,7 +120,6 @@ TEST(ReadBack, ForcesOfPlaceReachNodesThroughEveryKernel)
   falls_as_in_gravity<Linear<2>>();
   falls_as_in_gravity<Umls<2>>();
   falls_as_in_gravity<Projected<2>>();
-  falls_as_in_gravity<UmlsProjected<2>>();
 }
 
 }  // namespace
