@@ -112,12 +112,12 @@ class CommandLine {
 
   void add_new()
   {
-    CLI::App* made = app_.add_subcommand("new", "write a commented scene from a template and your answers");
-    made->add_option("template", new_.from, "name of a template (talus new --list), or the file of one")
+    CLI::App* made = app_.add_subcommand("new", "copy a commented scene, to be edited");
+    made->add_option("template", new_.from, "name of a template (talus new --list), or the file of a scene")
         ->type_name(one_of(template_names()) + " or *.yaml");
     made->add_option("--out", new_.out, "file to write; default <template>.yaml")->type_name(scene_value);
-    made->add_option("--set", new_.set, "answer a question: name=value; the others take their defaults")->type_name("NAME=VALUE");
-    made->add_flag("--list", new_.list, "write nothing: tell the templates, or what one of them asks");
+    made->add_option("--set", new_.set, set_help);
+    made->add_flag("--list", new_.list, "write nothing: tell the templates");
     made->add_flag("--force", new_.force, "replace the file if it is there");
     made->callback([this] { new_scene(new_); });
   }
