@@ -397,7 +397,7 @@ class CommandLine {
   void add_bench()
   {
     constexpr int most_particles = 100'000'000;
-    CLI::App* bench = app_.add_subcommand("bench", "speed of whole steps beside what the machine can do and beside a structured grid");
+    CLI::App* bench = app_.add_subcommand("bench", "speed of whole steps");
     const auto list = [&](const char* name, auto& values, const char* help) {
       return bench->add_option(name, values, help)->delimiter(',');
     };
