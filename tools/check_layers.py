@@ -48,7 +48,7 @@ THIRD_PARTY = [
     ("nlohmann/*", ["io/*json*.cpp", "io/output/run_summary.cpp", "io/scene/manual.cpp", "tests/io/page/page_test.cpp"]),
     ("hdf5.h", ["io/checkpoint/hdf5*", "io/checkpoint/array_*.cpp"]),
     ("zlib.h", ["io/page/page_block.cpp", "tests/io/page/page_test.cpp"]),
-    ("CLI/*", ["app/cli/cli.cpp", "app/cli/cli_checks.hpp"]),
+    ("CLI/*", ["app/cli/cli.cpp", "app/cli/cli_checks.hpp", "io/pictures/settings/option_parser.hpp"]),
     ("muParser*", ["app/setup/expression.cpp"]),
     ("gtest/*", ["tests/*"]),
     ("gmock/*", ["tests/*"]),

@@ -1,4 +1,4 @@
-// The only file that sees CLI11.
+// Every command and its options.
 #include "app/cli/cli.hpp"
 
 #include <fmt/format.h>
@@ -32,7 +32,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/version.hpp"
 #include "core/word_match.hpp"
-#include "io/pictures/settings/picture_settings.hpp"
+#include "io/pictures/settings/option_parser.hpp"
 #include "materials/laboratory/laboratory.hpp"
 
 namespace talus {
@@ -112,12 +112,12 @@ class CommandLine {
 
   void add_new()
   {
-    CLI::App* made = app_.add_subcommand("new", "write a commented scene from a template and your answers");
-    made->add_option("template", new_.from, "name of a template (talus new --list), or the file of one")
+    CLI::App* made = app_.add_subcommand("new", "copy a commented scene, to be edited");
+    made->add_option("template", new_.from, "name of a template (talus new --list), or the file of a scene")
         ->type_name(one_of(template_names()) + " or *.yaml");
     made->add_option("--out", new_.out, "file to write; default <template>.yaml")->type_name(scene_value);
-    made->add_option("--set", new_.set, "answer a question: name=value; the others take their defaults")->type_name("NAME=VALUE");
-    made->add_flag("--list", new_.list, "write nothing: tell the templates, or what one of them asks");
+    made->add_option("--set", new_.set, set_help);
+    made->add_flag("--list", new_.list, "write nothing: tell the templates");
     made->add_flag("--force", new_.force, "replace the file if it is there");
     made->callback([this] { new_scene(new_); });
   }
@@ -230,23 +230,16 @@ class CommandLine {
   }
 
   /// Options of talus-render, whose words are handed on as they stand.
-  template <std::size_t N>
-  static void add_words(CLI::App& command, const std::array<render::Option, N>& options, std::vector<std::string>& words)
+  template <class S>
+  static void add_words(CLI::App& command, std::vector<std::string>& words)
   {
-    for (const render::Option& option : options) {
-      const std::string name(option.name), help(option.help);
-      const auto keep = [&words, name](const std::vector<std::string>& values) {
-        words.push_back(name);
-        words.insert(words.end(), values.begin(), values.end());
-      };
-      if (option.most == 0)
-        command.add_flag_callback(
-            name, [keep] { keep({}); }, help);
-      else
-        command.add_option_function<std::vector<std::string>>(name, keep, help)
-            ->type_name(std::string(option.values))
-            ->expected(option.least, option.most);
-    }
+    render::add_options(
+        command, S::options(),
+        [&words](const auto& option, const std::vector<std::string>& values) {
+          words.emplace_back(option.name);
+          words.insert(words.end(), values.begin(), values.end());
+        },
+        render::Offered::to_users);
   }
 
   static void add_movie(CLI::App& command, MovieOptions& options, const char* help)
@@ -262,7 +255,7 @@ class CommandLine {
   {
     CLI::App* map = app_.add_subcommand("map", "draw the maps of a run-out over a hillshade of the ground, and its sections");
     map->add_option("folder", map_.folder, "results of a run with outputs.runout")->type_name(folder_value)->required();
-    add_words(*map, render::map_options, map_.words);
+    add_words<render::MapSettings>(*map, map_.words);
     add_movie(*map, map_, "a .mp4 or .gif of the thickness, by ffmpeg; needs outputs.runout.frames_every");
     map->callback([this] { draw_maps(map_); });
   }
@@ -271,7 +264,7 @@ class CommandLine {
   {
     CLI::App* render = app_.add_subcommand("render", "draw pictures of a run, or a movie");
     render->add_option("folder", render_.folder, "results of a run")->type_name(folder_value)->required();
-    add_words(*render, render::picture_options, render_.words);
+    add_words<render::Settings>(*render, render_.words);
     add_movie(*render, render_, "a .mp4 or .gif of all frames, or those of --frames, by ffmpeg");
     render->callback([this] { render_results(render_); });
   }
@@ -311,7 +304,7 @@ class CommandLine {
     CLI::App* surface = app_.add_subcommand("surface", "write the surface of bodies for other programs, and say what it encloses");
     surface->add_option("folder", surface_.folder, "results of a run")->type_name(folder_value)->required();
     surface->add_option("--body", surface_.body, "name of the body; default each of them, all in one file");
-    add_words(*surface, render::surface_options, surface_.words);
+    add_words<render::SurfaceSettings>(*surface, surface_.words);
     surface->callback([this] { extract_surface(surface_); });
   }
 
@@ -404,7 +397,7 @@ class CommandLine {
   void add_bench()
   {
     constexpr int most_particles = 100'000'000;
-    CLI::App* bench = app_.add_subcommand("bench", "speed of whole steps beside what the machine can do and beside a structured grid");
+    CLI::App* bench = app_.add_subcommand("bench", "speed of whole steps");
     const auto list = [&](const char* name, auto& values, const char* help) {
       return bench->add_option(name, values, help)->delimiter(',');
     };

@@ -181,22 +181,6 @@ std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> pla
   return values;
 }
 
-Real evaluate(const std::string& formula, std::span<const NamedNumber> names)
-{
-  std::vector<std::string> known;
-  for (const NamedNumber& one : names)
-    known.push_back(one.name);
-  mu::Parser parser;
-  const auto define = [&] {
-    for (const NamedNumber& one : names)
-      parser.DefineConst(one.name, one.value);
-  };
-  const Real value = read_formula(formula, known.empty() ? "numbers" : or_list(known), define, parser);
-  if (!std::isfinite(value))
-    throw std::invalid_argument(fmt::format("\"{}\" is {}", formula, value));
-  return value;
-}
-
 std::vector<std::string> functions_of_formulas()
 {
   const mu::Parser parser;  // holds what is asked for

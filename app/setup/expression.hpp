@@ -29,15 +29,6 @@ class Formula {
 /// Throws std::invalid_argument, in words: no formula, or its value is not finite somewhere.
 std::vector<Real> evaluate(const std::string& formula, std::span<const Vec3> places);
 
-/// Something with a value that formulas may name.
-struct NamedNumber {
-  std::string name;
-  Real value;
-};
-/// Value of a formula of these names, the constant pi and the usual functions.  std::invalid_argument, in words: no formula, or its value is
-/// not finite.
-Real evaluate(const std::string& formula, std::span<const NamedNumber> names);
-
 /// Names of the functions that formulas know.
 std::vector<std::string> functions_of_formulas();
 

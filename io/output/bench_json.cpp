@@ -37,10 +37,6 @@ OrderedJson object_of(const BenchResult& r)
   json["repeats [ns]"] = r.repeats;
   json["bytes_per_particle"] = r.bytes_held;
   json["bytes_moved_per_particle_step"] = r.bytes_moved;
-  json["share_of_bandwidth"] = r.bandwidth_share;
-  json["fma_room_per_particle_step"] = r.fma_room;
-  if (r.over_yardstick)
-    json["over_yardstick"] = *r.over_yardstick;
   return json;
 }
 
@@ -62,10 +58,6 @@ BenchResult result_of(const OrderedJson& json)
   json.at("repeats [ns]").get_to(r.repeats);
   json.at("bytes_per_particle").get_to(r.bytes_held);
   json.at("bytes_moved_per_particle_step").get_to(r.bytes_moved);
-  json.at("share_of_bandwidth").get_to(r.bandwidth_share);
-  json.at("fma_room_per_particle_step").get_to(r.fma_room);
-  if (json.contains("over_yardstick"))
-    r.over_yardstick = json.at("over_yardstick").get<Real>();
   return r;
 }
 
@@ -82,9 +74,6 @@ BenchReport report_of(const OrderedJson& json)
   const OrderedJson& machine = json.at("machine");
   machine.at("processor").get_to(report.processor);
   machine.at("cores").get_to(report.cores);
-  for (const OrderedJson& limit : machine.at("limits"))
-    report.limits.push_back(
-        {limit.at("threads").get<int>(), limit.at("triad [B/s]").get<Real>(), limit.at("multiply_adds [1/s]").get<Real>()});
   for (const OrderedJson& result : json.at("cases"))
     report.results.push_back(result_of(result));
   return report;
@@ -101,9 +90,7 @@ void write_bench(const std::filesystem::path& file, const BenchReport& report)
                      {"compiler", report.compiler},
                      {"build", report.build},
                      {"flags", report.flags}};
-  json["machine"] = {{"processor", report.processor}, {"cores", report.cores}, {"limits", OrderedJson::array()}};
-  for (const MachineLimit& limit : report.limits)
-    json["machine"]["limits"].push_back({{"threads", limit.threads}, {"triad [B/s]", limit.triad}, {"multiply_adds [1/s]", limit.fma}});
+  json["machine"] = {{"processor", report.processor}, {"cores", report.cores}};
   json["cases"] = OrderedJson::array();
   for (const BenchResult& result : report.results)
     json["cases"].push_back(object_of(result));

@@ -35,29 +35,17 @@ struct BenchResult {
   Measured ns;                        ///< wall time per particle-step
   Measured cpu;                       ///< processor time of all threads per particle-step [ns]
   std::vector<BenchPhase> phases;
-  std::vector<Real> repeats;           ///< wall time per particle-step of each, in order [ns]
-  Real bytes_held{};                   ///< columns and history of a particle [B]
-  Real bytes_moved{};                  ///< per particle-step, the least that memory has to bring and take [B]
-  Real bandwidth_share{};              ///< bytes_moved over what the memory could have moved in that time
-  Real fma_room{};                     ///< multiply-adds that the cores could have done in the time of a particle-step
-  std::optional<Real> over_yardstick;  ///< its time over that of the yardstick of equal dimension and threads
-  bool is_yardstick() const noexcept { return setting.kernel == "yardstick"; }
+  std::vector<Real> repeats;  ///< wall time per particle-step of each, in order [ns]
+  Real bytes_held{};          ///< columns and history of a particle [B]
+  Real bytes_moved{};         ///< per particle-step, the least that memory has to bring and take [B]
   /// Million particle-steps per second and core.
   Real rate() const noexcept { return 1e3 / (ns.median * setting.threads); }
-};
-
-/// What the machine can do at best.
-struct MachineLimit {
-  int threads{};
-  Real triad{};  ///< a = b + s c on arrays far larger than the cache [B/s]
-  Real fma{};    ///< multiply-adds of doubles in packs [1/s]
 };
 
 struct BenchReport {
   std::string version, commit, compiler, build, flags;
   std::string processor;
   int cores{};
-  std::vector<MachineLimit> limits;
   std::vector<BenchResult> results;
 };
 

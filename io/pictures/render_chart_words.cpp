@@ -1,74 +1,65 @@
 // Words of the command line to a chart.
-#include <fmt/format.h>
-
-#include "core/error.hpp"
-#include "core/option_words.hpp"
 #include "io/pictures/render_chart.hpp"
-#include "io/pictures/settings/picture_settings.hpp"
+#include "io/pictures/settings/option_parser.hpp"
 
 namespace talus::render {
+
+namespace {
+
+/// An option that may stand there several times, with a name and `numbers` numbers: take(name, numbers).
+template <class Take>
+void add_lines(CLI::App& app, const std::string& option, int numbers, Take take)
+{
+  const CLI::callback_t read = [option, take](const std::vector<std::string>& words) {
+    std::vector<Real> values;
+    for (std::size_t i = 1; i < words.size(); ++i)
+      values.push_back(number<Real>(words[i], option));
+    take(words[0], values);
+    return true;
+  };
+  app.add_option(option, read)->type_size(1 + numbers)->trigger_on_parse();
+}
+
+void require_sound(CLI::App& app, std::span<const std::string> words)
+{
+  std::vector<std::string> problems;
+  parse_words(app, words, problems);
+  require_none(problems);
+}
+
+}  // namespace
 
 Chart parse_chart(std::span<const std::string> arguments)
 {
   Chart chart;
-  OptionWords words(arguments);
-  while (!words.empty()) {
-    const std::string word = words.next("");
-    const auto line = [&] {
-      std::string name = words.next(word);
-      return Chart::Level{std::move(name), number<Real>(words.next(word), word)};
-    };
-    if (word == "--x")
-      chart.x = words.next(word);
-    else if (word == "--y")
-      chart.y = words.next(word);
-    else if (word == "--title")
-      chart.title = words.next(word);
-    else if (word == "--out")
-      chart.out = words.next(word);
-    else if (word == "--curve")
-      chart.curve = words.next(word);
-    else if (word == "--marks")
-      chart.marks = true;
-    else if (word == "--log")
-      chart.log = true;
-    else if (word == "--level")
-      chart.levels.push_back(line());
-    else if (word == "--upright")
-      chart.uprights.push_back(line());
-    else if (!word.starts_with("--") && chart.table.empty())
-      chart.table = word;
-    else
-      throw Error(fmt::format("unknown option {}\n{}", word, usage()));
-  }
-  if (chart.table.empty() || chart.x.empty() || chart.y.empty() || chart.out.empty())
-    throw Error("a chart needs a table, --x, --y and --out\n" + usage());
+  CLI::App app;
+  app.add_option("TABLE", chart.table)->required();
+  app.add_option("--x", chart.x)->required();
+  app.add_option("--y", chart.y)->required();
+  app.add_option("--title", chart.title);
+  app.add_option("--out", chart.out)->required();
+  app.add_option("--curve", chart.curve);
+  app.add_flag("--marks", chart.marks);
+  app.add_flag("--log", chart.log);
+  for (const auto& [option, lines] : {std::pair("--level", &chart.levels), std::pair("--upright", &chart.uprights)})
+    add_lines(app, option, 1, [to = lines](const std::string& name, const std::vector<Real>& value) { to->push_back({name, value[0]}); });
+  require_sound(app, arguments);
   return chart;
 }
 
 Tornado parse_tornado(std::span<const std::string> arguments)
 {
   Tornado tornado;
-  OptionWords words(arguments);
-  while (!words.empty()) {
-    const std::string word = words.next("");
-    if (word == "--x")
-      tornado.x = words.next(word);
-    else if (word == "--title")
-      tornado.title = words.next(word);
-    else if (word == "--out")
-      tornado.out = words.next(word);
-    else if (word == "--base")
-      tornado.base = number<Real>(words.next(word), word);
-    else if (word == "--bar") {
-      std::string name = words.next(word);
-      const Real low = number<Real>(words.next(word), word), high = number<Real>(words.next(word), word);
-      tornado.bars.push_back({std::move(name), low, high});
-    } else
-      throw Error(fmt::format("unknown option {}\n{}", word, usage()));
-  }
-  if (tornado.bars.empty() || tornado.x.empty() || tornado.out.empty())
-    throw Error("a tornado needs --bar, --x and --out\n" + usage());
+  CLI::App app;
+  app.add_option("--x", tornado.x)->required();
+  app.add_option("--title", tornado.title);
+  app.add_option("--out", tornado.out)->required();
+  app.add_option("--base", tornado.base);
+  add_lines(app, "--bar", 2, [&](const std::string& name, const std::vector<Real>& ends) {
+    tornado.bars.push_back({name, ends[0], ends[1]});
+  });
+  app.get_option("--bar")->required();
+  require_sound(app, arguments);
   return tornado;
 }
 

@@ -252,6 +252,29 @@ Document read_document(const std::filesystem::path& file, std::string text, std:
   return document;
 }
 
+/// How long a value is that begins a text and ends in its first line; 0: it goes on in the next.
+std::size_t length_in_line(const Node& node, std::string_view text)
+{
+  if (node.kind == Node::Kind::scalar && !node.quoted)
+    return text.starts_with(node.text) ? node.text.size() : 0;
+  int depth = 0;
+  char quote = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote != 0)
+      quote = c == quote ? '\0' : quote;
+    else if (c == '"' || c == '\'')
+      quote = c;
+    else if (c == '[' || c == '{')
+      ++depth;
+    else if (c == ']' || c == '}')
+      --depth;
+    if (quote == 0 && depth == 0)
+      return i == 0 ? 0 : i + 1;  // the first letter of a block opens nothing
+  }
+  return 0;
+}
+
 /// Notes broken rules at the values they are about, unless these values are wrong already.
 void add_findings(Document& document, const std::vector<Finding>& findings)
 {
@@ -301,6 +324,38 @@ std::string written_in_scene(const std::filesystem::path& file, std::span<const 
   return in_one_line(there);
 }
 
+std::string with_values(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides)
+{
+  std::vector<Problem> problems;
+  for (const std::string& given : overrides) {
+    const auto complain = [&](std::string message) {
+      problems.push_back({SourceLocation{"--set " + given, 0, 0, ""}, std::move(message), ""});
+    };
+    const std::size_t equals = given.find('=');
+    if (equals == given.npos) {
+      complain("write it as key=value");
+      continue;
+    }
+    const Document document = read_document(file, text, {});
+    const std::string path = given.substr(0, equals);
+    const Found found = find_nearest(document.root, path);
+    const Place& place = found.node->place;
+    if (!found.whole) {
+      complain(fmt::format("{} has no {}: write it into the new file", file.string(), path));
+      continue;
+    }
+    const std::string_view line = document.sources.front().lines[static_cast<std::size_t>(place.line) - 1];
+    const auto begin = static_cast<std::size_t>(place.column) - 1;
+    if (const std::size_t length = length_in_line(*found.node, line.substr(begin)); length > 0)
+      text.replace(static_cast<std::size_t>(line.data() - document.sources.front().text.data()) + begin, length, given.substr(equals + 1));
+    else
+      complain(fmt::format("{} stands on several lines: change it in the new file", found.path));
+  }
+  if (!problems.empty())
+    throw SceneErrors(std::move(problems));
+  return text;
+}
+
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides)
 {
   Document document = read_document(file, read_text(file), overrides);
@@ -318,22 +373,6 @@ Study read_study(const std::filesystem::path& file)
   Study study = study_of(file, document.root, spec, document.problems);
   document.problems.throw_if_any();
   return study;
-}
-
-SceneTemplate read_template(const std::filesystem::path& file, const std::string& text)
-{
-  const std::string whole = plain_text(file, text);
-  constexpr std::string_view rule = "\n---\n";
-  const std::size_t end = whole.find(rule);
-  if (end == whole.npos)
-    throw SceneErrors(SourceLocation{file.string(), 0, 0, ""}, "a template has questions, a line \"---\", and the text of the scene");
-  const std::string head = whole.substr(0, end + 1);
-  SceneTemplate made{.file = file.string(), .head = {}, .body = whole.substr(end + rule.size())};
-  made.first_line = static_cast<int>(std::count(head.begin(), head.end(), '\n')) + 2;
-  Document document = read_document(file, head, {});
-  FieldReader(document.problems).read(document.root, "", {}, made.head);
-  document.problems.throw_if_any();
-  return made;
 }
 
 }  // namespace talus

@@ -7,7 +7,6 @@
 
 #include "io/scene/point_test.hpp"
 #include "io/scene/scene.hpp"
-#include "io/scene/scene_template.hpp"
 #include "io/scene/study.hpp"
 
 namespace talus {
@@ -35,13 +34,14 @@ struct KeyChoice {
 std::string written_in_scene(const std::filesystem::path& file, std::span<const std::string> overrides, std::string_view path,
                              const KeyChoice& keys = {});
 
+/// The text of a scene with the values of overrides in the places of its own; comments stay.  SceneErrors: the text has no such key, or its
+/// value stands on several lines.
+std::string with_values(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides);
+
 /// The file of `talus drive`, read in the same way.
 PointTest read_point_path(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The file of `talus sweep`.  That each case is a sound scene is seen when its scene is read with the changes.
 Study read_study(const std::filesystem::path& file);
-
-/// A template of `talus new` out of a text that was in `file`.  What stands in its formulas and in the scene is looked at as it is used.
-SceneTemplate read_template(const std::filesystem::path& file, const std::string& text);
 
 }  // namespace talus

@@ -2,7 +2,6 @@
 #include <algorithm>
 
 #include "app/commands/report/report_survey.hpp"
-#include "app/commands/watch/watch_drawing.hpp"
 #include "core/error.hpp"
 #include "core/format_duration.hpp"
 #include "io/files/atomic_file.hpp"
@@ -58,16 +57,13 @@ class RunOfTwo {
   fs::path folder_;
 };
 
-void draw_all(const StoredParticles& particles)
+void read_all(const StoredParticles& particles)
 {
   for (const StoredField& field : particles.fields) {
-    Cloud cloud{2, particles.fields.front().values, viewed_values(field, {field.name}), field.name, field.unit};
-    drawn(cloud, {});
-    cloud.dimension = 3;
-    drawn(cloud, {});
-    const auto [low, high] = std::minmax_element(cloud.values.begin(), cloud.values.end());
-    if (!cloud.values.empty())
-      quantised(cloud.values, *low, *high);
+    const std::vector<Real> values = viewed_values(field, {field.name});
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (!values.empty())
+      quantised(values, *low, *high);
   }
 }
 
@@ -79,7 +75,7 @@ void fuzz_particles(std::string_view bytes)
   const fs::path file = run.folder() / "particles_1.vtp";
   write_whole(file, bytes);
   attempt([&] { stored_particle_fields(file); });
-  attempt([&] { draw_all(read_particles(file)); });
+  attempt([&] { read_all(read_particles(file)); });
   attempt([&] { read_mesh_fields(file); });
   attempt([&] {
     const StoredMesh mesh = read_mesh(file);

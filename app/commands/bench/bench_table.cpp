@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-constexpr Real giga = 1e9, percent = 100;
+constexpr Real percent = 100;
 
 /// Names of the phases of all results, each where it first stands; the rest comes last.
 std::vector<std::string> phase_names(const std::vector<BenchResult>& results)
@@ -56,12 +56,8 @@ const BenchResult* find(const BenchReport& report, const BenchSetting& setting)
 
 std::string heading(const BenchReport& r)
 {
-  std::string text = fmt::format("talus {} ({}), {}, {}: {}\n{}, {} core{}\n", r.version, r.commit, r.compiler, r.build, r.flags,
-                                 r.processor, r.cores, r.cores == 1 ? "" : "s");
-  for (const MachineLimit& limit : r.limits)
-    text += fmt::format("  {} thread{}: triad {:.1f} GB/s, {:.1f} G multiply-adds/s\n", limit.threads, limit.threads == 1 ? "" : "s",
-                        limit.triad / giga, limit.fma / giga);
-  return text;
+  return fmt::format("talus {} ({}), {}, {}: {}\n{}, {} core{}\n", r.version, r.commit, r.compiler, r.build, r.flags, r.processor, r.cores,
+                     r.cores == 1 ? "" : "s");
 }
 
 std::string table(const std::vector<BenchResult>& results)
@@ -70,21 +66,19 @@ std::string table(const std::vector<BenchResult>& results)
   std::string text = setting_names() + fmt::format("{:>9}{:>8}{:>11}{:>8}", "M/s/core", "ns", "min-max", "cpu ns");
   for (const std::string& name : phases)
     text += fmt::format("{:>8}", name);
-  text += fmt::format("{:>7}{:>7}{:>7}{:>8}{:>7}\n", "B held", "moved", "% bw", "FMA fit", "x yard");
+  text += fmt::format("{:>7}{:>7}\n", "B held", "moved");
   for (const BenchResult& r : results) {
     text +=
         setting_entry(r.setting) + fmt::format("{:>9.3f}{:>8.1f}{:>11}{:>8.1f}", r.rate(), r.ns.median, spread_entry(r.ns), r.cpu.median);
     for (const std::string& name : phases)
       text += fmt::format("{:>8}", phase_entry(r, name));
-    text += fmt::format("{:>7.0f}{:>7.0f}{:>7.1f}{:>8.0f}{:>7}\n", r.bytes_held, r.bytes_moved, percent * r.bandwidth_share, r.fma_room,
-                        r.over_yardstick ? fmt::format("{:.2f}", *r.over_yardstick) : "-");
+    text += fmt::format("{:>7.0f}{:>7.0f}\n", r.bytes_held, r.bytes_moved);
   }
   return text +
          "M/s/core: million particle-steps per second and core; ns: wall time of a particle-step, median of the repeats; cpu ns: processor "
          "time of all\n"
          "threads; then wall time by phase\n"
-         "B held: columns of a particle; moved: the least that memory must carry per particle-step; % bw: of the triad's bandwidth\n"
-         "FMA fit: multiply-adds the cores could have done meanwhile; x yard: time over that of a structured grid with B-splines\n";
+         "B held: columns of a particle; moved: the least that memory must carry per particle-step\n";
 }
 
 std::string option_table(const std::vector<BenchResult>& results)

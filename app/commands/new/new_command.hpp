@@ -1,5 +1,5 @@
 #pragma once
-// A scene from a template and answers.
+// Command talus new.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,12 +8,12 @@
 namespace talus {
 
 struct NewOptions {
-  std::optional<std::string> from;  ///< name of a template, or its file
+  std::optional<std::string> from;  ///< name of a template, or the file of a scene
   std::optional<std::filesystem::path> out;
-  std::vector<std::string> set;  ///< name=value of questions; then nothing is asked
+  std::vector<std::string> set;  ///< key=value, as `talus run` takes it
   bool list = false, force = false;
 };
-/// Writes a scene from a template and answers.  SceneErrors, Error: an answer or the template is wrong; the file is there already.
+/// Copies a scene, with its comments, to be edited.  SceneErrors, Error: a value does not fit; the file is there already.
 void new_scene(const NewOptions& options);
 
 }  // namespace talus

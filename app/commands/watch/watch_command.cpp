@@ -3,14 +3,11 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <thread>
 
 #include "app/commands/watch/watch_command.hpp"
 #include "app/commands/watch/watch_look.hpp"
 #include "app/commands/watch/watch_pages.hpp"
-#include "app/setup/vertical_axis.hpp"
 #include "core/error.hpp"
 
 namespace talus {
@@ -23,25 +20,17 @@ constexpr int run_failed = 1, run_stopped = 4;  // as of `talus run`
 
 struct Terminal {
   bool is_there = ::isatty(STDOUT_FILENO) == 1;
-  bool colours = is_there && !is_set("NO_COLOR") && std::getenv("TERM") != nullptr && std::string_view(std::getenv("TERM")) != "dumb";
-  int columns = 80, rows = 30;
+  int columns = 80;
 
   Terminal()
   {
     winsize size{};
     if (is_there && ::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0)
-      columns = size.ws_col, rows = size.ws_row;
-  }
-
- private:
-  static bool is_set(const char* name)
-  {
-    const char* value = std::getenv(name);
-    return value != nullptr && *value != '\0';
+      columns = size.ws_col;
   }
 };
 
-/// The first `most` letters of a line without colours; a line that goes over would spoil what is counted back.
+/// The first `most` letters of a line; a line that goes over would spoil what is counted back.
 std::string cut(const std::string& line, int most)
 {
   std::size_t end = 0;
@@ -132,32 +121,11 @@ class Follower {
         run_ = read_run_folder(options_.folder);
         summary_state_ = now;
       }
-      const std::string before = look_.marks;
       look_ = look_at(run_, look_);
-      if (look_.marks != before || !drawn_once_)
-        draw();
-      drawn_once_ = true;
     } catch (const Error&) {
       if (!fs::exists(options_.folder))
         throw Error(fmt::format("{} has gone while it was watched", options_.folder.string()));
     }
-  }
-
-  void draw()
-  {
-    const Terminal now;
-    const PictureSpec& picture = run_.scene.outputs.picture;
-    DrawingStyle style;
-    style.columns = std::clamp(now.columns - 2, 20, 110);
-    style.rows = std::clamp(now.rows - 14, 6, 20);
-    style.colours = now.colours;
-    if (picture.view.size() == 3)
-      style.view = Eigen::Map<const Vec3>(picture.view.data());
-    style.up = picture.up.size() == 3 ? Vec3(Eigen::Map<const Vec3>(picture.up.data())) : upright_of(run_.scene);
-    if (picture.range.size() == 2)
-      style.range = std::array{picture.range[0], picture.range[1]};
-    const auto cloud = last_cloud(run_, look_.files, look_.left_out);
-    drawing_ = cloud ? drawn(*cloud, style) : std::vector<std::string>();
   }
 
   /// On a terminal in the place of what was shown before.
@@ -174,8 +142,6 @@ class Follower {
     };
     for (const std::string& line : described(run_, look_))
       put(now.is_there ? cut(line, now.columns - 1) : line);
-    for (const std::string& line : drawing_)
-      put(line);
     fmt::print("{}", text);
     std::fflush(stdout);
   }
@@ -184,8 +150,6 @@ class Follower {
   RunFolder run_;
   std::string summary_state_;
   RunLook look_;
-  std::vector<std::string> drawing_;
-  bool drawn_once_ = false;
   Terminal terminal_;
   int lines_shown_ = 0;
   std::mutex readers_;

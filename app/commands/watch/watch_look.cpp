@@ -177,26 +177,4 @@ std::string in_one_line(const RunFolder&, const RunLook& look)
   return text;
 }
 
-std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files, std::vector<std::string>& left_out)
-{
-  const auto wanted = ViewedField::of(run.scene.outputs.picture.field);
-  for (auto frame = files.frames.rbegin(); frame != files.frames.rend(); ++frame)
-    try {
-      StoredParticles particles = read_particles(frame->second);
-      const StoredField* field = stored_field(particles, wanted.name);
-      if (field == nullptr)
-        return std::nullopt;
-      if (const auto names = component_names(field->components);
-          !wanted.component.empty() && std::find(names.begin(), names.end(), wanted.component) == names.end())
-        throw EnvironmentError(
-            fmt::format("cannot read {}: its field \"{}\" has no component \"{}\"", frame->second.string(), wanted.name, wanted.component));
-      Cloud cloud{static_cast<int>(run.scene.dimension), {}, viewed_values(*field, wanted), wanted.label(field->components), field->unit};
-      cloud.places = std::move(particles.fields.front().values);
-      return cloud;
-    } catch (const EnvironmentError& damaged) {
-      left_out.emplace_back(damaged.what());
-    }
-  return std::nullopt;
-}
-
 }  // namespace talus

@@ -1,7 +1,6 @@
 #pragma once
 // What is to be seen of a run in its folder at one moment, in words.
 #include "app/commands/report/report.hpp"
-#include "app/commands/watch/watch_drawing.hpp"
 #include "io/output/progress_json.hpp"
 
 namespace talus {
@@ -28,9 +27,5 @@ RunLook look_at(const RunFolder& run, const RunLook& before);
 std::vector<std::string> described(const RunFolder& run, const RunLook& look);
 /// One line, for logs.
 std::string in_one_line(const RunFolder& run, const RunLook& look);
-
-/// The last frame that can be read, with the field of the pictures; nothing if there is none.  Those behind it that cannot be read are added
-/// to `left_out`.
-std::optional<Cloud> last_cloud(const RunFolder& run, const RunFiles& files, std::vector<std::string>& left_out);
 
 }  // namespace talus

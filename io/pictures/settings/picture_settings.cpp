@@ -1,4 +1,4 @@
-// By hand: the ordinary user types `talus render`, which hands on what has been checked here already.
+// The options of pictures, surfaces and maps: a table of each, and how their words are read.
 #include "io/pictures/settings/picture_settings.hpp"
 
 #include <fmt/format.h>
@@ -7,26 +7,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/error.hpp"
-#include "core/option_words.hpp"
-#include "core/word_match.hpp"
 #include "io/files/runout_maps.hpp"
+#include "io/pictures/settings/option_parser.hpp"
 
 namespace talus::render {
 
 namespace {
 
 constexpr int smallest = 200, largest = 10000;  // pixels
-constexpr std::array internal_options{
-    // what `talus render` says of the scene, and what only talus-render knows
-    Option{"--up", 3, 3, "X Y Z", "3-D: up in the picture"}, Option{"--title", 1, 1, "TEXT", "above the picture"},
-    Option{"--radius", 1, 1, "R", "of a particle as drawn [m]"}};
-constexpr std::array internal_surface_options{Option{"--body", 2, 2, "NUMBER NAME", "one more body"}};
-
-constexpr std::array internal_map_options{Option{"--title", 1, 1, "TEXT", "above the picture"},
-                                          Option{"--axes", 2, 2, "RIGHT UP", "names of the axes of the plan"},
-                                          Option{"--frames", 0, 0, "", "the frames of the thickness instead"}};
-
 using Values = std::vector<std::string>;
 
 template <class Enum>
@@ -149,148 +137,141 @@ std::array<Real, 4> window_of(const Values& values)
   return {w[0], w[1], w[2], w[3]};
 }
 
-void set(const std::string& option, const Values& values, Settings& s)
+bool is_start(const std::string& word)
 {
-  if (option == "--field")
-    s.field = values[0];
-  else if (option == "--range")
-    s.range = range_of(values);
-  else if (option == "--map")
-    s.map = choice<Map>(values[0], option);
-  else if (option == "--log")
-    s.log = true;
-  else if (option == "--frames")
-    s.frames = frames_of(values[0], option);
-  else if (option == "--size")
-    s.size = picture_size(values[0]);
-  else if (option == "--view" && values.size() == 1)
-    s.view = choice<NamedView>(values[0], option);
-  else if (option == "--view")
-    s.view = vector_of(values, option);
-  else if (option == "--look-at")
-    s.look_at = numbers(values, option);
-  else if (option == "--zoom")
-    s.zoom = positive_number(values[0], option);
-  else if (option == "--perspective" || option == "--orthographic")
-    s.perspective = option == "--perspective";
-  else if (option == "--window")
-    s.window = window_of(values);
-  else if (option == "--clip")
-    s.clip = plane_of(values);
-  else if (option == "--mesh")
-    s.mesh = choice<MeshLines>(values[0], option);
-  else if (option == "--no-mesh")
-    s.mesh = MeshLines::none;
-  else if (option == "--no-ground")
-    s.ground = false;
-  else if (option == "--outline")
-    s.start_outline = values[0] == "start" ? true : throw Error(fmt::format("--outline: unknown \"{}\"; known is start", values[0]));
-  else if (option == "--out")
-    s.out = values[0];
-  else if (option == "--up")
-    s.up = vector_of(values, option);
-  else if (option == "--title")
-    s.title = values[0];
-  else if (option == "--radius")
-    s.radius = positive_number(values[0], option);
-  s.given.push_back(option);
+  return word == "start" ? true : throw Error(fmt::format("--outline: unknown \"{}\"; known is start", word));
 }
 
-void set(const std::string& option, const Values& values, MapSettings& s)
-{
-  if (option == "--only")
-    s.only = values;
-  else if (option == "--range")
-    s.range = std::get<std::array<Real, 2>>(range_of(values));
-  else if (option == "--map")
-    s.map = choice<Map>(values[0], option);
-  else if (option == "--log")
-    s.log = true;
-  else if (option == "--contours")
-    s.contours = positive_number(values[0], option);
-  else if (option == "--size")
-    s.size = picture_size(values[0]);
-  else if (option == "--out")
-    s.out = values[0];
-  else if (option == "--title")
-    s.title = values[0];
-  else if (option == "--axes")
-    s.axes = {values[0], values[1]};
-  else if (option == "--frames")
-    s.frames = true;
-}
+constexpr std::array picture_options{
+    Option<Settings>{"--field", 1, 1, "NAME[:component]", "particle field that colours the particles; default what the scene says",
+                     [](const Values& w, Settings& s) { s.field = w[0]; }},
+    Option<Settings>{"--range", 1, 2, "LOW HIGH|last|whole",
+                     "values at the ends of the colours; default those of the last frame; whole: of all frames",
+                     [](const Values& w, Settings& s) { s.range = range_of(w); }},
+    Option<Settings>{"--map", 1, 1, "{viridis,cividis,coolwarm}", "colours; default viridis; coolwarm has its middle at zero",
+                     [](const Values& w, Settings& s) { s.map = choice<Map>(w[0], "--map"); }},
+    Option<Settings>{"--log", 0, 0, "", "colours by the logarithm of the values", [](const Values&, Settings& s) { s.log = true; }},
+    Option<Settings>{"--frames", 1, 1, "WHICH", "last (default), first, all, the number of one from 0, or FROM:TO[:STEP]",
+                     [](const Values& w, Settings& s) { s.frames = frames_of(w[0], "--frames"); }},
+    Option<Settings>{"--size", 1, 1, "WxH", "pixels, such as 1280x720", [](const Values& w, Settings& s) { s.size = picture_size(w[0]); }},
+    Option<Settings>{"--view", 1, 3, "{front,back,left,right,top,iso}|X Y Z", "3-D: or the direction from the scene to the camera",
+                     [](const Values& w, Settings& s) {
+                       if (w.size() == 1)
+                         s.view = choice<NamedView>(w[0], "--view");
+                       else
+                         s.view = vector_of(w, "--view");
+                     }},
+    Option<Settings>{"--look-at", 2, 3, "X Y [Z]", "point in the middle of the picture [m]",
+                     [](const Values& w, Settings& s) { s.look_at = numbers(w, "--look-at"); }},
+    Option<Settings>{"--zoom", 1, 1, "F", "so many times larger than what shows everything",
+                     [](const Values& w, Settings& s) { s.zoom = positive_number(w[0], "--zoom"); }},
+    Option<Settings>{"--perspective", 0, 0, "", "3-D: far things are smaller (default)",
+                     [](const Values&, Settings& s) { s.perspective = true; }},
+    Option<Settings>{"--orthographic", 0, 0, "", "3-D: far things are as large as near ones",
+                     [](const Values&, Settings& s) { s.perspective = false; }},
+    Option<Settings>{"--window", 4, 4, "XLOW YLOW XHIGH YHIGH", "2-D: the part to show [m]",
+                     [](const Values& w, Settings& s) { s.window = window_of(w); }},
+    Option<Settings>{"--clip", 2, 4, "AXIS OFFSET|NX NY NZ OFFSET", "leave out the particles beyond a plane, those with n.x > offset [m]",
+                     [](const Values& w, Settings& s) { s.clip = plane_of(w); }},
+    Option<Settings>{"--mesh", 1, 1, "{outline,edges,none}",
+                     "lines; edges: of all cells, in 3-D of the boundary; default what the scene says",
+                     [](const Values& w, Settings& s) { s.mesh = choice<MeshLines>(w[0], "--mesh"); }},
+    Option<Settings>{"--no-mesh", 0, 0, "", "as --mesh none", [](const Values&, Settings& s) { s.mesh = MeshLines::none; }},
+    Option<Settings>{"--no-ground", 0, 0, "", "without the ground of a mesh of terrain",
+                     [](const Values&, Settings& s) { s.ground = false; }},
+    Option<Settings>{"--outline", 1, 1, "start", "draw the outline of the bodies at the start over the particles",
+                     [](const Values& w, Settings& s) { s.start_outline = is_start(w[0]); }},
+    Option<Settings>{"--out", 1, 1, "PATH", "a .png or a folder; default DIR/pictures", [](const Values& w, Settings& s) { s.out = w[0]; }},
+    Option<Settings>{"--up", 3, 3, "X Y Z", "3-D: up in the picture", [](const Values& w, Settings& s) { s.up = vector_of(w, "--up"); },
+                     true},
+    Option<Settings>{"--title", 1, 1, "TEXT", "above the picture", [](const Values& w, Settings& s) { s.title = w[0]; }, true},
+    Option<Settings>{"--radius", 1, 1, "R", "of a particle as drawn [m]",
+                     [](const Values& w, Settings& s) { s.radius = positive_number(w[0], "--radius"); }, true}};
 
-void set(const std::string& option, const Values& values, SurfaceSettings& s)
-{
-  if (option == "--frame")
-    s.frames = frames_of(values[0], option);
-  else if (option == "--spacing")
-    s.spacing = positive_number(values[0], option);
-  else if (option == "--level")
-    s.level = positive_number(values[0], option);
-  else if (option == "--field")
-    s.field = values[0];
-  else if (option == "--body")
-    s.bodies.push_back({number<int>(values[0], option), values[1]});
-  else if (option == "--out")
-    s.out = values[0];
-}
+constexpr std::array surface_options{
+    Option<SurfaceSettings>{"--frame", 1, 1, "WHICH",
+                            "last (default), first, all, the number of one from 0, or FROM:TO[:STEP]; several become numbered files",
+                            [](const Values& w, SurfaceSettings& s) { s.frames = frames_of(w[0], "--frame"); }},
+    Option<SurfaceSettings>{"--spacing", 1, 1, "H",
+                            "between the points where the density is reckoned [m]; default half the width of a particle",
+                            [](const Values& w, SurfaceSettings& s) { s.spacing = positive_number(w[0], "--spacing"); }},
+    Option<SurfaceSettings>{"--level", 1, 1, "F", "share of the density inside at which the surface lies; default 0.5",
+                            [](const Values& w, SurfaceSettings& s) { s.level = positive_number(w[0], "--level"); }},
+    Option<SurfaceSettings>{"--field", 1, 1, "NAME[:component]", "colours the vertices of a .ply by a particle field",
+                            [](const Values& w, SurfaceSettings& s) { s.field = w[0]; }},
+    Option<SurfaceSettings>{"--out", 1, 1, "FILE", ".ply, .stl or .obj; of a 2-D run .obj, whose lines are the contour",
+                            [](const Values& w, SurfaceSettings& s) { s.out = w[0]; }},
+    Option<SurfaceSettings>{"--body", 2, 2, "NUMBER NAME", "one more body",
+                            [](const Values& w, SurfaceSettings& s) {
+                              s.bodies.push_back({number<int>(w[0], "--body"), w[1]});
+                            },
+                            true, true}};
 
-/// Reads the words by the table of options; `folder` takes the one that belongs to none.
+constexpr std::array map_options{
+    Option<MapSettings>{"--only", 1, 12, "NAME...",
+                        "maps to draw, such as thickness_max arrival, or sections; default all but surfaces, and sections",
+                        [](const Values& w, MapSettings& s) { s.only = w; }},
+    Option<MapSettings>{"--range", 2, 2, "LOW HIGH", "values at the ends of the colours, of a single map or a movie; default all there are",
+                        [](const Values& w, MapSettings& s) { s.range = std::get<std::array<Real, 2>>(range_of(w)); }},
+    Option<MapSettings>{"--map", 1, 1, "{viridis,cividis,coolwarm}", "colours; default viridis",
+                        [](const Values& w, MapSettings& s) { s.map = choice<Map>(w[0], "--map"); }},
+    Option<MapSettings>{"--log", 0, 0, "", "colours by the logarithm of the values", [](const Values&, MapSettings& s) { s.log = true; }},
+    Option<MapSettings>{"--contours", 1, 1, "STEP", "between contours of the ground [m]; default a round number",
+                        [](const Values& w, MapSettings& s) { s.contours = positive_number(w[0], "--contours"); }},
+    Option<MapSettings>{"--size", 1, 1, "WxH", "pixels, such as 1280x960; default 1280 wide, as high as the map needs",
+                        [](const Values& w, MapSettings& s) { s.size = picture_size(w[0]); }},
+    Option<MapSettings>{"--out", 1, 1, "FOLDER", "default DIR/pictures", [](const Values& w, MapSettings& s) { s.out = w[0]; }},
+    Option<MapSettings>{"--title", 1, 1, "TEXT", "above the picture", [](const Values& w, MapSettings& s) { s.title = w[0]; }, true},
+    Option<MapSettings>{"--axes", 2, 2, "RIGHT UP", "names of the axes of the plan",
+                        [](const Values& w, MapSettings& s) {
+                          s.axes = {w[0], w[1]};
+                        },
+                        true},
+    Option<MapSettings>{"--frames", 0, 0, "", "the frames of the thickness instead", [](const Values&, MapSettings& s) { s.frames = true; },
+                        true}};
+
+/// Settings of what stands on the command line; what is wrong with it is added to `problems`.
 template <class S>
-void read_words(std::span<const std::string> given, std::span<const Option> options, S& settings, std::vector<std::string>& problems)
+S read_settings(std::span<const std::string> words, std::vector<std::string>& problems)
 {
-  OptionWords words(given);
-  while (!words.empty()) {
-    const std::string word = words.next("");
-    if (!word.starts_with("--")) {
-      if (!settings.folder.empty())
-        problems.push_back(fmt::format("one folder at a time: {} and {}", settings.folder.string(), word));
-      settings.folder = word;
-      continue;
+  S settings;
+  CLI::App app;
+  app.set_help_flag();
+  app.add_option("DIR", settings.folder);
+  add_options(app, S::options(), [&](const Option<S>& option, const Values& values) {
+    try {
+      option.set(values, settings);
+      if constexpr (requires { settings.given; })
+        settings.given.emplace_back(option.name);
+    } catch (const Error& error) {
+      problems.emplace_back(error.what());
     }
-    const auto option = std::find_if(options.begin(), options.end(), [&](const Option& o) { return o.name == word; });
-    if (option == options.end()) {
-      std::vector<std::string> known;
-      for (const Option& o : options)
-        known.emplace_back(o.name);
-      problems.push_back(fmt::format("unknown option {}{}", word, suggestion(word, known)));
-      words.values();
-      continue;
-    }
-    const Values values = option->most == 0 ? Values{} : word == "--title" ? Values{words.next(word)} : words.values();
-    if (static_cast<int>(values.size()) < option->least || static_cast<int>(values.size()) > option->most)
-      problems.push_back(fmt::format("{}: wanted is {}, here are {} words", word, option->values, values.size()));
-    else
-      try {
-        set(word, values, settings);
-      } catch (const Error& error) {
-        problems.emplace_back(error.what());
-      }
-  }
+  });
+  parse_words(app, words, problems);
   if (settings.folder.empty())
-    problems.push_back("the folder of a run is missing\n" + usage());
+    problems.emplace_back("the folder of a run is missing");
+  return settings;
 }
 
-template <std::size_t N, std::size_t M>
-std::vector<Option> joined(const std::array<Option, N>& a, const std::array<Option, M>& b)
+template <class S>
+std::string help(const char* command)
 {
-  std::vector<Option> all(a.begin(), a.end());
-  all.insert(all.end(), b.begin(), b.end());
-  return all;
-}
-
-std::string line_of(const Option& option)
-{
-  return fmt::format("  {:<40} {}\n", fmt::format("{} {}", option.name, option.values), option.help);
+  CLI::App app;
+  app.set_help_flag();
+  app.add_option("DIR", "folder of a run");
+  add_options(app, S::options(), [](const Option<S>&, const Values&) {});
+  return app.help(command) + "\n";
 }
 
 }  // namespace
 
+std::span<const Option<Settings>> Settings::options() { return picture_options; }
+std::span<const Option<SurfaceSettings>> SurfaceSettings::options() { return surface_options; }
+std::span<const Option<MapSettings>> MapSettings::options() { return map_options; }
+
 Settings parse_picture(std::span<const std::string> words, std::vector<std::string>& problems)
 {
-  Settings s;
-  read_words(words, joined(picture_options, internal_options), s, problems);
+  auto s = read_settings<Settings>(words, problems);
   if (const auto* view = std::get_if<Vec3>(&s.view))
     if (!(view->cross(s.up).norm() > 1e-6 * view->norm() * s.up.norm()))  // a ten-thousandth of a degree: no horizontal is left
       problems.emplace_back("--view: it must not be parallel to what is up in the picture; --view top looks from above");
@@ -302,8 +283,7 @@ Settings parse_picture(std::span<const std::string> words, std::vector<std::stri
 
 SurfaceSettings parse_surface(std::span<const std::string> words, std::vector<std::string>& problems)
 {
-  SurfaceSettings s;
-  read_words(words, joined(surface_options, internal_surface_options), s, problems);
+  auto s = read_settings<SurfaceSettings>(words, problems);
   const std::string kind = s.out.extension();
   if (s.out.empty())
     problems.emplace_back("--out: the file is missing: one that ends in .ply, .stl or .obj");
@@ -318,8 +298,7 @@ SurfaceSettings parse_surface(std::span<const std::string> words, std::vector<st
 
 MapSettings parse_maps(std::span<const std::string> words, std::vector<std::string>& problems)
 {
-  MapSettings s;
-  read_words(words, joined(map_options, internal_map_options), s, problems);
+  auto s = read_settings<MapSettings>(words, problems);
   std::vector<std::string> known{"sections"};
   for (const MapKind& kind : map_kinds)
     known.emplace_back(kind.name);
@@ -335,25 +314,12 @@ MapSettings parse_maps(std::span<const std::string> words, std::vector<std::stri
 
 std::string usage()
 {
-  std::string text =
-      "usage: talus-render DIR [options]\n"
-      "       talus-render surface DIR [options] --out FILE.ply|FILE.stl|FILE.obj\n"
-      "       talus-render map DIR [options]\n"
-      "       talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--upright NAME VALUE]... [--curve NAME] "
-      "[--marks] [--log] [--title TEXT] --out FILE.png\n"
-      "       talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png\n"
-      "Draws the particles of DIR/particles.pvd, writes the surface of bodies, draws DIR/maps and DIR/sections, or a curve of a table.  "
-      "Pictures need a display; "
-      "`talus render` brings one.\nPictures:\n";
-  for (const Option& option : joined(picture_options, internal_options))
-    text += line_of(option);
-  text += "Surfaces:\n";
-  for (const Option& option : joined(surface_options, internal_surface_options))
-    text += line_of(option);
-  text += "Maps:\n";
-  for (const Option& option : joined(map_options, internal_map_options))
-    text += line_of(option);
-  return text;
+  return "Draws the particles of DIR/particles.pvd, writes the surface of bodies, draws DIR/maps and DIR/sections, or a curve of a table.\n"
+         "Pictures need a display; `talus render` brings one.\n\n" +
+         help<Settings>("talus-render") + help<SurfaceSettings>("talus-render surface") + help<MapSettings>("talus-render map") +
+         "talus-render chart TABLE.csv --x COLUMN --y COLUMN [--level NAME VALUE]... [--upright NAME VALUE]... [--curve NAME] [--marks] "
+         "[--log] [--title TEXT] --out FILE.png\n"
+         "talus-render tornado --bar NAME LOW HIGH... --base VALUE --x COLUMN [--title TEXT] --out FILE.png\n";
 }
 
 }  // namespace talus::render

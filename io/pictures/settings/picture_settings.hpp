@@ -14,51 +14,16 @@
 
 namespace talus::render {
 
-/// An option of a command line and how many words follow it.
+/// An option of a command line: how many words follow it, and what they set.  Error: they are not what is wanted.
+template <class S>
 struct Option {
   std::string_view name;
   int least, most;
   std::string_view values, help;
+  void (*set)(const std::vector<std::string>& words, S& settings);
+  bool internal = false;  ///< what `talus` says of the scene; only talus-render knows it
+  bool repeated = false;  ///< may stand there several times
 };
-
-// What both `talus render` and talus-render understand.
-inline constexpr std::array picture_options{
-    Option{"--field", 1, 1, "NAME[:component]", "particle field that colours the particles; default what the scene says"},
-    Option{"--range", 1, 2, "LOW HIGH|last|whole",
-           "values at the ends of the colours; default those of the last frame; whole: of all frames"},
-    Option{"--map", 1, 1, "{viridis,cividis,coolwarm}", "colours; default viridis; coolwarm has its middle at zero"},
-    Option{"--log", 0, 0, "", "colours by the logarithm of the values"},
-    Option{"--frames", 1, 1, "WHICH", "last (default), first, all, the number of one from 0, or FROM:TO[:STEP]"},
-    Option{"--size", 1, 1, "WxH", "pixels, such as 1280x720"},
-    Option{"--view", 1, 3, "{front,back,left,right,top,iso}|X Y Z", "3-D: or the direction from the scene to the camera"},
-    Option{"--look-at", 2, 3, "X Y [Z]", "point in the middle of the picture [m]"},
-    Option{"--zoom", 1, 1, "F", "so many times larger than what shows everything"},
-    Option{"--perspective", 0, 0, "", "3-D: far things are smaller (default)"},
-    Option{"--orthographic", 0, 0, "", "3-D: far things are as large as near ones"},
-    Option{"--window", 4, 4, "XLOW YLOW XHIGH YHIGH", "2-D: the part to show [m]"},
-    Option{"--clip", 2, 4, "AXIS OFFSET|NX NY NZ OFFSET", "leave out the particles beyond a plane, those with n.x > offset [m]"},
-    Option{"--mesh", 1, 1, "{outline,edges,none}", "lines; edges: of all cells, in 3-D of the boundary; default what the scene says"},
-    Option{"--no-mesh", 0, 0, "", "as --mesh none"},
-    Option{"--no-ground", 0, 0, "", "without the ground of a mesh of terrain"},
-    Option{"--outline", 1, 1, "start", "draw the outline of the bodies at the start over the particles"},
-    Option{"--out", 1, 1, "PATH", "a .png or a folder; default DIR/pictures"}};
-
-inline constexpr std::array surface_options{
-    Option{"--frame", 1, 1, "WHICH",
-           "last (default), first, all, the number of one from 0, or FROM:TO[:STEP]; several become numbered files"},
-    Option{"--spacing", 1, 1, "H", "between the points where the density is reckoned [m]; default half the width of a particle"},
-    Option{"--level", 1, 1, "F", "share of the density inside at which the surface lies; default 0.5"},
-    Option{"--field", 1, 1, "NAME[:component]", "colours the vertices of a .ply by a particle field"},
-    Option{"--out", 1, 1, "FILE", ".ply, .stl or .obj; of a 2-D run .obj, whose lines are the contour"}};
-
-inline constexpr std::array map_options{
-    Option{"--only", 1, 12, "NAME...", "maps to draw, such as thickness_max arrival, or sections; default all but surfaces, and sections"},
-    Option{"--range", 2, 2, "LOW HIGH", "values at the ends of the colours, of a single map or a movie; default all there are"},
-    Option{"--map", 1, 1, "{viridis,cividis,coolwarm}", "colours; default viridis"},
-    Option{"--log", 0, 0, "", "colours by the logarithm of the values"},
-    Option{"--contours", 1, 1, "STEP", "between contours of the ground [m]; default a round number"},
-    Option{"--size", 1, 1, "WxH", "pixels, such as 1280x960; default 1280 wide, as high as the map needs"},
-    Option{"--out", 1, 1, "FOLDER", "default DIR/pictures"}};
 
 /// From one frame to another, counted from zero; nothing stands for the last.
 struct Frames {
@@ -103,6 +68,7 @@ struct Settings {
   std::string title;
   std::optional<Real> radius;      ///< of a particle as drawn [m]; default from their spacing
   std::vector<std::string> given;  ///< options that stood there
+  static std::span<const Option<Settings>> options();
 };
 
 struct SurfaceSettings {
@@ -117,6 +83,7 @@ struct SurfaceSettings {
   Real level = 0.5;
   std::optional<std::string> field;
   std::filesystem::path out;
+  static std::span<const Option<SurfaceSettings>> options();
 };
 
 struct MapSettings {
@@ -131,6 +98,7 @@ struct MapSettings {
   std::string title;
   std::array<std::string, 2> axes{"x", "y"};  ///< of the plan, to the right and upwards
   bool frames = false;                        ///< draws the frames of the thickness instead
+  static std::span<const Option<MapSettings>> options();
 };
 
 /// What a run has, so far as settings depend on it.

@@ -42,28 +42,20 @@ TEST_F(Bench, MeasuresTheUsualSettingsAndWritesThemDown)
   EXPECT_THAT(outcome.out, HasSubstr("particle-steps per second and core"));
   const BenchReport report = read_bench(folder_ / "speed.json");
   EXPECT_FALSE(report.compiler.empty());
-  ASSERT_FALSE(report.limits.empty());
-  for (const MachineLimit& limit : report.limits)
-    EXPECT_TRUE(limit.triad > 0 && limit.fma > 0);
-  std::size_t yardsticks = 0;
   for (const BenchResult& r : report.results) {
     SCOPED_TRACE(r.setting.kernel + " " + r.setting.transfer + " " + r.setting.law);
-    yardsticks += r.is_yardstick() ? 1 : 0;
     EXPECT_NEAR(static_cast<Real>(r.particles), 2000, 1000);
     EXPECT_GT(r.ns.least, 0);
     EXPECT_LE(r.ns.least, r.ns.median);
     EXPECT_LE(r.ns.median, r.ns.most);
     EXPECT_GT(r.bytes_held, 100);
     EXPECT_GT(r.bytes_moved, r.bytes_held);
-    EXPECT_GT(r.bandwidth_share, 0);
-    EXPECT_GT(r.over_yardstick.value_or(0), r.is_yardstick() ? -1 : 0);
     Real phases = 0;
     for (const BenchPhase& phase : r.phases)
       phases += phase.ns;
     EXPECT_NEAR(phases, r.ns.median, 1e-6 * r.ns.median) << "one repeat: what is left is counted as rest";
   }
-  EXPECT_GE(yardsticks, 2u);
-  EXPECT_GE(report.results.size(), yardsticks + 12 + 2 + 2) << "kernels and transfers in 3-D and 2-D, laws, few particles";
+  EXPECT_GE(report.results.size(), 12u + 2 + 2) << "kernels and transfers in 3-D and 2-D, laws, few particles";
 }
 
 TEST_F(Bench, WordsMakeAProduct)
@@ -72,7 +64,7 @@ TEST_F(Bench, WordsMakeAProduct)
       "bench --particles 1000 --repeats 2 --steps 1 --kernel linear,projected --transfer flip --law newtonian,von_mises --dimension 2 "
       "--per-cell 3,4 --threads 1 --json speed.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  EXPECT_EQ(read_bench(folder_ / "speed.json").results.size(), 1u + 8u);
+  EXPECT_EQ(read_bench(folder_ / "speed.json").results.size(), 8u);
 }
 
 TEST_F(Bench, SinglePrecisionStandsBesideDoubleAndTakesLessRoom)
@@ -81,8 +73,8 @@ TEST_F(Bench, SinglePrecisionStandsBesideDoubleAndTakesLessRoom)
       talus("bench --particles 1000 --repeats 1 --steps 1 --kernel projected --transfer tpic --precision double,single --json speed.json");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
   const BenchReport report = read_bench(folder_ / "speed.json");
-  ASSERT_EQ(report.results.size(), 1u + 2u);
-  const BenchResult &twofold = report.results[1], &single = report.results[2];
+  ASSERT_EQ(report.results.size(), 2u);
+  const BenchResult &twofold = report.results[0], &single = report.results[1];
   EXPECT_EQ(twofold.setting.precision, "double");
   EXPECT_EQ(single.setting.precision, "single");
   EXPECT_EQ(twofold.bytes_held - single.bytes_held, 4 * (3 + 9 + 9 + 6 + 1)) << "v, L, F, stress, mass";

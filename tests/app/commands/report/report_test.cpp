@@ -8,7 +8,6 @@
 #include "app/commands/report/report.hpp"
 #include "app/commands/report/report_particles.hpp"
 #include "app/commands/report/report_plan.hpp"
-#include "app/commands/watch/watch_drawing.hpp"
 #include "core/error.hpp"
 #include "io/output/summary_json.hpp"
 #include "io/output/vtk.hpp"
@@ -314,26 +313,6 @@ TEST_F(Report, AProgramThatWasBuiltWithoutThePageSaysSo)
   EXPECT_FALSE(exists("out/report.html"));
   const Outcome named = talus("", "sh -c './bare report out --page page.html'");
   EXPECT_EQ(named.code, 0) << named.err;
-}
-
-TEST(Drawing, ASquareFillsItsLettersAndColoursAreForTerminals)
-{
-  Cloud cloud{2, {}, {}, "speed", "m/s"};
-  for (int i = 0; i < 20; ++i)
-    for (int j = 0; j < 20; ++j) {
-      cloud.places.insert(cloud.places.end(), {0.05 * i, 0.05 * j, 0});
-      cloud.values.push_back(i);
-    }
-  DrawingStyle style;
-  style.columns = 20, style.rows = 5;
-  const auto lines = drawn(cloud, style);
-  ASSERT_EQ(lines.size(), 6u);
-  for (const std::string& line : {lines[1], lines[2], lines[3]})
-    EXPECT_THAT(line, HasSubstr("⣿⣿⣿⣿")) << "no gaps inside";
-  EXPECT_EQ(lines.back(), "speed [m/s]  0 to 19");
-  style.colours = true;
-  EXPECT_THAT(drawn(cloud, style)[2], ContainsRegex("\033\\[38;5;54m.*\033\\[38;5;226m.*\033\\[0m"));
-  EXPECT_TRUE(drawn({}, style).empty());
 }
 
 }  // namespace

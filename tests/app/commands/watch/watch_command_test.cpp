@@ -46,9 +46,7 @@ TEST_F(Follow, ARunThatHasEndedIsToldWithWhatItReturned)
   EXPECT_THAT(done.out, ContainsRegex("^Block\ndone +t = 0.02 s\n"));
   EXPECT_THAT(done.out, ContainsRegex("\nenergy \\[J\\] +kinetic [0-9.]+, .*gravity_work [0-9.]+.*; defect [0-9.e-]+ of the largest\n"));
   EXPECT_THAT(done.out, ContainsRegex("\nframes +[34], the last particles_000[23].vtp at t = 0.02 s\n"));
-  EXPECT_THAT(done.out, HasSubstr("⣿⣿⣿")) << "the block";
-  EXPECT_THAT(done.out, HasSubstr("displacement [m]  "));
-  EXPECT_THAT(done.out, Not(HasSubstr("\033"))) << "no terminal, no colours";
+  EXPECT_THAT(done.out, Not(HasSubstr("\033"))) << "no terminal, no cursor";
 
   const Outcome stopped = talus("run block.yaml --quiet --out stopped --until 2");
   ASSERT_EQ(stopped.code, 4);
@@ -64,7 +62,7 @@ TEST_F(Follow, ARunThatHasEndedIsToldWithWhatItReturned)
 TEST_F(Follow, WhatCannotBeReadIsLeftOutAndNamed)
 {
   const auto frames = read_pvd(folder_ / "out/particles.pvd");
-  const std::string last = frames.back().second.filename().string(), before = frames[frames.size() - 2].second.filename().string();
+  const std::string last = frames.back().second.filename().string();
   std::string text = read("out/" + last);
   const auto damage = [&](const std::string& word, const std::string& other) {
     std::string damaged = text;
@@ -72,12 +70,8 @@ TEST_F(Follow, WhatCannotBeReadIsLeftOutAndNamed)
     write("out/" + last, damaged.replace(damaged.find(word), word.size(), other));
   };
   damage("NumberOfPoints=\"", "NumberOfPoints=\"-");
-  const Outcome negative = talus("watch out --once");
-  EXPECT_EQ(negative.code, 0) << negative.err;
-  EXPECT_THAT(negative.out, HasSubstr("\nleft out           cannot read out/" + last + ": it is damaged"));
-  EXPECT_THAT(negative.out, HasSubstr("⣿⣿⣿")) << "the frame before";
+  EXPECT_THAT(talus("report out --page page.html").out, HasSubstr("is left out: cannot read out/" + last + ": it is damaged"));
   damage("NumberOfComponents=\"3\"", "NumberOfComponents=\"2147483648\"");
-  EXPECT_THAT(talus("watch out --once").out, HasSubstr("left out           cannot read out/" + last));
   const Outcome report = talus("report out --page page.html");
   EXPECT_EQ(report.code, 0) << report.err;
   EXPECT_THAT(report.out, HasSubstr("is left out: cannot read out/" + last));

@@ -57,9 +57,9 @@ TEST(PictureSettings, WhatIsRightIsTaken)
 TEST(PictureSettings, HelpOffersTheWordsThatAreUnderstood)
 {
   const auto offered = [](std::string_view name, const auto& words) {
-    const auto option = std::find_if(render::picture_options.begin(), render::picture_options.end(),
-                                     [&](const render::Option& one) { return one.name == name; });
-    ASSERT_NE(option, render::picture_options.end()) << name;
+    const auto options = render::Settings::options();
+    const auto option = std::find_if(options.begin(), options.end(), [&](const auto& one) { return one.name == name; });
+    ASSERT_NE(option, options.end()) << name;
     EXPECT_THAT(std::string(option->values), HasSubstr(fmt::format("{{{}}}", fmt::join(words, ",")))) << name;
   };
   offered("--map", enum_names(render::Map{}));
