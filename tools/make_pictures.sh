@@ -22,6 +22,9 @@ docs() {
   render slope_failure_3d --view iso --clip z 5 --outline start --out docs/images/pictures_clip.png
   build/talus render runs/layered_slope --frames first --field body --mesh edges --no-ground --window 17 6 101 44 --size 1200x560 \
     --out docs/images/terrain_columns.png
+  awk '/^```yaml/ {in_scene = 1; next} /^```/ {in_scene = 0} in_scene' README.md > runs/block.yaml
+  build/talus run runs/block.yaml --out runs/block
+  render block --outline start --out docs/images/first_scene.png
   build/talus fos benchmarks/factor_of_safety/acads.yaml --from 0.9 --to 1.1 --width 0.025 --out runs/acads_fos
   cp runs/acads_fos/mechanism.png docs/images/fos_mechanism.png
 }
@@ -34,6 +37,5 @@ for name in "${scenes[@]}"; do
   frame=last range=last
   [ "$name" = cantilever ] && frame=14 range=whole  # t = 0.7 s, its lowest point; at the end it is back up
   render "$name" --frames "$frame" --range "$range" --out "scenes/$name/picture.png"
-  if [ "$name" = slope_failure_3d ]; then cp "scenes/$name/picture.png" docs/images/slope_failure_3d.png; fi
 done
 if [ $# -eq 0 ]; then tools/run_tutorials.py build/talus --pictures; fi
