@@ -326,7 +326,7 @@ std::string written_in_scene(const std::filesystem::path& file, std::span<const 
 
 std::string with_values(const std::filesystem::path& file, std::string text, std::span<const std::string> overrides)
 {
-  std::vector<Problem> problems;
+  std::vector<SceneError> problems;
   for (const std::string& given : overrides) {
     const auto complain = [&](std::string message) {
       problems.push_back({SourceLocation{"--set " + given, 0, 0, ""}, std::move(message), ""});

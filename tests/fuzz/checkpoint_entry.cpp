@@ -70,38 +70,27 @@ std::vector<Stage> small_stages()
 /// All that a checkpoint is of.
 struct SmallRun {
   static constexpr Index n_particles = 3;
-  Mesh<2> mesh{box<2>({0, 0}, {1, 1}, {2, 2})};
-  Particles<2> particles;
-  std::vector<Body> bodies{{"block", 0, n_particles, {}}};
-  Subdomain share;
+  Problem<2> problem{Mesh<2>(box<2>({0, 0}, {1, 1}, {2, 2}))};
+  State<2> state{};
   CellOrder order;
-  std::vector<AnyBatch> materials{make_any_batch(VonMises{}, 0, n_particles, "steel")};
   Nodes<2> nodes;
-  BoundaryConditions<2> walls;
-  Loads<2> loads;
-  Clock clock{};
-  StageState stage;
-  EnergyLedger energy{};
-  MassLedger<2> mass{};
-  MomentumLedger<2> momentum{};
-  LimitMonitor watched{};
-  RunLimits guards{};
-  Timings timings{};
-  Real residual = 0, crossing = 1;
   OutputSpec outputs = small_outputs();
   std::vector<Stage> stages = small_stages();
   Recorder<2> recorder{run_folder(), outputs, stages, true, ""};
-  StateLimits limits{mesh.n_cells(), 1, n_particles};
+  StateLimits limits{problem.mesh.n_cells(), 1, n_particles};
 
   SmallRun()
   {
     const auto make_room = [](auto&... columns) { (columns.resize(n_particles), ...); };
-    Particles<2>& p = particles;
+    state.crossing = 1;
+    state.bodies = {{"block", 0, n_particles, {}}};
+    state.materials.push_back(make_any_batch(VonMises{}, 0, n_particles, "steel"));
+    Particles<2>& p = state.particles;
     make_room(p.id, p.cell, p.x, p.x0, p.v, p.L, p.F, p.stress, p.volume0, p.volume, p.mass);
     for (std::size_t row = 0; row < n_particles; ++row) {
       p.id[row] = static_cast<std::int64_t>(row);
       p.cell[row] = static_cast<Index>(row);
-      p.x[row] = p.x0[row] = centroid<2>(mesh.corners(p.cell[row]));
+      p.x[row] = p.x0[row] = centroid<2>(problem.mesh.corners(p.cell[row]));
       p.v.set(row, Vec<2>::Zero());
       p.L.set(row, Mat<2>::Zero());
       p.F.set(row, Mat3::Identity());
@@ -114,47 +103,17 @@ struct SmallRun {
     Wall<2> floor;
     floor.name = "floor";
     floor.kind = WallKind::fixed;
-    walls.add(std::move(floor), mesh, held);
+    state.walls.add(std::move(floor), problem.mesh, held);
   }
-  void sort() { sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order); }
-  RunView<2> view() const
-  {
-    return {.mesh = mesh,
-            .share = share,
-            .particles = particles,
-            .bodies = bodies,
-            .materials = materials,
-            .order = order,
-            .ranks = &one_rank(),
-            .nodes = nodes,
-            .walls = walls,
-            .loads = loads,
-            .clock = clock,
-            .stage = stage,
-            .stage_name = "the only",
-            .stage_number = 0,
-            .energy = energy,
-            .mass = mass,
-            .momentum = momentum,
-            .watched = watched,
-            .guards = guards,
-            .timings = timings,
-            .residual = residual,
-            .crossing = crossing,
-            .migrated = 0,
-            .nodes_as_corners = 0};
-  }
-  State<2> state()
-  {
-    return {particles, bodies, materials, walls, clock, stage, energy, mass, momentum, watched, timings, residual, crossing};
-  }
+  void sort() { sort_by_cell(state.particles.cell, state.particles.id, state.bodies, problem.mesh.n_cells(), order); }
+  RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }
 };
 
 /// As a run goes on.
 void go_on(const CheckpointList& checkpoints)
 {
   SmallRun run;
-  checkpoints.take_over(run.state(), run.recorder, run.limits);
+  checkpoints.take_over(run.state, run.recorder, run.limits);
   run.sort();
   run.recorder.resume(run.view());
 }
@@ -186,7 +145,7 @@ std::string good_checkpoint()
                              {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, 2, ""});
   run.recorder.watch(run.view(), RunEvent::stage_begins);
   checkpoints.see(run.view(), run.recorder);
-  ++run.clock.step;
+  ++run.state.clock.step;
   checkpoints.see(run.view(), run.recorder);
   const CheckpointList good(checkpoints.last());  // refused, it would be of no use to what follows
   go_on(good);

@@ -114,47 +114,32 @@ struct Maker {
 struct RankOfRun {
   Communicator& ranks = world();
   Mesh<2> whole{box<2>({0, 0}, {1, 1}, {24, 24})};
-  Mesh<2> mesh = whole;
-  Subdomain share;
+  Problem<2> problem{whole};
+  State<2> state{};
   Maker make;
-  Cloud mine;
   CellOrder order;
   Nodes<2> nodes;
-  BoundaryConditions<2> walls;
-  Loads<2> loads;
-  Clock clock{};
-  StageState stage;
-  EnergyLedger energy{};
-  MassLedger<2> mass{};
-  MomentumLedger<2> momentum{};
-  LimitMonitor watched{};
-  RunLimits guards{};
-  Timings timings{};
-  Real residual = 0, crossing = 1;
 
   explicit RankOfRun(Index n) : make{n, whole.n_cells()}
   {
     std::vector<int> rank_of_block;
     for (Index b = 0; b < blocks_of(whole.n_cells()); ++b)
       rank_of_block.push_back(b % ranks.size());
-    mine = make([&](std::int64_t id) { return rank_of_block[static_cast<std::size_t>(make.cell(id) / block_cells)] == ranks.rank(); });
+    problem.ranks = &ranks;
+    take(make([&](std::int64_t id) { return rank_of_block[static_cast<std::size_t>(make.cell(id) / block_cells)] == ranks.rank(); }));
     if (ranks.alone())
       return;
     Part<2> part = cut<2>(whole, rank_of_block, ranks.rank(), 1);
-    mesh = std::move(part.mesh);
-    share = std::move(part.share);
-    for (Index& cell : mine.particles.cell)
-      cell = share.local_cell(cell);
+    problem.mesh = std::move(part.mesh);
+    problem.share = std::move(part.share);
+    for (Index& cell : state.particles.cell)
+      cell = problem.share.local_cell(cell);
   }
-  RunView<2> view() const
+  void take(Cloud cloud)
   {
-    return {mesh,       share, mine.particles, mine.bodies, mine.materials, order,   &ranks, nodes,   walls,    loads,    clock, stage,
-            "the only", 0,     energy,         mass,        momentum,       watched, guards, timings, residual, crossing, 0,     0};
+    state.particles = std::move(cloud.particles), state.bodies = std::move(cloud.bodies), state.materials = std::move(cloud.materials);
   }
-  State<2> state()
-  {
-    return {mine.particles, mine.bodies, mine.materials, walls, clock, stage, energy, mass, momentum, watched, timings, residual, crossing};
-  }
+  RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }
   /// Ids of rows [begin, end) of the file.
   static std::vector<std::int64_t> ids(std::int64_t begin, std::int64_t end)
   {
@@ -243,12 +228,12 @@ TEST_F(Files, SlicesHaveTheRowsOfTheFile)
   const Slices slices{1000, ranks.size(), small_piece};
   EXPECT_EQ(slice.rows.first, slices.begin(ranks.rank()));
   EXPECT_EQ(slice.rows.of_all, 1000);
-  run.make.expect({slice.particles, slice.bodies, slice.materials}, run.ids(slice.rows.first, slices.end(ranks.rank())));
+  run.make.expect({slice.state.particles, slice.state.bodies, slice.state.materials}, run.ids(slice.rows.first, slices.end(ranks.rank())));
   EXPECT_EQ(slice.whole_bodies[0].end, run.make.low());
   EXPECT_EQ(slice.whole_bodies[2].begin, run.make.low());
   EXPECT_EQ(slice.whole_bodies[2].end, 1000);
-  EXPECT_EQ(doubled_id(ranks, run.mine.particles.id), std::nullopt);
-  std::vector<std::int64_t> ids = run.mine.particles.id;
+  EXPECT_EQ(doubled_id(ranks, run.state.particles.id), std::nullopt);
+  std::vector<std::int64_t> ids = run.state.particles.id;
   ids.push_back(ranks.is_root() ? 50 : 30);
   EXPECT_EQ(doubled_id(ranks, ids), ranks.alone() ? 50 : 30);
 }
@@ -268,7 +253,7 @@ TEST_F(Files, ParticlesAreWrittenAsByOneRank)
     write_particles(by, file, 0.5, rows, positions(particles, in_order), ids, std::vector<Column>{heat, speed}, "this test");
   };
   const auto slice = slice_of_particles(run.view(), small_piece);
-  write(ranks, slice.particles, slice.rows, folder / "all.vtp");
+  write(ranks, slice.state.particles, slice.rows, folder / "all.vtp");
   if (!ranks.is_root())
     return;
   const Cloud whole = run.make([](std::int64_t) { return true; });
@@ -286,8 +271,8 @@ TEST_F(Files, MeshesAreWrittenAsByOneRank)
 {
   const RankOfRun run(10);
   Column held{"number", 1, {}, "m"};
-  for (Index n = 0; n < run.mesh.n_nodes(); ++n)
-    held.values.push_back(static_cast<float>(ranks.alone() ? n : run.share.node[static_cast<std::size_t>(n)]));
+  for (Index n = 0; n < run.problem.mesh.n_nodes(); ++n)
+    held.values.push_back(static_cast<float>(ranks.alone() ? n : run.problem.share.node[static_cast<std::size_t>(n)]));
   Column column = slice_of_column(run.view(), held, small_piece);
   write_mesh(ranks, folder / "all.vtu", 0.5, slice_of_mesh(run.view(), small_piece), std::vector<Column>{column}, {});
   if (!ranks.is_root())
@@ -325,7 +310,7 @@ TEST_F(Files, ArraysAreWrittenAsByOneRankAndReadInSlices)
 {
   const RankOfRun run(1000);
   const auto slice = slice_of_particles(run.view(), small_piece);
-  write_cloud(ranks, folder / "all.h5", {slice.particles, slice.bodies, slice.materials}, slice.whole_bodies, slice.rows);
+  write_cloud(ranks, folder / "all.h5", {slice.state.particles, slice.state.bodies, slice.state.materials}, slice.whole_bodies, slice.rows);
   Cloud whole = run.make([](std::int64_t) { return true; });
   redistribute(one_rank(), std::vector<int>(1000, 0), whole.bodies, whole.materials, whole.particles);
   if (ranks.is_root()) {
@@ -373,11 +358,11 @@ TEST_F(Files, AFullDiskOfOneRankIsToldByAllAndLeavesWhatWasThere)
   const RankOfRun run(5000);
   const auto slice = slice_of_particles(run.view(), small_piece);
   const auto write = [&](const fs::path& file) {
-    write_cloud(ranks, file, {slice.particles, slice.bodies, slice.materials}, slice.whole_bodies, slice.rows);
+    write_cloud(ranks, file, {slice.state.particles, slice.state.bodies, slice.state.materials}, slice.whole_bodies, slice.rows);
   };
   const auto write_vtp = [&](const fs::path& file) {
-    const auto rows = rows_by_id(slice.particles);
-    write_particles(ranks, file, 0, slice.rows, positions(slice.particles, rows), slice.particles.id, {});
+    const auto rows = rows_by_id(slice.state.particles);
+    write_particles(ranks, file, 0, slice.rows, positions(slice.state.particles, rows), slice.state.particles.id, {});
   };
   if (ranks.is_root())
     for (const char* name : {"a.h5", "a.vtp"})
@@ -413,26 +398,26 @@ TEST_F(Files, ACheckpointIsTakenOverInSlicesAndRefusedByAllWhereOneOfThemIsDamag
     write_whole(folder / "summary.json", "{}\n");
   Checkpoints<2> checkpoints(folder, CheckpointSpec{}, {"0.1", "commit", "compiler", "build", "scene.yaml", "", {}, false, 1, 2, ""});
   checkpoints.write(run.view(), recorder);
-  run.clock.step = 1;
+  run.state.clock.step = 1;
   checkpoints.write(run.view(), recorder);
   const fs::path newest = checkpoints.last();
 
   RankOfRun other(n);
   const StateLimits limits{other.whole.n_cells(), 1, n};
-  other.mine = other.make([](std::int64_t) { return false; });
-  EXPECT_EQ(CheckpointList(folder).take_over(other.state(), recorder, limits), newest);
-  EXPECT_EQ(other.clock.step, 1);
+  other.take(other.make([](std::int64_t) { return false; }));
+  EXPECT_EQ(CheckpointList(folder).take_over(other.state, recorder, limits), newest);
+  EXPECT_EQ(other.state.clock.step, 1);
   const Slices slices{n, ranks.size()};
-  EXPECT_EQ(other.mine.particles.size(), static_cast<Index>(slices.size(ranks.rank())));
+  EXPECT_EQ(other.state.particles.size(), static_cast<Index>(slices.size(ranks.rank())));
   if (!ranks.alone()) {
-    receive_owned_particles(ranks, other.share, other.mine.bodies, other.mine.materials, other.mine.particles);
-    for (const Index cell : other.mine.particles.cell)
-      ASSERT_TRUE(other.share.owns_cell(cell));
-    for (Index& cell : other.mine.particles.cell)
-      cell = other.share.whole_cell(cell);
-    std::vector<std::int64_t> ids = run.mine.particles.id;
+    receive_owned_particles(ranks, other.problem.share, other.state.bodies, other.state.materials, other.state.particles);
+    for (const Index cell : other.state.particles.cell)
+      ASSERT_TRUE(other.problem.share.owns_cell(cell));
+    for (Index& cell : other.state.particles.cell)
+      cell = other.problem.share.whole_cell(cell);
+    std::vector<std::int64_t> ids = run.state.particles.id;
     std::sort(ids.begin(), ids.end());
-    other.make.expect(other.mine, ids);
+    other.make.expect({other.state.particles, other.state.bodies, other.state.materials}, ids);
   }
 
   ranks.barrier();
@@ -445,10 +430,10 @@ TEST_F(Files, ACheckpointIsTakenOverInSlicesAndRefusedByAllWhereOneOfThemIsDamag
     write_whole(newest, bytes);
   }
   ranks.barrier();
-  EXPECT_THAT(message_of([&] { CheckpointList(newest).take_over(other.state(), recorder, limits); }),
+  EXPECT_THAT(message_of([&] { CheckpointList(newest).take_over(other.state, recorder, limits); }),
               testing::AllOf(HasSubstr(newest.string() + ": particles/"), HasSubstr("is damaged")));
-  EXPECT_NE(CheckpointList(folder).take_over(other.state(), recorder, limits), newest) << "the one before";
-  EXPECT_EQ(other.clock.step, 0);
+  EXPECT_NE(CheckpointList(folder).take_over(other.state, recorder, limits), newest) << "the one before";
+  EXPECT_EQ(other.state.clock.step, 0);
 }
 
 }  // namespace

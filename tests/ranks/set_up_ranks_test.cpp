@@ -47,24 +47,24 @@ class SetUpOnRanks : public testing::Test {
   /// Each row here is that of its id in the whole, where rows are ids.
   void expect_rows_of_the_whole() const
   {
-    for (std::size_t b = 0; b < whole.bodies.size(); ++b) {
-      const Body &mine = part.bodies[b], &all = whole.bodies[b];
+    for (std::size_t b = 0; b < whole.state.bodies.size(); ++b) {
+      const Body &mine = part.state.bodies[b], &all = whole.state.bodies[b];
       EXPECT_EQ(mine.name, all.name);
       EXPECT_EQ(ranks.sum(std::int64_t{mine.size()}), all.size());
-      EXPECT_EQ(std::visit([](const auto& batch) { return std::pair(batch.begin, batch.end); }, part.materials[b]),
+      EXPECT_EQ(std::visit([](const auto& batch) { return std::pair(batch.begin, batch.end); }, part.state.materials[b]),
                 std::pair(mine.begin, mine.end));
       for (Index row = mine.begin; row < mine.end; ++row) {
-        const std::size_t p = z(row), id = z(part.particles.id[p]);
-        EXPECT_TRUE(row == mine.begin || part.particles.id[p - 1] < part.particles.id[p]);
+        const std::size_t p = z(row), id = z(part.state.particles.id[p]);
+        EXPECT_TRUE(row == mine.begin || part.state.particles.id[p - 1] < part.state.particles.id[p]);
         EXPECT_TRUE(static_cast<Index>(id) >= all.begin && static_cast<Index>(id) < all.end);
-        EXPECT_EQ(part.particles.x[p], whole.particles.x[id]);
-        EXPECT_EQ(part.particles.v[p], whole.particles.v[id]);
-        EXPECT_EQ(part.particles.L[p], whole.particles.L[id]);
-        EXPECT_EQ(part.particles.mass[p], whole.particles.mass[id]);
-        EXPECT_EQ(part.particles.volume0[p], whole.particles.volume0[id]);
+        EXPECT_EQ(part.state.particles.x[p], whole.state.particles.x[id]);
+        EXPECT_EQ(part.state.particles.v[p], whole.state.particles.v[id]);
+        EXPECT_EQ(part.state.particles.L[p], whole.state.particles.L[id]);
+        EXPECT_EQ(part.state.particles.mass[p], whole.state.particles.mass[id]);
+        EXPECT_EQ(part.state.particles.volume0[p], whole.state.particles.volume0[id]);
       }
     }
-    EXPECT_EQ(ranks.sum(std::int64_t{part.particles.size()}), whole.particles.size());
+    EXPECT_EQ(ranks.sum(std::int64_t{part.state.particles.size()}), whole.state.particles.size());
   }
 };
 
@@ -73,11 +73,11 @@ TEST_F(SetUpOnRanks, EachFillsItsBlocksAndAllTogetherTheWhole)
   const IndexRange mine = cells_to_fill(mesh, ranks);
   EXPECT_EQ(mine.begin % block_cells, 0);
   EXPECT_EQ(ranks.sum(std::int64_t{mine.end - mine.begin}), mesh.n_cells());
-  EXPECT_EQ(part.n_particles, whole.particles.size());
+  EXPECT_EQ(part.n_particles, whole.state.particles.size());
   expect_rows_of_the_whole();
-  for (std::size_t p = 0; p < part.particles.cell.size(); ++p) {
-    EXPECT_EQ(part.particles.cell[p], whole.particles.cell[z(part.particles.id[p])]);
-    EXPECT_TRUE(mine.begin <= part.particles.cell[p] && part.particles.cell[p] < mine.end);
+  for (std::size_t p = 0; p < part.state.particles.cell.size(); ++p) {
+    EXPECT_EQ(part.state.particles.cell[p], whole.state.particles.cell[z(part.state.particles.id[p])]);
+    EXPECT_TRUE(mine.begin <= part.state.particles.cell[p] && part.state.particles.cell[p] < mine.end);
   }
 }
 
@@ -85,29 +85,29 @@ TEST_F(SetUpOnRanks, WhatIsOfAllParticlesIsTheSameOnEachRank)
 {
   EXPECT_EQ(whole.warnings.size(), 3U) << "cells shared by two bodies, two areas without particles behind a part of them";
   EXPECT_EQ(part.warnings, whole.warnings);
-  EXPECT_EQ(part.guards.speed, whole.guards.speed);
-  EXPECT_EQ(part.guards.least_energy, whole.guards.least_energy);
-  EXPECT_EQ(part.loads.on_particles.size(), 2U);
-  for (std::size_t k = 0; k < part.loads.on_particles.size(); ++k) {
-    EXPECT_FALSE(whole.loads.on_particles[k].id.empty());
-    EXPECT_EQ(part.loads.on_particles[k].id, whole.loads.on_particles[k].id);
-    EXPECT_EQ(part.loads.on_particles[k].area, whole.loads.on_particles[k].area);
+  EXPECT_EQ(part.conditions.limits.speed, whole.conditions.limits.speed);
+  EXPECT_EQ(part.conditions.limits.least_energy, whole.conditions.limits.least_energy);
+  EXPECT_EQ(part.conditions.loads.on_particles.size(), 2U);
+  for (std::size_t k = 0; k < part.conditions.loads.on_particles.size(); ++k) {
+    EXPECT_FALSE(whole.conditions.loads.on_particles[k].id.empty());
+    EXPECT_EQ(part.conditions.loads.on_particles[k].id, whole.conditions.loads.on_particles[k].id);
+    EXPECT_EQ(part.conditions.loads.on_particles[k].area, whole.conditions.loads.on_particles[k].area);
   }
-  EXPECT_EQ(part.walls.closed_facets(mesh), whole.walls.closed_facets(mesh));
+  EXPECT_EQ(part.state.walls.closed_facets(mesh), whole.state.walls.closed_facets(mesh));
 }
 
 TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)
 {
   std::vector<std::int64_t> weights(z(blocks_of(mesh.n_cells())), 0);
-  for (const Index cell : whole.particles.cell)
+  for (const Index cell : whole.state.particles.cell)
     ++weights[z(cell / block_cells)];
   const Part<2> here = cut(mesh, partition(mesh, weights, ranks.size()), ranks.rank(), 2);
-  receive_owned_particles(ranks, here.share, part.bodies, part.materials, part.particles);
+  receive_owned_particles(ranks, here.share, part.state.bodies, part.state.materials, part.state.particles);
   expect_rows_of_the_whole();
-  for (std::size_t p = 0; p < part.particles.cell.size(); ++p) {
-    const Index cell = part.particles.cell[p];
+  for (std::size_t p = 0; p < part.state.particles.cell.size(); ++p) {
+    const Index cell = part.state.particles.cell[p];
     EXPECT_TRUE(cell != none && here.share.owns_cell(cell));
-    EXPECT_EQ(here.share.whole_cell(cell), whole.particles.cell[z(part.particles.id[p])]);
+    EXPECT_EQ(here.share.whole_cell(cell), whole.state.particles.cell[z(part.state.particles.id[p])]);
   }
 }
 

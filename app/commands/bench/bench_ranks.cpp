@@ -7,7 +7,6 @@
 #include <thread>
 
 #include "app/commands/bench/bench_cases.hpp"
-#include "app/commands/bench/bench_machine.hpp"
 #include "app/commands/bench/bench_measure.hpp"
 #include "app/setup/seed.hpp"
 #include "core/parallel/communicator.hpp"

@@ -24,7 +24,7 @@ class Options : public Program {
               "bodies: [{name: b, material: m, shape: {type: box, low: [0, 0], high: [1, 1]}" +
               body_keys + "}]\n");
     const Scene scene = read_scene(folder_ / "scene.yaml");
-    return set_up<2>(scene, load_mesh<2>(scene.mesh, folder_.path())).materials.at(0);
+    return set_up<2>(scene, load_mesh<2>(scene.mesh, folder_.path())).state.materials.at(0);
   }
 };
 

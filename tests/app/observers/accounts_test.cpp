@@ -1,5 +1,6 @@
 // The accounts of a run of three stages by hand: every term of every stage is another number.
 #include "app/observers/accounts.hpp"
+#include "solver/transfer/transfer_of.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@ namespace {
 
 /// Two particles of 2 kg and 4 kg, of a metal that has dissipated something in 2 m^3 of the first.
 struct Scene {
-  auto m = make_model<Linear<2>>(Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(1, 1), {1, 1})));
+  Model<2> m = make_model<Linear<2>>(Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>(1, 1), {1, 1})));
   Stage stage;
   BalanceHistory<2> accounts;
 
@@ -38,8 +39,8 @@ struct Scene {
     m.state.particles.v.set(0, Vec<2>(speed, 0));
     std::get<Batch<VonMises>>(m.state.materials[0]).history[0].plastic_work = plastic_work / 2;
   }
-  void see(RunEvent moment) { accounts.see(frame_of(m, stage), moment); }
-  EnergyNow energy() const { return accounts.energy(frame_of(m, stage)); }
+  void see(RunEvent moment) { accounts.see(view_of(m, stage), moment); }
+  EnergyNow energy() const { return accounts.energy(view_of(m, stage)); }
 };
 
 /// The terms of the stage at hand, `unit` times those of the first one.
@@ -60,12 +61,12 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
 {
   Scene s;
   s.now(2, 10);
-  s.m.energy = {.kinetic_start = 4, .plastic_start = 10, .largest_seen = 12345};
+  s.m.state.energy = {.kinetic_start = 4, .plastic_start = 10, .largest_seen = 12345};
   s.see(RunEvent::stage_begins);
-  book_terms(s.m.energy, 1);
+  book_terms(s.m.state.energy, 1);
   s.now(3, 14);
   s.see(RunEvent::step_done);
-  s.m.energy.set_to_rest = 50;
+  s.m.state.energy.set_to_rest = 50;
   s.see(RunEvent::stage_done);
   const EnergyNow first = s.energy();
   EXPECT_EQ(first.kinetic_start, 4);
@@ -78,18 +79,18 @@ TEST(AccountsByHand, JoinTheEnergiesOfStages)
   EXPECT_EQ(first.size, 12345);
   expect_balance(first);
 
-  s.m.energy = {.kinetic_start = 9 + 6, .plastic_start = 14 - 3};  // what came brought 6 J, what went had dissipated 3 J
+  s.m.state.energy = {.kinetic_start = 9 + 6, .plastic_start = 14 - 3};  // what came brought 6 J, what went had dissipated 3 J
   s.see(RunEvent::stage_begins);
-  book_terms(s.m.energy, 2);
+  book_terms(s.m.state.energy, 2);
   s.now(4, 22);
-  s.m.energy.set_to_rest = 500;
+  s.m.state.energy.set_to_rest = 500;
   s.see(RunEvent::stage_done);
   const Real transfer_of_second = 2 * (5000 - 200) - (16 + 500 - 15 + 2 * 7);
 
-  s.m.energy = {.kinetic_start = 16 - 5, .plastic_start = 22 + 8, .largest_seen = 23456};  // 5 J went; what came had dissipated 8 J
+  s.m.state.energy = {.kinetic_start = 16 - 5, .plastic_start = 22 + 8, .largest_seen = 23456};  // 5 J went; what came had dissipated 8 J
   s.see(RunEvent::stage_begins);
-  book_terms(s.m.energy, 4);
-  s.m.energy.internal_ahead = 600, s.m.energy.loads_ahead = 6;
+  book_terms(s.m.state.energy, 4);
+  s.m.state.energy.internal_ahead = 600, s.m.state.energy.loads_ahead = 6;
   s.now(5, 34);
   s.see(RunEvent::step_done);
   const EnergyNow third = s.energy();
@@ -146,15 +147,15 @@ TEST(AccountsByHand, NameAllThatGaveMomentum)
 {
   Scene s;
   s.now(5, 0);
-  s.m.particles.v.set(1, Vec<2>(0, 3));  // at (-2, 1) with 4 kg; the other at (1, 3) with 2 kg
+  s.m.state.particles.v.set(1, Vec<2>(0, 3));  // at (-2, 1) with 4 kg; the other at (1, 3) with 2 kg
   s.see(RunEvent::stage_begins);
   s.now(7, 0);
-  s.m.momentum.loads = push(1, -2), s.m.momentum.damping = push(4, -8), s.m.momentum.rest = push(16, -32);
-  s.m.momentum.changes = push(64, -128), s.m.mass.carried_away = push(256, -512), s.m.momentum.on_nodes = {0, 0, 10000};
+  s.m.state.momentum.loads = push(1, -2), s.m.state.momentum.damping = push(4, -8), s.m.state.momentum.rest = push(16, -32);
+  s.m.state.momentum.changes = push(64, -128), s.m.state.mass.carried_away = push(256, -512), s.m.state.momentum.on_nodes = {0, 0, 10000};
   Wall<2> wall;
   wall.impulse = {1024, 0}, wall.angular = {0, 0, -2048};
-  s.m.walls.add(wall);
-  const MomentumNow<2> now = s.accounts.momentum(frame_of(s.m, s.stage));
+  s.m.state.walls.add(wall);
+  const MomentumNow<2> now = s.accounts.momentum(view_of(s.m, s.stage));
   EXPECT_EQ(now.start.linear, Vec<2>(10, 12));
   EXPECT_EQ(now.start.angular, Vec3(0, 0, -3 * 10 - 2 * 12));
   EXPECT_EQ(now.start.size, 22);
@@ -167,8 +168,8 @@ TEST(AccountsByHand, NameAllThatGaveMomentum)
   EXPECT_EQ(now.forces, Vec3(0, 0, 10000 + 2 + 8 + 2048)) << "what nodes got and nobody gave";
   EXPECT_EQ(now.lost, Vec3(0, 0, -54 + (-2 - 8 - 32 - 128 + 512 - 2048) + (10000 + 2 + 8 + 2048) - (-42 - 24)));
   EXPECT_EQ(now.most_linear_defect, 1e-9);
-  s.m.particles.keep_in(Precision::single);
-  EXPECT_EQ(s.accounts.momentum(frame_of(s.m, s.stage)).most_linear_defect, 1e-5);
+  s.m.state.particles.keep_in(Precision::single);
+  EXPECT_EQ(s.accounts.momentum(view_of(s.m, s.stage)).most_linear_defect, 1e-5);
 }
 
 }  // namespace
