@@ -9,8 +9,8 @@ namespace talus {
 
 /// Kernels on meshes of dimension D, one line each.
 template <int D>
-using Kernels = TypeList<Linear<D>,          // linear shape functions
-                         Umls<D>,            // moving least squares
-                         Projected<D>>;      // linear shape functions with operators at the nodes
+using Kernels = TypeList<Linear<D>,      // linear shape functions
+                         Umls<D>,        // moving least squares
+                         Projected<D>>;  // linear shape functions with operators at the nodes
 
 }  // namespace talus

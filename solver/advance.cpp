@@ -1,7 +1,7 @@
 #include "solver/advance.hpp"
 
+#include "core/stop_watch.hpp"
 #include "solver/state/integrate.hpp"
-#include "solver/stop_watch.hpp"
 #include "solver/stress/average_volume.hpp"
 
 namespace talus {
@@ -104,9 +104,8 @@ void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
   auto& [problem, state, work, transfer] = m;
   AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
   if (const auto rows = work.order.rows(body, block); !rows.empty() && !averages_volume(material))
-    work.stress_sums[work.order.key(body, block)] =
-        update_stress(problem.mesh, material, rows, dt, state.stage.elastic, work.averaged, pore_water(m, body, state.clock.time + dt),
-                      state.particles, work.health);
+    work.stress_sums[work.order.key(body, block)] = update_stress(problem.mesh, material, rows, dt, state.stage.elastic, work.averaged,
+                                                                  pore_water(m, body, state.clock.time + dt), state.particles, work.health);
 }
 
 /// Whether the body averages its volume ratio with bodies before it, or else, into `bodies`, with which of those that follow.
@@ -191,25 +190,25 @@ void advance(Model<D>& m, Real dt)
   StopWatch watch;
 
   work.sums.clear();
-  locate_particles(m);        //  1
+  locate_particles(m);  //  1
   if (!particles_valid(m))
     return;
-  apply_particle_loads(m);    //  2
+  apply_particle_loads(m);  //  2
   watch.lap(state.timings.locate);
   transfer->particles_to_nodes(m);  //  3
   watch.lap(state.timings.scatter);
-  transfer->assemble_nodes(m);      //  4
+  transfer->assemble_nodes(m);  //  4
   apply_nodal_loads(m);
   work.small_mass_nodes.lump(problem.mesh, problem.own, work.nodes);  //  5
-  integrate_momentum(m, dt);               //  6
-  apply_boundary_conditions(m, kick, dt);  //  7
+  integrate_momentum(m, dt);                                          //  6
+  apply_boundary_conditions(m, kick, dt);                             //  7
   apply_local_damping(m);
-  extrapolate_to_small_masses(m, kick);    //  8
+  extrapolate_to_small_masses(m, kick);  //  8
   record_node_sums(m);
   watch.lap(state.timings.nodes);
   work.stress_sums.assign(work.order.first.size(), {});
   transfer->nodes_to_particles(m, kick, dt, [&m, dt](Index body, Index block) { update_stress_block(m, body, block, dt); });  //  9 to 12
-  update_stress_bodies(m, dt);             // 12
+  update_stress_bodies(m, dt);                                                                                                // 12
   update_balances(m);
   watch.lap(state.timings.gather);  // update_stress_bodies() tells the share of stresses apart
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};

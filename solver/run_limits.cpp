@@ -26,7 +26,8 @@ std::string describe_least(const Model<D>& m, const Chosen& here)
 {
   const bool mine = m.problem.ranks->min(here.value) == here.value && here.row != none;
   const std::int64_t id = mine ? m.state.particles.id[static_cast<std::size_t>(here.row)] : std::numeric_limits<std::int64_t>::max();
-  return m.problem.ranks->first(m.problem.ranks->min(id) == id && mine ? describe(m.state.particles, m.state.bodies, here.row) : std::string());
+  return m.problem.ranks->first(m.problem.ranks->min(id) == id && mine ? describe(m.state.particles, m.state.bodies, here.row)
+                                                                       : std::string());
 }
 
 template <int D>
@@ -59,7 +60,8 @@ std::optional<std::string> exceeded_limit(Model<D>& m, Look look)
   const Totals<D> now = totals(m);
   m.state.energy.largest_seen = std::max(m.state.energy.largest_seen, m.state.energy.largest_term(now.kinetic));
   const Real there = m.state.mass.due();
-  const Real lost = std::max(std::abs(now.mass - there), std::abs(m.state.mass.on_nodes - there)) / (m.state.mass.start + m.state.mass.placed);
+  const Real lost =
+      std::max(std::abs(now.mass - there), std::abs(m.state.mass.on_nodes - there)) / (m.state.mass.start + m.state.mass.placed);
   seen.mass = std::max(seen.mass, lost);
   if (lost > limit.mass)
     return fmt::format("the mass does not add up: {:.10g} kg should be there, particles have {:.10g} kg, nodes carried {:.10g} kg", there,

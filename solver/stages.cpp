@@ -72,27 +72,27 @@ template <int D>
 void begin_stage(Model<D>& m, const Stage& stage, Index number)
 {
   m.state.stage = {.number = number,
-             .first_step = m.state.clock.step,
-             .damping = stage.damping,
-             .begin = m.state.clock.time,
-             .ramp_time = stage.ramp,
-             .ramp_shape = stage.ramp_shape,
-             .elastic = stage.elastic,
-             .seeks_rest = stage.residual || stage.damping > 0};
+                   .first_step = m.state.clock.step,
+                   .damping = stage.damping,
+                   .begin = m.state.clock.time,
+                   .ramp_time = stage.ramp,
+                   .ramp_shape = stage.ramp_shape,
+                   .elastic = stage.elastic,
+                   .seeks_rest = stage.residual || stage.damping > 0};
   m.state.walls.begin_stage(stage.residual.has_value(), m.state.clock.time);
   // Under a stress of the start all of gravity acts, however it grows afterwards.
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;
   soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, m.state.particles);
   if (!stage.start_stress.empty())
-    set_start_stress(m.problem.mesh, m.problem.share, *m.problem.ranks, m.problem.loads.gravity(time, ramp), std::span(stage.start_stress), m.work.order,
-                     only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials, m.state.particles);
+    set_start_stress(m.problem.mesh, m.problem.share, *m.problem.ranks, m.problem.loads.gravity(time, ramp), std::span(stage.start_stress),
+                     m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials, m.state.particles);
   const Real kinetic = totals(m).kinetic;
   m.state.energy = {.loads = m.state.energy.loads_ahead,
-              .internal = m.state.energy.internal_ahead,
-              .kinetic_start = kinetic,
-              .plastic_start = plastic_work(m),
-              .largest_before = m.state.energy.largest_term(kinetic),
-              .largest_seen = std::max(m.state.energy.largest_seen, m.state.energy.largest_term(kinetic))};
+                    .internal = m.state.energy.internal_ahead,
+                    .kinetic_start = kinetic,
+                    .plastic_start = plastic_work(m),
+                    .largest_before = m.state.energy.largest_term(kinetic),
+                    .largest_seen = std::max(m.state.energy.largest_seen, m.state.energy.largest_term(kinetic))};
   m.state.crossing = m.problem.ranks->min(shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles));
   ExactSums<ForceAndMoment<D>> total;
   apply(m.problem.loads, time, m.state.stage.ramp(time), m.work.followed, m.work.order, m.state.particles, total);

@@ -14,10 +14,10 @@
 #include "core/finite_count.hpp"
 #include "core/format_duration.hpp"
 #include "core/parallel/threads.hpp"
+#include "core/stop_watch.hpp"
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"
 #include "io/terrain/terrain_mesh.hpp"
-#include "solver/stop_watch.hpp"
 
 namespace talus {
 

@@ -20,6 +20,7 @@
 #include "core/parallel/threads.hpp"
 #include "core/print.hpp"
 #include "core/shell_quote.hpp"
+#include "core/stop_watch.hpp"
 #include "core/version.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"
@@ -30,7 +31,6 @@
 #include "io/system/signals.hpp"
 #include "io/system/traps.hpp"
 #include "mesh/digest.hpp"
-#include "solver/stop_watch.hpp"
 
 namespace talus {
 

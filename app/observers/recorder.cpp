@@ -1,6 +1,6 @@
 #include "app/observers/recorder.hpp"
 
-#include "solver/stop_watch.hpp"
+#include "core/stop_watch.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 #include "app/run/cost_estimate.hpp"
-#include "solver/stop_watch.hpp"
+#include "core/stop_watch.hpp"
 
 #include <fmt/format.h>
 

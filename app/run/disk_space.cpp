@@ -44,7 +44,8 @@ FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs)
   const Index n_nodes = view.problem.share.alone() ? view.problem.mesh.n_nodes() : view.problem.share.whole_nodes;
   const Index n_cells = view.problem.share.alone() ? view.problem.mesh.n_cells() : view.problem.share.whole_cells;
   if (outputs.particles) {
-    const Real fields = bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(view.state, {}, name); });
+    const Real fields =
+        bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(view.state, {}, name); });
     sizes.particles = vtk_header + particles * (place_bytes + id_bytes + vertex_bytes + fields);
   }
   if (outputs.mesh) {

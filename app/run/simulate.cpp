@@ -6,10 +6,10 @@
 #include "app/observers/balance_errors.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/rebalance_policy.hpp"
+#include "core/stop_watch.hpp"
 #include "mesh/partition.hpp"
 #include "solver/particles/redistribute.hpp"
 #include "solver/stable_step.hpp"
-#include "solver/stop_watch.hpp"
 #include "solver/transfer/make_transfer.hpp"
 
 namespace talus {

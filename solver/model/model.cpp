@@ -127,16 +127,16 @@ Real plastic_work(const std::vector<AnyBatch>& materials, const CellOrder& order
   return sum.value();
 }
 
-#define TALUS_INSTANTIATE(D)                                                                              \
-  template struct Model<D>;                                                                               \
-  template void fill_columns(const WantedColumns&, Particles<D>&);                                        \
-  template void make_ready(Model<D>&, std::span<const std::vector<AnyBatch>>);                            \
-  template void update_tracked_rows(Model<D>&);                                                           \
-  template void update_rows(Model<D>&);                                                                   \
-  template void adopt_state(Model<D>&);                                                                   \
-  template void bind_boundary_conditions(Model<D>&);                                                      \
-  template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);                             \
-  template Totals<D> totals(const Model<D>&);                                                             \
+#define TALUS_INSTANTIATE(D)                                                   \
+  template struct Model<D>;                                                    \
+  template void fill_columns(const WantedColumns&, Particles<D>&);             \
+  template void make_ready(Model<D>&, std::span<const std::vector<AnyBatch>>); \
+  template void update_tracked_rows(Model<D>&);                                \
+  template void update_rows(Model<D>&);                                        \
+  template void adopt_state(Model<D>&);                                        \
+  template void bind_boundary_conditions(Model<D>&);                           \
+  template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);  \
+  template Totals<D> totals(const Model<D>&);                                  \
   template Real plastic_work(const std::vector<AnyBatch>&, const CellOrder&, const Particles<D>&, Communicator&);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)

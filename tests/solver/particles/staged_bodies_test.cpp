@@ -57,7 +57,9 @@ TEST(BodiesOfStages, AreTheSameAfterTheyWentAndCame)
 TEST(BodiesOfStages, OverlapIsWhatCellsHoldBeyondTheirVolume)
 {
   const M m = three_bodies();
-  const auto volumes = [&](Index body) { return volume_in_cells(m.problem.mesh, m.state.particles, m.work.order, [body](Index b) { return b == body; }); };
+  const auto volumes = [&](Index body) {
+    return volume_in_cells(m.problem.mesh, m.state.particles, m.work.order, [body](Index b) { return b == body; });
+  };
   const auto a = volumes(0), b = volumes(1);
   EXPECT_NEAR(std::accumulate(a.begin(), a.end(), Real{0}), 1, 1e-12);
   const Overlap<2> none_at_all = overlap<2>(m.problem.mesh, a, b, one_rank()), all = overlap<2>(m.problem.mesh, a, a, one_rank());

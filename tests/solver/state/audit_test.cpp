@@ -147,7 +147,8 @@ TEST(StepLength, IsBoundedByLoadsOnlyWhereCellsWeighMoreThanTheirStiffness)
       m.problem.loads.gravity.acceleration = Vec<2>(0, -gravity);
     make_ready(m);
     begin_stage(m, test_stage(1), 0);
-    return std::array{wanted_step(m, StepLimits{}), 0.4 * m.state.crossing, 0.4 * std::sqrt(least_altitude(m.problem.mesh, m.state.particles) / gravity)};
+    return std::array{wanted_step(m, StepLimits{}), 0.4 * m.state.crossing,
+                      0.4 * std::sqrt(least_altitude(m.problem.mesh, m.state.particles) / gravity)};
   };
   for (const bool on_particles : {false, true}) {
     const auto [usual, of_waves, not_of_loads] = step_of_waves(1e6, 9.81, on_particles);
