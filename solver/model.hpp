@@ -313,7 +313,7 @@ Real plastic_work(const M& m)
 template <int D, Kernel<D> K>
 void bind_walls(Model<D, K>& m)
 {
-  m.walls.settle();
+  m.walls.finalize();
   m.nodes.bound.resize(m.nodes.sum.size());
   for (Index node = 0; node < m.mesh.n_nodes(); ++node)
     m.nodes.bound[static_cast<std::size_t>(node)] = m.walls.binds(node) ? 1 : 0;

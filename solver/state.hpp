@@ -92,7 +92,7 @@ void put_into(const State<D>& state, LooseState<D> loose)
 {
   const auto& [particles, bodies, materials, walls, clock, stage, energy, mass, momentum, watched, timings, residual, crossing] = state;
   particles = std::move(loose.particles), bodies = std::move(loose.bodies), materials = std::move(loose.materials);
-  walls.go_on_from(loose.walls);
+  walls.continue_from(loose.walls);
   clock = loose.clock, stage = loose.stage, energy = loose.energy, mass = loose.mass, momentum = loose.momentum;
   watched = std::move(loose.watched), timings = loose.timings, residual = loose.residual, crossing = loose.crossing;
 }

@@ -104,7 +104,7 @@ MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& frame) const
 {
   const MomentumLedger<D>& given = frame.momentum;
   ForceAndMoment<D> in_steps = given.loads + given.damping;
-  for (const Wall<D>& wall : frame.walls.walls())
+  for (const BoundaryCondition<D>& wall : frame.walls.conditions())
     in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
   MomentumNow<D> now{start_, momentum_of(frame), in_steps + given.rest + given.changes + -1 * frame.mass.carried_away};
   if (frame.particles.precision() == Precision::single)

@@ -57,7 +57,7 @@ void take_walls(Model<D, K>& m, BoundaryConditions<D> walls)
 {
   if (!m.share.alone())
     walls.restrict_to(m.share);
-  walls.go_on_from(m.walls);
+  walls.continue_from(m.walls);
   m.walls = std::move(walls);
   bind_walls(m);
 }

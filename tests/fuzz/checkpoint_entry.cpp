@@ -111,10 +111,7 @@ struct SmallRun {
     }
     sort();
     const std::vector<Index> held{0, 1};
-    Wall<2> floor;
-    floor.name = "floor";
-    floor.kind = WallKind::fixed;
-    walls.add(std::move(floor), mesh, held);
+    walls.add({.name = "floor", .kind = Fixed<2>{}}, mesh, held);
   }
   void sort() { sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order); }
   RunView<2> frame() const

@@ -79,15 +79,11 @@ void run_until(Model<D, K>& m, Real end, Real cfl = 0.4)
   run_stage(m, test_stage(end - m.clock.time), StepLimits{.cfl = cfl}, [](const auto&, RunEvent) {});
 }
 
-/// A wall on the facets of a set of the mesh, such as "y_min".
+/// A condition on the facets of a set of the mesh, such as "y_min".
 template <int D, class K>
-void close_off(Model<D, K>& m, const std::string& facets, WallKind kind, Real friction = 0)
+void close_off(Model<D, K>& m, const std::string& facets, const AnyCondition<D>& kind)
 {
-  Wall<D> wall;
-  wall.name = facets;
-  wall.kind = kind;
-  wall.friction = friction;
-  m.walls.add(wall, m.mesh, *m.mesh.facet_set(facets));
+  m.walls.add({.name = facets, .kind = kind}, m.mesh, *m.mesh.facet_set(facets));
 }
 
 inline NeoHookean rubber(Real youngs_modulus, Real poisson_ratio, Real density)

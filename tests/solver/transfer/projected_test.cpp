@@ -128,7 +128,7 @@ TEST(Projected, HoldsAFilmOnAWall)
     m.particles.volume0[p] *= share;
     m.particles.mass.set(p, share * m.particles.mass[p]);
   }
-  close_off(m, "y_min", WallKind::roller);
+  close_off(m, "y_min", Roller<2>{});
   m.loads.gravity.acceleration = {0, -10};
   make_ready(m);
   const Real kinetic = totals(m).kinetic;
@@ -151,7 +151,7 @@ void slide_on_a_rough_floor(Scheme scheme)
   add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 6, [](const Vec<2>& x) { return x[0] < 0.6 && x[1] < 0.4; });
   m.particles.v.assign(m.particles.v.size(), Vec<2>{2, -0.5});
   const Real friction = 0.4;
-  close_off(m, "y_min", WallKind::friction, friction);
+  close_off(m, "y_min", Friction<2>{friction});
   m.loads.gravity.acceleration = {1, -10};
   make_ready(m);
   const Totals<2> start = totals(m);
@@ -215,7 +215,7 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
   m.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
   add_body<2>(m, "column", rubber(1e7, 0.3, 1000), 6, [](const Vec<2>& x) { return x[1] < 10; });
   for (const char* side : {"x_min", "x_max", "y_min"})
-    close_off(m, side, WallKind::roller);
+    close_off(m, side, Roller<2>{});
   m.loads.gravity.acceleration = {0, -10};
   make_ready(m);
   Stage rest = test_stage(6);  // 17 periods of the column
