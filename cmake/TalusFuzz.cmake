@@ -11,7 +11,7 @@ talus_library(fuzz_io FOLDER io
               EXCLUDE scene_json
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5 ZLIB::ZLIB)
-talus_library(fuzz_solver FOLDER solver ONLY cell_order redistribute loads soil_column boundary_conditions LINKS talus_mesh talus_fuzz_materials)
+talus_library(fuzz_solver FOLDER solver ONLY cell_order redistribute loads column_beside boundary_conditions dashpots LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
               ONLY accounts body_forces checkpoints differences disk_space expression output_fields history new_results progress rank_slices
                    recorder report_fields report_survey results runout validate_state watch_drawing

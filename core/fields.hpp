@@ -98,8 +98,8 @@ struct History {
   std::string_view unit, meaning;
 };
 
-/// What a step leaves to the next one: checkpoint.  Value is a number, bool, enum, text, vector of space, struct with fields(), or a
-/// std::vector of any of these.
+/// What a step leaves to the next one: checkpoint.  Value is a number, bool, enum, text, vector of space, struct with fields(), std::variant of
+/// structs, or a std::vector of any of these.
 template <class Owner, class Value>
 struct Kept {
   std::string_view key;

@@ -1,6 +1,7 @@
 #pragma once
 // A function of time given by points: gravity ramps, prescribed velocities, tractions.
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/types.hpp"
@@ -23,6 +24,14 @@ struct Table {
     const auto& [t1, v1] = *right;
     const auto& [t0, v0] = *(right - 1);
     return v0 + (v1 - v0) * (time - t0) / (t1 - t0);
+  }
+  /// The largest absolute value at any time.
+  Real largest_magnitude() const noexcept
+  {
+    Real largest = points.empty() ? 1 : 0;
+    for (const auto& [time, value] : points)
+      largest = std::max(largest, std::abs(value));
+    return largest;
   }
 };
 

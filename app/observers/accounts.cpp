@@ -104,7 +104,7 @@ MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& view) const
 {
   const MomentumLedger<D>& given = view.state.momentum;
   ForceAndMoment<D> in_steps = given.loads + given.damping;
-  for (const Wall<D>& wall : view.state.walls.walls())
+  for (const BoundaryCondition<D>& wall : view.state.walls.conditions())
     in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
   MomentumNow<D> now{start_, momentum_of(view), in_steps + given.rest + given.changes + -1 * view.state.mass.carried_away};
   if (view.state.particles.precision() == Precision::single)

@@ -115,7 +115,7 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
 {
   std::vector<CsvColumn> all = common_columns(D);
   const auto add = [&](const std::vector<CsvColumn>& more) { all.insert(all.end(), more.begin(), more.end()); };
-  for (const Wall<D>& wall : start.state.walls.walls())
+  for (const BoundaryCondition<D>& wall : start.state.walls.conditions())
     add(reaction_columns(wall.name, D));
   for (const PointSpec& point : spec.points)
     add(columns_of(point, D));
@@ -134,8 +134,8 @@ template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start) : spec_(std::move(spec))
 {
   start.problem.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
-  state_.impulse.assign(start.state.walls.walls().size(), Vec<D>::Zero());
-  state_.angular.assign(start.state.walls.walls().size(), Vec3::Zero());
+  state_.impulse.assign(start.state.walls.conditions().size(), Vec<D>::Zero());
+  state_.angular.assign(start.state.walls.conditions().size(), Vec3::Zero());
   state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
     state_.followed.push_back(nearest_particle(point, start.state.bodies, start.state.particles, *start.problem.ranks));
@@ -163,7 +163,7 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
                          e.defect, view.state.residual});
   const Real elapsed = clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
-    const Vec<D>& impulse = view.state.walls.walls()[w].impulse;
+    const Vec<D>& impulse = view.state.walls.conditions()[w].impulse;
     put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
   }
   FollowedRows followed(state_.followed);
@@ -175,8 +175,8 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   for (const WallSpec& spec : spec_.walls)
     add_wall(view, spec, elapsed, row);
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
-    state_.impulse[w] = view.state.walls.walls()[w].impulse;
-    state_.angular[w] = view.state.walls.walls()[w].angular;
+    state_.impulse[w] = view.state.walls.conditions()[w].impulse;
+    state_.angular[w] = view.state.walls.conditions()[w].angular;
   }
   for (const MovedSpec& spec : spec_.moved)
     row.push_back(moved(spec, view.state.bodies, view.state.particles, *view.problem.ranks));
@@ -213,8 +213,8 @@ void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& for
 template <int D>
 void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
 {
-  const auto walls = view.state.walls.walls();
-  const auto wall = std::find_if(walls.begin(), walls.end(), [&](const Wall<D>& one) { return one.name == spec.on; });
+  const auto walls = view.state.walls.conditions();
+  const auto wall = std::find_if(walls.begin(), walls.end(), [&](const BoundaryCondition<D>& one) { return one.name == spec.on; });
   const auto w = static_cast<std::size_t>(wall - walls.begin());
   const MeshTraction<D> on_nodes =
       carried_by_mesh<D>(view.problem.mesh, facets_of_wall(view.problem.mesh, spec.on).value_or(std::vector<Facet>()));

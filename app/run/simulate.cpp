@@ -54,7 +54,7 @@ Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup)
   if (!part.share.alone())
     m.join(world(), std::move(part.share));
   m.state = std::move(setup.state);
-  static_cast<Conditions<D>&>(m.problem) = std::move(setup.conditions);
+  static_cast<SceneConditions<D>&>(m.problem) = std::move(setup.conditions);
   m.state.energy.largest_seen = m.problem.limits.least_energy * least_energy_factor;
   make_ready(m, setup.laws);
   return m;
@@ -283,7 +283,7 @@ class Simulation {
     restrict_to(part.share, setup);
     model_.emplace(build(scene_, std::move(part), std::move(setup)));
     BoundaryConditions<D> walls = std::move(model_->state.walls);  // those of the new part of the mesh
-    walls.go_on_from(state.walls);
+    walls.continue_from(state.walls);
     state.walls = std::move(walls);
     model_->state = std::move(state);
     adopt();

@@ -6,14 +6,6 @@ namespace talus {
 
 namespace {
 
-Real largest_factor(const Table& table)
-{
-  Real largest = table.points.empty() ? 1 : 0;
-  for (const auto& [time, value] : table.points)
-    largest = std::max(largest, std::abs(value));
-  return largest;
-}
-
 /// Speeds of waves, and the energy of all particles if they moved with the speed of theirs.
 struct Waves {
   Real fastest = 0, energy = 0;  ///< [m/s], [J]
@@ -50,14 +42,13 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
     return std::numeric_limits<Real>::infinity();
   const Real size = (mesh.high() - mesh.low()).norm();
   Real speed = 0;
-  for (const Wall<D>& wall : setup.state.walls.walls()) {
-    const Real of_wave = wall.kind == WallKind::compliant_base ? 2 : 1;  // it meets the one that is thrown back
-    speed = std::max(speed, of_wave * wall.velocity.norm() * (wall.record ? wall.record->peak_velocity() : largest_factor(wall.table)));
-  }
-  speed += std::sqrt(2 * setup.conditions.loads.gravity.acceleration.norm() * largest_factor(setup.conditions.loads.gravity.table) * size);
+  for (const BoundaryCondition<D>& condition : setup.state.walls.conditions())
+    speed = std::max(speed, condition.peak_speed());
+  speed +=
+      std::sqrt(2 * setup.conditions.loads.gravity.acceleration.norm() * setup.conditions.loads.gravity.table.largest_magnitude() * size);
   Real pressure = 0;  // on the thinnest layer that carries it, over the size of the mesh
   const auto press = [&](const auto& load) {
-    pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure)) * largest_factor(load.table));
+    pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure)) * load.table.largest_magnitude());
   };
   std::for_each(setup.conditions.loads.on_particles.begin(), setup.conditions.loads.on_particles.end(), press);
   std::for_each(setup.conditions.loads.on_mesh.begin(), setup.conditions.loads.on_mesh.end(), press);

@@ -5,11 +5,11 @@
 #include "app/observers/history.hpp"
 #include "app/observers/output_fields.hpp"
 #include "app/observers/runout.hpp"
+#include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/default_limits.hpp"
 #include "app/setup/loads_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
-#include "app/setup/walls_of_scene.hpp"
 #include "app/setup/water_table.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
@@ -60,9 +60,9 @@ std::uint64_t digest_of_files(const Setup<D>& setup)
   for (const StageChange<D>& change : setup.changes)
     if (change.table)
       numbers.insert(numbers.end(), change.table->begin(), change.table->end());
-  for (const Wall<D>& wall : setup.state.walls.walls())
-    if (wall.record)
-      for (const std::vector<Real>* part : {&wall.record->time, &wall.record->velocity, &wall.record->acceleration})
+  for (const BoundaryCondition<D>& condition : setup.state.walls.conditions())
+    if (const Record* record = condition.record())
+      for (const std::vector<Real>* part : {&record->time, &record->velocity, &record->acceleration})
         numbers.insert(numbers.end(), part->begin(), part->end());
   return digest(std::span<const Real>(numbers));
 }
@@ -151,7 +151,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
-  add_walls(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.state.walls);
+  add_boundaries(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.state.walls);
   add_loads(scene, mesh, has_particles, at_start, ranks, complaints, setup);
   set_stages(scene, complaints, setup);
   setup.conditions.water = water_of(

@@ -13,7 +13,7 @@ template <int D>
 struct Setup {
   State<D> state;         ///< at the start, with the particles of the bodies that are there then
   Index n_particles = 0;  ///< of all bodies, on all ranks
-  Conditions<D> conditions;
+  SceneConditions<D> conditions;
   std::vector<Stage> stages;
   std::vector<StageChange<D>> changes;      ///< of each stage
   std::vector<std::vector<AnyBatch>> laws;  ///< of all bodies in each stage, without particles

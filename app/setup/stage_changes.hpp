@@ -58,7 +58,7 @@ void take_walls(Model<D>& m, BoundaryConditions<D> walls)
 {
   if (!m.problem.share.alone())
     walls.restrict_to(m.problem.share);
-  walls.go_on_from(m.state.walls);
+  walls.continue_from(m.state.walls);
   m.state.walls = std::move(walls);
   bind_boundary_conditions(m);
 }

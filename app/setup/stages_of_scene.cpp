@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/k0_stress.hpp"
 #include "app/setup/laws_in_force.hpp"
-#include "app/setup/walls_of_scene.hpp"
 #include "app/setup/water_table.hpp"
 #include "io/scene/history_columns.hpp"
 
@@ -160,8 +160,9 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   const bool bodies_differ = std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) {
     return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty();
   });
-  const bool walls_differ = bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
-                                                         [](const BoundarySpec& boundary) { return !during_of(boundary).empty(); });
+  const bool walls_differ =
+      bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
+                                   [](const BoundaryOptions& boundary) { return !common_of(boundary).during.empty(); });
   const bool tables_differ =
       std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
   const auto names = wall_names(scene.boundaries);
@@ -188,9 +189,10 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
     if (!walls_differ)
       continue;
     change.walls.emplace();
-    add_walls(scene, mesh, filled, ranks, said(s).label, false, complaints, setup, *change.walls);
+    add_boundaries(scene, mesh, filled, ranks, said(s).label, false, complaints, setup, *change.walls);
     for (std::size_t w = 0; w < names.size(); ++w) {
-      const bool acted = acts_in(scene.boundaries[w], said(s - 1).label), acts = acts_in(scene.boundaries[w], said(s).label);
+      const bool acted = common_of(scene.boundaries[w]).acts_in(said(s - 1).label),
+                 acts = common_of(scene.boundaries[w]).acts_in(said(s).label);
       if (acted != acts)
         change.told.push_back(fmt::format("wall \"{}\" {}", names[w], acts ? "acts from here on" : "is gone"));
     }

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <type_traits>
+#include <variant>
 #include <vector>
 
 #include "core/parallel/threads.hpp"
@@ -17,6 +18,10 @@ template <class T>
 inline constexpr bool is_vector = false;
 template <class T, class Allocator>
 inline constexpr bool is_vector<std::vector<T, Allocator>> = true;
+template <class T>
+inline constexpr bool is_variant = false;
+template <class... T>
+inline constexpr bool is_variant<std::variant<T...>> = true;
 
 namespace detail {
 /// What a number is stored as.
@@ -45,6 +50,13 @@ void save(ArrayWriter& file, const std::string& path, const T& value)
 {
   if constexpr (HasFields<T>) {
     for_each_field<T>([&](const auto& field) { save(file, below(path, field.key), value.*field.member); });
+  } else if constexpr (is_variant<T>) {  // the alternative is known to whoever reads it back; one without fields() has nothing to keep
+    std::visit(
+        [&]<class One>(const One& one) {
+          if constexpr (HasFields<One>)
+            save(file, path, one);
+        },
+        value);
   } else if constexpr (std::is_same_v<T, std::string>) {
     file.write(path, std::string_view(value));
   } else if constexpr (std::is_same_v<T, std::vector<Real>>) {
@@ -67,6 +79,13 @@ void load(const ArrayReader& file, const std::string& path, T& value)
 {
   if constexpr (HasFields<T>) {
     for_each_field<T>([&](const auto& field) { load(file, below(path, field.key), value.*field.member); });
+  } else if constexpr (is_variant<T>) {
+    std::visit(
+        [&]<class One>(One& one) {
+          if constexpr (HasFields<One>)
+            load(file, path, one);
+        },
+        value);
   } else if constexpr (std::is_same_v<T, std::string>) {
     value = file.text(path);
   } else if constexpr (std::is_same_v<T, std::vector<Real>>) {

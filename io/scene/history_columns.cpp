@@ -77,12 +77,12 @@ std::vector<CsvColumn> body_columns(const std::string& body, int dimension)
   return all;
 }
 
-std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries)
+std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries)
 {
   std::vector<std::string> names;
   std::map<std::string, int> times;
-  for (const BoundarySpec& boundary : boundaries) {
-    const std::string& group = std::visit([](const auto& spec) -> const std::string& { return spec.on; }, boundary);
+  for (const BoundaryOptions& boundary : boundaries) {
+    const std::string& group = common_of(boundary).on;
     const int count = ++times[group];
     names.push_back(count == 1 ? group : fmt::format("{}_{}", group, count));
   }

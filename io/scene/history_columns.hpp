@@ -1,8 +1,8 @@
 #pragma once
 // Columns of history.csv: who gives which, and what they are called.
 #include "io/output/csv.hpp"
-#include "io/scene/scene_loads.hpp"
 #include "io/scene/scene_output.hpp"
+#include "mesh/conditions/conditions.hpp"
 
 namespace talus {
 
@@ -20,6 +20,6 @@ std::vector<CsvColumn> columns_of(const MovedSpec& moved);
 std::vector<CsvColumn> body_columns(const std::string& body, int dimension);
 
 /// Walls are called by the group that they are on; the second on a group is `<group>_2`, and so on.
-std::vector<std::string> wall_names(const std::vector<BoundarySpec>& boundaries);
+std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries);
 
 }  // namespace talus

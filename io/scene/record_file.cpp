@@ -52,7 +52,7 @@ bool is_velocity(RecordUnit unit) { return unit == RecordUnit::metres_per_second
 
 }  // namespace
 
-Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
+Record read_record(const std::filesystem::path& file, const RecordOptions& spec)
 {
   const std::string text = read_text(file);
   std::vector<Real> time, value;
@@ -102,12 +102,12 @@ Record read_record(const std::filesystem::path& file, const RecordSpec& spec)
   switch (spec.baseline) {
     case Baseline::velocity: return ends_without_velocity(std::move(record));
     case Baseline::displacement: return ends_where_it_began(std::move(record));
-    case Baseline::saved: break;
+    case Baseline::as_recorded: break;
   }
   return record;
 }
 
-std::string describe(const RecordSpec& spec, const Record& record)
+std::string describe(const RecordOptions& spec, const Record& record)
 {
   return fmt::format("{}: {} samples over {:.4g} s, peaks {:.3g} m/s and {:.3g} m/s^2; ends with {:.3g} m/s, {:.3g} m from where it began",
                      spec.file, record.time.size(), record.time.back() - record.time.front(), record.peak_velocity(),

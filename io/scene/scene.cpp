@@ -21,12 +21,6 @@ void exactly_one(std::string_view keys, int found, std::vector<std::string>& pro
     problems.push_back(fmt::format("only one of {} may be given", keys));
 }
 
-void table_or_record(const Table& table, const std::optional<RecordSpec>& record, std::vector<std::string>& problems)
-{
-  if (!table.points.empty() && record)
-    problems.push_back("only one of table and record may be given");
-}
-
 }  // namespace
 
 void GridSpec::check(std::vector<std::string>& problems) const { check_corners(low, high, problems); }
@@ -75,18 +69,6 @@ void TransferSpec::check(std::vector<std::string>& problems) const
 void TractionSpec::check(std::vector<std::string>& problems) const
 {
   exactly_one("traction or pressure", !traction.empty() + pressure.has_value(), problems);
-}
-
-void VelocitySpec::check(std::vector<std::string>& problems) const { table_or_record(table, record, problems); }
-
-void CompliantBaseSpec::check(std::vector<std::string>& problems) const
-{
-  table_or_record(table, record, problems);
-  if (velocity.empty() && (!table.points.empty() || record))
-    problems.push_back("missing key \"velocity\" [m/s]: which way the wave moves the particles");
-  if (p_wave * p_wave * 3 < s_wave * s_wave * 4)  // the bulk modulus is density (p_wave^2 - 4/3 s_wave^2)
-    problems.push_back(fmt::format("p_wave {} m/s belongs to no elastic ground with s_wave {} m/s: at least {:.4g} m/s", p_wave, s_wave,
-                                   std::sqrt(4.0 / 3) * s_wave));
 }
 
 void GeostaticSpec::check(std::vector<std::string>& problems) const

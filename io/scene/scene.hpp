@@ -22,6 +22,7 @@
 #include "io/scene/scene_water.hpp"
 #include "kernels/projected_options.hpp"
 #include "kernels/umls_options.hpp"
+#include "mesh/conditions/conditions.hpp"
 
 namespace talus {
 
@@ -92,7 +93,7 @@ struct Scene {
   std::optional<InitialSpec> initial;
   std::optional<WaterSpec> water;
   std::vector<LoadSpec> loads;
-  std::vector<BoundarySpec> boundaries;
+  std::vector<BoundaryOptions> boundaries;
   std::vector<StageSpec> stages;
   OutputSpec outputs;
   OnExit on_exit = OnExit::stop;

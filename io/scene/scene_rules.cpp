@@ -312,13 +312,13 @@ class Rules {
     }
     for (std::size_t i = 0; i < scene_.boundaries.size(); ++i) {
       const std::string path = fmt::format("boundaries[{}]", i);
-      if (const auto* boundary = std::get_if<VelocitySpec>(&scene_.boundaries[i]))
-        fits(path + ".velocity", boundary->velocity);
-      if (const auto* boundary = std::get_if<CompliantBaseSpec>(&scene_.boundaries[i]))
-        fits(path + ".velocity", boundary->velocity);
-      const bool gives_way =
-          std::holds_alternative<CompliantBaseSpec>(scene_.boundaries[i]) || std::holds_alternative<FreeFieldSpec>(scene_.boundaries[i]);
-      if (gives_way && gravity && !begins_at_rest())
+      std::visit(
+          [&](const auto& boundary) {
+            if constexpr (requires { boundary.velocity; })
+              fits(path + ".velocity", boundary.velocity);
+          },
+          scene_.boundaries[i]);
+      if (has_dashpots(scene_.boundaries[i]) && gravity && !begins_at_rest())
         add(path, fmt::format("it carries on what it carried at rest, and nothing says what that is: let the stages begin with a geostatic "
                               "one, take the state from another run (initial), or leave loads[{}] out",
                               *gravity));

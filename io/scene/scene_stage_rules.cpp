@@ -143,7 +143,7 @@ class StageRules {
       if (const std::string& label = changes_of(stage).label; !label.empty())
         names.push_back(label);
     for (std::size_t b = 0; b < scene_.boundaries.size(); ++b) {
-      const auto& during = during_of(scene_.boundaries[b]);
+      const auto& during = common_of(scene_.boundaries[b]).during;
       for (std::size_t i = 0; i < during.size(); ++i) {
         const std::string path = fmt::format("boundaries[{}].during[{}]", b, i);
         if (names.empty())

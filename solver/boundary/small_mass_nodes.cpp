@@ -4,7 +4,7 @@ namespace talus {
 
 namespace {
 
-/// Parts of the rows of the nodes that `sends` marks.  Rows of others stay as they are.
+/// Parts of the rows of the nodes that `sends` marks.  Rows of other nodes are left alone.
 template <class Parts>
 struct OfMarked {
   Parts parts;
@@ -47,7 +47,7 @@ void SmallMassNodes<D>::for_each_active_around(const Mesh<D>& mesh, Index node, 
   for (const Index n : mesh.ring_of_node()[node])
     if (ring == 1)
       visit(n);
-    else  // a node may be met more than once, which only weighs it
+    else  // a node may be visited more than once, which gives it more weight
       std::ranges::for_each(mesh.ring_of_node()[n], visit);
 }
 
@@ -75,49 +75,49 @@ void SmallMassNodes<D>::weigh_hosts(const Mesh<D>& mesh, Index small_mass_node)
 
 template <int D>
 template <class What, class Rows>
-void SmallMassNodes<D>::tell_masters(Rows&& rows, const What& what)
+void SmallMassNodes<D>::send_to_hosts(Rows&& rows, const What& what)
 {
   near_.send(
-      rows, what, [&](std::size_t border) { return slaves_here_[border] != 0; },
-      [&](std::size_t border) { return slaves_there_[border] != 0; });
+      rows, what, [&](std::size_t border) { return small_here_[border] != 0; },
+      [&](std::size_t border) { return small_there_[border] != 0; });
   near_.take(rows, what);
 }
 
 template <int D>
 template <class What, class Rows>
-void SmallMassNodes<D>::tell_slaves(Rows&& rows, const What& what)
+void SmallMassNodes<D>::send_from_hosts(Rows&& rows, const What& what)
 {
   near_.send(
-      rows, what, [&](std::size_t border) { return slaves_there_[border] != 0; },
-      [&](std::size_t border) { return slaves_here_[border] != 0; });
+      rows, what, [&](std::size_t border) { return small_there_[border] != 0; },
+      [&](std::size_t border) { return small_here_[border] != 0; });
   near_.take(rows, what);
 }
 
 template <int D>
-void SmallMassNodes<D>::meet_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes)
+void SmallMassNodes<D>::exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes)
 {
   near_.send(ring_, OfMarked{itself, ring_});
   near_.take(ring_, OfMarked{itself, ring_});
   const auto has_small_mass = [&](Index n) { return ring_[static_cast<std::size_t>(n)] != 0; };
-  slaves_here_.clear(), slaves_there_.clear();
-  asked_.assign(ring_.size(), 0);
+  small_here_.clear(), small_there_.clear();
+  may_host_.assign(ring_.size(), 0);
   for (const NeighbourRank& border : near_.borders()) {
-    slaves_here_.push_back(std::ranges::any_of(border.out, has_small_mass) ? 1 : 0);
-    slaves_there_.push_back(std::ranges::any_of(border.in, has_small_mass) ? 1 : 0);
+    small_here_.push_back(std::ranges::any_of(border.out, has_small_mass) ? 1 : 0);
+    small_there_.push_back(std::ranges::any_of(border.in, has_small_mass) ? 1 : 0);
     for (const Index n : border.in)
       if (has_small_mass(n)) {
-        slaves_.push_back({n, 0});
+        small_.push_back({n, 0});
         for (const Index between : mesh.ring_of_node()[n])
           for (const Index around : mesh.ring_of_node()[between])
-            asked_[static_cast<std::size_t>(around)] = nodes.active[static_cast<std::size_t>(around)];
+            may_host_[static_cast<std::size_t>(around)] = nodes.active[static_cast<std::size_t>(around)];
       }
   }
-  tell_slaves(weight_, OfMarked{itself, asked_});
+  send_from_hosts(weight_, OfMarked{itself, may_host_});
 }
 
 namespace {
 
-/// What a slave has for its masters, and what their shares of it are made from.
+/// What a node of small mass gives to its hosts, and what their shares of it follow from.
 template <int D>
 struct NodeAndHosts {
   NodeSum<D>& sum;
@@ -143,8 +143,8 @@ struct NodesAndHosts {
 template <int D>
 void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
 {
-  slaves_.reserve(nodes.sum.size());
-  slaves_.clear();
+  small_.reserve(nodes.sum.size());
+  small_.clear();
   weight_.resize(nodes.sum.size());
   ring_.resize(nodes.sum.size());
   for (std::size_t n = 0; n < nodes.sum.size(); ++n) {
@@ -153,17 +153,17 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
     weight_[n] = nodes.active[n] ? sum.mass : 0;
     ring_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
     if (ring_[n] != 0)
-      slaves_.push_back({static_cast<Index>(n), sum.mass});
+      small_.push_back({static_cast<Index>(n), sum.mass});
   }
-  const std::size_t n_own = slaves_.size();
+  const std::size_t n_own = small_.size();
   if (!near_.borders().empty())
-    meet_neighbours(mesh, nodes);
+    exchange_neighbours(mesh, nodes);
   for (std::size_t s = 0; s < n_own; ++s)
-    weigh_hosts(mesh, slaves_[s].node);
-  tell_masters(NodesAndHosts<D>{nodes.sum, weight_, ring_}, OfMarked{[](const auto& row) { return NodesAndHosts<D>::parts(row); }, ring_});
-  if (slaves_.size() > n_own)
-    std::ranges::sort(slaves_, {}, &Slave::node);
-  hand_on(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) {
+    weigh_hosts(mesh, small_[s].node);
+  send_to_hosts(NodesAndHosts<D>{nodes.sum, weight_, ring_}, OfMarked{[](const auto& row) { return NodesAndHosts<D>::parts(row); }, ring_});
+  if (small_.size() > n_own)
+    std::ranges::sort(small_, {}, &SmallMassNode::node);
+  give_to_hosts(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) {
     to.mass += share * from.mass;
     to.momentum += share * from.momentum;
     to.force += share * from.force;
@@ -173,15 +173,15 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
 template <int D>
 void SmallMassNodes<D>::lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes)
 {
-  tell_masters(nodes.sum, OfMarked{[](auto& sum) { return NodeSum<D>::momentum_parts(sum); }, ring_});
-  hand_on(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) { to.momentum += share * from.momentum; });
+  send_to_hosts(nodes.sum, OfMarked{[](auto& sum) { return NodeSum<D>::momentum_parts(sum); }, ring_});
+  give_to_hosts(mesh, own, nodes, [](NodeSum<D>& to, Real share, const NodeSum<D>& from) { to.momentum += share * from.momentum; });
 }
 
 template <int D>
 template <class F>
-void SmallMassNodes<D>::hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const
+void SmallMassNodes<D>::give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const
 {
-  for (const Slave& small_mass_node : slaves_)
+  for (const SmallMassNode& small_mass_node : small_)
     for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) {
       if (own.has(host))
         f(nodes.sum[static_cast<std::size_t>(host)], share, nodes.sum[static_cast<std::size_t>(small_mass_node.node)]);
@@ -192,8 +192,8 @@ template <int D>
 void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& walls,
                                     std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work)
 {
-  tell_slaves(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, asked_});
-  for (const Slave& small_mass_node : slaves_) {
+  send_from_hosts(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, may_host_});
+  for (const SmallMassNode& small_mass_node : small_) {
     if (!own.has(small_mass_node.node))
       continue;
     NodeMotion<D> mean;
@@ -210,8 +210,8 @@ template <int D>
 void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& walls, Real mid,
                                              std::vector<NodeMotion<D>>& motion)
 {
-  tell_slaves(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, asked_});
-  for (const Slave& small_mass_node : slaves_) {
+  send_from_hosts(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, may_host_});
+  for (const SmallMassNode& small_mass_node : small_) {
     if (!own.has(small_mass_node.node))
       continue;
     Vec<D> mean = Vec<D>::Zero();

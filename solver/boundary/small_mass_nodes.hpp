@@ -1,68 +1,68 @@
 #pragma once
-// What happens to nodes with next to no mass.
+// Nodes with too little mass for a motion of their own.
 #include "solver/boundary/boundary_conditions.hpp"
 #include "solver/halo/halo_exchange.hpp"
 #include "solver/state/owned_nodes.hpp"
 
 namespace talus {
 
-/// Nodes that particles see with next to no mass, or none, become slaves: their mass, momentum and force go to the active nodes of
-/// their ring, in proportion to the masters' masses, and they move with the mean of these.  The map back is the transpose of the map
-/// there, so momentum is neither made nor lost, and a uniform motion stays one.  Nodes with negative mass (weights of moving least
-/// squares turn negative at the boundary of a mesh) are treated alike.
+/// The mass, momentum and force of a node of small mass, or of none, go to its host nodes: the active nodes of its first ring, or else of its
+/// second ring, in proportion to their masses.  It moves with the mean velocity of its hosts.  Because one map is the transpose of the
+/// other, momentum is conserved, and a uniform motion stays uniform.  Nodes of negative mass, which the weights of moving least squares
+/// cause at the boundary of a mesh, are treated alike.
 ///
-/// A rank treats the nodes it owns.  Where a slave hangs on nodes of another rank, its owner is told their masses, tells in turn what they get,
-/// and is told how they move.
+/// A rank treats the nodes that it owns.  Where hosts of a node belong to another rank, its owner receives their masses, sends them their
+/// shares and receives their motion.
 template <int D>
 class SmallMassNodes {
  public:
-  /// Of a rank alone.
+  /// For a rank that is alone.
   SmallMassNodes() = default;
-  /// Every rank has to make one.
+  /// Every rank has to construct one.
   SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const OwnNodes& own);
 
-  /// Finds the slaves, sets the active flags of own nodes, hands on mass, momentum and force.
+  /// Finds the nodes of small mass, sets the active flags of own nodes, and gives mass, momentum and force to the hosts.
   void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
-  /// Hands on momentum alone, after it was summed anew.
+  /// Gives only the momentum to the hosts, after it was summed again.
   void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
-  /// Rows of the slaves: the mean motion of their masters, as the walls allow it, which push the mass that is the slave's own; their
-  /// work is added.
+  /// The motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which push the mass that the node
+  /// itself has.  Their work is added to `work`.
   void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& walls,
                    std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work);
-  /// The same for `v` alone.
+  /// The same for the velocity `v` alone, without work.
   void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& walls, Real mid,
                             std::vector<NodeMotion<D>>& motion);
-  Index size() const noexcept { return static_cast<Index>(slaves_.size()); }
+  Index size() const noexcept { return static_cast<Index>(small_.size()); }
 
  private:
-  struct Slave {
+  struct SmallMassNode {
     Index node;
-    Real mass;  ///< before anything was handed on [kg]
+    Real mass;  ///< before it went to the hosts [kg]
   };
-  /// f(n, mass) for the active nodes in the first or second ring around a node.
+  /// f(n, mass) for the active nodes of the first or second ring around a node.
   template <class F>
   void for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const;
-  /// f(master, share) for the active nodes a slave hangs on; nothing if there are none within two rings.
+  /// f(host, share) for the hosts of a node; it has none if no node within two rings is active.
   template <class F>
   void for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const;
   void weigh_hosts(const Mesh<D>& mesh, Index small_mass_node);
-  /// f(master's sum, share, slave's sum) for own masters, slaves in ascending order.
+  /// f(sum of the host, share, sum of the node) for own hosts, with the nodes of small mass in ascending order.
   template <class F>
-  void hand_on(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const;
-  /// Of slaves near a border: they, and the masses of nodes around them.
-  void meet_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes);
-  /// Between owners of slaves and owners of nodes around them, where there are any.
+  void give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const;
+  /// Exchanges which nodes near a border have small mass, and the masses of the nodes around them.
+  void exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes);
+  /// Messages between the owners of nodes of small mass and the owners of the nodes around them, where there are any.
   template <class What, class Rows>
-  void tell_masters(Rows&& rows, const What& what);
+  void send_to_hosts(Rows&& rows, const What& what);
   template <class What, class Rows>
-  void tell_slaves(Rows&& rows, const What& what);
+  void send_from_hosts(Rows&& rows, const What& what);
 
-  std::vector<Slave> slaves_;        ///< ascending; own ones, and those of others that may hang on own nodes
-  std::vector<Real> weight_;         ///< by node: mass if it is active, minus that of its masters if it is a slave, as they were [kg]
-  std::vector<std::uint8_t> ring_;   ///< by node: of slaves, the one in which the masters are: 1 or 2
-  std::vector<std::uint8_t> asked_;  ///< by node: within two rings of another rank's slave
-  HaloExchange near_;                ///< between nodes within two rings of each other
-  std::vector<std::uint8_t> slaves_here_, slaves_there_;  ///< by border
+  std::vector<SmallMassNode> small_;    ///< ascending; own nodes, and those of other ranks that may have own hosts
+  std::vector<Real> weight_;            ///< by node: its mass if it is active, minus the mass of its hosts if its mass is small [kg]
+  std::vector<std::uint8_t> ring_;      ///< by node: the ring of its hosts, 1 or 2; 0 unless its mass is small
+  std::vector<std::uint8_t> may_host_;  ///< by node: active within two rings of a node of small mass of another rank
+  HaloExchange near_;                   ///< between nodes within two rings of each other
+  std::vector<std::uint8_t> small_here_, small_there_;  ///< by border: whether there are nodes of small mass on either side
 };
 
 extern template class SmallMassNodes<2>;

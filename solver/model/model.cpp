@@ -63,7 +63,7 @@ template <int D>
 void bind_boundary_conditions(Model<D>& m)
 {
   auto& [problem, state, work, transfer] = m;
-  state.walls.settle();
+  state.walls.finalize();
   work.nodes.bound.resize(work.nodes.sum.size());
   for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
     work.nodes.bound[static_cast<std::size_t>(node)] = state.walls.binds(node) ? 1 : 0;

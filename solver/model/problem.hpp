@@ -35,7 +35,7 @@ struct WantedColumns {
 };
 /// What a scene prescribes besides the bodies and their boundary conditions.
 template <int D>
-struct Conditions {
+struct SceneConditions {
   TransferOptions transfer;
   Loads<D> loads;
   Water water;
@@ -44,7 +44,7 @@ struct Conditions {
 };
 
 template <int D>
-struct Problem : Conditions<D> {
+struct Problem : SceneConditions<D> {
   Mesh<D> mesh;
   Locator<D> locator;
   Communicator* ranks = &one_rank();  ///< of the run

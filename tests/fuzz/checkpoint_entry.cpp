@@ -100,10 +100,7 @@ struct SmallRun {
     }
     sort();
     const std::vector<Index> held{0, 1};
-    Wall<2> floor;
-    floor.name = "floor";
-    floor.kind = WallKind::fixed;
-    state.walls.add(std::move(floor), problem.mesh, held);
+    state.walls.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, held);
   }
   void sort() { sort_by_cell(state.particles.cell, state.particles.id, state.bodies, problem.mesh.n_cells(), order); }
   RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }

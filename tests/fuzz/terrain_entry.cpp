@@ -44,9 +44,9 @@ void fuzz_outlines(std::string_view bytes)
 void fuzz_record(std::string_view bytes)
 {
   const MemoryFile file(bytes);
-  RecordSpec spec;
+  RecordOptions spec;
   spec.unit = RecordUnit::g;
-  for (const Baseline baseline : {Baseline::saved, Baseline::velocity, Baseline::displacement})
+  for (const Baseline baseline : {Baseline::as_recorded, Baseline::velocity, Baseline::displacement})
     try {
       spec.baseline = baseline;
       describe(spec, read_record(file.path(), spec));

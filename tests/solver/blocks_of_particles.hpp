@@ -98,15 +98,11 @@ void run_until(Model<D>& m, Real end, Real cfl = 0.4)
   run_stage(m, test_stage(end - m.state.clock.time), StepLimits{.cfl = cfl}, [](const auto&, RunEvent) {});
 }
 
-/// A wall on the facets of a set of the mesh, such as "y_min".
+/// A condition on the facets of a set of the mesh, such as "y_min".
 template <int D>
-void close_off(Model<D>& m, const std::string& facets, WallKind kind, Real friction = 0)
+void close_off(Model<D>& m, const std::string& facets, const AnyCondition<D>& kind)
 {
-  Wall<D> wall;
-  wall.name = facets;
-  wall.kind = kind;
-  wall.friction = friction;
-  m.state.walls.add(wall, m.problem.mesh, *m.problem.mesh.facet_set(facets));
+  m.state.walls.add({.name = facets, .kind = kind}, m.problem.mesh, *m.problem.mesh.facet_set(facets));
 }
 
 inline NeoHookean rubber(Real youngs_modulus, Real poisson_ratio, Real density)

@@ -105,9 +105,7 @@ void move_all(Bar& m)
 {
   std::vector<Index> all(static_cast<std::size_t>(m.problem.mesh.n_nodes()));
   std::iota(all.begin(), all.end(), Index{0});
-  Wall<2> wall;
-  wall.name = "all", wall.kind = WallKind::velocity, wall.velocity = Vec<2>(pull * end, 0), wall.table = swelling();
-  m.state.walls.add(wall, m.problem.mesh, all);
+  m.state.walls.add({.name = "all", .kind = PrescribedVelocity<2>{{Vec<2>(pull * end, 0), swelling()}}}, m.problem.mesh, all);
 }
 
 std::vector<Case> cases()
@@ -183,9 +181,7 @@ TEST(TimeLevelsOfAStep, WorkOfAStepIsTheKineticEnergyThatComesOfIt)
                           for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
                             if (std::abs(m.problem.mesh.node(n)[0] - 0.375) < 1e-9 && std::abs(m.problem.mesh.node(n)[1] - 0.5) < 0.2)
                               some.push_back(n);
-                          Wall<2> wall;
-                          wall.name = "some", wall.kind = WallKind::velocity, wall.velocity = Vec<2>(0.5, 0.1);
-                          m.state.walls.add(wall, m.problem.mesh, some);
+                          m.state.walls.add({.name = "some", .kind = PrescribedVelocity<2>{{Vec<2>(0.5, 0.1)}}}, m.problem.mesh, some);
                         }),
             1e-12);
 }

@@ -19,10 +19,7 @@ Model<3> swirl(const TransferOptions& transfer)
       m, "block", rubber(1e5, 0.3, 1000), per_cell, [](const Vec3&) { return true; },
       [](const Vec3& x) { return Vec3(std::sin(M_PI * x[0]) * std::cos(M_PI * x[1]), -std::cos(M_PI * x[0]) * std::sin(M_PI * x[1]), 0); });
   for (const auto& name : m.problem.mesh.facet_set_names()) {
-    Wall<3> wall;
-    wall.name = name;
-    wall.kind = WallKind::roller;
-    m.state.walls.add(wall, m.problem.mesh, *m.problem.mesh.facet_set(name));
+    m.state.walls.add({.name = name, .kind = Roller<3>{}}, m.problem.mesh, *m.problem.mesh.facet_set(name));
   }
   make_ready(m);
   return m;

@@ -92,13 +92,9 @@ void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
   Setup<D>& setup = block.setup;
   for (const auto& name : block.mesh.facet_set_names()) {
     const auto facets = block.mesh.facet_set(name).value();
-    Wall<D> wall;
-    wall.name = name;
-    wall.kind = WallKind::roller;
-    if (setting.option == bench_options::friction) {
-      wall.kind = WallKind::friction;
-      wall.friction = 0.3;
-    }
+    BoundaryCondition<D> wall{.name = name, .kind = Roller<D>{}};
+    if (setting.option == bench_options::friction)
+      wall.kind = Friction<D>{0.3};
     if (setting.option == bench_options::traction) {
       auto load = carried_by_particles<D>(block.mesh, facets, setup.state.particles);
       load.pressure = pressure;

@@ -194,20 +194,20 @@ void keep_bodies(const FosOptions& options, Index last, FosPlan& plan)
 void keep_walls(const FosOptions& options, Index last, FosPlan& plan)
 {
   const auto& walls = plan.spec.boundaries;
-  if (std::all_of(walls.begin(), walls.end(), [](const BoundarySpec& wall) { return during_of(wall).empty(); }))
+  if (std::all_of(walls.begin(), walls.end(), [](const BoundaryOptions& wall) { return common_of(wall).during.empty(); }))
     return;
   constexpr std::array<std::string_view, 1> key{"during"};
   Rewritten before(options, "boundaries"), then(options, "boundaries");
   for (std::size_t w = 0; w < walls.size(); ++w) {
     std::vector<std::string> names;
     for (Index s = 0; s <= last; ++s)
-      if (const std::string name = name_of(plan.spec.stages[static_cast<std::size_t>(s)]); acts_in(walls[w], name))
+      if (const std::string name = name_of(plan.spec.stages[static_cast<std::size_t>(s)]); common_of(walls[w]).acts_in(name))
         names.push_back(in_quotes(name));
-    if (during_of(walls[w]).empty())
+    if (common_of(walls[w]).during.empty())
       before.keep(w);
     else if (!names.empty())
       before.keep(w, {.without = key}, fmt::format("during: [{}]", fmt::join(names, ", ")));
-    if (acts_in(walls[w], name_of(plan.spec.stages[static_cast<std::size_t>(last)])))
+    if (common_of(walls[w]).acts_in(name_of(plan.spec.stages[static_cast<std::size_t>(last)])))
       then.keep(w, {.without = key});
   }
   plan.at_rest.changes.push_back(before.change());

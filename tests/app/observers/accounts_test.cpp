@@ -152,7 +152,7 @@ TEST(AccountsByHand, NameAllThatGaveMomentum)
   s.now(7, 0);
   s.m.state.momentum.loads = push(1, -2), s.m.state.momentum.damping = push(4, -8), s.m.state.momentum.rest = push(16, -32);
   s.m.state.momentum.changes = push(64, -128), s.m.state.mass.carried_away = push(256, -512), s.m.state.momentum.on_nodes = {0, 0, 10000};
-  Wall<2> wall;
+  BoundaryCondition<2> wall;
   wall.impulse = {1024, 0}, wall.angular = {0, 0, -2048};
   s.m.state.walls.add(wall);
   const MomentumNow<2> now = s.accounts.momentum(view_of(s.m, s.stage));

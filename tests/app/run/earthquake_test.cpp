@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "solver/boundary/soil_column.hpp"
+#include "mesh/conditions/soil_column.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::earthquake_test {
@@ -214,7 +214,7 @@ TEST(SoilColumn, OnGroundLikeItselfItsSurfaceMovesTwiceAsFastAsTheWave)
   Real off = 0;
   const Real dt = 2e-4;
   for (Real t = 0; t < 1.4; t += dt) {
-    advance(column, Foot<2>{Vec<2>(0.1 * ricker(t + dt, 4), 0.05 * ricker(t + dt, 4)), ground}, dt, motion);
+    advance(column, ColumnBase<2>{Vec<2>(0.1 * ricker(t + dt, 4), 0.05 * ricker(t + dt, 4)), ground}, dt, motion);
     const Vec<2> top = column.velocity_at(40, motion);
     off = std::max(off, std::abs(top[0] - 0.2 * ricker(t + dt - 40 / s_wave, 4)));
     off = std::max(off, std::abs(top[1] - 0.1 * ricker(t + dt - 40 / p_wave, 4)));
@@ -229,7 +229,7 @@ TEST(SoilColumn, TakesAsManyPartsOfAStepAsAreStable)
   const SoilColumn<2> column = soil(40, {density, s_wave, p_wave});
   ColumnMotion motion = column.at_rest();
   for (int step = 0; step < 200; ++step)
-    advance(column, Foot<2>{Vec<2>(0.1 * ricker(0.02 * step, 1), 0), std::nullopt}, 0.02, motion);
+    advance(column, ColumnBase<2>{Vec<2>(0.1 * ricker(0.02 * step, 1), 0), std::nullopt}, 0.02, motion);
   for (const Real v : motion.velocity)
     EXPECT_LT(std::abs(v), 1);
 }

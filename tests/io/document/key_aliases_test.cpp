@@ -37,7 +37,7 @@ std::vector<std::string> groups_of(const Scene& scene)
 {
   std::vector<std::string> groups;
   groups.push_back(std::get<TractionSpec>(scene.loads.at(0)).on);
-  for (const BoundarySpec& boundary : scene.boundaries)
+  for (const BoundaryOptions& boundary : scene.boundaries)
     std::visit([&](const auto& spec) { groups.push_back(spec.on); }, boundary);
   groups.push_back(scene.outputs.history.value().walls.at(0).on);
   return groups;

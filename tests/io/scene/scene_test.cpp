@@ -224,11 +224,11 @@ TEST(Scene, ReadsLoadsAndBoundaries)
   EXPECT_EQ(weight.carried_by, Carrier::mesh);
   EXPECT_EQ(weight.table(7), 1);
   EXPECT_EQ(std::get<TractionSpec>(s.loads.at(2)).pressure, 500);
-  EXPECT_EQ(std::get<FixedSpec>(s.boundaries.at(0)).on, "y_min");
-  EXPECT_EQ(std::get<RollerSpec>(s.boundaries.at(1)).on, "x_min");
-  EXPECT_THAT(std::get<VelocitySpec>(s.boundaries.at(2)).velocity, ElementsAre(0.1, 0));
-  EXPECT_EQ(std::get<VelocitySpec>(s.boundaries.at(2)).table(1.25), 0.5);
-  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).coefficient, 0.4);
+  EXPECT_EQ(std::get<FixedOptions>(s.boundaries.at(0)).on, "y_min");
+  EXPECT_EQ(std::get<RollerOptions>(s.boundaries.at(1)).on, "x_min");
+  EXPECT_THAT(std::get<PrescribedVelocityOptions>(s.boundaries.at(2)).velocity, ElementsAre(0.1, 0));
+  EXPECT_EQ(std::get<PrescribedVelocityOptions>(s.boundaries.at(2)).table(1.25), 0.5);
+  EXPECT_EQ(std::get<FrictionOptions>(s.boundaries.at(3)).coefficient, 0.4);
 }
 
 TEST(Scene, ReadsStages)
@@ -258,9 +258,9 @@ TEST(Scene, ReadsWhatStagesChange)
   EXPECT_THAT(shaken.vanish, ElementsAre("stone"));
   EXPECT_EQ(shaken.weaken.at(0).body, "slope");
   EXPECT_EQ(shaken.weaken.at(0).factor, 1.3);
-  EXPECT_THAT(during_of(s.boundaries.at(3)), ElementsAre("built", "shaken"));
-  EXPECT_TRUE(acts_in(s.boundaries.at(3), "shaken"));
-  EXPECT_FALSE(acts_in(s.boundaries.at(3), "geostatic"));
+  EXPECT_THAT(common_of(s.boundaries.at(3)).during, ElementsAre("built", "shaken"));
+  EXPECT_TRUE(common_of(s.boundaries.at(3)).acts_in("shaken"));
+  EXPECT_FALSE(common_of(s.boundaries.at(3)).acts_in("geostatic"));
   const Presence stone = presence_of("stone", s.stages), slope = presence_of("slope", s.stages);
   EXPECT_EQ(stone.from, 2);
   EXPECT_EQ(stone.until, 3);
@@ -336,8 +336,8 @@ TEST(Scene, KnowsWhereEverythingWasAskedFor)
   const Scene s = scene("plane.yaml");
   EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":27:5");
   EXPECT_EQ(s.materials.at(1).where.path, "materials[1] \"rock\"");
-  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.path, "boundaries[3]");
-  EXPECT_EQ(std::get<FrictionSpec>(s.boundaries.at(3)).where.line, 41);
+  EXPECT_EQ(std::get<FrictionOptions>(s.boundaries.at(3)).where.path, "boundaries[3]");
+  EXPECT_EQ(std::get<FrictionOptions>(s.boundaries.at(3)).where.line, 41);
   EXPECT_EQ(s.outputs.history.value().points.at(0).where.path, "outputs.history.points[0] \"top\"");
 }
 

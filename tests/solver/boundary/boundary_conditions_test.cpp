@@ -1,32 +1,23 @@
-// Walls: single conditions, edges and corners where several meet, friction against its closed forms.
+// Boundary conditions: single ones, edges and corners where several meet, friction against its closed forms.
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "tests/solver/blocks_of_particles.hpp"
+#include "tests/solver/boundary/nodes_in_a_square.hpp"
 
-namespace talus::testing::walls_test {
+namespace talus::testing::boundary_conditions_test {
 namespace {
 
-template <int D>
-Wall<D> wall(WallKind kind, const std::string& name, Real friction = 0)
-{
-  Wall<D> w;
-  w.name = name;
-  w.kind = kind;
-  w.friction = friction;
-  return w;
-}
+using Placed = std::pair<std::string, AnyCondition<3>>;  // face and condition
 
-/// One node of the unit cube with unit mass and the velocity given; walls on the faces named.
-Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3& node_at, const Vec3& v)
+/// One node of the unit cube with unit mass and the velocity given; conditions on the faces named.
+Vec3 after(const std::vector<Placed>& faces, const Vec3& node_at, const Vec3& v)
 {
   const Mesh<3> mesh(box<3>(Vec3::Zero(), Vec3::Ones(), {2, 2, 2}));
   BoundaryConditions<3> walls;
-  for (const auto& [face, w] : faces)
-    w.kind == WallKind::fixed || w.kind == WallKind::velocity ? walls.add(w, mesh, *mesh.node_set(face))
-                                                              : walls.add(w, mesh, *mesh.facet_set(face));
-  walls.settle();
+  for (const auto& [face, kind] : faces)
+    add_on(walls, mesh, face, kind);
+  walls.finalize();
   Nodes<3> nodes;
   nodes.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
   nodes.motion.resize(nodes.sum.size());
@@ -45,15 +36,15 @@ Vec3 after(const std::vector<std::pair<std::string, Wall<3>>>& faces, const Vec3
 
 TEST(BoundaryConditions, FixedStopsAllAndRollerOnlyTheNormal)
 {
-  EXPECT_EQ(after({{"x_min", wall<3>(WallKind::fixed, "x_min")}}, {0, 0.5, 0.5}, {1, 2, 3}), Vec3::Zero());
-  EXPECT_LT((after({{"x_min", wall<3>(WallKind::roller, "x_min")}}, {0, 0.5, 0.5}, {1, 2, 3}) - Vec3(0, 2, 3)).norm(), 1e-15);
+  EXPECT_EQ(after({{"x_min", Fixed<3>{}}}, {0, 0.5, 0.5}, {1, 2, 3}), Vec3::Zero());
+  EXPECT_LT((after({{"x_min", Roller<3>{}}}, {0, 0.5, 0.5}, {1, 2, 3}) - Vec3(0, 2, 3)).norm(), 1e-15);
 }
 
 TEST(BoundaryConditions, RollersThatMeetInAnEdgeOrACornerActTogether)
 {
-  const auto x = std::pair{std::string("x_min"), wall<3>(WallKind::roller, "x_min")};
-  const auto y = std::pair{std::string("y_min"), wall<3>(WallKind::roller, "y_min")};
-  const auto z = std::pair{std::string("z_min"), wall<3>(WallKind::roller, "z_min")};
+  const auto x = Placed{"x_min", Roller<3>{}};
+  const auto y = Placed{"y_min", Roller<3>{}};
+  const auto z = Placed{"z_min", Roller<3>{}};
   EXPECT_LT((after({x, y}, {0, 0, 0.5}, {1, 2, 3}) - Vec3(0, 0, 3)).norm(), 1e-15);
   EXPECT_LT(after({x, y, z}, {0, 0, 0}, {1, 2, 3}).norm(), 1e-15);
   EXPECT_LT((after({x, y, z}, {0, 0.5, 0}, {1, 2, 3}) - Vec3(0, 2, 0)).norm(), 1e-15);
@@ -61,9 +52,8 @@ TEST(BoundaryConditions, RollersThatMeetInAnEdgeOrACornerActTogether)
 
 TEST(BoundaryConditions, FixedWinsOverEveryOtherConditionOfANode)
 {
-  Wall<3> moving = wall<3>(WallKind::velocity, "x_min");
-  moving.velocity = {5, 0, 0};
-  const auto fixed = wall<3>(WallKind::fixed, "y_min");
+  const PrescribedVelocity<3> moving{{Vec3(5, 0, 0)}};
+  const Fixed<3> fixed;
   EXPECT_EQ(after({{"x_min", moving}, {"y_min", fixed}}, {0, 0, 0.5}, {1, 2, 3}), Vec3::Zero());
   EXPECT_EQ(after({{"y_min", fixed}, {"x_min", moving}}, {0, 0, 0.5}, {1, 2, 3}), Vec3::Zero());
   EXPECT_EQ(after({{"x_min", moving}}, {0, 0, 0.5}, {1, 2, 3}), Vec3(5, 0, 0));
@@ -71,7 +61,7 @@ TEST(BoundaryConditions, FixedWinsOverEveryOtherConditionOfANode)
 
 TEST(BoundaryConditions, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
 {
-  const auto face = [](Real mu) { return std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", mu)}; };
+  const auto face = [](Real mu) { return Placed{"y_min", Friction<3>{mu}}; };
   const Vec3 at(0.5, 0, 0.5);
   EXPECT_LT(after({face(0.5)}, at, {0.4, -1, 0}).norm(), 1e-15);                      // 0.4 < 0.5 * 1: held
   EXPECT_LT((after({face(0.5)}, at, {0.8, -1, 0}) - Vec3(0.3, 0, 0)).norm(), 1e-15);  // 0.8 - 0.5 * 1 is left
@@ -80,8 +70,8 @@ TEST(BoundaryConditions, FrictionSticksBelowTheLimitSlipsAboveAndLetsGo)
 
 TEST(BoundaryConditions, FrictionWallsOfACornerLeaveNoPenetration)
 {
-  const auto floor = std::pair{std::string("y_min"), wall<3>(WallKind::friction, "y_min", 0.3)};
-  const auto side = std::pair{std::string("x_min"), wall<3>(WallKind::friction, "x_min", 0.3)};
+  const auto floor = Placed{"y_min", Friction<3>{0.3}};
+  const auto side = Placed{"x_min", Friction<3>{0.3}};
   const Vec3 v = after({floor, side}, {0, 0, 0.5}, {-1, -2, 5});
   EXPECT_GE(v[0], -1e-12);
   EXPECT_GE(v[1], -1e-12);
@@ -104,7 +94,7 @@ struct Incline {
     auto m = make_model<Umls<2>>(Mesh<2>(std::move(data)));
     add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 4,
                 [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
-    m.state.walls.add(wall<2>(WallKind::friction, "floor", mu), m.problem.mesh, *m.problem.mesh.facet_set("y_min"));
+    m.state.walls.add({.name = "floor", .kind = Friction<2>{mu}}, m.problem.mesh, *m.problem.mesh.facet_set("y_min"));
     m.problem.loads.gravity.acceleration = {0, -10};
     make_ready(m);
     return m;
@@ -146,4 +136,4 @@ TEST(RestingBlock, DoesNotCreepBelowTheFrictionAngle)
 }
 
 }  // namespace
-}  // namespace talus::testing::walls_test
+}  // namespace talus::testing::boundary_conditions_test

@@ -1,10 +1,21 @@
 #pragma once
-// A small square of nodes that walls act on, of which single ones take part: shared by the tests of walls.
+// A small square of nodes, of which single ones take part: shared by the tests of boundary conditions.
 #include <stdexcept>
 
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::testing {
+
+/// Adds a condition on a set of facets of the mesh, such as "y_min", or on its nodes.
+template <int D>
+void add_on(BoundaryConditions<D>& conditions, const Mesh<D>& mesh, const std::string& set, const AnyCondition<D>& kind)
+{
+  const bool on_facets = std::visit([]<class C>(const C&) { return is_on_facets<C>; }, kind);
+  if (on_facets)
+    conditions.add({.name = set, .kind = kind}, mesh, *mesh.facet_set(set));
+  else
+    conditions.add({.name = set, .kind = kind}, mesh, *mesh.node_set(set));
+}
 
 /// Two by two cells; no node is active until a test gives it a mass and a motion.
 struct NodesInASquare {

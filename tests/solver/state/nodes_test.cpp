@@ -255,7 +255,7 @@ Model<2> leaving(OnExitPolicy policy, bool wall)
   add_body<2>(
       m, "block", rubber(100, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] > 0.6; }, [](const Vec<2>&) { return Vec<2>(2, 0); });
   if (wall)
-    close_off(m, "x_max", WallKind::roller);
+    close_off(m, "x_max", Roller<2>{});
   make_ready(m);
   return m;
 }
@@ -328,7 +328,7 @@ void squeeze(Put&& put)
   auto m = make_model<Umls<2>>(Mesh<2>(jittered(box<2>({0, 0}, {1, 2}, {4, 8}), 0.15, 1)));
   add_body<2>(m, "column", rubber(1e5, 0.0, 1000), 3, [](const Vec<2>& x) { return x[1] < 1.5; });
   for (const char* side : {"x_min", "x_max", "y_min"})
-    close_off(m, side, WallKind::roller);
+    close_off(m, side, Roller<2>{});
   put(m);
   make_ready(m);
   Stage rest = test_stage(10);

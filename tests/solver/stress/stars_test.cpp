@@ -152,7 +152,7 @@ std::vector<Real> pressure_after_steps(int bodies, std::initializer_list<Index> 
   auto m = drawn_as<2>(bodies, rubber(1e5, 0.49, 1000));
   for (std::size_t b = 0; b < m.state.materials.size(); ++b)
     std::visit([&](auto& batch) { batch.averages_volume = true, batch.averages_with = std::data(groups)[b]; }, m.state.materials[b]);
-  testing::close_off(m, "y_min", WallKind::fixed);
+  testing::close_off(m, "y_min", Fixed<2>{});
   m.problem.loads.gravity.acceleration = {0, -9.81};
   make_ready(m);
   testing::run_until(m, 0.02);
@@ -318,7 +318,7 @@ TEST(ConductHeat, NeedsAConductivity)
 TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
 {
   auto m = block<2>(rubber(1e6, 0, 1000), 4, 0);
-  testing::close_off(m, "x_min", WallKind::roller);
+  testing::close_off(m, "x_min", Roller<2>{});
   auto load = carried_by_particles<2>(m.problem.mesh, *m.problem.mesh.facet_set("x_max"), m.state.particles);
   load.traction = {-100, 0};
   m.problem.loads.on_particles.push_back(std::move(load));

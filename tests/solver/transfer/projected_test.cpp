@@ -117,7 +117,7 @@ TEST(Projected, HoldsAFilmOnAWall)
     m.state.particles.volume0[p] *= share;
     m.state.particles.mass.set(p, share * m.state.particles.mass[p]);
   }
-  close_off(m, "y_min", WallKind::roller);
+  close_off(m, "y_min", Roller<2>{});
   m.problem.loads.gravity.acceleration = {0, -10};
   make_ready(m);
   const Real kinetic = totals(m).kinetic;
@@ -137,7 +137,7 @@ void slide_on_a_rough_floor(Scheme scheme)
   add_body<2>(m, "block", rubber(1e5, 0.3, 1000), 6, [](const Vec<2>& x) { return x[0] < 0.6 && x[1] < 0.4; });
   m.state.particles.v.assign(m.state.particles.v.size(), Vec<2>{2, -0.5});
   const Real friction = 0.4;
-  close_off(m, "y_min", WallKind::friction, friction);
+  close_off(m, "y_min", Friction<2>{friction});
   m.problem.loads.gravity.acceleration = {1, -10};
   make_ready(m);
   const Totals<2> start = totals(m);
@@ -152,7 +152,7 @@ void slide_on_a_rough_floor(Scheme scheme)
         }
   }
   const Totals<2> end = totals(m);
-  const Vec<2> floor_gave = m.state.walls.walls()[0].impulse,
+  const Vec<2> floor_gave = m.state.walls.conditions()[0].impulse,
                gravity_gave = end.mass * (m.state.clock.time - m.state.clock.lag) * m.problem.loads.gravity.acceleration;
   EXPECT_LT((end.momentum - start.momentum - floor_gave - gravity_gave).norm(), 1e-10 * start.momentum.norm());
   EXPECT_LT(-floor_gave[0], friction * (1 + 1e-10) * floor_gave[1]);
@@ -193,7 +193,7 @@ TEST(Projected, AColumnUnderItsWeightComesToRest)
   m.problem.transfer = {.scheme = Scheme::aflip, .musl = true, .pic_damping_time = {}, .pic_damping_crossings = 25};
   add_body<2>(m, "column", rubber(1e7, 0.3, 1000), 6, [](const Vec<2>& x) { return x[1] < 10; });
   for (const char* side : {"x_min", "x_max", "y_min"})
-    close_off(m, side, WallKind::roller);
+    close_off(m, side, Roller<2>{});
   m.problem.loads.gravity.acceleration = {0, -10};
   make_ready(m);
   Stage rest = test_stage(6);  // 17 periods of the column

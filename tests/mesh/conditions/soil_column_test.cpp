@@ -1,5 +1,5 @@
 // Waves in the column of the free field, against those of a homogeneous bar.
-#include "solver/boundary/soil_column.hpp"
+#include "mesh/conditions/soil_column.hpp"
 
 #include <gtest/gtest.h>
 
@@ -52,9 +52,9 @@ TEST(SoilColumn, MovesAsAWholeWithItsFoot)
   const Vec<3> v(0.1, -0.2, 0.3);
   for (std::size_t k = 0; k < motion.velocity.size(); ++k)
     motion.velocity[k] = v[static_cast<Index>(k % 3)];
-  Foot<3> foot;
-  foot.velocity = v;
-  advance(column, foot, 0.05, motion);  // several parts: a wave crosses a layer in 2.5 ms
+  ColumnBase<3> base;
+  base.velocity = v;
+  advance(column, base, 0.05, motion);  // several parts: a wave crosses a layer in 2.5 ms
   for (const Real traction : motion.traction)
     EXPECT_EQ(traction, 0);
   for (std::size_t k = 0; k < motion.velocity.size(); ++k)

@@ -10,28 +10,12 @@ namespace {
 
 constexpr Real rounding = 1e-13;
 
-Wall<2> wall(WallKind kind, const Vec<2>& velocity = Vec<2>::Zero(), Real friction = 0)
-{
-  Wall<2> w;
-  w.name = "wall";
-  w.kind = kind;
-  w.velocity = velocity;
-  w.friction = friction;
-  return w;
-}
-
 /// The unit square in two by two, with walls on its sides; one node has a mass of its own and moves.
 struct Square : NodesInASquare {
   static constexpr Real mass = 2;
   static constexpr Kick kick{0.2, 0.6};
   Square() : NodesInASquare(1, kick.length()) {}
-  void hold(const std::string& side, const Wall<2>& w)
-  {
-    if (w.kind == WallKind::fixed || w.kind == WallKind::velocity)
-      walls.add(w, mesh, *mesh.node_set(side));
-    else
-      walls.add(w, mesh, *mesh.facet_set(side));
-  }
+  void hold(const std::string& side, const AnyCondition<2>& kind) { add_on(walls, mesh, side, kind); }
   /// The motion of a node that came with v - change, went on with v, and then met the walls.
   NodeMotion<2> meet(const Vec<2>& place, const Vec<2>& v, const Vec<2>& change)
   {
@@ -40,7 +24,7 @@ struct Square : NodesInASquare {
     walls.keep_impulses();
     return motion;
   }
-  const Wall<2>& first() const { return walls.walls().front(); }
+  const BoundaryCondition<2>& first() const { return walls.conditions().front(); }
 };
 
 void expect_near(const Vec<2>& a, const Vec<2>& b) { EXPECT_LT((a - b).norm(), rounding) << a.transpose() << " is not " << b.transpose(); }
@@ -56,10 +40,8 @@ Table growing()
 TEST(NodesAtWalls, AMovingWallGivesItsVelocityAndKeepsItsImpulse)
 {
   Square square;
-  Wall<2> moving = wall(WallKind::velocity, {3, 1});
-  moving.table = growing();
-  square.hold("x_min", moving);
-  square.walls.settle();
+  square.hold("x_min", PrescribedVelocity<2>{{Vec<2>(3, 1), growing()}});
+  square.walls.finalize();
   const Vec<2> v(1, 0.5), change(0.5, -0.25), old = v - change;
   const NodeMotion<2> now = square.meet({0, 0.5}, v, change);
   const Vec<2> end = 0.6 * Vec<2>(3, 1), impulse = 2 * (end - v), mean = 0.4 * Vec<2>(3, 1);
@@ -82,9 +64,9 @@ TEST(NodesAtWalls, TheFirstOfTwoMovingWallsCounts)
 {
   for (const bool turned : {false, true}) {
     Square square;
-    square.hold(turned ? "y_min" : "x_min", wall(WallKind::velocity, {3, 1}));
-    square.hold(turned ? "x_min" : "y_min", wall(WallKind::velocity, {7, 2}));
-    square.walls.settle();
+    square.hold(turned ? "y_min" : "x_min", PrescribedVelocity<2>{{Vec<2>(3, 1)}});
+    square.hold(turned ? "x_min" : "y_min", PrescribedVelocity<2>{{Vec<2>(7, 2)}});
+    square.walls.finalize();
     expect_near(square.meet({0, 0}, {1, 1}, {0, 0}).v, {3, 1});
     EXPECT_EQ(square.walls.holder_of(static_cast<Index>(square.node({0, 0}))), 0);
     EXPECT_EQ(square.walls.holder_of(static_cast<Index>(square.node({1, 1}))), none);
@@ -94,8 +76,8 @@ TEST(NodesAtWalls, TheFirstOfTwoMovingWallsCounts)
 TEST(NodesAtWalls, ARollerTakesTheKineticEnergyOfTheNormalVelocity)
 {
   Square square;
-  square.hold("y_min", wall(WallKind::roller));
-  square.walls.settle();
+  square.hold("y_min", Roller<2>{});
+  square.walls.finalize();
   const Vec<2> v(1, -3), change(0.5, -1);
   const NodeMotion<2> now = square.meet({0.5, 0}, v, change);
   expect_near(now.v, {1, 0});
@@ -111,8 +93,8 @@ TEST(NodesAtWalls, ARollerTakesTheKineticEnergyOfTheNormalVelocity)
 TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
 {
   Square square;
-  square.hold("y_min", wall(WallKind::friction, {0, 0}, 0.25));
-  square.walls.settle();
+  square.hold("y_min", Friction<2>{0.25});
+  square.walls.finalize();
   const Vec<2> v(2, -4), change(1, -1), old = v - change;
   const NodeMotion<2> now = square.meet({0.5, 0}, v, change);
   expect_near(now.v, {1, 0});  // 2 - 0.25 * 4
@@ -133,8 +115,8 @@ TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
 TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
 {
   Square square;
-  square.hold("y_min", wall(WallKind::friction, {0, 0}, 0.5));
-  square.walls.settle();
+  square.hold("y_min", Friction<2>{0.5});
+  square.walls.finalize();
   expect_near(square.meet({0.5, 0}, {1, -4}, {0, 0}).v, {0, 0});
   expect_near(square.first().impulse, {-2, 8});
   expect_near(square.meet({0.5, 0}, {1, 4}, {0, 0}).v, {1, 4});
@@ -153,13 +135,13 @@ TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
 TEST(NodesAtWalls, ARollerAndAFrictionWallInACornerBothHold)
 {
   Square square;
-  square.hold("x_min", wall(WallKind::roller));
-  square.hold("y_min", wall(WallKind::friction, {0, 0}, 0.25));
-  square.walls.settle();
+  square.hold("x_min", Roller<2>{});
+  square.hold("y_min", Friction<2>{0.25});
+  square.walls.finalize();
   const NodeMotion<2> now = square.meet({0, 0}, {-3, -4}, {0, 0});
   expect_near(now.v, {0, 0});
-  expect_near(square.walls.walls()[0].impulse, {6, 0});
-  expect_near(square.walls.walls()[1].impulse, {0, 8});
+  expect_near(square.walls.conditions()[0].impulse, {6, 0});
+  expect_near(square.walls.conditions()[1].impulse, {0, 8});
   expect_near(square.walls.held(static_cast<Index>(square.node({0, 0})), 0, {5, -6}), {0, 0});
   expect_near(square.walls.held(static_cast<Index>(square.node({0, 0})), 0, {5, 6}), {0, 6});
   expect_near(square.walls.held(static_cast<Index>(square.node({1, 1})), 0, {5, -6}), {5, -6});
@@ -174,8 +156,8 @@ Vec<2> after_a_bend(Real degrees, const Vec<2>& v)
       x[1] = -std::tan(degrees * std::numbers::pi / 180);
   const Mesh<2> mesh(std::move(data));
   BoundaryConditions<2> walls;
-  walls.add(wall(WallKind::roller), mesh, *mesh.facet_set("y_min"));
-  walls.settle();
+  walls.add({.name = "floor", .kind = Roller<2>{}}, mesh, *mesh.facet_set("y_min"));
+  walls.finalize();
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     if (mesh.node(n).norm() < 1e-9)
       return walls.held(n, 0, v);
@@ -206,21 +188,21 @@ TEST(NodesAtWalls, ClosedAreFacetsOfPlanesAndThoseWhoseNodesAreAllHeld)
   };
   using Places = std::vector<std::pair<Real, Real>>;
   Square square;
-  square.hold("x_min", wall(WallKind::fixed));
-  square.walls.settle();
+  square.hold("x_min", Fixed<2>{});
+  square.walls.finalize();
   EXPECT_EQ(places(square), (Places{{0, 0.25}, {0, 0.75}}));
   Square other;
-  other.hold("x_min", wall(WallKind::velocity));
-  other.hold("y_min", wall(WallKind::roller));
-  other.walls.settle();
+  other.hold("x_min", PrescribedVelocity<2>{});
+  other.hold("y_min", Roller<2>{});
+  other.walls.finalize();
   EXPECT_EQ(places(other), (Places{{0, 0.25}, {0, 0.75}, {0.25, 0}, {0.75, 0}}));
 }
 
 TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
 {
   Square square;
-  square.hold("x_min", wall(WallKind::velocity, {3, 1}));
-  square.walls.settle();
+  square.hold("x_min", PrescribedVelocity<2>{{Vec<2>(3, 1)}});
+  square.walls.finalize();
   const std::size_t n = square.node({0, 0.5}), unseen = square.node({0, 1});
   std::vector<ProjectedNodeSum<2>> sums(square.nodes.sum.size());
   std::vector<ProjectedNodeMotion<2>> projected(sums.size());

@@ -1,0 +1,19 @@
+#pragma once
+// The block `boundaries` of a scene -> boundary conditions.
+#include "app/setup/cell_occupancy.hpp"
+#include "app/setup/checks/scene_error_collector.hpp"
+#include "app/setup/setup.hpp"
+
+namespace talus {
+
+/// Adds the conditions of the stage with that name.  For the `first` stage notes and warnings go to `setup`.  Every rank has to call.
+template <int D>
+void add_boundaries(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
+                    const std::string& stage, bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& all);
+
+extern template void add_boundaries<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, Communicator&, const std::string&, bool,
+                                       SceneErrorCollector&, Setup<2>&, BoundaryConditions<2>&);
+extern template void add_boundaries<3>(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, Communicator&, const std::string&, bool,
+                                       SceneErrorCollector&, Setup<3>&, BoundaryConditions<3>&);
+
+}  // namespace talus

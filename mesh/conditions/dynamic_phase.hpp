@@ -1,0 +1,17 @@
+#pragma once
+// The phase of an analysis in which waves travel.
+#include <tuple>
+
+#include "core/fields.hpp"
+
+namespace talus {
+
+/// It begins with the first stage that is not geostatic.  Records and waves count their time from there, and absorbing boundaries, which
+/// hold the model before, become dashpots.
+struct DynamicPhase {
+  bool begun = false;
+  Real begin = 0;  ///< [s]
+  static constexpr auto fields() { return std::tuple{saved("begun", &DynamicPhase::begun), saved("begin", &DynamicPhase::begin)}; }
+};
+
+}  // namespace talus

@@ -1,0 +1,44 @@
+#pragma once
+// Walls with Coulomb friction, which material may leave.
+#include <algorithm>
+
+#include "mesh/conditions/boundary_common.hpp"
+#include "mesh/conditions/condition_setup.hpp"
+
+namespace talus {
+
+struct FrictionOptions : BoundaryCommon {
+  static constexpr std::string_view name = "friction";
+  Real coefficient{};
+  static constexpr auto fields()
+  {
+    return std::tuple{on_key("facet group that acts as a wall: no penetration, free separation"),
+                      required("coefficient", &FrictionOptions::coefficient, non_negative, "-",
+                               "Coulomb friction coefficient, tangent of the wall friction angle"),
+                      during_key()};
+  }
+};
+
+template <int D>
+struct Friction {
+  using Options = FrictionOptions;
+  static constexpr bool two_sided = false;
+  Real coefficient{};  ///< [-]
+  static Friction make(const Options& options, const ConditionSetup<D>&) { return {options.coefficient}; }
+
+  /// The normal points out of the mesh.  What would pass the wall is stopped, and the tangential velocity is reduced by at most the
+  /// coefficient times the normal velocity that was stopped; the work of that tangential impulse is heat.
+  template <class Node>
+  void act(Node& node, const Vec<D>& normal) const noexcept
+  {
+    const Real into = node.v.dot(normal);
+    if (into <= 0)
+      return;
+    node.push(-into * normal);
+    const Real slip = node.v.norm(), limit = coefficient * into;  // the velocity is tangential now
+    node.apply_friction(slip <= limit ? Vec<D>(-node.v) : Vec<D>(-limit / slip * node.v));
+  }
+  static void constrain(Vec<D>& v, const Vec<D>& normal) noexcept { v -= std::max(v.dot(normal), Real{0}) * normal; }
+};
+
+}  // namespace talus

@@ -1,0 +1,74 @@
+#pragma once
+// Nodes at absorbing boundaries: dashpots of all conditions that have some, solved together at each node.
+#include <span>
+#include <vector>
+
+#include "core/parallel/communicator.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/part.hpp"
+#include "solver/boundary/boundary_condition.hpp"
+#include "solver/state/nodes.hpp"
+
+namespace talus {
+
+/// The impulse of the dashpots on a node in the step at hand.
+template <int D>
+struct DashpotImpulse {
+  Index node;
+  Index condition;  ///< that keeps the impulse: the first of the node
+  Vec<D> place;
+  Vec<D> impulse;  ///< [N s]
+  Real waves;      ///< energy that waves brought to it [J]
+};
+
+template <int D>
+class Dashpots {
+ public:
+  void add(const Mesh<D>& mesh, Index condition, DashpotsOfNodes<D> dashpots);
+  void restrict_to(const Subdomain& share);
+  /// The model is held at rest again.
+  void reset() { reactions_known_ = false, reaction_.clear(); }
+  /// Pushes the nodes.  In the first step the force that keeps each node in balance is found, and from then on it goes on.  Every rank has
+  /// to call.
+  void apply(std::span<const BoundaryCondition<D>> conditions, const DynamicPhase& phase, Real mid, Communicator& ranks, Nodes<D>& nodes);
+  bool empty() const noexcept { return n_nodes_ == 0; }
+
+  /// f(DashpotImpulse) for the active nodes that are counted on this rank.
+  template <class F>
+  void for_each_impulse(const Nodes<D>& nodes, F&& f) const
+  {
+    for (const DashpotNode& at : nodes_)
+      if (at.counted && nodes.active[static_cast<std::size_t>(at.node)])
+        f(DashpotImpulse<D>{at.node, at.dashpots.front().condition, at.place, at.impulse, at.waves});
+  }
+
+  /// Whether the reactions, read from a checkpoint, may be those of these nodes.
+  bool fits() const noexcept { return reactions_known_ ? reaction_.size() == D * n_nodes_ : reaction_.empty(); }
+  void continue_from(const Dashpots& earlier) { reactions_known_ = earlier.reactions_known_, reaction_ = earlier.reaction_; }
+  static constexpr auto fields()
+  {
+    return std::tuple{saved("reactions_known", &Dashpots::reactions_known_), saved("reaction", &Dashpots::reaction_)};
+  }
+
+ private:
+  struct DashpotNode {
+    Index node;
+    std::size_t row;  ///< of its reaction
+    Vec<D> place;
+    std::vector<Dashpot<D>> dashpots;
+    bool counted = true;              ///< on this rank, and not on another one that has a copy of the node
+    Vec<D> impulse = Vec<D>::Zero();  ///< in the step at hand [N s]
+    Real waves{};                     ///< energy that waves brought in the step at hand [J]
+  };
+  void find_reactions(Communicator& ranks, const Nodes<D>& nodes);
+
+  std::vector<DashpotNode> nodes_;
+  std::size_t n_nodes_ = 0;  ///< in the whole mesh
+  bool reactions_known_ = false;
+  std::vector<Real> reaction_;  ///< of all nodes of the whole mesh, D numbers each [N]
+};
+
+extern template class Dashpots<2>;
+extern template class Dashpots<3>;
+
+}  // namespace talus
