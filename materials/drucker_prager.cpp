@@ -4,8 +4,6 @@
 
 #include <numbers>
 
-#include "materials/soil_rules.hpp"
-
 namespace talus {
 
 namespace {
@@ -118,7 +116,7 @@ Cone DruckerPrager::cone(Real plastic_strain) const noexcept { return constants(
 DruckerPrager::Constants DruckerPrager::constants() const noexcept
 {
   const Cone peak = cone_of(friction_angle, cohesion);
-  const Cone residual = cone_of(residual_friction_angle.value_or(friction_angle), residual_cohesion.value_or(cohesion));
+  const Cone residual = cone_of(softened_friction_angle(), softened_cohesion());
   const Real strain = softening_strain.value_or(never);
   const Moduli elastic = moduli();
   return {.bulk = elastic.bulk,
@@ -173,39 +171,26 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
 template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> DruckerPrager::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
 
-void DruckerPrager::prestress(const Mat3& stress, State& state) const noexcept
-{
-  const Constants c = constants();
-  state.elastic_left = expm1(add_diagonal(pack(dev(stress) / c.shear), 2 * stress.trace() / (9 * c.bulk)));
-}
-
 Real DruckerPrager::yield(const Mat3&, const State& state) const noexcept
 {
   const Constants c = constants();
-  const Sym3 strain = 0.5 * log1p(state.elastic_left);
   const Cone now = c.cone_at(state.plastic_strain);
-  const Real tau = c.shear * std::sqrt(2 * squared_norm(add_diagonal(strain, -trace(strain) / 3)));
-  return tau + now.q * c.bulk * trace(strain) - now.k;
+  return cone_yield(state, c.bulk, c.shear, now.q, now.k);
 }
-
-template <class T>
-T DruckerPrager::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
-{
-  using std::log, std::max, std::sqrt;
-  return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
-}
-template Real DruckerPrager::wave_speed(const Mat3&, const Constants&) const noexcept;
-template SimdReal DruckerPrager::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void DruckerPrager::check(std::vector<std::string>& problems) const
 {
   Elasticity::check(problems);
-  check_softening(*this, problems);
+  SoilStrength::check(problems);
   if (tension_cutoff && *tension_cutoff > tip_of_strength())
     problems.push_back(fmt::format("tension_cutoff {} is above the tip of the cone, {:.6g} Pa", *tension_cutoff, tip_of_strength()));
 }
 
-void DruckerPrager::divide_strength(Real factor) noexcept { divide_soil_strength(factor, *this); }
+void DruckerPrager::divide_strength(Real factor) noexcept
+{
+  divide_shear_strength(factor);
+  divide_cutoff(factor, tip_of_strength());
+}
 
 Real DruckerPrager::tip_of_strength() const noexcept { return tip(cone_of(friction_angle, cohesion)); }
 

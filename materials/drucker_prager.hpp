@@ -5,8 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
+#include "materials/hencky_plastic.hpp"
 #include "materials/logarithm.hpp"
 
 namespace talus {
@@ -28,35 +27,24 @@ using Cone = ConeOf<Real>;
 /// isotropy makes the return act on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens where the
 /// mean stress reaches the cut-off or the tip of the cone: the opened volume is kept, and closes at zero mean stress before
 /// compression is felt again.  Formulas and numbers: docs/reference/materials.md.
-struct DruckerPrager : Elasticity {
+struct DruckerPrager : ConePlastic, SoilStrength {
   static constexpr std::string_view name = "drucker_prager";
   static constexpr std::string_view summary =
       "Drucker-Prager cone on logarithmic elasticity: non-associated, tension cut-off, apex, linear softening (Drucker & Prager 1952).";
-  Real density{}, friction_angle{}, cohesion{};
   ConeMatch match{};
-  Real dilation_angle = 0;
-  std::optional<Real> tension_cutoff, residual_friction_angle, residual_cohesion, softening_strain;
   static constexpr auto fields()
   {
     using Law = DruckerPrager;
     return std::tuple_cat(
-        std::tuple{required("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
-        std::tuple{
-            required("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg",
-                     "angle of friction of the Mohr-Coulomb soil that is matched"),
-            required("cohesion", &Law::cohesion, non_negative, "Pa", "cohesion of the Mohr-Coulomb soil that is matched"),
-            required_choice(
-                "match", &Law::match,
-                "which strength the cone shares with Mohr-Coulomb: triaxial compression (outer), extension (inner), plane strain"),
-            optional("dilation_angle", &Law::dilation_angle, from_to_below(0, 90), "deg",
-                     "angle of dilation, at most every angle of friction"),
-            optional("tension_cutoff", &Law::tension_cutoff, non_negative, "Pa", "largest mean stress; without it the tip of the cone"),
-            optional("residual_friction_angle", &Law::residual_friction_angle, from_to_below(0, 90), "deg",
-                     "angle of friction after softening; without it the friction stays"),
-            optional("residual_cohesion", &Law::residual_cohesion, non_negative, "Pa",
-                     "cohesion after softening; without it the cohesion stays"),
-            optional("softening_strain", &Law::softening_strain, positive, "-",
-                     "plastic_strain at which the residual strength is reached, linear before; without it nothing softens")});
+        std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        std::tuple{required<Law, Real>("friction_angle", &Law::friction_angle, from_to_below(0, 90), "deg",
+                                       "angle of friction of the Mohr-Coulomb soil that is matched"),
+                   required<Law, Real>("cohesion", &Law::cohesion, non_negative, "Pa", "cohesion of the Mohr-Coulomb soil that is matched"),
+                   required_choice(
+                       "match", &Law::match,
+                       "which strength the cone shares with Mohr-Coulomb: triaxial compression (outer), extension (inner), plane strain")},
+        softening_fields<Law>("largest mean stress; without it the tip of the cone",
+                              "plastic_strain at which the residual strength is reached, linear before; without it nothing softens"));
   }
   /// Rules between parameters.
   void check(std::vector<std::string>& problems) const;
@@ -64,19 +52,6 @@ struct DruckerPrager : Elasticity {
   void divide_strength(Real factor) noexcept;
   /// Largest mean stress before anything softens [Pa].
   Real tip_of_strength() const noexcept;
-
-  struct State {
-    Sym3 elastic_left = Sym3::Zero();
-    Real plastic_strain = 0, plastic_work = 0, opened_volume = 0;
-    static constexpr auto fields()
-    {
-      return std::tuple{
-          history("elastic_left", &State::elastic_left, "-", "elastic left Cauchy-Green tensor minus identity: xx, yy, zz, xy, yz, xz"),
-          history("plastic_strain", &State::plastic_strain, "-", "accumulated deviatoric plastic strain, integral of sqrt(2/3 e:e)"),
-          history("plastic_work", &State::plastic_work, "J/m^3", "dissipated energy per initial volume"),
-          history("opened_volume", &State::opened_volume, "-", "logarithmic volume strain kept open; closes before compression is felt")};
-    }
-  };
 
   /// Cone of a friction angle [deg] and a cohesion [Pa] under `match`, for the dilation angle of this law.
   Cone cone_of(Real friction, Real soil_cohesion) const noexcept;
@@ -104,12 +79,8 @@ struct DruckerPrager : Elasticity {
 
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
-  void prestress(const Mat3& stress, State& state) const noexcept;
   /// tau + q s - k of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is that over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
-  /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
-  template <class T>
-  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "materials/radial_return.hpp"
-#include "materials/soil_rules.hpp"
 
 namespace talus {
 
@@ -221,7 +220,7 @@ Eigen::SelfAdjointEigenSolver<Mat3> principal_axes(const ElasticTrial<Real>& tri
 MohrCoulomb::Constants MohrCoulomb::constants() const noexcept
 {
   const ShearStrength peak = strength_of(friction_angle, cohesion);
-  const ShearStrength residual = strength_of(residual_friction_angle.value_or(friction_angle), residual_cohesion.value_or(cohesion));
+  const ShearStrength residual = strength_of(softened_friction_angle(), softened_cohesion());
   const Real strain = softening_strain.value_or(infinite);
   const Moduli elastic = moduli();
   return {.bulk = elastic.bulk,
@@ -274,12 +273,6 @@ Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) 
   return unpack(along_axes(directions, end.stress / J));
 }
 
-void MohrCoulomb::prestress(const Mat3& stress, State& state) const noexcept
-{
-  const Moduli elastic = moduli();
-  state.elastic_left = elastic_left_of(dev(stress), elastic.shear, stress.trace() / (3 * elastic.bulk));
-}
-
 Real MohrCoulomb::yield(const Mat3&, const State& state) const noexcept
 {
   const Constants c = constants();
@@ -289,20 +282,19 @@ Real MohrCoulomb::yield(const Mat3&, const State& state) const noexcept
   return std::max(0.5 * excess(s1, s3, c.strength_at(state.plastic_strain)), s1 - c.cutoff);
 }
 
-Real MohrCoulomb::wave_speed(const Mat3& F, const Constants& c) const noexcept
-{
-  return std::sqrt((c.bulk + 4 * c.shear / 3) * (1 + std::max(-std::log(F.determinant()), Real{0})) / density);
-}
-
 void MohrCoulomb::check(std::vector<std::string>& problems) const
 {
   Elasticity::check(problems);
-  check_softening(*this, problems);
+  SoilStrength::check(problems);
   if (tension_cutoff && *tension_cutoff > tip_of_strength())
     problems.push_back(fmt::format("tension_cutoff {} is above the apex, {:.6g} Pa", *tension_cutoff, tip_of_strength()));
 }
 
-void MohrCoulomb::divide_strength(Real factor) noexcept { divide_soil_strength(factor, *this); }
+void MohrCoulomb::divide_strength(Real factor) noexcept
+{
+  divide_shear_strength(factor);
+  divide_cutoff(factor, tip_of_strength());
+}
 
 Real MohrCoulomb::tip_of_strength() const noexcept { return apex(strength_of(friction_angle, cohesion)); }
 

@@ -64,28 +64,11 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
 template Mat3 MuI::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> MuI::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
 
-void MuI::prestress(const Mat3& stress, State& state) const noexcept
-{
-  const Constants c = constants();
-  state.elastic_left = expm1(add_diagonal(pack(dev(stress) / c.shear), 2 * stress.trace() / (9 * c.bulk)));
-}
-
 Real MuI::yield(const Mat3&, const State& state) const noexcept
 {
-  const Constants c = constants();
-  const Sym3 strain = 0.5 * log1p(state.elastic_left);
-  const Real tau = c.shear * std::sqrt(2 * squared_norm(add_diagonal(strain, -trace(strain) / 3)));
-  return tau + limiting_friction * c.bulk * trace(strain);
+  const Moduli elastic = moduli();
+  return cone_yield(state, elastic.bulk, elastic.shear, limiting_friction, 0);
 }
-
-template <class T>
-T MuI::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
-{
-  using std::log, std::max, std::sqrt;
-  return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
-}
-template Real MuI::wave_speed(const Mat3&, const Constants&) const noexcept;
-template SimdReal MuI::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 void MuI::check(std::vector<std::string>& problems) const
 {

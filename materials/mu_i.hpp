@@ -4,8 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
+#include "materials/hencky_plastic.hpp"
 #include "materials/logarithm.hpp"
 
 namespace talus {
@@ -16,15 +15,15 @@ namespace talus {
 /// implicit, tau_trial - G dt g = mu(I(g)) p, in closed form (Dunatunga & Kamrin 2015, J. Fluid Mech. 779, 483).  Without pressure the
 /// material opens freely; the opened volume is kept and closes before compression is felt, as in DruckerPrager.  With mu_2 = mu_s this
 /// is a Drucker-Prager cone of slope mu_s without cohesion and dilation.
-struct MuI : Elasticity {
+struct MuI : ConePlastic {
   static constexpr std::string_view name = "mu_i";
   static constexpr std::string_view summary =
       "Dense granular flow with friction mu(I) by inertial number, isochoric, no tension (Jop, Forterre & Pouliquen 2006).";
-  Real density{}, static_friction{}, limiting_friction{}, inertial_number{}, grain_diameter{}, grain_density{};
+  Real static_friction{}, limiting_friction{}, inertial_number{}, grain_diameter{}, grain_density{};
   static constexpr auto fields()
   {
     return std::tuple_cat(
-        std::tuple{required("density", &MuI::density, positive, "kg/m^3", "mass density of grains and voids at rest")},
+        std::tuple{required<MuI, Real>("density", &MuI::density, positive, "kg/m^3", "mass density of grains and voids at rest")},
         elastic_fields<MuI>(),
         std::tuple{
             required("static_friction", &MuI::static_friction, non_negative, "-", "mu_s = tau/p where flow begins, tau = sqrt(J2)"),
@@ -42,18 +41,6 @@ struct MuI : Elasticity {
     limiting_friction /= factor;
   }
 
-  struct State {
-    Sym3 elastic_left = Sym3::Zero();
-    Real plastic_strain = 0, plastic_work = 0, opened_volume = 0;
-    static constexpr auto fields()
-    {
-      return std::tuple{
-          history("elastic_left", &State::elastic_left, "-", "elastic left Cauchy-Green tensor minus identity: xx, yy, zz, xy, yz, xz"),
-          history("plastic_strain", &State::plastic_strain, "-", "accumulated plastic strain, integral of sqrt(2/3 e:e)"),
-          history("plastic_work", &State::plastic_work, "J/m^3", "dissipated energy per initial volume"),
-          history("opened_volume", &State::opened_volume, "-", "logarithmic volume strain kept open; closes before compression is felt")};
-    }
-  };
   struct Constants {
     Real bulk, shear;  ///< Pa
     Real rate_scale;   ///< I_0 / (d sqrt(rho_s)): times sqrt(p) it is the rate of shear at which I = I_0
@@ -64,13 +51,9 @@ struct MuI : Elasticity {
   Real friction(Real inertial) const noexcept;
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
-  void prestress(const Mat3& stress, State& state) const noexcept;
   /// tau - mu_2 p of the Kirchhoff stress that belongs to the elastic strain of `state`: how much friction there is below mu_2 p depends
   /// on the rate of shear.
   Real yield(const Mat3& stress, const State& state) const noexcept;
-  /// That of DruckerPrager: the elasticity is the same.
-  template <class T>
-  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

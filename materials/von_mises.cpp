@@ -130,24 +130,9 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
 template Mat3 VonMises::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> VonMises::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
 
-void VonMises::prestress(const Mat3& stress, State& state) const noexcept
-{
-  const Moduli elastic = moduli();
-  state.elastic_left = elastic_left_of(dev(stress), elastic.shear, stress.trace() / (3 * elastic.bulk));
-}
-
 Real VonMises::yield(const Mat3& stress, const State& state) const noexcept
 {
   return talus::von_mises(stress) - flow_stress(state.plastic_strain, 0);
 }
-
-template <class T>
-T VonMises::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
-{
-  using std::log, std::max, std::sqrt;
-  return sqrt(T((c.bulk + 4 * c.shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
-}
-template Real VonMises::wave_speed(const Mat3&, const Constants&) const noexcept;
-template SimdReal VonMises::wave_speed(const Mat3Of<SimdReal>&, const Constants&) const noexcept;
 
 }  // namespace talus

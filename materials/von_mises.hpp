@@ -3,8 +3,7 @@
 #include <optional>
 #include <string_view>
 
-#include "materials/elasticity.hpp"
-#include "materials/law.hpp"
+#include "materials/hencky_plastic.hpp"
 
 namespace talus {
 
@@ -41,13 +40,13 @@ struct CowperSymonds {
 /// Von Mises plasticity, associated, with the return by backward Euler.  The Cauchy stress yields where
 ///     sqrt(3 J2) = (yield_stress + H p + Q (1 - exp(-b p)) + K p^n) (1 + (rate / D)^(1/q)),
 /// p the accumulated plastic strain and `rate` that of the step.  Closed form where only H is given.
-struct VonMises : Elasticity {
+struct VonMises : HenckyPlastic {
   static constexpr std::string_view name = "von_mises";
   static constexpr bool isochoric = true;
   static constexpr std::string_view summary =
       "Von Mises plasticity on logarithmic elasticity: linear, saturating (Voce 1948) and power hardening, rate factor of Cowper & Symonds "
       "(1957); yields in Cauchy stress.";
-  Real density{}, yield_stress{}, hardening_modulus = 0;
+  Real yield_stress{}, hardening_modulus = 0;
   std::optional<VoceHardening> voce;
   std::optional<PowerHardening> power;
   std::optional<CowperSymonds> rate;
@@ -55,7 +54,7 @@ struct VonMises : Elasticity {
   {
     using Law = VonMises;
     return std::tuple_cat(
-        std::tuple{required("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
+        std::tuple{required<Law, Real>("density", &Law::density, positive, "kg/m^3", "mass density at rest")}, elastic_fields<Law>(),
         std::tuple{required("yield_stress", &Law::yield_stress, positive, "Pa", "Cauchy stress of first yield in slow uniaxial tension"),
                    optional("hardening_modulus", &Law::hardening_modulus, non_negative, "Pa", "H, linear gain by plastic strain"),
                    group("voce", &Law::voce, "hardening Q (1 - exp(-b p)) that saturates"), group("power", &Law::power, "hardening K p^n"),
@@ -89,12 +88,8 @@ struct VonMises : Elasticity {
 
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
-  void prestress(const Mat3& stress, State& state) const noexcept;
   /// sqrt(3 J2) less the strength of slow loading: above zero, by what the rate adds, while a law with `rate` flows.
   Real yield(const Mat3& stress, const State& state) const noexcept;
-  /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
-  template <class T>
-  T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

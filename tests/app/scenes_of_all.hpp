@@ -1,8 +1,13 @@
 #pragma once
 // Small scenes that together have all that a run can have, for tests of what must hold for each.
+#include <fmt/format.h>
+
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
+
+#include "materials/law_examples.hpp"
 
 namespace talus {
 
@@ -44,6 +49,29 @@ struct SceneCase {
   friend std::ostream& operator<<(std::ostream& out, const SceneCase& c) { return out << c.name; }
 };
 
+/// The parameters of a law as they stand in a scene, but the density; pressures and moduli a tenth as large, so that a step is long.
+template <class L>
+std::string law_text(const L& law)
+{
+  std::string text = fmt::format("law: {}", L::name);
+  for_each_field<L>([&]<class Field>(const Field& field) {
+    const auto& value = law.*(field.member);
+    using Value = std::decay_t<decltype(value)>;
+    if constexpr (std::is_enum_v<Value>) {
+      text += fmt::format(", {}: {}", field.key, enum_names(value)[static_cast<std::size_t>(value)]);
+    } else if constexpr (std::is_same_v<Value, Real> || std::is_same_v<Value, std::optional<Real>>) {
+      const std::optional<Real> number = value;
+      if (number && field.key != "density")
+        text += fmt::format(", {}: {}", field.key, field.unit == "Pa" ? *number / 10 : *number);
+    }
+  });
+  return text;
+}
+
+inline const std::string soil_law =
+    "law: drucker_prager, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, match: plane_strain, "
+    "dilation_angle: 8, residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3";
+
 inline const std::string metal_law =
     "law: johnson_cook, youngs_modulus: 1.0e7, poisson_ratio: 0.3, yield_stress: 5.0e3, hardening_coefficient: 2.0e4, "
     "hardening_exponent: "
@@ -56,30 +84,12 @@ inline std::vector<SceneCase> scenes_of_all()
   const std::string solid = "dimension: 3\nmesh: {grid: {low: [0, 0, 0], high: [2, 2, 1], cells: [4, 4, 2]}}\n";
   std::vector<SceneCase> all;
   const auto law = [&](const std::string& name, const std::string& text) { all.push_back({"law_" + name, {.law = text}}); };
-  law("linear_elastic", "law: linear_elastic, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("neo_hookean", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
-  law("corotated", "law: corotated, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("hencky", "law: hencky, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("linear_first_piola", "law: linear_first_piola, youngs_modulus: 1.0e6, poisson_ratio: 0.3");
-  law("drucker_prager",
-      "law: drucker_prager, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, match: plane_strain, "
-      "dilation_angle: 8, "
-      "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
-  law("mohr_coulomb",
+  for_each_type(Laws{}, [&]<class L>() { law(std::string(L::name), law_text(law_example<L>())); });
+  law("neo_hookean_viscous", "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3, bulk_viscosity: {}");
+  law("drucker_prager_softening", soil_law);
+  law("mohr_coulomb_softening",
       "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 2.0e3, dilation_angle: 8, "
       "residual_friction_angle: 20, residual_cohesion: 500, softening_strain: 0.01, tension_cutoff: 2.0e3");
-  law("modified_cam_clay",
-      "law: modified_cam_clay, shear_modulus: 4.0e5, compression_index: 0.2, swelling_index: 0.05, critical_state_slope: 1.1, "
-      "preconsolidation_pressure: 1.0e4, reference_pressure: 5.0e4");
-  law("mu_i",
-      "law: mu_i, youngs_modulus: 1.0e6, poisson_ratio: 0.3, static_friction: 0.38, limiting_friction: 0.64, inertial_number: 0.28, "
-      "grain_diameter: "
-      "5.0e-3, grain_density: 2500");
-  law("newtonian", "law: newtonian, bulk_modulus: 1.0e6, viscosity: 1");
-  law("herschel_bulkley",
-      "law: herschel_bulkley, bulk_modulus: 1.0e6, yield_stress: 50, consistency: 4, regularisation: 1, flow_index: 0.8");
-  law("von_mises", "law: von_mises, youngs_modulus: 1.0e6, poisson_ratio: 0.3, yield_stress: 3.0e3");
-  law("johnson_cook", metal_law);
   law("johnson_cook_of_all",
       metal_law + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
   law("johnson_cook_heat", metal_law + ", conductivity: 300, initial_temperature: 300");
@@ -91,7 +101,7 @@ inline std::vector<SceneCase> scenes_of_all()
     all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
   all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
   all.push_back({"single", {.more = "precision: single\n"}});
-  all.push_back({"single_soil", {.more = "precision: single\n", .law = all[5].parts.law}});
+  all.push_back({"single_soil", {.more = "precision: single\n", .law = soil_law}});
   all.push_back(
       {"averaged_volume",
        {.bodies =
@@ -124,7 +134,7 @@ inline std::vector<SceneCase> scenes_of_all()
         .boundaries = "boundaries: [{type: roller, on: y_min}]\n"}});
   all.push_back(
       {"stages",
-       {.law = all[5].parts.law,
+       {.law = soil_law,
         .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1]}, particles_per_cell: 3}\n",
         .boundaries = "boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}, {type: roller, on: x_max}]\n",
         .time =
@@ -133,7 +143,7 @@ inline std::vector<SceneCase> scenes_of_all()
             "  - {type: run, duration: 0.03}\n  - {type: run, duration: 0.04, damping: 0.2}\n"}});
   all.push_back(
       {"shaking",
-       {.law = all[5].parts.law,
+       {.law = soil_law,
         .bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 1.1]}, particles_per_cell: 3}\n",
         .boundaries = "boundaries:\n  - {type: free_field, on: x_min}\n  - {type: free_field, on: x_max}\n"
                       "  - {type: compliant_base, on: y_min, density: 2500, s_wave: 40, p_wave: 80, velocity: [0.2, 0.1], table: [[0, 0], "
@@ -143,7 +153,7 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back(
       {"water",
        {.more = "water: {table: {points: [[0, 0.9], [2, 0.4]]}, suction: 1.0e3, bodies: [low]}\n",
-        .law = all[5].parts.law,
+        .law = soil_law,
         .bodies = "bodies:\n"
                   "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}, particles_per_cell: 3, "
                   "saturated_density: 2100}\n"
@@ -155,8 +165,8 @@ inline std::vector<SceneCase> scenes_of_all()
                 "  - {type: run, duration: 0.02, water: {table: {points: [[0, 0.3], [2, 0.7]]}}}\n  - {type: run, duration: 0.02}\n"}});
   all.push_back(
       {"stages_that_change",
-       {.law = all[5].parts.law + "}, {name: other, density: 2500, law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, "
-                                  "friction_angle: 30, cohesion: 4.0e3, bulk_viscosity: {}",
+       {.law = soil_law + "}, {name: other, density: 2500, law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, "
+                          "friction_angle: 30, cohesion: 4.0e3, bulk_viscosity: {}",
         .bodies =
             "bodies:\n"
             "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
@@ -171,7 +181,7 @@ inline std::vector<SceneCase> scenes_of_all()
         .outputs =
             ", points: [{name: top, at: [0.5, 1.6], body: fill}], fronts: [{name: toe, direction: +x}], bodies: [fill, low, stone]"}});
   SceneParts in_3d{.dimension = solid,
-                   .law = all[5].parts.law,
+                   .law = soil_law,
                    .bodies =
                        "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0, 0], high: [1, 1, 1]}, "
                        "particles_per_cell: 4, velocity: "

@@ -9,7 +9,7 @@
 
 #include "core/parallel/threads.hpp"
 #include "core/simd.hpp"
-#include "materials/material.hpp"
+#include "core/tensor.hpp"
 
 namespace talus {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "app/commands/bench/bench_laws.hpp"
+#include "materials/law_examples.hpp"
 #include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
 #include "solver/stable_step.hpp"
@@ -116,6 +116,16 @@ void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
   }
 }
 
+AnyBatch bench_material(const std::string& name, Index n)
+{
+  AnyBatch batch;
+  for_each_type(Laws{}, [&]<class L>() {
+    if (L::name == name)
+      batch = make_any_batch(law_example<L>(), 0, n, name);
+  });
+  return batch;
+}
+
 }  // namespace
 
 Index cells_a_side(int dimension, Index particles, int per_cube)
@@ -134,12 +144,12 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   block.scene.kernel = setting.kernel;
   block.scene.precision = setting.precision == "single" ? Precision::single : Precision::full;
   Setup<D>& setup = block.setup;
-  const AnyLaw law = bench_law(setting.law);
-  setup.state.particles = bench_particles<D>(block.mesh, setting.per_cell, std::visit([](const auto& l) { return l.density; }, law));
-  setup.state.particles.keep_in(block.scene.precision);
-  const Index n = setup.state.particles.size();
+  const Index n = setting.per_cell * block.mesh.n_cells();
   setup.state.bodies.push_back({"block", 0, n, {}});
-  setup.state.materials.push_back(std::visit([&](const auto& l) { return make_any_batch(l, 0, n, setting.law); }, law));
+  setup.state.materials.push_back(bench_material(setting.law, n));
+  const Real density = std::visit([](const auto& batch) { return batch.law.density; }, setup.state.materials.front());
+  setup.state.particles = bench_particles<D>(block.mesh, setting.per_cell, density);
+  setup.state.particles.keep_in(block.scene.precision);
   Real wave = 0, pressure = 0;
   std::visit(
       [&]<class L>(Batch<L>& batch) {

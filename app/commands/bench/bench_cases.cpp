@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include "app/commands/bench/bench_block.hpp"
-#include "app/commands/bench/bench_laws.hpp"
 #include "core/word_match.hpp"
 #include "io/scene/scene_rules.hpp"
+#include "materials/laws.hpp"
 #include "mesh/quadrature.hpp"
 
 namespace talus {
@@ -17,6 +17,13 @@ std::vector<std::string> names_of(Choice choice)
 {
   const auto names = enum_names(choice);
   return {names.begin(), names.end()};
+}
+
+std::vector<std::string> law_names()
+{
+  std::vector<std::string> names;
+  for_each_type(Laws{}, [&]<class L>() { names.emplace_back(L::name); });
+  return names;
 }
 
 /// The words given, or else `usual`.  Adds a problem for each that is not known.
@@ -44,7 +51,7 @@ Axes axes_of(const BenchOptions& o, int all_threads)
                         kernel_names(), problems);
   const auto transfers = names_of(TransferScheme{}), precisions = names_of(Precision{});
   axes.transfers = chosen("--transfer", o.transfers, all ? transfers : std::vector<std::string>{"tpic", "aflip"}, transfers, problems);
-  axes.laws = chosen("--law", o.laws, all ? bench_laws() : std::vector<std::string>{"neo_hookean"}, bench_laws(), problems);
+  axes.laws = chosen("--law", o.laws, all ? law_names() : std::vector<std::string>{"neo_hookean"}, law_names(), problems);
   axes.precisions = chosen("--precision", o.precisions, all ? precisions : std::vector<std::string>{"double"}, precisions, problems);
   axes.dimensions = !o.dimensions.empty() ? o.dimensions : all ? std::vector{3, 2} : std::vector{3};
   axes.threads = !o.threads.empty() ? o.threads : all && all_threads > 1 ? std::vector{1, all_threads} : std::vector{1};

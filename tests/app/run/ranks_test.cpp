@@ -79,7 +79,8 @@ std::vector<SceneCase> scenes_of(bool every_day)
 {
   std::vector<SceneCase> chosen;
   for (const SceneCase& scene : scenes_of_all())
-    if ((!scene.name.starts_with("law_") || scene.name == "law_drucker_prager" || scene.name == "law_johnson_cook_heat") == every_day)
+    if ((!scene.name.starts_with("law_") || scene.name == "law_drucker_prager_softening" || scene.name == "law_johnson_cook_heat") ==
+        every_day)
       chosen.push_back(scene);
   return chosen;
 }

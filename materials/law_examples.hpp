@@ -1,0 +1,147 @@
+#pragma once
+// Parameters of every law for what runs over all of them: `talus bench`, contract tests, scenes of tests.  A law that is missing here does
+// not compile.
+#include "materials/laws.hpp"
+
+namespace talus {
+
+/// Young's modulus of every example, or the stiffness that stands for it [Pa].
+inline constexpr Real example_stiffness = 1e7;
+
+/// A law with its required parameters alone: a block flows, if it can, under strains of a per cent.
+template <class L>
+L law_example() = delete;
+
+namespace detail {
+template <class L>
+L elastic_example(Real density = 2000)
+{
+  L law{};
+  law.density = density;
+  law.youngs_modulus = example_stiffness;
+  law.poisson_ratio = 0.3;
+  return law;
+}
+template <class L>
+L soil_example()
+{
+  auto law = elastic_example<L>();
+  law.friction_angle = 30;
+  law.cohesion = 5e3;
+  return law;
+}
+}  // namespace detail
+
+template <>
+inline LinearElastic law_example()
+{
+  return detail::elastic_example<LinearElastic>();
+}
+template <>
+inline NeoHookean law_example()
+{
+  return detail::elastic_example<NeoHookean>();
+}
+template <>
+inline Corotated law_example()
+{
+  return detail::elastic_example<Corotated>();
+}
+template <>
+inline Hencky law_example()
+{
+  return detail::elastic_example<Hencky>();
+}
+template <>
+inline LinearFirstPiola law_example()
+{
+  return detail::elastic_example<LinearFirstPiola>();
+}
+template <>
+inline DruckerPrager law_example()
+{
+  auto law = detail::soil_example<DruckerPrager>();
+  law.match = ConeMatch::plane_strain;
+  return law;
+}
+template <>
+inline MohrCoulomb law_example()
+{
+  return detail::soil_example<MohrCoulomb>();
+}
+template <>
+inline ModifiedCamClay law_example()
+{
+  ModifiedCamClay law;
+  law.density = 1800;
+  law.shear_modulus = 4e6;
+  law.compression_index = 0.2;
+  law.swelling_index = 0.05;
+  law.critical_state_slope = 1.1;
+  law.preconsolidation_pressure = 1e5;
+  law.reference_pressure = 0.05 * example_stiffness;
+  return law;
+}
+template <>
+inline MuI law_example()
+{
+  auto law = detail::elastic_example<MuI>(1500);
+  law.static_friction = 0.5;
+  law.limiting_friction = 0.7;
+  law.inertial_number = 0.279;
+  law.grain_diameter = 0.5e-3;
+  law.grain_density = 2500;
+  return law;
+}
+template <>
+inline Newtonian law_example()
+{
+  Newtonian law;
+  law.density = 1000;
+  law.bulk_modulus = example_stiffness;
+  law.viscosity = 5;
+  return law;
+}
+template <>
+inline HerschelBulkley law_example()
+{
+  HerschelBulkley law;
+  law.density = 1600;
+  law.bulk_modulus = example_stiffness;
+  law.yield_stress = 50;
+  law.consistency = 4;
+  law.flow_index = 0.5;
+  law.regularisation = 1;
+  return law;
+}
+template <>
+inline VonMises law_example()
+{
+  auto law = detail::elastic_example<VonMises>();
+  law.yield_stress = 4e4;
+  law.hardening_modulus = 1e4;
+  return law;
+}
+template <>
+inline JohnsonCook law_example()
+{
+  auto law = detail::elastic_example<JohnsonCook>();
+  law.yield_stress = 4e4;
+  law.hardening_coefficient = 1e4;
+  law.hardening_exponent = 0.3;
+  law.rate_coefficient = 0.02;
+  law.thermal_exponent = 1.05;
+  law.room_temperature = 294;
+  law.melting_temperature = 1400;
+  law.specific_heat = 0.02;  // heats by some kelvin per cent of plastic strain: strength is low, so is what heat takes
+  return law;
+}
+
+template <class L>
+concept HasExample = requires
+{
+  law_example<L>();
+};
+static_assert([]<class... L>(TypeList<L...>) { return (HasExample<L> && ...); }(Laws{}), "give each law of Laws its law_example()");
+
+}  // namespace talus
