@@ -33,7 +33,7 @@ __all__ = ["Checkpoint", "Comparison", "Damaged", "FileError", "Mesh", "Missing"
            "compare", "tensors"]
 
 PURE = "-"  # the unit of a pure number
-CHECKPOINT_FORMATS = (4, 5, 6, 7)  # those that Checkpoint reads
+CHECKPOINT_FORMATS = (4, 5, 6, 7, 8)  # those that Checkpoint reads
 
 
 class FileError(Exception):
