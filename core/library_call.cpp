@@ -10,22 +10,22 @@ namespace talus {
 namespace {
 
 // Memory of its own: where it is needed there may be none to be had.
-std::array<char, 512> name{};
-volatile std::sig_atomic_t length = 0;
+std::array<char, 512> call_name{};
+volatile std::sig_atomic_t call_length = 0;
 
 }  // namespace
 
 LibraryCall::LibraryCall(std::string_view library, std::string_view does, std::string_view file) noexcept
 {
-  length = 0;
+  call_length = 0;
   std::size_t end = 0;
   for (const std::string_view part : {library, std::string_view(", "), does, std::string_view(" "), file})
-    end += part.copy(name.data() + end, name.size() - end);
-  length = static_cast<std::sig_atomic_t>(end);
+    end += part.copy(call_name.data() + end, call_name.size() - end);
+  call_length = static_cast<std::sig_atomic_t>(end);
 }
 
-LibraryCall::~LibraryCall() { length = 0; }
+LibraryCall::~LibraryCall() { call_length = 0; }
 
-std::string_view library_at_work() noexcept { return {name.data(), static_cast<std::size_t>(length)}; }
+std::string_view library_at_work() noexcept { return {call_name.data(), static_cast<std::size_t>(call_length)}; }
 
 }  // namespace talus

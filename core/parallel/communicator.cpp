@@ -430,9 +430,9 @@ void Communicator::sum_in_use(Digits& digits)
     const auto words = words_of(i);
     const auto first = std::find_if_not(words.begin(), words.end(), is_zero);
     const auto last = std::find_if_not(words.rbegin(), std::make_reverse_iterator(first), is_zero).base();
-    const bool any = first != words.end();
-    ends.push_back(any ? first - words.begin() : each);
-    ends.push_back(any ? words.begin() - last : 0);
+    const bool is_used = first != words.end();
+    ends.push_back(is_used ? first - words.begin() : each);
+    ends.push_back(is_used ? words.begin() - last : 0);
   }
   reduce(ends, Reduction::min);
   for (std::size_t i = 0; i < n; ++i)
