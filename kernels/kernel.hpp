@@ -1,7 +1,7 @@
 #pragma once
 // What a kernel is: the weights with which a particle sees nodes.  Scatter and gather know nothing else about it.
 //
-// A kernel has a cell part (weights of one particle over the stencil of its cell) and, if it wants one, a node part (sparse
+// A kernel has a cell part (weights of one particle over the stencil of its cell) and, if it wants one, a set of node operators (sparse
 // operators over the one-ring, applied to nodal rows between scatter and gather; see node_operators.hpp).
 #include <concepts>
 #include <cstddef>
@@ -124,7 +124,7 @@ K make_kernel(const Mesh<D>& mesh, [[maybe_unused]] const Options<K>& options)
 template <int D>
 class NodeOperators;
 
-/// A kernel with a node part: operators stand between hats and unknowns; its weights are those of hats.
+/// A kernel with a set of node operators: operators stand between linear shape functions and unknowns; its weights are those of linear shape functions.
 template <class K, int D>
 concept HasNodeOperators = requires(const K k) {
   { k.node_operators() } noexcept -> std::same_as<const NodeOperators<D>&>;

@@ -1,10 +1,10 @@
 #pragma once
-// The hats of the mesh: what every other kernel is compared with.
+// The linear shape functions of the mesh: what every other kernel is compared with.
 #include "kernels/kernel.hpp"
 
 namespace talus {
 
-/// P1 hat functions: w_a = barycentric coordinate a of the particle, G_a its gradient, constant in the cell.
+/// Linear (P1) shape functions: w_a = barycentric coordinate a of the particle, G_a its gradient, constant in the cell.
 /// Cheap, and exact for uniform stress on any mesh; but the gradient jumps where a particle crosses a facet.
 template <int D>
 class Linear {

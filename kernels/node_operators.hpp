@@ -1,11 +1,11 @@
 #pragma once
-// The node part of a kernel: sparse operators over the one-ring, applied to nodal rows after the scatter and before the gather.
+// The set of node operators of a kernel: sparse operators over the one-ring, applied to nodal rows after the scatter and before the gather.
 #include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
 
-/// Node-to-node operators on the pattern of the one-ring: S_nv for values, D_nv [1/m] for gradients, n the node of a hat (what
+/// Node-to-node operators on the pattern of the one-ring: S_nv for values, D_nv [1/m] for gradients, n the node of a linear shape function (what
 /// particles see), v the node of the unknowns (where mass and momentum live).  Rows serve the gather, columns the scatter; both are
 /// stored, from the same numbers, so that one is the transpose of the other to the bit.  Sums run over the ring in ascending order.
 template <int D>
@@ -14,7 +14,7 @@ class NodeOperators {
   /// Rows of S and of D on the entries of mesh.ring_of_node().
   NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::vector<Vec<D>> gradients);
 
-  /// sum_v S_nv x_v [m]: where the weights of hat n see their mass; x_n itself where S is exact for linear fields.
+  /// sum_v S_nv x_v [m]: where the weights of linear shape function n see their mass; x_n itself where S is exact for linear fields.
   const Vec<D>& centre(Index n) const noexcept { return centre_[static_cast<std::size_t>(n)]; }
 
   Index n_nodes() const noexcept { return ring_.size(); }
@@ -52,7 +52,7 @@ class NodeOperators {
   std::vector<Vec<D>> D_row_, D_column_, centre_;
 };
 
-/// The volume-averaged gradient of the hats N at nodes, with V_n = int N_n dx:
+/// The volume-averaged gradient of the linear shape functions N at nodes, with V_n = int N_n dx:
 ///
 ///     D_nv = int N_n grad N_v dx / V_n [1/m]
 ///

@@ -1,5 +1,5 @@
 #pragma once
-// Hats at the particles, sparse operators at the nodes: a continuous gradient with the integration constraint, at the cost of hats.
+// Linear shape functions at the particles, sparse operators at the nodes: a continuous gradient with the integration constraint, at the cost of linear shape functions.
 #include "kernels/linear.hpp"
 #include "kernels/node_operators.hpp"
 #include "kernels/projected_options.hpp"
@@ -7,12 +7,12 @@
 
 namespace talus {
 
-/// With the hats N_n of the cell's vertices, S the values of largest entropy (kernels/value_stencils.hpp) and D the averaged gradient
+/// With the linear shape functions N_n of the cell's vertices, S the values of largest entropy (kernels/value_stencils.hpp) and D the averaged gradient
 /// (kernels/node_operators.hpp):
 ///
 ///     w_v(x) = sum_n N_n(x) S_nv          G_v(x) = sum_n N_n(x) D_nv
 ///
-/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles see hats
+/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles see linear shape functions
 /// only: a scatter goes to the vertices of the cell, the transposed operators carry it on to the unknowns, and back.
 /// Relatives: dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys. 230].
 template <int D>
@@ -37,7 +37,7 @@ class Projected {
             .patch_test = true,
             .closed_walls = false};
   }
-  /// The cell part: hats.
+  /// The cell part: linear shape functions.
   std::span<const Index> stencil(const Mesh<D>& mesh, Index c) const noexcept { return hats_.stencil(mesh, c); }
   void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept { hats_.open(mesh, c, cell); }
   void evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept

@@ -90,7 +90,7 @@ template <int D>
   return m;
 }
 
-/// The hats of the cell in one lane, as factors: see Linear.
+/// The linear shape functions of the cell in one lane, as factors: see Linear.
 template <int D>
 void hats_instead(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane, Weights<D, Umls<D>::max_nodes>& out) noexcept
 {

@@ -16,7 +16,7 @@ namespace talus {
 ///     G_v = W_v S^-1 (r_v - c)                  w_v = W_v / W0 - c . G_v
 ///
 /// R_v = h_v (mean length of the edges at v), times 1.25 or 1.5 for vertices of cells with a badly conditioned S, decided once.
-/// Where S is unusable even so, the particle takes the hats of its cell.  Linear fields are exact either way.
+/// Where S is unusable even so, the particle takes the linear shape functions of its cell.  Linear fields are exact either way.
 template <int D>
 class Umls {
  public:
@@ -60,7 +60,7 @@ class Umls {
 
   /// How round S is at x: D^D det S / tr(S)^D, 1 if all directions are seen alike, 0 if a direction is not seen.
   Real roundness(const Cell& cell, const Vec<D>& x) const noexcept;
-  /// Radii grow where the roundness is below the first; below the second the hats replace the estimate.
+  /// Radii grow where the roundness is below the first; below the second the linear shape functions replace the estimate.
   static constexpr Real poor_roundness = 0.02, unusable_roundness = 1e-6;
 
  private:

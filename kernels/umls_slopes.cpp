@@ -13,7 +13,7 @@ void Umls<D>::slopes_of_values(const Cell& cell, const Pack (&x)[D], int lane, c
                                Real (&slopes)[D][max_nodes]) const noexcept
 {
   const Real* const* y = weights.y[lane];
-  if (y[0] != cell.x[0]) {  // hats
+  if (y[0] != cell.x[0]) {  // linear shape functions
     for (int d = 0; d < D; ++d)
       store(slopes[d], load(y[d]));
     return;

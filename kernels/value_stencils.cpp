@@ -1,4 +1,4 @@
-// The value stencil of a node part: weights of largest entropy.
+// The value stencil of a set of node operators: weights of largest entropy.
 #include "kernels/value_stencils.hpp"
 
 #include <Eigen/Eigenvalues>

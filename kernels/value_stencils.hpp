@@ -1,5 +1,5 @@
 #pragma once
-// Value stencils of a node part: with which weights the hat of a node stands for the unknowns of its ring.
+// Value stencils of a set of node operators: with which weights the linear shape function of a node stands for the unknowns of its ring.
 #include "mesh/mesh.hpp"
 
 namespace talus {

@@ -34,7 +34,7 @@ void integrate(const Vec<D>& gravity, Real kick, Nodes<D>& nodes)
   });
 }
 
-/// Net accelerations of the nodes, walls included: those of slaves count as none.
+/// Net accelerations of the nodes, walls included: those of nodes of small mass count as none.
 template <int D>
 void find_net_acceleration(Nodes<D>& nodes)
 {
@@ -57,7 +57,7 @@ void damp(Real damping, Nodes<D>& nodes)
   });
 }
 
-/// What gravity and damping did and the kinetic energies, once the walls have spoken: of one node.
+/// What gravity and damping did and the kinetic energies, once boundary conditions have acted: of one node.
 template <int D>
 NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, Index n)
 {

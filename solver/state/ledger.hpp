@@ -19,7 +19,8 @@ struct EnergyLedger {
   Real waves{};     ///< energy that waves brought to walls that give way: part of the work of walls, and a measure of it
   Real damping{};   ///< work of local damping, <= 0
   Real arrival{};   ///< kinetic energy that mass loses where walls make it move as they do, <= 0: part of what transfer() gives
-  Real nodes{};     ///< change of the nodes' kinetic energy within the steps but for arrival, and what walls did to slaves and hats
+  Real
+      nodes{};  ///< change of the nodes' kinetic energy within the steps but for arrival, and what walls did to nodes of small mass and linear shape functions
   Real remap{};     ///< MUSL: what internal forces and loads did in the part of the new velocities that the remap takes out again
   Real internal{};  ///< stress power of the particles: strain energy plus what the laws dissipate
   Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage

@@ -16,7 +16,8 @@ template <int D>
 struct alignas(64) NodeSum {
   Real mass{};              ///< [kg]
   float lightest = unseen;  ///< mass of the lightest particle whose stencil holds the node [kg]
-  float gross{};  ///< what `mass` is measured by [kg]: sum over cells of |mass from the cell|, or the mean mass of the hats around
+  float
+      gross{};  ///< what `mass` is measured by [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   void clear_momentum() noexcept { momentum.setZero(); }
@@ -46,7 +47,7 @@ struct alignas(64) NodeSum {
   }
 };
 
-/// What particles add up to on a hat: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
+/// What particles add up to on a linear shape function: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
 /// operators need besides.
 template <int D>
 struct ProjectedNodeSum : NodeSum<D> {
@@ -104,7 +105,7 @@ struct alignas(64) NodeMotion {
   }
 };
 
-/// What particles read on the hat of a node, where the kernel has a node part.
+/// What particles read on the linear shape function of a node, where the kernel has a set of node operators.
 template <int D>
 struct alignas(64) ProjectedNodeMotion {
   Vec<D> v = Vec<D>::Zero();       ///< [m/s]

@@ -143,7 +143,7 @@ struct Prefetch {
   }
 };
 
-/// f(bunch) for all rows, four at a time; ask(p) for each row before its turn.
+/// f(pack) for all rows, four at a time; ask(p) for each row before its turn.
 template <class S = Real, class F, class Ask = AskForNothing>
 void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
 {
@@ -153,7 +153,7 @@ void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
     f(ParticlePackOf<S>(rows, begin));
   }
 }
-/// f(bunch, x) for the particles of a run, four at a time.
+/// f(pack, x) for the particles of a run, four at a time.
 template <class S, int D, class F>
 void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
 {

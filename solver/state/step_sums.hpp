@@ -12,7 +12,8 @@ struct StepSums {
   Real largest_set_back = 0;                           ///< farthest way on which a particle was set back onto a wall [m]
   ExactSums<ForceAndMoment<D>> on_particles, on_mesh;  ///< forces of loads [N]
   ExactSums<BoundaryWork> at_nodes;                    ///< work of walls on nodes
-  ExactSums<BoundaryWork> beyond_nodes;                ///< on slaves and hats, of which the kinetic energy of nodes knows nothing
+  ExactSums<BoundaryWork>
+      beyond_nodes;  ///< on nodes of small mass and linear shape functions, of which the kinetic energy of nodes knows nothing
   ExactSums<NodeWork<D>> nodes;
   ExactSums<Balance> balance;
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]

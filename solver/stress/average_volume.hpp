@@ -7,7 +7,7 @@ namespace talus {
 
 /// The averaged volume ratio of the particles of some bodies at the end of a step, into `averaged`:
 ///     J_v = sum_p N_v(x_p) V_p / sum_p N_v(x_p) V0_p,    averaged_p = sum_v N_v(x_p) J_v,
-/// N the hats of the mesh, V_p = det(I + dt L_p) times the volume before the step.  An isochoric law on simplices has one
+/// N the linear shape functions of the mesh, V_p = det(I + dt L_p) times the volume before the step.  An isochoric law on simplices has one
 /// constraint per cell and locks; averaged over stars it has one per node, as many as in mixed elements of equal order
 /// (de Souza Neto et al. 2005, IJNME 62, 353: patches of simplices; Zhao, Jiang & Choo 2023, IJNME 124, 5334: in MPM).
 ///
@@ -33,7 +33,7 @@ void average_volume(const Mesh<D>& mesh, const CellOrder& order, std::span<const
       std::array<Real, D + 1> ratio;
       for (std::size_t a = 0; a <= D; ++a) {
         const auto& [volume, volume0] = sums[mesh.cell(c)[a]].sum;
-        ratio[a] = volume0 > 0 ? volume / volume0 : 1;  // nothing there: then the hat of every particle is zero
+        ratio[a] = volume0 > 0 ? volume / volume0 : 1;  // nothing there: then the linear shape function of every particle is zero
       }
       runs([&](std::span<const Index> run) {
         for (const Index row : run) {

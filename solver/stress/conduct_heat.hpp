@@ -14,7 +14,7 @@ struct HeatSums {
   HeatSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share) : content(ranks, mesh, share), flow(ranks, mesh, share) {}
 };
 
-/// One explicit step of  rho c dT/dt = div(k grad T)  on the hats of the mesh, insulated at every surface and between bodies:
+/// One explicit step of  rho c dT/dt = div(k grad T)  on the linear shape functions of the mesh, insulated at every surface and between bodies:
 ///     C_v = sum_p m_p c N_v,   T_v = sum_p m_p c T_p N_v / C_v,   H_v = -sum_p V_p k (grad T)_p . grad N_v,
 ///     T_p <- T_p + dt sum_v N_v H_v / C_v
 /// at the places of the particles after their move.  Rates are interpolated, not temperatures, so that nothing is smeared at rest; the

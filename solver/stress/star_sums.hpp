@@ -1,5 +1,5 @@
 #pragma once
-// Sums over the stars of nodes by hats, for scalars that are averaged or conducted: cheap, and apart from the kernel of the momentum.
+// Sums over the node patches by linear shape functions, for scalars that are averaged or conducted: cheap, and apart from the kernel of the momentum.
 #include <algorithm>
 #include <array>
 #include <utility>

@@ -58,7 +58,7 @@ void for_each_reading_run(const Model<D>& m, const KernelRows<D, K>& of, Index b
   }
 }
 
-/// What own particles read of nodes of other ranks; hats have it by now.
+/// What own particles read of nodes of other ranks; linear shape functions have it by now.
 template <int D, Kernel<D> K>
 void take_motion([[maybe_unused]] Model<D>& m, KernelRows<D, K>& of)
 {

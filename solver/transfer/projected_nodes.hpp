@@ -1,5 +1,5 @@
 #pragma once
-// The solver's side of a kernel with a node part: particles see the hats of their cell, operators stand between hats and unknowns.
+// The solver's side of a kernel with a set of node operators: particles see the linear shape functions of their cell, operators stand between linear shape functions and unknowns.
 #include "kernels/node_operators.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/owned_nodes.hpp"
@@ -10,7 +10,7 @@ template <int D>
 struct ProjectedNodes {
   std::vector<ProjectedNodeSum<D>> sum;
   std::vector<ProjectedNodeMotion<D>> motion;
-  std::vector<std::uint8_t> late;  ///< of one of several ranks: hats that read nodes of others
+  std::vector<std::uint8_t> late;  ///< of one of several ranks: linear shape functions that read nodes of others
   void find_late(const Mesh<D>& mesh, const OwnNodes& own)
   {
     late.resize(sum.size());
@@ -19,13 +19,13 @@ struct ProjectedNodes {
   }
 };
 
-/// Hats -> unknowns, the transpose of the way back:
+/// Linear shape functions -> unknowns, the transpose of the way back:
 ///
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
 /// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
 /// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  What the mass of
-/// a node is measured by is the mean mass of the hats around.
+/// a node is measured by is the mean mass of the linear shape functions around.
 template <int D>
 void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
                   const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
@@ -70,7 +70,7 @@ void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
   });
 }
 
-/// f(n, hat) for the hats that particles see, in parallel; what f leaves in `hat` is read.  Those that read nodes of other ranks have to wait until
+/// f(n, linear shape function) for the linear shape functions that particles see, in parallel; what f leaves in `hat` is read.  Those that read nodes of other ranks have to wait until
 /// arrive() returns.
 template <int D, class Arrive, class F>
 void for_each_seen_hat(ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
@@ -113,7 +113,7 @@ void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own,
   });
 }
 
-/// Unknowns -> hats that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
+/// Unknowns -> linear shape functions that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
 /// arrive(): the motion of nodes of other ranks.
 template <int D, class Arrive>
 void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,

@@ -1,5 +1,5 @@
 #pragma once
-// How particles of a cell reach the hats of its vertices, for a kernel with a node part: four particles side by side.
+// How particles of a cell reach the linear shape functions of its vertices, for a kernel with a set of node operators: four particles side by side.
 #include "kernels/linear.hpp"
 #include "solver/state/particle_pack.hpp"
 #include "solver/transfer/projected_nodes.hpp"
@@ -79,7 +79,7 @@ struct Deposit {
 template <int D>
 using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
 
-/// Adds a bunch, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
+/// Adds a pack, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
 template <bool affine, bool loaded, bool forces, int D, class S>
 [[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack,
                                            const ParticleColumn<Mat<D>>& fields, const Pack (&x)[D], const CornerWeights<D>& shares,
@@ -113,7 +113,7 @@ template <bool affine, bool loaded, bool forces, int D, class S>
   sums.template add<Of::size>(shares, quantities);
 }
 
-/// Sums of a run -> rows of its block.  `arms`: centres of the hats about the origin of the cell [m].
+/// Sums of a cell batch -> rows of its block.  `arms`: centres of the linear shape functions about the origin of the cell [m].
 template <bool affine, bool loaded, bool forces, int D>
 void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
             std::span<const std::uint16_t> slots, float lightest) noexcept
@@ -139,7 +139,7 @@ void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::
   }
 }
 
-/// What four particles see of the hats of their cell.
+/// What four particles see of the linear shape functions of their cell.
 template <bool with_change, int D>
 [[gnu::always_inline]] inline void see_velocity(const std::array<ProjectedNodeMotion<D>, D + 1>& projected, const CornerWeights<D>& shares,
                                                 Seen<D>& seen) noexcept
@@ -165,7 +165,7 @@ template <int D>
     }
 }
 
-/// The motion of the hats of a cell.
+/// The motion of the linear shape functions of a cell.
 template <int D>
 std::array<ProjectedNodeMotion<D>, D + 1> hats_of(const std::vector<ProjectedNodeMotion<D>>& projected,
                                                   std::span<const Index> nodes) noexcept
@@ -228,7 +228,7 @@ class ProjectedTransfer {
  private:
   const K& kernel_;
   typename K::Cell cell_;
-  std::array<Vec<D>, D + 1> arms_;  ///< centres of the hats about the origin [m]
+  std::array<Vec<D>, D + 1> arms_;  ///< centres of the linear shape functions about the origin [m]
   CornerWeights<D> shares_;
   HatSums<D> sums_;
   std::array<ProjectedNodeMotion<D>, D + 1> motion_;

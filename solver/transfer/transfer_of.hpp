@@ -18,8 +18,8 @@ inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
 /// next: with 0.1 particles turn inside out on one, with 0.5 one gains 35 times its energy, with 0.3 none breaks.  Where all weights
 /// are positive it never matters.
 inline constexpr Real least_share_of_cells = 0.3;
-/// With a node part, rows of nodes on a wall stay in the wall: a node beside a wall that carries a film has next to no mass, but the
-/// film's stress pulls at it.  Its mass is measured by that of the hats around.  On a regular lattice it has 0.4 of their mean under a film
+/// With a set of node operators, rows of nodes on a wall stay in the wall: a node beside a wall that carries a film has next to no mass, but the
+/// film's stress pulls at it.  Its mass is measured by that of the linear shape functions around.  On a regular lattice it has 0.4 of their mean under a film
 /// half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
 inline constexpr Real least_share_of_hats = 0.2;
 
