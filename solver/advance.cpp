@@ -12,7 +12,9 @@ namespace {
 template <int D>
 void locate_particles(Model<D>& m)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
   bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
                           work.sums, work.health);
   changed |= work.migration(problem.share, state.bodies, state.materials, state.particles, work.order);
@@ -89,7 +91,9 @@ void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 template <int D>
 void record_node_sums(Model<D>& m)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
   const auto blocks = std::span<const IndexRange>(problem.own.of_block);
   const Real time = state.clock.time;
   add_ranges(blocks, work.sums.nodes, [&](Index n) { return node_work(state.stage.damping, problem.mesh, work.nodes, n); });
@@ -101,7 +105,9 @@ void record_node_sums(Model<D>& m)
 template <int D>
 void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
   AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
   if (const auto rows = work.order.rows(body, block); !rows.empty() && !averages_volume(material))
     work.stress_sums[work.order.key(body, block)] = update_stress(problem.mesh, material, rows, dt, state.stage.elastic, work.averaged,
@@ -129,7 +135,9 @@ bool averages_with_earlier(const Model<D>& m, Index body, std::vector<Index>& bo
 template <int D>
 void update_stress_bodies(Model<D>& m, Real dt)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
   for (Index body = 0; body < m.n_bodies(); ++body) {
     AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
     if (averages_volume(material)) {
@@ -159,7 +167,9 @@ void update_stress_bodies(Model<D>& m, Real dt)
 template <int D>
 void update_balances(Model<D>& m)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
   StepSums<D>& sums = work.sums;
   add_work(work.order, state.particles, sums.work_on_particles);
   sums.particles.add(static_cast<Real>(state.particles.size()));
@@ -185,7 +195,10 @@ void update_balances(Model<D>& m)
 template <int D>
 void advance(Model<D>& m, Real dt)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
+  Transfer<D>& transfer = *m.transfer;
   const Kick kick{state.clock.time - state.clock.lag, state.clock.time + dt / 2};
   StopWatch watch;
 
@@ -195,9 +208,9 @@ void advance(Model<D>& m, Real dt)
     return;
   apply_particle_loads(m);  //  2
   watch.lap(state.timings.locate);
-  transfer->particles_to_nodes(m);  //  3
+  transfer.particles_to_nodes(m);  //  3
   watch.lap(state.timings.scatter);
-  transfer->assemble_nodes(m);  //  4
+  transfer.assemble_nodes(m);  //  4
   apply_nodal_loads(m);
   work.small_mass_nodes.lump(problem.mesh, problem.own, work.nodes);  //  5
   integrate_momentum(m, dt);                                          //  6
@@ -207,8 +220,8 @@ void advance(Model<D>& m, Real dt)
   record_node_sums(m);
   watch.lap(state.timings.nodes);
   work.stress_sums.assign(work.order.first.size(), {});
-  transfer->nodes_to_particles(m, kick, dt, [&m, dt](Index body, Index block) { update_stress_block(m, body, block, dt); });  //  9 to 12
-  update_stress_bodies(m, dt);                                                                                                // 12
+  transfer.nodes_to_particles(m, kick, dt, [&m, dt](Index body, Index block) { update_stress_block(m, body, block, dt); });  //  9 to 12
+  update_stress_bodies(m, dt);                                                                                               // 12
   update_balances(m);
   watch.lap(state.timings.gather);  // update_stress_bodies() tells the share of stresses apart
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};

@@ -62,7 +62,9 @@ void adopt_state(Model<D>& m)
 template <int D>
 void bind_boundary_conditions(Model<D>& m)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
   state.walls.finalize();
   work.nodes.bound.resize(work.nodes.sum.size());
   for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
@@ -75,7 +77,10 @@ void bind_boundary_conditions(Model<D>& m)
 template <int D>
 void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come)
 {
-  auto& [problem, state, work, transfer] = m;
+  Problem<D>& problem = m.problem;
+  State<D>& state = m.state;
+  Workspace<D>& work = m.work;
+  Transfer<D>& transfer = *m.transfer;
   if (state.particles.volume.empty())
     state.particles.volume = state.particles.volume0;
   const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) {
@@ -93,10 +98,10 @@ void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come)
     alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.share);
   if (problem.columns.volume_ratio)
     alone ? work.stars.emplace(problem.mesh) : work.stars.emplace(*problem.ranks, problem.mesh, problem.share);
-  transfer->prepare(problem.transfer);
+  transfer.prepare(problem.transfer);
   work.followed = FollowedRows(ids_of(problem.loads.on_particles));
   bind_boundary_conditions(m);
-  const LeastShares least = transfer->least_shares();
+  const LeastShares least = transfer.least_shares();
   work.nodes.least_share_of_gross = least.of_gross;
   work.nodes.least_share = least.of_particles;
   update_rows(m);

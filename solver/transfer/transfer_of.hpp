@@ -146,8 +146,13 @@ class TransferOf final : public Transfer<D> {
   /// particles move with those of the step itself.
   void gather_from_remapped(Model<D>& m, Real mid, Real dt, const typename Transfer<D>::StressUpdate& update)
   {
-    auto& [problem, state, work, transfer] = m;
-    const auto [mesh, own, nodes, remapped] = std::tie(problem.mesh, problem.own, work.nodes, rows_.remapped);
+    Problem<D>& problem = m.problem;
+    State<D>& state = m.state;
+    Workspace<D>& work = m.work;
+    const Mesh<D>& mesh = problem.mesh;
+    const OwnNodes& own = problem.own;
+    Nodes<D>& nodes = work.nodes;
+    std::vector<NodeMotion<D>>& remapped = rows_.remapped;
     if constexpr (Rows::projects) {
       assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, rows_.projected.sum);
       project_momentum(rows_.kernel.node_operators(), mesh, own, rows_.projected.sum, nodes.sum);
