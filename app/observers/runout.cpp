@@ -590,7 +590,7 @@ std::vector<CsvColumn> Runout<D>::columns_of_file() const
 {
   std::vector<CsvColumn> all = columns();
   if (spec_->frames_every)
-    all.push_back({"view"});
+    all.push_back({"frame"});
   return all;
 }
 

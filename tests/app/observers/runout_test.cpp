@@ -97,6 +97,7 @@ TEST_F(RunOut, OfAFlyingBlockIsThatOfItsMotion)
   EXPECT_NEAR(last(rows, "kinetic"), 2000, 1e-6);
   EXPECT_NEAR(last(rows, "front_x") - first(rows, "front_x"), 2, 0.5) << "another particle may be the furthest";
   EXPECT_GE(rows.rows(), 15U);
+  EXPECT_EQ(first(rows, "frame"), 0) << "the number of its map, by which the map is drawn";
 
   const auto numbers = read_summary(folder_ / "out/summary.json").numbers;
   ASSERT_NE(find_number(numbers, "runout.volume"), nullptr);
