@@ -1,6 +1,5 @@
 // The step of kernel linear in 3-D.
-#include "kernels/linear.hpp"
-#include "solver/transfer/transfer_of.hpp"
+#include "solver/transfer/compiled_transfers.hpp"
 
 namespace talus {
 

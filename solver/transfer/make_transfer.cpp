@@ -2,18 +2,9 @@
 
 #include <type_traits>
 
-#include "kernels/kernels.hpp"
-#include "solver/transfer/transfer_of.hpp"
+#include "solver/transfer/compiled_transfers.hpp"
 
 namespace talus {
-
-// Compiled in a unit of their own.
-extern template class TransferOf<2, Linear<2>>;
-extern template class TransferOf<3, Linear<3>>;
-extern template class TransferOf<2, Umls<2>>;
-extern template class TransferOf<3, Umls<3>>;
-extern template class TransferOf<2, Projected<2>>;
-extern template class TransferOf<3, Projected<3>>;
 
 template <int D>
 std::unique_ptr<Transfer<D>> make_transfer(std::string_view kernel, const KernelOptions& options, const Mesh<D>& mesh)

@@ -1,6 +1,5 @@
 // The step of kernel umls in 3-D.
-#include "kernels/umls.hpp"
-#include "solver/transfer/transfer_of.hpp"
+#include "solver/transfer/compiled_transfers.hpp"
 
 namespace talus {
 
