@@ -26,8 +26,8 @@ struct MotionOptions {
 template <int D>
 struct PrescribedMotion {
   Vec<D> velocity = Vec<D>::Zero();  ///< [m/s], times the value of the table or the record
-  Table table;
-  std::optional<Record> record;  ///< in the place of the table
+  Table table = {};
+  std::optional<Record> record = {};  ///< in the place of the table
 
   /// The velocity [m/s] after that time [s].
   Vec<D> operator()(Real since) const noexcept { return (record ? (*record)(since) : table(since)) * velocity; }

@@ -162,15 +162,17 @@ TYPED_TEST(ConditionContract, ItsWorkIsTheChangeOfKineticEnergyAndHasItsSign)
     EXPECT_LE(work.friction, 0);
     EXPECT_GE(work.waves, 0);
     const bool moves = all.conditions.conditions().back().peak_speed() > 0;
-    if (!moves)
+    if (!moves) {
       EXPECT_LT(all.kinetic_energy(), before) << "what stays where it is gives no energy";
+    }
 
     auto at_rest = MovingNodes::with<TypeParam>().begin(dynamic);
     at_rest.step();
-    if (moves && (dynamic || !HasDashpots<TypeParam>))
+    if (moves && (dynamic || !HasDashpots<TypeParam>)) {
       EXPECT_GT(at_rest.work.value().moved, 0);
-    else
+    } else {
       EXPECT_EQ(at_rest.kinetic_energy(), 0);
+    }
   }
 }
 
