@@ -1,7 +1,7 @@
 #include "app/setup/walls_of_scene.hpp"
 
 #include "app/setup/vertical_axis.hpp"
-#include "io/scene/history_columns.hpp"
+#include "io/scene/wall_names.hpp"
 
 namespace talus {
 

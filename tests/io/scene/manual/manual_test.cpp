@@ -1,5 +1,5 @@
 // The manual and the schema say what the field lists say.
-#include "io/scene/manual.hpp"
+#include "io/scene/manual/manual.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,12 +9,14 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "io/output/output_fields.hpp"
 #include "io/scene/scene_rules.hpp"
 
 namespace talus::manual_test {
 
 namespace {
 
+using testing::ContainsRegex;
 using testing::HasSubstr;
 
 /// The cells of the row of a key below a heading, without blanks around them.
@@ -93,6 +95,19 @@ TEST(Manual, ElasticConstantsAreOptionalOneByOne)
   for (const std::string key : {"youngs_modulus", "poisson_ratio", "bulk_modulus", "shear_modulus", "lame_lambda"})
     EXPECT_EQ(row("law: linear_elastic", key).at("default"), "none");
   EXPECT_EQ(row("law: mohr_coulomb", "poisson_ratio").at("range"), "(-1, 0.5)");
+}
+
+TEST(Manual, TellsOutputFieldsAndColumnsWithUnitAndMeaning)
+{
+  const std::string manual = scene_manual();
+  const auto particles = manual.find("\n## outputs.particles\n"), mesh = manual.find("\n## outputs.mesh\n");
+  for (const std::string& field : names_of(particle_fields()))
+    EXPECT_LT(manual.find("| `" + field + "` ", particles), manual.find("\n## ", particles + 1)) << field;
+  for (const std::string& field : names_of(node_fields()))
+    EXPECT_LT(manual.find("| `" + field + "` ", mesh), manual.find("\n## ", mesh + 1)) << field;
+  EXPECT_THAT(manual, ContainsRegex("`volume` +\\| m\\^D +\\| 1 +\\| volume now"));
+  EXPECT_THAT(manual, ContainsRegex("`NAME_ux` `NAME_uy` `NAME_uz` +\\| m +\\| 3 +\\| displacement"));
+  EXPECT_THAT(manual, HasSubstr("| `attack_WALL_x` `attack_WALL_y` `attack_WALL_z` | m"));
 }
 
 TEST(Manual, NamesEveryKernel)

@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -15,7 +15,8 @@
 #include "io/document/field_reader.hpp"
 #include "io/document/field_words.hpp"
 #include "io/document/key_aliases.hpp"
-#include "io/scene/manual.hpp"
+#include "io/output/output_fields.hpp"
+#include "io/scene/manual/manual.hpp"
 #include "io/scene/scene_rules.hpp"
 #include "kernels/kernels.hpp"
 
@@ -260,12 +261,35 @@ void add_keys(Json& schema)
   for_each_field<T>([&](const auto& field) { add_key(schema, field); });
 }
 
-/// Those of all particles, and the history variables of all laws.
-std::set<std::string> fields_of_any_law()
+/// A word and its meaning.
+using Words = std::map<std::string, std::string>;
+
+template <class Table>
+Words words_of_table(const Table& table)
 {
-  std::set<std::string> names(particle_fields.begin(), particle_fields.end());
-  for_each_type(Laws{}, [&]<class L>() { for_each_field<typename L::State>([&](const auto& variable) { names.emplace(variable.key); }); });
-  return names;
+  Words words;
+  for_each_quantity(table, [&](const auto& field) { words.emplace(field.name, field.meaning); });
+  return words;
+}
+
+/// Fields of all particles, and the history variables of all laws.
+Words particle_field_words()
+{
+  Words words = words_of_table(particle_fields());
+  for_each_type(Laws{}, [&]<class L>() {
+    for_each_field<typename L::State>([&](const auto& variable) { words.emplace(variable.key, variable.meaning); });
+  });
+  return words;
+}
+
+Json items_of(const Words& words)
+{
+  Json items{{"enum", Json::array()}, {"markdownEnumDescriptions", Json::array()}};
+  for (const auto& [word, meaning] : words) {
+    items["enum"].push_back(word);
+    items["markdownEnumDescriptions"].push_back(meaning);
+  }
+  return items;
 }
 
 }  // namespace
@@ -280,8 +304,8 @@ std::string scene_schema()
   kernel["markdownEnumDescriptions"] = Json::array();
   for_each_type(Kernels<2>{}, [&]<class K>() { kernel["markdownEnumDescriptions"].push_back(K::summary); });
   Json& outputs = keys["outputs"]["properties"];
-  outputs["particles"]["properties"]["fields"]["items"] = {{"enum", fields_of_any_law()}};
-  outputs["mesh"]["properties"]["fields"]["items"] = {{"enum", node_fields}};
+  outputs["particles"]["properties"]["fields"]["items"] = items_of(particle_field_words());
+  outputs["mesh"]["properties"]["fields"]["items"] = items_of(words_of_table(node_fields()));
   return schema.dump(2) + "\n";
 }
 

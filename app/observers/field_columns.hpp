@@ -1,5 +1,5 @@
 #pragma once
-// Fields of particles and nodes by the names a scene gives them.
+// Output fields of particles and nodes as columns of files.
 #include "io/output/vtk.hpp"
 #include "io/scene/scene_output.hpp"
 #include "solver/run_view.hpp"
@@ -9,12 +9,12 @@ namespace talus {
 /// What particle files hold: the fields asked for, the one that pictures show, body and volume.
 std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
 
-/// A field of all particles in the order of `rows`.  Names: those of io/scene/scene_rules.hpp, `body` (its number), and every history
-/// variable, which is 0 for bodies whose law does not have it.
+/// A field of all particles in the order of `rows`.  Names: those of particle_fields() in io/output/output_fields.hpp, and every history
+/// variable of a law in the run, which is 0 for bodies whose law does not have it.  std::invalid_argument for any other name.
 template <int D>
 Column particle_column(const RunView<D>& frame, std::span<const Index> rows, std::string_view name);
 
-/// Of all nodes: mass, velocity, force (internal and loads), reaction (of all walls), as the last step left them.
+/// A field of all nodes.  Names: those of node_fields(); std::invalid_argument for any other.
 template <int D>
 Column node_column(const RunView<D>& frame, std::string_view name);
 
