@@ -43,7 +43,7 @@ function(talus_install)
 
   install(DIRECTORY benchmarks docs python scenes DESTINATION share/talus USE_SOURCE_PERMISSIONS PATTERN __pycache__ EXCLUDE)
   install(FILES README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE THIRD_PARTY.md DESTINATION share/talus)
-  talus_install_link(lib/python3/dist-packages/talus.py ../../../share/talus/python/talus.py)
+  talus_install_link(lib/python3/dist-packages/talus ../../../share/talus/python/talus)
   install(FILES packaging/copyright DESTINATION share/doc/talus)
   talus_install_link(share/doc/talus/examples ../../talus/scenes)
   install(DIRECTORY build/site/ DESTINATION share/doc/talus/html OPTIONAL)

@@ -83,8 +83,12 @@ function(talus_tool_tests)
     add_test(NAME tools.${name} COMMAND ${TALUS_PYTHON} ${script})
     set_tests_properties(tools.${name} PROPERTIES LABELS tools TIMEOUT 120)
   endforeach()
-  add_test(NAME tools.try_tutorial_parts COMMAND ${PROJECT_SOURCE_DIR}/tools/try_tutorial_parts.sh)
-  set_tests_properties(tools.try_tutorial_parts PROPERTIES LABELS nightly TIMEOUT 7200)
+endfunction()
+
+# What the recipes of CONTRIBUTING.md take, and that what they add works: in a copy of the tree, which is compiled anew.
+function(talus_recipe_test)
+  add_test(NAME recipes COMMAND ${TALUS_PYTHON} -B ${PROJECT_SOURCE_DIR}/tests/recipes/recipes_test.py ${CMAKE_COMMAND} ${PROJECT_BINARY_DIR}/recipes)
+  set_tests_properties(recipes PROPERTIES LABELS nightly TIMEOUT 7200)
 endfunction()
 
 # What a run writes, read by others, and by the module that comes with Talus.

@@ -1,8 +1,10 @@
 #!/usr/bin/python3
 """Tests of check_layers.py: what must pass and what must fail."""
+import pathlib
+import tempfile
 import unittest
 
-from check_layers import FOLDERS, check_folders, check_text, circle_in
+from check_layers import FOLDERS, MOST_LINES, check_folders, check_length, check_text, circle_in, written_files
 
 
 class Layers(unittest.TestCase):
@@ -38,7 +40,7 @@ class Layers(unittest.TestCase):
     def test_a_third_party_header_has_one_file(self):
         for path, header in [("io/scene/reader.cpp", "yaml-cpp/yaml.h"), ("io/mesh/gmsh_read.cpp", "gmsh.h"), ("io/output/vtk.cpp", "vtkNew.h"),
                              ("io/pictures/render_scene.cpp", "vtkNew.h"), ("io/output/run_summary.cpp", "nlohmann/json.hpp"), ("app/cli/cli.cpp", "CLI/CLI.hpp"),
-                             ("app/setup/expression.cpp", "muParser.h"), ("core/simd.hpp", "immintrin.h"), ("core/parallel/communicator.cpp", "mpi.h"),
+                             ("app/setup/expression.cpp", "muParser.h"), ("core/simd.hpp", "immintrin.h"), ("core/parallel/mpi_calls.hpp", "mpi.h"),
                              ("io/checkpoint/hdf5_disk.cpp", "hdf5.h"), ("mesh/partition.cpp", "metis.h")]:
             self.passes(path, f"#include <{header}>")
             self.fails("solver/stages.hpp", f"#include <{header}>")
@@ -71,6 +73,19 @@ class Layers(unittest.TestCase):
         self.assertIn("no README.md", check_folders(table, ["core/a.hpp", "mesh/b.hpp", "mesh/generate/c.hpp"])[0])
         self.assertIn("41 source files", check_folders(table, ["mesh/b.hpp", *(f"core/a{n}.hpp" for n in range(41))])[0])
         self.assertIn("no folder core", check_folders({"mesh": ["core"]}, ["mesh/b.hpp"])[0])
+
+    def test_a_source_file_has_no_more_than_400_lines(self):
+        self.assertEqual(check_length("core/a.cpp", "\n" * MOST_LINES), [])
+        self.assertEqual(check_length("core/a.cpp", "\n" * (MOST_LINES + 1)),
+                         ["core/a.cpp: 401 lines, more than 400: give each duty a file of its own"])
+
+    def test_the_length_of_sources_in_every_language_is_looked_at(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            for name in ("core/a.cpp", "page/test/b.mjs", "python/c.py", "build/d.py", "page/node_modules/e.js", "docs/f.md"):
+                (root / name).parent.mkdir(parents=True, exist_ok=True)
+                (root / name).touch()
+            self.assertEqual([f.relative_to(root).as_posix() for f in written_files(root)], ["core/a.cpp", "page/test/b.mjs", "python/c.py"])
 
     def test_findings_name_file_and_line(self):
         self.assertTrue(check_text("core/a.hpp", '\n#include "io/scene/scene.hpp"')[0].startswith("core/a.hpp:2: "))

@@ -1,6 +1,7 @@
 #pragma once
-// What numbers on the command line may be.  CLI11's own checks let nan pass and tell their limits with 300 digits.
+// What words and numbers on the command line may be.  CLI11's own checks let nan pass and tell their limits with 300 digits.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <charconv>
@@ -8,10 +9,18 @@
 #include <limits>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "core/finite_count.hpp"
 
 namespace talus {
+
+inline constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
+inline constexpr int most_steps = 10'000'000;
+
+/// What help shows for values, and what a shell completes (completion.hpp): files by their names, folders, some words.
+inline constexpr auto scene_value = "*.yaml", folder_value = "FOLDER";
+inline std::string one_of(const std::vector<std::string>& words) { return fmt::format("{{{}}}", fmt::join(words, ",")); }
 
 /// f(number) tells what is wrong with a number, or nothing.  What is no number at all is left to the reader of the option.
 template <class F>

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/manual_command.hpp"
-#include "io/scene/manual.hpp"
+#include "io/scene/manual/manual.hpp"
 
 namespace talus {
 

@@ -6,6 +6,9 @@
 #include <new>
 
 #include "app/commands/run_command.hpp"
+#include "app/commands/run_files.hpp"
+#include "app/commands/run_identity.hpp"
+#include "app/commands/run_messages.hpp"
 #include "app/observers/balance_errors.hpp"
 #include "app/observers/checkpoints.hpp"
 #include "app/observers/results.hpp"
@@ -21,11 +24,9 @@
 #include "core/print.hpp"
 #include "core/shell_quote.hpp"
 #include "core/stop_watch.hpp"
-#include "core/version.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"
 #include "io/load_mesh.hpp"
-#include "io/mesh/gmsh_write.hpp"
 #include "io/output/summary_json.hpp"
 #include "io/scene/reader.hpp"
 #include "io/system/signals.hpp"
@@ -48,13 +49,6 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files)
 
 /// How a run that does not go on in its folder treats what is there.
 Replacing replacing(const RunOptions& options) { return {options.force, options.resume ? std::nullopt : std::optional(options.scene)}; }
-
-/// Goes on in the folder of the run that it comes from.
-bool goes_on_in_place(const CheckpointList* from, const fs::path& folder)
-{
-  std::error_code not_there;
-  return from != nullptr && from->folder() && fs::equivalent(folder, *from->folder(), not_there);
-}
 
 /// One run in its folder, from mesh to summary.
 template <int D>
@@ -81,7 +75,7 @@ class Run {
     if (setup.origin && from_)
       setup.origin->file = from_->identity().initial;  // what was read is the copy
     const std::uint64_t mesh_digest = digest(mesh);
-    const RunIdentity identity = identity_of(mesh_digest, setup);
+    const RunIdentity identity = identity_of(scene_, quick_, mesh_digest, setup.from_files, setup.origin ? setup.origin->file : "");
     if (from_)
       compare(from_->identity(), identity);
     least_energy_ = setup.conditions.limits.least_energy * least_energy_factor;
@@ -115,7 +109,7 @@ class Run {
     const auto laws = setup.laws;
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
     audience.changed = [&](const RunView<D>& view, const Stage& stage, const StageReport& news) {
-      recorder.changed(tell(view, stage, news));
+      recorder.changed(tell_changes(view.state.clock.time, stage.name, news, options_.quiet, summary_.warnings));
     };
     if (from_)
       audience.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
@@ -186,22 +180,6 @@ class Run {
     return view.state.stage.done && view.state.stage.number + 1 == static_cast<Index>(stages_.size());
   }
 
-  RunIdentity identity_of(std::uint64_t mesh_digest, const Setup<D>& setup) const
-  {
-    const Version v = version();
-    return {std::string(v.number),
-            std::string(v.commit),
-            std::string(v.compiler),
-            build_of(v),
-            fs::absolute(scene_.file).lexically_normal().string(),
-            scene_.text,
-            scene_.overrides,
-            quick_,
-            static_cast<std::int64_t>(mesh_digest),
-            static_cast<std::int64_t>(setup.from_files),
-            setup.origin ? setup.origin->file : ""};
-  }
-
   /// To the state after the last sound step, where that is not a checkpoint: the command that computes it again.
   std::string way_back(const Checkpoints<D>& checkpoints, std::int64_t sound) const
   {
@@ -215,28 +193,6 @@ class Run {
     if (!checkpoints.last().empty())  // it knows the changes
       command = fmt::format("talus run --resume {}", shell_word(folder_));
     return fmt::format("; the state before it: {} --until {}", command, sound);
-  }
-
-  /// EnvironmentError: the mesh, or what other files say, is not that of the checkpoint.
-  static void compare(const RunIdentity& then, const RunIdentity& now)
-  {
-    if (then.mesh != now.mesh)
-      throw EnvironmentError(
-          fmt::format("the mesh of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
-    if (then.from_files != now.from_files)
-      throw EnvironmentError(
-          fmt::format("a record or the water table of {} is not the one that the checkpoint was made with: its file has changed since",
-                      now.scene_file));
-    std::vector<std::string> maker, here;  // what they differ in
-    for (const auto& [what, part] : {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler),
-                                     std::pair("build", &RunIdentity::build)})
-      if (then.*part != now.*part) {
-        maker.push_back(fmt::format("{} {}", what, then.*part));
-        here.push_back(fmt::format("{} {}", what, now.*part));
-      }
-    if (!maker.empty() && world().is_root())
-      say(stderr, "warning: the checkpoint was made by {}; this program is {}: results may differ in the last digits\n",
-          fmt::join(maker, ", "), fmt::join(here, ", "));
   }
 
   bool in_place() const { return goes_on_in_place(from_, folder_); }
@@ -274,16 +230,17 @@ class Run {
   {
     if (from_)
       edits_ = find_edits(from_->identity().scene_file, from_->folder(), from_->identity().scene_text, from_->identity().set);
+    const Mesh<D>& whole = whole_ ? *whole_ : view.problem.mesh;
     if (in_place()) {
       lock_ = FolderLock(folder_);
       remove_leftovers(folder_);
       adopt_results(folder_);
       began_ = true;
-      write_first_files(folder_, view);
+      write_first_files<D>(folder_, summary_, whole, initial_);
       update_scene_copy(folder_, scene_);
     } else {
       NewResults fresh(folder_, replacing(options_));
-      write_first_files(fresh.staging(), view);
+      write_first_files<D>(fresh.staging(), summary_, whole, initial_);
       if (!fresh.keeps_scene())
         write_whole(fresh.staging() / scene_copy_file, with_changes(scene_.text, scene_.overrides));
       lock_ = fresh.commit();
@@ -300,24 +257,6 @@ class Run {
     for (std::size_t n = 0; n < notes_.size() && !options_.quiet; ++n)
       say(stdout, "  {}\n", notes_[n]);
     std::fflush(stdout);
-  }
-
-  /// Summary, mesh and state at the start; a mesh that is there is that of the run, or what the user has made of it.
-  void write_first_files(const fs::path& place, const RunView<D>& view) const
-  {
-    write_summary(place / "summary.json", summary_);
-    const Mesh<D>& mesh = whole_ ? *whole_ : view.problem.mesh;
-    if (!fs::exists(place / "mesh.msh"))
-      write_msh(place / "mesh.msh", mesh);
-    if (!fs::exists(place / "mesh.vtu"))
-      write_mesh<D>(place / "mesh.vtu", 0, mesh, {}, {}, summary_.made_by());
-    if (const fs::path copy = place / initial_file; initial_ && fs::weakly_canonical(copy) != fs::weakly_canonical(*initial_))
-      write_whole(copy, [&](const fs::path& temporary) {
-        std::error_code trouble;
-        fs::copy_file(*initial_, temporary, trouble);
-        if (trouble)
-          throw EnvironmentError(fmt::format("{} cannot be copied to {}: {}", initial_->string(), copy.string(), trouble.message()));
-      });
   }
 
   void go_on(const RunView<D>& view, const fs::path& taken, Recorder<D>& recorder)
@@ -343,26 +282,6 @@ class Run {
           view.state.clock.step, view.state.clock.time);
   }
 
-  /// What a stage has changed; returns it as lines for the summary.
-  std::vector<std::string> tell(const RunView<D>& view, const Stage& stage, const StageReport& news)
-  {
-    const std::string when = fmt::format("t = {:.6g} s, stage \"{}\": ", view.state.clock.time, stage.name);
-    std::vector<std::string> lines;
-    for (const std::string& what : news.told)
-      lines.push_back(when + what);
-    for (const std::string& what : news.warnings)
-      summary_.warnings.push_back(when + what);
-    if (!world().is_root())
-      return lines;
-    for (const std::string& what : news.warnings)
-      say(stderr, "warning: {}{}\n", when, what);
-    for (const std::string& line : lines)
-      if (!options_.quiet)
-        say(stdout, "{}\n", line);
-    std::fflush(stdout);
-    return lines;
-  }
-
   LoadBalancing<D> load_balancing_of(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
   {
     const auto whole_mesh = [this, mesh_digest, &traps] {
@@ -385,12 +304,8 @@ class Run {
   {
     ++rebalances_;
     rebalancing_ += by.seconds;
-    if (options_.quiet || !world().is_root())
-      return;
-    say(stdout,
-        "step {}, t = {:.6g} s: shared out anew in {:.2g} s, the busiest rank has {:.3g} times the mean of the work, before {:.3g}\n",
-        by.clock.step, by.clock.time, by.seconds, by.after, by.before);
-    std::fflush(stdout);
+    if (!options_.quiet)
+      say_rebalanced(by);
   }
 
   void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)

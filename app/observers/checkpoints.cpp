@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "app/observers/checkpoint_files.hpp"
 #include "app/observers/rank_slices.hpp"
 #include "app/observers/results.hpp"
 #include "app/observers/validate_state.hpp"
@@ -21,30 +22,6 @@ namespace fs = std::filesystem;
 
 /// Of what is kept and how.  A change of what is kept makes it another.
 constexpr std::int64_t written_format = 8;
-constexpr auto prefix = "step_", suffix = ".h5";
-
-bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
-
-/// Numbers have the same length up to a billion steps, and longer ones are newer.
-bool is_newer(const fs::path& a, const fs::path& b)
-{
-  const std::string x = a.filename().string(), y = b.filename().string();
-  return std::pair(x.size(), x) > std::pair(y.size(), y);
-}
-
-/// Those in a folder, the newest first.  EnvironmentError: it is there and cannot be read.
-std::vector<fs::path> checkpoints_in(const fs::path& folder)
-{
-  std::vector<fs::path> files;
-  std::error_code trouble;
-  for (const auto& entry : fs::directory_iterator(folder, trouble))
-    if (is_checkpoint(entry.path()))
-      files.push_back(entry.path());
-  if (trouble && trouble != std::errc::no_such_file_or_directory)
-    throw EnvironmentError(fmt::format("{} cannot be read: {}", folder.string(), trouble.message()));
-  std::sort(files.begin(), files.end(), is_newer);
-  return files;
-}
 
 std::string history_of(std::size_t body) { return below("laws/history", body); }
 
@@ -217,7 +194,7 @@ void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, const Recorder<D>&
 template <int D>
 void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
 {
-  const fs::path file = folder_ / checkpoint_folder / fmt::format("{}{:09}{}", prefix, view.state.clock.step, suffix);
+  const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
   view.problem.ranks->together([&] {
     require_results(folder_);
     recorder.flush();  // what the checkpoint says is written is on the disk before it
@@ -253,23 +230,6 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
   for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
     if (!manifest || manifest->proves((fs::path(checkpoint_folder) / all[i].filename()).string()))
       fs::remove(all[i], stays);
-}
-
-std::vector<fs::path> set_aside_newer(const fs::path& folder, const fs::path& taken)
-{
-  std::vector<fs::path> aside;
-  const auto manifest = Manifest::of(folder);
-  for (const fs::path& file : checkpoints_in(folder / checkpoint_folder))
-    if (is_newer(file, taken)) {
-      aside.push_back(name_aside(file));
-      if (manifest && manifest->proves((fs::path(checkpoint_folder) / file.filename()).string()))
-        note_result(aside.back(), file);
-      std::error_code stays;
-      fs::rename(file, aside.back(), stays);
-      if (stays)
-        throw EnvironmentError(fmt::format("{} cannot be renamed: {}", file.string(), stays.message()));
-    }
-  return aside;
 }
 
 namespace {

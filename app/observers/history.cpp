@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "io/scene/history_columns.hpp"
+#include "io/output/history_columns.hpp"
 
 namespace talus {
 
@@ -41,11 +41,53 @@ Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Communicator& 
   return all[i].first;
 }
 
-template <int D>
-void put(const Vec<D>& v, std::vector<Real>& row)
+void put(Real value, std::vector<Real>& row) { row.push_back(value); }
+template <int N>
+void put(const Vec<N>& value, std::vector<Real>& row)
 {
-  row.insert(row.end(), v.begin(), v.end());
+  row.insert(row.end(), value.begin(), value.end());
 }
+
+/// The values of a table of io/output/history_columns.hpp, of what `owner` is now.
+template <int D, class Table, class Owner>
+void put_all(const Table& table, const Owner& owner, std::vector<Real>& row)
+{
+  for_each_quantity(table, [&]<QuantityKind kind, class Value>(const Quantity<kind, Value>& column) {
+    const auto value = value_of<D>(column, owner);
+    if constexpr (kind == QuantityKind::moment && D == 2)
+      put(value[2], row);
+    else
+      put(value, row);
+  });
+}
+
+/// What columns are made of: of the run, a wall, a point, what bodies do to a wall, a body.
+template <int D>
+struct RunNow {
+  const RunView<D>& run;
+  Totals<D> totals;
+  Vec<D> centre;  ///< of mass [m]; NaN of nothing
+  EnergyNow energy;
+};
+template <int D>
+struct ReactionNow {
+  Vec<D> reaction;  ///< [N]
+};
+template <int D>
+struct PointNow {
+  Vec<D> x, u, v;  ///< [m], [m], [m/s]
+  Sym3 stress;     ///< [Pa]
+};
+template <int D>
+struct WallNow {
+  Real push, shear, touched, pressure;  ///< [N], [N], [m^(D-1)], [Pa]
+  Vec<D> attack;                        ///< [m]
+};
+template <int D>
+struct BodyNow {
+  Real mass, kinetic, plastic;  ///< [kg], [J], [J]
+  Vec<D> momentum, force;       ///< [kg m/s], [N]
+};
 
 /// The part of a wall with mass at its nodes: area vectors out of the mesh [m^(D-1)], their moduli and those times the places of the nodes.
 template <int D>
@@ -113,20 +155,24 @@ Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particl
 template <int D>
 std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, const RunView<D>& start)
 {
-  std::vector<CsvColumn> all = common_columns(D);
-  const auto add = [&](const std::vector<CsvColumn>& more) { all.insert(all.end(), more.begin(), more.end()); };
+  std::vector<CsvColumn> all;
+  const auto add = [&](const auto& table, const std::string& owner) {
+    const auto more = csv_columns(table, owner, D);
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  add(run_columns(), "");
   for (const BoundaryCondition<D>& wall : start.state.walls.conditions())
-    add(reaction_columns(wall.name, D));
+    add(reaction_columns(), wall.name);
   for (const PointSpec& point : spec.points)
-    add(columns_of(point, D));
-  for (const FrontSpec& front_spec : spec.fronts)
-    add(columns_of(front_spec));
+    add(point_columns(), point.name);
+  for (const FrontSpec& one : spec.fronts)
+    add(front_columns(), one.name);
   for (const WallSpec& wall : spec.walls)
-    add(columns_of(wall, D));
-  for (const MovedSpec& moved_spec : spec.moved)
-    add(columns_of(moved_spec));
+    add(wall_columns(), wall.on);
+  for (const MovedSpec& one : spec.moved)
+    add(moved_columns(), one.name);
   for (const std::string& body : spec.bodies)
-    add(body_columns(body, D));
+    add(body_columns(), body);
   return all;
 }
 
@@ -152,26 +198,21 @@ template <int D>
 void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& accounts, const BodyForces<D>& forces)
 {
   const Totals<D> sums = totals(view);
-  const Clock& clock = view.state.clock;
-  std::vector<Real> row{clock.time, static_cast<Real>(clock.step), clock.dt, static_cast<Real>(view.state.stage.number), sums.mass};
-  put<D>(sums.momentum, row);
-  for (Index d = D == 2 ? 2 : 0; d < 3; ++d)
-    row.push_back(sums.angular[d]);
-  put<D>(sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry)), row);
-  const EnergyNow e = accounts.energy(view);
-  row.insert(row.end(), {e.kinetic, e.strain, e.plastic, e.friction, e.damping, e.carried_away, e.gravity, e.loads, e.walls, e.transfer,
-                         e.defect, view.state.residual});
-  const Real elapsed = clock.time - state_.time;
+  const Vec<D> centre = sums.mass > 0 ? Vec<D>(sums.centre / sums.mass) : Vec<D>(Vec<D>::Constant(empty_entry));
+  std::vector<Real> row;
+  put_all<D>(run_columns(), RunNow<D>{view, sums, centre, accounts.energy(view)}, row);
+  const Real elapsed = view.state.clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
     const Vec<D>& impulse = view.state.walls.conditions()[w].impulse;
-    put<D>(elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero()), row);
+    const Vec<D> reaction = elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero());
+    put_all<D>(reaction_columns(), ReactionNow<D>{reaction}, row);
   }
   FollowedRows followed(state_.followed);
   followed.find(view.state.particles.id);
   for (std::size_t k = 0; k < spec_.points.size(); ++k)
     add_point(view, spec_.points[k], followed.row(state_.followed[k]), row);
   for (const FrontSpec& spec : spec_.fronts)
-    row.push_back(front(spec, view.state.bodies, view.state.particles, *view.problem.ranks));
+    put_all<D>(front_columns(), front(spec, view.state.bodies, view.state.particles, *view.problem.ranks), row);
   for (const WallSpec& spec : spec_.walls)
     add_wall(view, spec, elapsed, row);
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
@@ -179,11 +220,11 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
     state_.angular[w] = view.state.walls.conditions()[w].angular;
   }
   for (const MovedSpec& spec : spec_.moved)
-    row.push_back(moved(spec, view.state.bodies, view.state.particles, *view.problem.ranks));
+    put_all<D>(moved_columns(), moved(spec, view.state.bodies, view.state.particles, *view.problem.ranks), row);
   for (std::size_t k = 0; k < spec_.bodies.size(); ++k)
     add_body(view, forces, k, elapsed, row);
   view.problem.ranks->together([&] { file_->append(row); });
-  state_.time = clock.time;
+  state_.time = view.state.clock.time;
 }
 
 template <int D>
@@ -197,15 +238,12 @@ void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& for
   ExactSums<Real> plastic;
   add_plastic_work(view.state.materials[b], view.order, static_cast<Index>(b), view.state.particles.volume0, plastic);
   view.problem.ranks->sum(plastic);
-  row.push_back(sums.mass);
-  put<D>(sums.momentum, row);
-  row.insert(row.end(), {sums.kinetic, plastic.value()});
   Vec<D> force = Vec<D>::Zero();
   if (now.unknown != before.unknown)
     force = Vec<D>::Constant(empty_entry);
   else if (elapsed > 0)
     force = (now.given - before.given) / elapsed;
-  put<D>(force, row);
+  put_all<D>(body_columns(), BodyNow<D>{sums.mass, sums.kinetic, plastic.value(), sums.momentum, force}, row);
   state_.given[k] = now;
 }
 
@@ -229,16 +267,17 @@ void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Re
   const Touched<D> touched = sum.value();
   const Real area = touched.area.norm();
   const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // on the wall
+  const Vec<D> nowhere = Vec<D>::Constant(empty_entry);
   if (!(area > 0) || force.norm() == 0) {
     const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // what has just left it has pushed, in a direction that is gone
-    row.insert(row.end(), {none_or_unknown, none_or_unknown, area, area > 0 ? 0 : empty_entry});
-    row.insert(row.end(), D, empty_entry);
+    put_all<D>(wall_columns(), WallNow<D>{none_or_unknown, none_or_unknown, area, area > 0 ? 0 : empty_entry, nowhere}, row);
     return;
   }
   const Vec<D> normal = touched.area / area;
   const Real push = force.dot(normal);
-  row.insert(row.end(), {push, (force - push * normal).norm(), area, push / area});
-  put<D>(attack<D>(force, Vec3((state_.angular[w] - wall->angular) / elapsed), normal, touched.place / touched.measure), row);
+  const Vec3 moment = (state_.angular[w] - wall->angular) / elapsed;
+  const Vec<D> attacked = attack<D>(force, moment, normal, touched.place / touched.measure);
+  put_all<D>(wall_columns(), WallNow<D>{push, (force - push * normal).norm(), area, push / area, attacked}, row);
 }
 
 template <int D>
@@ -257,13 +296,10 @@ void HistoryWriter<D>::add_point(const RunView<D>& view, const PointSpec& point_
       at != none && (point_spec.body.empty() || view.state.bodies[body_of(view.state.bodies, at)].name == point_spec.body);
   if (is_there) {
     const auto p = static_cast<std::size_t>(at);
-    put<D>(view.state.particles.x[p], here);
-    put<D>(view.state.particles.x[p] - view.state.particles.x0[p], here);
-    put<D>(view.state.particles.v[p], here);
-    const Sym3 stress = view.state.particles.stress[p];
-    here.insert(here.end(), stress.begin(), stress.end());
+    const Particles<D>& particles = view.state.particles;
+    put_all<D>(point_columns(), PointNow<D>{particles.x[p], particles.x[p] - particles.x0[p], particles.v[p], particles.stress[p]}, here);
   }
-  std::vector<Real> point(3 * D + 6, empty_entry);
+  std::vector<Real> point(csv_columns(point_columns(), "", D).size(), empty_entry);
   for (const std::vector<Real>& of_rank : gather_rows<Real>(*view.problem.ranks, here))
     if (!of_rank.empty())
       point = of_rank;

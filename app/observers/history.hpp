@@ -40,7 +40,7 @@ struct HistoryState {
   }
 };
 
-/// The file is the root's; the other ranks give what it needs.  Columns: those of io/scene/history_columns.hpp.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
+/// The file is the root's; the other ranks give what it needs.  Columns: those of io/output/history_columns.hpp.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
 /// deleted, the front of an empty body, the centre of mass of nothing.
 template <int D>
 class HistoryWriter {

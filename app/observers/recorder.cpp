@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/observers/output_fields.hpp"
+#include "app/observers/field_columns.hpp"
 #include "app/observers/rank_slices.hpp"
 #include "app/observers/results.hpp"
 #include "core/print.hpp"

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "app/observers/field_columns.hpp"
 #include "app/observers/history.hpp"
-#include "app/observers/output_fields.hpp"
 #include "app/run/new_results.hpp"
 #include "app/setup/setup.hpp"
 #include "core/error.hpp"

@@ -3,8 +3,8 @@
 #include <stdexcept>
 
 #include "app/setup/vertical_axis.hpp"
-#include "io/scene/history_columns.hpp"
 #include "io/scene/record_file.hpp"
+#include "io/scene/wall_names.hpp"
 #include "solver/boundary/column_beside.hpp"
 
 namespace talus {

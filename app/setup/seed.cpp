@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "app/setup/checks/shared_cells.hpp"
-#include "app/setup/expression.hpp"
+#include "app/setup/initial_velocity.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/setup.hpp"
 #include "core/parallel/threads.hpp"
@@ -75,7 +75,7 @@ class Seeder {
                                   spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
     seeds_.materials.push_back(first_law(spec, begin, end));
-    set_velocity(spec, begin, end);
+    set_velocity(spec, mesh_, ranks_, begin, end, complaints_, seeds_.particles);
   }
 
   /// The body begins as the one of that number there.
@@ -241,41 +241,6 @@ class Seeder {
         ++row;
       });
     });
-  }
-
-  /// Velocity and its gradient: without the latter, affine schemes would begin with particles that do not turn.
-  void set_velocity(const BodySpec& spec, Index begin, Index end)
-  {
-    if (spec.velocity.empty())
-      return;
-    Particles<D>& particles = seeds_.particles;
-    const auto first = static_cast<std::size_t>(begin), count = static_cast<std::size_t>(end - begin);
-    std::vector<Vec3> places(count, Vec3::Zero());
-    std::vector<Real> sizes(count);  // of cells [m]
-    for (std::size_t p = 0; p < count; ++p) {
-      places[p].template head<D>() = particles.x[first + p];
-      sizes[p] = std::pow(mesh_.volume(particles.cell[first + p]), Real{1} / D);
-    }
-    for (int d = 0; d < D; ++d) {
-      std::string wrong;
-      try {
-        const std::string& formula = spec.velocity[static_cast<std::size_t>(d)];
-        const auto values = evaluate(formula, places);
-        const auto slopes = gradients(formula, places, sizes);
-        for (std::size_t p = 0; p < count; ++p) {
-          Vec<D> v = particles.v[first + p];
-          v[d] = values[p];
-          particles.v.set(first + p, v);
-          Mat<D> L = particles.L[first + p];
-          L.row(d) = slopes[p].template head<D>();
-          particles.L.set(first + p, L);
-        }
-      } catch (const std::invalid_argument& e) {
-        wrong = e.what();
-      }
-      if (wrong = ranks_.first(wrong); !wrong.empty())
-        complaints_.add(spec.where, fmt::format("velocity[{}]", d), wrong);
-    }
   }
 
   static std::vector<Index> rows_by_id(const Particles<D>& particles, const Body& body)

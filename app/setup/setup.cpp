@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "app/observers/field_columns.hpp"
 #include "app/observers/history.hpp"
-#include "app/observers/output_fields.hpp"
 #include "app/observers/runout.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/default_limits.hpp"
@@ -13,7 +13,6 @@
 #include "app/setup/water_table.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
-#include "io/scene/scene_rules.hpp"
 #include "io/system/process.hpp"
 #include "mesh/digest.hpp"
 
@@ -92,22 +91,6 @@ void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
     setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
 }
 
-/// The reader has checked the fields of files, but not the one of the picture, which may name a component behind a colon.
-void check_picture(const Scene& scene, SceneErrorCollector& complaints)
-{
-  if (!scene.outputs.particles)
-    return;
-  std::vector<std::string> known(particle_fields.begin(), particle_fields.end());
-  known.emplace_back("body");
-  for (const MaterialSpec& material : scene.materials)
-    std::visit([&]<class Law>(
-                   const Law&) { for_each_field<typename Law::State>([&](const auto& variable) { known.emplace_back(variable.key); }); },
-               material.law);
-  for (const std::string& name : particle_fields_of(scene.outputs))
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      complaints.add(scene.where, "outputs.picture.field", fmt::format("there is no field \"{}\"{}", name, suggestion(name, known)));
-}
-
 /// Sections that leave the mesh, walls of the history that have no area.
 template <int D>
 void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, SceneErrorCollector& complaints)
@@ -161,7 +144,6 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
     warn_if_dry(mesh, ranks, setup);
   check_laws(scene, complaints);
   check_room(scene, mesh, setup, ranks, complaints);
-  check_picture(scene, complaints);
   check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, complaints);
   ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
 

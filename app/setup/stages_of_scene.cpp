@@ -6,7 +6,7 @@
 #include "app/setup/k0_stress.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/water_table.hpp"
-#include "io/scene/history_columns.hpp"
+#include "io/scene/wall_names.hpp"
 
 namespace talus {
 

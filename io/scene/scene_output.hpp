@@ -17,11 +17,9 @@ struct ParticleOutputSpec {
   SourceLocation where;
   static constexpr auto fields()
   {
-    return std::tuple{
-        required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
-        optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
-                 "velocity, displacement, stress, pressure, von_mises, pore_pressure, effective_stress, volume, mass, cell, body, F, "
-                 "velocity_gradient, and any history variable of a law")};
+    return std::tuple{required("every", &ParticleOutputSpec::every, positive, "s", "time between files"),
+                      optional("fields", &ParticleOutputSpec::fields_wanted, any, "-",
+                               "fields of the table below, and history variables of the laws in the scene")};
   }
 };
 
@@ -32,7 +30,7 @@ struct MeshOutputSpec {
   static constexpr auto fields()
   {
     return std::tuple{required("every", &MeshOutputSpec::every, positive, "s", "time between files"),
-                      optional("fields", &MeshOutputSpec::fields_wanted, any, "-", "nodal mass, velocity, force, reaction")};
+                      optional("fields", &MeshOutputSpec::fields_wanted, any, "-", "nodal fields of the table below")};
   }
 };
 

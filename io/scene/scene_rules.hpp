@@ -14,16 +14,12 @@ struct Finding {
 
 /// What is wrong with a scene as a whole, apart from its mesh.  The scene may be half read: what is empty is passed over.
 std::vector<Finding> broken_rules(const Scene& scene);
-/// Of them those about what stages change: names, and what is there when.
+/// Of them those about the block `mesh`, those about `outputs`, and those about what stages change: names, and what is there when.
+std::vector<Finding> broken_mesh_rules(const Scene& scene);
+std::vector<Finding> broken_output_rules(const Scene& scene);
 std::vector<Finding> broken_stage_rules(const Scene& scene);
 
 /// Names a scene may give as kernel.
 std::vector<std::string> kernel_names();
-
-/// Particle and nodal fields that can be written; laws add their history variables to the former.
-inline constexpr std::array<std::string_view, 13> particle_fields{
-    "velocity", "displacement", "stress", "pressure", "von_mises", "pore_pressure",    "effective_stress",
-    "volume",   "mass",         "cell",   "body",     "F",         "velocity_gradient"};
-inline constexpr std::array<std::string_view, 4> node_fields{"mass", "velocity", "force", "reaction"};
 
 }  // namespace talus

@@ -1,25 +1,15 @@
 // Rules of what stages change: which bodies there are in each, what becomes of them, which walls act.
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <map>
 
-#include "core/word_match.hpp"
-#include "io/scene/scene_rules.hpp"
+#include "io/scene/scene_rule_base.hpp"
 
 namespace talus {
 
 namespace {
 
-class StageRules {
+class StageRules : private SceneRuleBase {
  public:
-  explicit StageRules(const Scene& scene) : scene_(scene)
-  {
-    for (const BodySpec& body : scene.bodies)
-      bodies_.push_back(body.name);
-    for (const MaterialSpec& material : scene.materials)
-      materials_.push_back(material.name);
-  }
+  explicit StageRules(const Scene& scene) : SceneRuleBase(scene), bodies_(names(scene.bodies)), materials_(names(scene.materials)) {}
 
   std::vector<Finding> broken()
   {
@@ -31,19 +21,6 @@ class StageRules {
   }
 
  private:
-  void add(std::string path, std::string message) { findings_.push_back({std::move(path), std::move(message)}); }
-
-  /// Names are half read where something else is wrong: what is empty is passed over.
-  bool is_known(const std::string& path, std::string_view what, const std::string& word, const std::vector<std::string>& known)
-  {
-    if (word.empty())
-      return false;
-    if (std::find(known.begin(), known.end(), word) != known.end())
-      return true;
-    add(path, fmt::format("there is no {} \"{}\"{}", what, word, suggestion(word, known)));
-    return false;
-  }
-
   /// "stages[1] \"fill\""
   std::string said(Index s) const
   {
@@ -71,8 +48,8 @@ class StageRules {
     for (std::size_t i = 0; i < changes.change.size(); ++i) {
       const auto& [body, material, where] = changes.change[i];
       const std::string path = fmt::format("{}.change[{}]", at, i);
-      is_known(path + ".material", "material", material, materials_);
-      if (is_known(path + ".body", "body", body, bodies_) && is_there(path + ".body", body, s))
+      known_word(path + ".material", "material", material, materials_);
+      if (known_word(path + ".body", "body", body, bodies_) && is_there(path + ".body", body, s))
         begins_elsewhere(path, body, s);
       for (std::size_t j = 0; j < i; ++j)
         if (!body.empty() && changes.change[j].body == body)
@@ -80,7 +57,7 @@ class StageRules {
     }
     for (std::size_t i = 0; i < changes.weaken.size(); ++i) {
       const std::string path = fmt::format("{}.weaken[{}].body", at, i);
-      if (const std::string& body = changes.weaken[i].body; is_known(path, "body", body, bodies_))
+      if (const std::string& body = changes.weaken[i].body; known_word(path, "body", body, bodies_))
         is_there(path, body, s);
     }
     if (changes.water && s == 0)
@@ -98,7 +75,7 @@ class StageRules {
 
   void appears(const std::string& path, const std::string& body, Index s, std::size_t place)
   {
-    if (!is_known(path, "body", body, bodies_))
+    if (!known_word(path, "body", body, bodies_))
       return;
     if (const auto earlier = named_before(&StageChanges::appear, body, s, place))
       add(path, fmt::format("\"{}\" appears in {} already", body, said(*earlier)));
@@ -108,7 +85,7 @@ class StageRules {
 
   void vanishes(const std::string& path, const std::string& body, Index s, std::size_t place)
   {
-    if (!is_known(path, "body", body, bodies_))
+    if (!known_word(path, "body", body, bodies_))
       return;
     const Presence there = presence(body);
     if (const auto earlier = named_before(&StageChanges::vanish, body, s, place))
@@ -149,7 +126,7 @@ class StageRules {
         if (names.empty())
           add(path, fmt::format("there is no stage \"{}\": no stage has a name", during[i]));
         else
-          is_known(path, "stage", during[i], names);
+          known_word(path, "stage", during[i], names);
       }
     }
   }
@@ -168,9 +145,7 @@ class StageRules {
     return std::nullopt;
   }
 
-  const Scene& scene_;
   std::vector<std::string> bodies_, materials_;
-  std::vector<Finding> findings_;
 };
 
 }  // namespace

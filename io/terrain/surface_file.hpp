@@ -30,6 +30,9 @@ struct SurfaceRead {
 /// Holes in rasters up to so many cells across are filled.
 inline constexpr Index largest_hole_filled = 10;
 
+/// "0..100 east, 20..50 north"
+std::string to_words(const MapBox& box);
+
 /// Nothing where something is wrong: `problems` then has what.  What was mended, or taken for granted, is in `repairs`, one sentence each.
 /// `plan.crs` becomes that of the file where it was empty.  EnvironmentError: GDAL cannot be loaded.
 std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, std::vector<SceneError>& problems,
@@ -39,9 +42,5 @@ std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, 
 /// `of`: what is so named, "domain".
 void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
                  std::vector<SceneError>& problems);
-
-/// The polygons of a file, on the map: reprojected where the file has another coordinate system.  Empty where something is wrong.
-std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
-                                      std::vector<SceneError>& problems, std::vector<std::string>& repairs);
 
 }  // namespace talus

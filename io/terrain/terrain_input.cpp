@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "io/terrain/outline_file.hpp"
 #include "io/terrain/surface_file.hpp"
 
 namespace talus {

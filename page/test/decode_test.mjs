@@ -8,7 +8,7 @@ import {line_in, tokens_of} from '../src/scene_text.js';
 import {limit_of, section_of, shown_test} from '../src/shown.js';
 import {from_hash, to_hash} from '../src/state.js';
 import {number, split_unit} from '../src/dom.js';
-import {make_packer} from './sample.mjs';
+import {make_packer} from './sample_blocks.mjs';
 
 test('a block decodes to what was packed, whatever its type and packing', async () => {
   const values = {

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Reads what a run writes with readers that share no code with it.
 
-Checkpoints by h5py, particle and mesh files by python/talus.py, series by xml, histories by csv, the summary by json.  Meshes as .msh are
+Checkpoints by h5py, particle and mesh files by python/talus, series by xml, histories by csv, the summary by json.  Meshes as .msh are
 read by gmsh itself in tests/io/mesh/gmsh_read_test.cpp.
 
 Usage: read_back.py PROGRAM, the built talus.

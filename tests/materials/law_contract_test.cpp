@@ -1,28 +1,8 @@
 // What every law promises, typed over the list of laws.
-#include <gtest/gtest.h>
-
-#include <Eigen/Eigenvalues>
-#include <numeric>
-
-#include "materials/strength.hpp"
-#include "tests/materials/samples.hpp"
+#include "tests/materials/law_contract.hpp"
 
 namespace talus::law_contract_test {
 namespace {
-
-using testing::Dice;
-using testing::Point;
-using testing::sample;
-
-/// Rounding of a stress made of moduli times differences from one: stiffness x 1e-15 x operations.
-constexpr Real rounding = 1e-13 * testing::sample_stiffness;
-
-template <class List>
-struct AsGtest;
-template <class... L>
-struct AsGtest<TypeList<L...>> {
-  using Types = ::testing::Types<L...>;
-};
 
 template <class L>
 class LawContract : public ::testing::Test {
@@ -30,15 +10,6 @@ class LawContract : public ::testing::Test {
   Point<L> point() const { return {.law = sample<L>()}; }
 };
 TYPED_TEST_SUITE(LawContract, AsGtest<Laws>::Types);
-
-/// Random stretches and turns up to 60 % in all, in small and in large steps.
-std::vector<Mat3> random_steps(Dice& dice)
-{
-  std::vector<Mat3> steps;
-  for (int n = 0; n < 40; ++n)
-    steps.push_back(Mat3::Identity() + dice.matrix(n % 10 == 9 ? 0.1 : 0.01));
-  return steps;
-}
 
 TYPED_TEST(LawContract, IsALawWithADistinctName)
 {
@@ -104,194 +75,6 @@ TYPED_TEST(LawContract, AnswersTheSameAloneAndInABatch)
       const Mat3 stress = batch.update(i, {point.F, (f - Mat3::Identity()) / 1e-3, before, 1e-3, 0, n < 3});
       ASSERT_EQ((stress - point.stress).norm(), 0);
     }
-}
-
-template <class List>
-struct AllKinds;
-template <class... L>
-struct AllKinds<TypeList<L...>> {
-  using Types = typename AsGtest<decltype(detail::all_kinds(TypeList<L...>{}))>::Types;
-};
-/// Laws in all their kinds, for several particles at once.
-template <class L>
-class LawInLanesContract : public ::testing::Test {
- protected:
-  static L law()
-  {
-    if constexpr (requires { typename L::Kinds; })
-      return L{static_cast<const JohnsonCookMetal&>(sample<JohnsonCook>())};
-    else
-      return sample<L>();
-  }
-  /// Variants with what sample() leaves out.
-  static std::vector<L> laws()
-  {
-    std::vector<L> all{law()};
-    if constexpr (requires { law().reference_rate; }) {
-      all.push_back(law());
-      all.back().reference_rate = 1;
-      all.back().thermal_exponent = 0.8;
-    }
-    if constexpr (std::is_same_v<L, VonMises>) {
-      all.push_back(law());
-      all.back().rate = CowperSymonds{.reference_rate = 40, .exponent = 5};
-      all.push_back(law());
-      all.back().voce.reset();
-      all.back().power.reset();
-    }
-    if constexpr (std::is_same_v<L, DruckerPrager>) {
-      all.push_back(law());
-      all.back().tension_cutoff.reset();
-      all.back().softening_strain.reset();
-      all.back().residual_cohesion.reset();
-      all.back().residual_friction_angle.reset();
-      all.push_back(all.back());
-      all.back().friction_angle = all.back().dilation_angle = 0;
-    }
-    return all;
-  }
-};
-TYPED_TEST_SUITE(LawInLanesContract, AllKinds<Laws>::Types);
-
-/// The largest difference of history variables, by what the larger is, or by one, or by the stiffness where it is an energy.
-template <class State>
-Real difference(const State& a, const State& b)
-{
-  Real worst = 0;
-  for_each_field<State>([&]<class Owner, class Value>(const History<Owner, Value>& field) {
-    const Real least = field.unit == "J/m^3" ? testing::sample_stiffness : 1;
-    const auto compare = [&](Real x, Real y) {
-      if (x != y && !(std::isnan(x) && std::isnan(y)))
-        worst = std::max(worst, std::isfinite(x - y) ? std::abs(x - y) / std::max({least, std::abs(x), std::abs(y)}) : HUGE_VAL);
-    };
-    if constexpr (std::is_same_v<Value, Real>)
-      compare(a.*field.member, b.*field.member);
-    else
-      for (int k = 0; k < 6; ++k)
-        compare((a.*field.member)[k], (b.*field.member)[k]);
-  });
-  return worst;
-}
-
-/// What several particles are told and answer at once, and what each is told and answers alone from the same state.
-template <class L>
-class Neighbours {
- public:
-  explicit Neighbours(const L& law) : together_(make_batch(law, 0, pack_size, "lanes")), alone_(together_)
-  {
-    F_.fill(Mat3::Identity());
-    stress_.fill(Mat3::Zero());
-  }
-  /// Particles deform by f; those from `count` on are not told.
-  void step(const std::array<Mat3, pack_size>& f, int count, bool elastic, Real viscous)
-  {
-    constexpr Real dt = 1e-3;
-    Mat3Of<SimdReal> F, rate, before;
-    SimdReal pressure = 0;
-    Index rows[pack_size];
-    const auto untold = together_.history;
-    for (int lane = 0; lane < pack_size; ++lane) {
-      const int from = std::min(lane, count - 1);
-      const auto i = static_cast<std::size_t>(from);
-      rows[lane] = from;
-      const Mat3 end = f[i] * F_[i], velocity = (f[i] - Mat3::Identity()) / dt;
-      for (Index k = 0; k < 9; ++k) {
-        F(k).set(lane, end(k));
-        rate(k).set(lane, velocity(k));
-        before(k).set(lane, stress_[i](k));
-      }
-      pressure.set(lane, viscous * (1 + from));
-    }
-    alone_.history = together_.history;
-    const Mat3Of<SimdReal> answers = together_.update(rows, count, IncrementOf<SimdReal>{F, rate, before, dt, pressure, elastic});
-    const SimdReal speeds = together_.wave_speed(rows, count, F);
-    for (int lane = 0; lane < pack_size; ++lane) {
-      const auto i = static_cast<std::size_t>(lane);
-      if (lane >= count) {
-        ASSERT_EQ(difference(together_.history[i], untold[i]), 0) << "row " << lane << " beyond " << count << " has changed";
-        continue;
-      }
-      const Mat3 end = lane_of(F, lane), velocity = lane_of(rate, lane);
-      const Mat3 expected = alone_.update(lane, Increment{end, velocity, stress_[i], dt, pressure[lane], elastic});
-      const Mat3 answer = lane_of(answers, lane);
-      ASSERT_EQ(answer.allFinite(), expected.allFinite()) << "lane " << lane << " of " << count;
-      const Real size = std::max(testing::sample_stiffness, expected.norm());
-      if (expected.allFinite()) {
-        ASSERT_LE((answer - expected).norm(), allowed * size) << "lane " << lane << " of " << count;
-        const Real speed = alone_.wave_speed(lane, end);
-        ASSERT_NEAR(speeds[lane], speed, allowed * speed);
-      }
-      ASSERT_LE(difference(together_.history[i], alone_.history[i]), allowed) << "lane " << lane << " of " << count;
-      F_[i] = end;
-      stress_[i] = answer;
-    }
-  }
-  void begin_again(std::size_t i)
-  {
-    F_[i] = Mat3::Identity();
-    stress_[i] = Mat3::Zero();
-    together_.history[i] = make_batch(together_.law, 0, 1, "new").history[0];
-  }
-  const auto& history(std::size_t i) const { return together_.history[i]; }
-
- private:
-  // Twenty roundings of numbers of order one, and what the root finder leaves, 1e-12 of plastic strains up to one.
-  static constexpr Real allowed = 4e-12;
-  Batch<L> together_, alone_;
-  std::array<Mat3, pack_size> F_, stress_;
-};
-
-TYPED_TEST(LawInLanesContract, EveryLaneAnswersAsItWouldAlone)
-{
-  Dice dice(10);
-  const auto laws = this->laws();
-  for (int path = 0; path < 120 && !this->HasFatalFailure(); ++path) {
-    Neighbours<TypeParam> neighbours(laws[static_cast<std::size_t>(path) % laws.size()]);
-    for (int n = 0; n < 40 && !this->HasFatalFailure(); ++n) {
-      std::array<Mat3, pack_size> f;
-      for (Mat3& each : f)  // some stay elastic, some flow, some leave the series of the logarithm
-        each = Mat3::Identity() + dice.matrix(std::pow(10.0, dice.real(-6, n % 8 == 7 ? -0.7 : -1.5)));
-      neighbours.step(f, 1 + (path + n) % pack_size, n % 10 == 3, n % 3 * 1e3);
-    }
-  }
-}
-
-TYPED_TEST(LawInLanesContract, OneLaneStaysElasticWhereItsNeighboursFlow)
-{
-  Dice dice(11);
-  for (int still = 0; still < pack_size; ++still) {
-    Neighbours<TypeParam> neighbours(this->law());
-    for (int n = 0; n < 40 && !this->HasFatalFailure(); ++n) {
-      std::array<Mat3, pack_size> f;
-      for (int lane = 0; lane < pack_size; ++lane) {
-        const auto i = static_cast<std::size_t>(lane);
-        const Real grown = 1 + 0.02 * std::sin(0.7 * n + lane);  // opens and closes
-        f[i] = lane == still ? Mat3(-1e-5 * Mat3::Identity()) : Mat3(dice.matrix(0.01) + (grown - 1) * Mat3::Identity());
-        f[i] += Mat3::Identity();
-      }
-      neighbours.step(f, pack_size, false, 0);
-    }
-  }
-}
-
-TYPED_TEST(LawInLanesContract, OnlyTheLaneWithoutAnAnswerAnswersNaN)
-{
-  Dice dice(12);
-  for (int path = 0; path < 10; ++path) {
-    for (std::size_t bad = 0; bad < pack_size && !this->HasFatalFailure(); ++bad) {
-      Neighbours<TypeParam> neighbours(this->law());
-      for (int n = 0; n < 6 && !this->HasFatalFailure(); ++n) {
-        std::array<Mat3, pack_size> f;
-        for (Mat3& each : f)
-          each = Mat3::Identity() + dice.matrix(0.02);
-        if (n % 3 == 2)
-          f[bad] = Vec3(1, 1, n == 2 ? -1 : 0).asDiagonal();
-        neighbours.step(f, pack_size, false, 0);
-        if (n % 3 == 2)
-          neighbours.begin_again(bad);
-      }
-    }
-  }
 }
 
 /// Largest speed along `n` from the acoustic tensor, by differences: h is large against rounding, its square small.  The step is so
@@ -524,6 +307,21 @@ TYPED_TEST(LawContract, HistoryListsEveryByteOfTheState)
     listed += sizeof(Value);
   });
   EXPECT_EQ(listed, std::is_empty_v<State> ? 0 : sizeof(State));
+}
+
+/// Particle files have one column for all of them.
+TYPED_TEST(LawContract, HistoryVariablesOfOneNameHaveOneKindAndUnitInAllLaws)
+{
+  for_each_field<typename TypeParam::State>([]<class State, class Value>(const History<State, Value>& own) {
+    for_each_type(talus::Laws{}, [&]<class Other>() {
+      for_each_field<typename Other::State>([&]<class OtherState, class OtherValue>(const History<OtherState, OtherValue>& other) {
+        if (other.key == own.key) {
+          EXPECT_TRUE((std::is_same_v<Value, OtherValue>)) << own.key << " of " << Other::name;
+          EXPECT_EQ(own.unit, other.unit) << own.key << " of " << Other::name;
+        }
+      });
+    });
+  });
 }
 
 TYPED_TEST(LawContract, HistoryCopiedFieldByFieldContinuesWithTheSameBits)

@@ -1,58 +1,8 @@
 // What a rank holds of a mesh against the whole: the same cells, nodes, measures, boundary, groups and places.
-#include "mesh/part.hpp"
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <random>
-#include <set>
-#include <tuple>
-
-#include "mesh/digest.hpp"
-#include "mesh/locate.hpp"
-#include "mesh/partition.hpp"
-#include "mesh/simplex.hpp"
-#include "tests/mesh/rough_box.hpp"
+#include "tests/mesh/shared_mesh.hpp"
 
 namespace talus::part_test {
 namespace {
-
-using ::testing::ElementsAreArray;
-
-std::size_t z(Index i) { return static_cast<std::size_t>(i); }
-
-/// A mesh of 17 or 94 blocks, the last one short, and its ranks.
-template <int D>
-struct Shared {
-  static constexpr int rings = 2;
-  Mesh<D> whole{rough_box<D>(D == 2 ? 23 : 10)};
-  std::vector<int> ranks;
-  std::vector<Part<D>> parts;
-
-  explicit Shared(int n = 3) : ranks(partition<D>(whole, std::vector<std::int64_t>(z(blocks_of(whole.n_cells())), 500), n))
-  {
-    for (int rank = 0; rank < n; ++rank)
-      parts.push_back(cut<D>(whole, ranks, rank, rings));
-  }
-};
-
-/// Numbers of the whole mesh for numbers of cells or nodes of a part.
-template <int D>
-std::vector<Index> whole_cells(const Part<D>& part, std::span<const Index> local)
-{
-  std::vector<Index> result;
-  for (const Index c : local)
-    result.push_back(c == none ? none : part.share.whole_cell(c));
-  return result;
-}
-template <int D>
-std::vector<Index> whole_nodes(const Part<D>& part, std::span<const Index> local)
-{
-  std::vector<Index> result;
-  for (const Index n : local)
-    result.push_back(part.share.node[z(n)]);
-  return result;
-}
 
 template <class M>
 class PartOf : public ::testing::Test {};
@@ -265,82 +215,6 @@ TYPED_TEST(PartOf, SetsAreThoseOfTheWholeAsFarAsTheyAreHeld)
       }
       EXPECT_EQ(seen, expected) << name;
     }
-  }
-}
-
-TYPED_TEST(PartOf, PointsAreWhereTheyAreInTheWhole)
-{
-  constexpr int D = TypeParam::value;
-  const Shared<D> shared;
-  const Locator<D> locate_in_whole(shared.whole);
-  std::mt19937_64 random(3);
-  for (const Part<D>& part : shared.parts) {
-    const Locator<D> locate(part.mesh);
-    const auto distance = rings_from_own(part);
-    const auto expect_same = [&](const Vec<D>& x) {
-      const auto expected = locate_in_whole(shared.whole, x, none);
-      ASSERT_TRUE(expected);
-      for (const Index hint : {none, static_cast<Index>(random() % z(part.mesh.n_cells()))}) {
-        const auto found = locate(part.mesh, x, hint);
-        ASSERT_TRUE(found);
-        EXPECT_EQ(part.share.whole_cell(*found), *expected);
-      }
-    };
-    for (Index c = 0; c < part.mesh.n_cells(); ++c) {
-      const auto& cell = part.mesh.cell(c);
-      if (std::none_of(cell.begin(), cell.end(), [&](Index n) { return distance[z(n)] == 0; }))
-        continue;  // neither own nor in the first ring
-      const Simplex<D> s = part.mesh.corners(c);
-      expect_same(centroid<D>(s));
-      for (int i = 0; i < 5; ++i) {  // on nodes, edges and facets and inside, as many shares are left
-        std::array<Real, D + 1> share{};
-        Real sum = 0;
-        for (Real& w : share)
-          sum += w = static_cast<Real>(random() % 3);
-        if (sum == 0)
-          continue;
-        for (Real& w : share)
-          w /= sum;
-        expect_same(point<D>(s, share));
-      }
-    }
-    int outside = 0;
-    for (Index c = 0; c < shared.whole.n_cells(); ++c)
-      if (part.share.local_cell(c) == none)
-        for (const Index hint : {none, static_cast<Index>(random() % z(part.mesh.n_cells()))}) {
-          EXPECT_FALSE(locate(part.mesh, centroid<D>(shared.whole.corners(c)), hint));
-          ++outside;
-        }
-    EXPECT_GT(outside, 0);
-  }
-}
-
-TYPED_TEST(PartOf, NearestPointsOfTheBoundaryAreThoseOfTheWhole)
-{
-  constexpr int D = TypeParam::value;
-  const Shared<D> shared;
-  const Locator<D> locate_in_whole(shared.whole);
-  for (const Part<D>& part : shared.parts) {
-    const Locator<D> locate(part.mesh);
-    int tried = 0;
-    for (const Facet f : part.mesh.boundary_facets()) {
-      if (!part.share.owns_cell(f.cell))
-        continue;
-      const Vec<D> out = part.mesh.area_vector(f).normalized();
-      for (const Index n : part.mesh.nodes_of(f))
-        for (const Real share : {0.0, 0.2}) {
-          const Vec<D> middle = centroid<D>(part.mesh.corners(f.cell));
-          const Vec<D> on = (1 - share) * part.mesh.node(n) + share * (middle - (middle - part.mesh.node(n)).dot(out) * out);
-          const Vec<D> x = on + 0.3 * part.mesh.altitude(f.cell) * out;
-          const auto expected = locate_in_whole.nearest(shared.whole, x), found = locate.nearest(part.mesh, x);
-          EXPECT_FALSE(locate(part.mesh, x, f.cell));
-          EXPECT_EQ(found.x, expected.x);
-          EXPECT_EQ(part.share.whole_cell(found.cell), expected.cell);
-          EXPECT_EQ(found.facet, (Facet{found.cell, expected.facet.local}));
-          ++tried;
-        }
-    }
-    EXPECT_GT(tried, 20);
   }
 }
 

@@ -14,7 +14,7 @@ import unittest
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
-FILES = """usr/bin/talus usr/libexec/talus/talus usr/libexec/talus/talus-render usr/lib/python3/dist-packages/talus.py usr/share/talus/python/talus.py
+FILES = """usr/bin/talus usr/libexec/talus/talus usr/libexec/talus/talus-render usr/lib/python3/dist-packages/talus/__init__.py usr/share/talus/python/talus/__init__.py
 usr/share/talus/scenes/column_collapse/scene.yaml usr/share/talus/benchmarks/verify.py usr/share/talus/docs/index.md usr/share/talus/THIRD_PARTY.md
 usr/share/doc/talus/copyright usr/share/doc/talus/changelog.gz usr/share/doc/talus/sbom.cdx.json usr/share/man/man1/talus.1.gz""".split()
 ELF = b"\x7fELF"

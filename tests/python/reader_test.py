@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of python/talus.py and of python/examples, with what a small run and a small study write.
+"""Tests of python/talus and of python/examples, with what a small run and a small study write.
 
 Usage: reader_test.py PROGRAM, the built talus.
 """

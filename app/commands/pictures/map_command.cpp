@@ -7,8 +7,8 @@
 
 #include "app/commands/pictures/movie_command.hpp"
 #include "app/commands/report/report.hpp"
+#include "app/observers/plan_axes.hpp"
 #include "app/observers/results.hpp"
-#include "app/observers/runout.hpp"
 #include "core/error.hpp"
 #include "io/pictures/settings/launch_render.hpp"
 #include "io/pictures/settings/picture_settings.hpp"

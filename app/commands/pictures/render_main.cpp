@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "io/pictures/maps/render_map.hpp"
 #include "io/pictures/render.hpp"
 #include "io/pictures/render_chart.hpp"
-#include "io/pictures/render_map.hpp"
 #include "io/pictures/render_surface.hpp"
 
 namespace {

@@ -10,8 +10,8 @@
 #include "app/setup/expression.hpp"
 #include "app/setup/quick.hpp"
 #include "core/parallel/threads.hpp"
-#include "io/scene/formula_words.hpp"
-#include "io/scene/manual.hpp"
+#include "io/scene/manual/formula_words.hpp"
+#include "io/scene/manual/manual.hpp"
 
 namespace talus::parts_test {
 

@@ -8,7 +8,7 @@
 
 #include <variant>
 
-#include "io/scene/manual.hpp"
+#include "io/scene/manual/manual.hpp"
 #include "io/scene/reader.hpp"
 
 namespace talus::key_words_test {

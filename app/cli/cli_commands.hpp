@@ -1,0 +1,85 @@
+#pragma once
+// The commands of talus by what they are for, with the options that they fill; each lives as long as the parse.
+#include <CLI/CLI.hpp>
+
+#include "app/commands/bench/bench_command.hpp"
+#include "app/commands/check_command.hpp"
+#include "app/commands/diff/diff_command.hpp"
+#include "app/commands/drive_command.hpp"
+#include "app/commands/fos/fos_command.hpp"
+#include "app/commands/mesh_command.hpp"
+#include "app/commands/new/new_command.hpp"
+#include "app/commands/pictures/map_command.hpp"
+#include "app/commands/pictures/movie_options.hpp"
+#include "app/commands/pictures/render_command.hpp"
+#include "app/commands/pictures/surface_command.hpp"
+#include "app/commands/report/report_command.hpp"
+#include "app/commands/run_command.hpp"
+#include "app/commands/suite_command.hpp"
+#include "app/commands/sweep/sweep_command.hpp"
+#include "app/commands/watch/watch_command.hpp"
+
+namespace talus {
+
+/// new, run, check, mesh, drive: what is done with a scene.
+class SceneCommands {
+ public:
+  void add_to(CLI::App& app);
+
+ private:
+  void add_new(CLI::App& app);
+  void add_run(CLI::App& app);
+  void add_check(CLI::App& app);
+  void add_mesh(CLI::App& app);
+  void add_drive(CLI::App& app);
+
+  NewOptions new_;
+  RunOptions run_;
+  std::filesystem::path check_scene_;
+  std::vector<std::string> check_set_;
+  DriveOptions drive_;
+  MeshOptions mesh_;
+};
+
+/// map, render, report, watch, surface, diff: what is done with results.
+class ResultCommands {
+ public:
+  void add_to(CLI::App& app);
+  /// Exit status of the command that was given, if it has one of its own.
+  int status() const noexcept { return status_; }
+
+ private:
+  void add_map(CLI::App& app);
+  void add_render(CLI::App& app);
+  void add_report(CLI::App& app);
+  void add_watch(CLI::App& app);
+  void add_surface(CLI::App& app);
+  void add_diff(CLI::App& app);
+
+  RenderOptions render_;
+  MapOptions map_;
+  ReportOptions report_;
+  WatchOptions watch_;
+  SurfaceOptions surface_;
+  DiffOptions diff_;
+  int status_ = 0;
+};
+
+/// sweep, fos, verify, tradeoff, bench: many runs.
+class StudyCommands {
+ public:
+  void add_to(CLI::App& app);
+
+ private:
+  void add_sweep(CLI::App& app);
+  void add_fos(CLI::App& app);
+  void add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options);
+  void add_bench(CLI::App& app);
+
+  SweepOptions sweep_;
+  FosOptions fos_;
+  SuiteOptions verify_, tradeoff_;
+  BenchOptions bench_;
+};
+
+}  // namespace talus

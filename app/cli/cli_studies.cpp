@@ -1,0 +1,113 @@
+// Commands that make many runs.
+#include "app/cli/cli_checks.hpp"
+#include "app/cli/cli_commands.hpp"
+
+namespace talus {
+
+void StudyCommands::add_sweep(CLI::App& app)
+{
+  CLI::App* sweep = app.add_subcommand("sweep", "run a scene with several values of its keys, and put their results into a table");
+  sweep->add_option("study", sweep_.study, "study (.yaml): scene, what varies, what is told")->type_name(scene_value)->required();
+  sweep->add_option("--out", sweep_.out, "folder of cases and table; default runs/<name of the study>")->type_name(folder_value);
+  CLI::Option* jobs =
+      sweep->add_option("--jobs", sweep_.jobs, "cases at a time; default as many as there are cores for")->check(number_within(1, 1024));
+  sweep->add_option("--threads", sweep_.threads, "threads of each; default the cores over the cases at a time")
+      ->check(number_within(1, 1024));
+  CLI::Option* only = sweep->add_option("--case", sweep_.only, "run this case alone, counted from 1: for the jobs of an array");
+  only->check(number_above_zero())->excludes(jobs);
+  sweep->add_option("--launcher", sweep_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
+  sweep->add_flag("--list", sweep_.list, "run nothing: tell the cases and how far they are, bring the table up to date")->excludes(only);
+  sweep->add_flag("!--no-pictures", sweep_.pictures, "draw nothing");
+  sweep->add_flag("--quick", sweep_.quick, "each case coarse and short: only to see that they run");
+  sweep->add_flag("--quiet", sweep_.quiet, "no progress and no table");
+  sweep->callback([this] { talus::sweep(sweep_); });
+}
+
+void StudyCommands::add_fos(CLI::App& app)
+{
+  CLI::App* fos =
+      app.add_subcommand("fos", "find the factor of safety of a scene: by how much its strength can be divided before it fails");
+  fos->add_option("scene", fos_.scene, "scene file (.yaml) with a geostatic stage")->type_name(scene_value)->required();
+  fos->add_option("--out", fos_.out, "folder of trials and table; default runs/<name of the scene>_fos")->type_name(folder_value);
+  const auto number = [&](const char* name, auto& value, const char* help) {
+    return fos->add_option(name, value, help)->check(number_above_zero());
+  };
+  number("--from", fos_.range.from, "lowest factor that is tried first; default 0.5");
+  number("--to", fos_.range.to, "highest factor that is tried first; default 3");
+  number("--width", fos_.range.width, "how close holding and failing factors come; default 0.02");
+  number("--duration", fos_.duration, "of a trial [s]; default 3 sqrt(height / gravity), or 20 passes of waves if that is longer");
+  fos->add_option("--damping", fos_.damping, "local damping of a trial; default 0.3")->check(number_within(0.0, 0.9));
+  number("--growth", fos_.criterion.growth, "moved in the second half of a trial over the first half, above which it fails; default 0.1");
+  number("--kinetic", fos_.criterion.liveliness, "kinetic energy at the end over its peak, above which it fails; default 5e-4");
+  fos->add_option("--bodies", fos_.bodies, "whose strength is divided; default all that have some")->delimiter(',');
+  fos->add_option("--share", fos_.mass_share, "displacement that this share of the mass does not exceed is looked at; default 0.99")
+      ->check(number_within(0.0, 1.0));
+  fos->add_option("--set", fos_.set, set_help);
+  fos->add_option("--jobs", fos_.jobs, "trials at a time; default one a core, up to 4")->check(number_within(1, 1024));
+  fos->add_option("--threads", fos_.threads, "threads of each; default the cores over the trials at a time")->check(number_within(1, 1024));
+  fos->add_option("--launcher", fos_.launcher, "what each run is started by, such as \"mpirun -n 4\"");
+  fos->add_flag("!--no-pictures", fos_.pictures, "draw nothing");
+  fos->add_flag("--quick", fos_.quick, "each run coarse and short: only to see that they run");
+  fos->add_flag("--quiet", fos_.quiet, "only the factor");
+  fos->callback([this] { find_fos(fos_); });
+}
+
+void StudyCommands::add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options)
+{
+  const bool verify = name == "verify";
+  options.suite = name;
+  CLI::App* suite = app.add_subcommand(name, help);
+  CLI::Option* cases = suite->add_option("case", options.cases, verify ? "benchmarks; default all" : "benchmark");
+  if (!verify)
+    cases->required()->expected(1);
+  suite->add_option("--level", options.level, "quick or full; default quick")->check(CLI::IsMember({"quick", "full"}));
+  suite->add_option("--out", options.out, "folder for runs and report; default runs/" + name)->type_name(folder_value);
+  suite->add_option("--jobs", options.jobs, "runs at a time; default one a core")->check(number_within(1, 1024));
+  suite->add_option("--threads", options.threads, "threads of each run; default 1")->check(number_within(1, 1024));
+  suite->add_flag("--reuse", options.reuse, "do not repeat runs whose program and inputs are unchanged");
+  if (verify) {
+    suite->add_option("--kernel", options.kernel, "kernel of every run that does not choose one itself");
+    suite->add_option("--transfer", options.transfer, "transfer scheme of every run that does not choose one itself");
+    suite->add_option("--precision", options.precision, "double or single, of every run that does not choose itself");
+    suite->add_flag("--regression", options.regression, "status 1 only where something is worse than in the last release");
+  }
+  suite->callback([&options] { run_suite(options); });
+}
+
+void StudyCommands::add_bench(CLI::App& app)
+{
+  constexpr int most_particles = 100'000'000;
+  CLI::App* bench = app.add_subcommand("bench", "speed of whole steps");
+  const auto list = [&](const char* name, auto& values, const char* help) { return bench->add_option(name, values, help)->delimiter(','); };
+  list("--kernel", bench_.kernels, "kernels, such as projected,umls");
+  list("--transfer", bench_.transfers, "transfer schemes");
+  list("--law", bench_.laws, "constitutive laws");
+  list("--precision", bench_.precisions, "double, single or both");
+  list("--dimension", bench_.dimensions, "2, 3 or both")->check(number_within(2, 3));
+  list("--threads", bench_.threads, "numbers of threads")->check(number_within(1, 1024));
+  list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(number_within(1, 100));
+  CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, precision, dimension: hours");
+  CLI::Option* options =
+      bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
+  CLI::Option* mpi = bench->add_flag("--mpi", bench_.ranks, "one case on the ranks of mpirun: what each holds, sends and waits for");
+  mpi->excludes(all)->excludes(options);
+  bench->add_option("--particles", bench_.particles, "about so many; default 1000000")->check(number_within(1000, most_particles));
+  bench->add_option("--warm-up", bench_.warm_up, "steps before the first that counts; default 10")->check(number_within(1, most_steps));
+  bench->add_option("--repeats", bench_.repeats, "of which the median counts; default 3")->check(number_within(1, 1000));
+  bench->add_option("--steps", bench_.steps, "of each repeat; default 5")->check(number_within(1, most_steps));
+  bench->add_option("--json", bench_.json, "write all of it to this file");
+  bench->add_option("--from", bench_.from, "measure nothing, show such a file")->excludes(mpi);
+  bench->add_option("--compare", bench_.compare, "print times over those of such a file")->excludes(mpi);
+  bench->callback([this] { talus::bench(bench_); });
+}
+
+void StudyCommands::add_to(CLI::App& app)
+{
+  add_sweep(app);
+  add_fos(app);
+  add_suite(app, "verify", "run the benchmarks against their references; write verify.json and a report", verify_);
+  add_suite(app, "tradeoff", "sweep a benchmark: error over processor time and memory, and what to choose", tradeoff_);
+  add_bench(app);
+}
+
+}  // namespace talus

@@ -1,0 +1,38 @@
+#pragma once
+// Output fields of particles and nodes as columns of files.
+#include "io/output/vtk.hpp"
+#include "io/scene/scene_output.hpp"
+#include "solver/run_view.hpp"
+
+namespace talus {
+
+/// What particle files hold: the fields asked for, the one that pictures show, body and volume.
+std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
+
+/// A field of all particles in the order of `rows`.  Names: those of particle_fields() in io/output/output_fields.hpp, and every history
+/// variable of a law in the run, which is 0 for bodies whose law does not have it.  std::invalid_argument for any other name.
+template <int D>
+Column particle_column(const State<D>& state, std::span<const Index> rows, std::string_view name);
+
+/// A field of all nodes.  Names: those of node_fields(); std::invalid_argument for any other.
+template <int D>
+Column node_column(const RunView<D>& view, std::string_view name);
+
+/// Rows in the order of their ids, which does not change during a run.
+template <int D>
+std::vector<Index> rows_by_id(const Particles<D>& particles);
+
+/// Three numbers per particle [m].
+template <int D>
+std::vector<Real> positions(const Particles<D>& particles, std::span<const Index> rows);
+
+extern template Column particle_column<2>(const State<2>&, std::span<const Index>, std::string_view);
+extern template Column particle_column<3>(const State<3>&, std::span<const Index>, std::string_view);
+extern template Column node_column<2>(const RunView<2>&, std::string_view);
+extern template Column node_column<3>(const RunView<3>&, std::string_view);
+extern template std::vector<Index> rows_by_id<2>(const Particles<2>&);
+extern template std::vector<Index> rows_by_id<3>(const Particles<3>&);
+extern template std::vector<Real> positions<2>(const Particles<2>&, std::span<const Index>);
+extern template std::vector<Real> positions<3>(const Particles<3>&, std::span<const Index>);
+
+}  // namespace talus

@@ -1,0 +1,111 @@
+#pragma once
+// Columns of history.csv: one row of a table each.  A column is called with what app/observers/history.cpp knows of what the column belongs to
+// at the time of a row (RunNow, PointNow, ...).
+#include "io/output/csv.hpp"
+#include "io/output/quantity.hpp"
+
+namespace talus {
+
+/// Of every history.  Works are those done on the bodies since the start of the run; losses are positive.
+constexpr auto run_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<number>("time", "s", "time", [](const auto& now) { return now.run.state.clock.time; }),
+      quantity<number>("step", "-", "number of the step", [](const auto& now) { return now.run.state.clock.step; }),
+      quantity<number>("dt", "s", "length of the step", [](const auto& now) { return now.run.state.clock.dt; }),
+      quantity<number>("stage", "-", "number of the stage, from 0", [](const auto& now) { return now.run.state.stage.number; }),
+      quantity<number>("mass", "kg", "mass of all particles", [](const auto& now) { return now.totals.mass; }),
+      quantity<vector>("momentum_", "kg m/s", "momentum of all particles", [](const auto& now) { return now.totals.momentum; }),
+      quantity<moment>("angular_momentum_", "kg m^2/s", "moment of momentum about the origin",
+                       [](const auto& now) { return now.totals.angular; }),
+      quantity<vector>("centre_", "m", "centre of mass", [](const auto& now) { return now.centre; }),
+      quantity<number>("kinetic", "J", "kinetic energy", [](const auto& now) { return now.energy.kinetic; }),
+      quantity<number>("strain", "J", "strain energy", [](const auto& now) { return now.energy.strain; }),
+      quantity<number>("plastic", "J", "energy that laws have dissipated", [](const auto& now) { return now.energy.plastic; }),
+      quantity<number>("friction", "J", "energy lost by friction at walls", [](const auto& now) { return now.energy.friction; }),
+      quantity<number>("damping", "J", "energy taken by the damping of stages", [](const auto& now) { return now.energy.damping; }),
+      quantity<number>("carried_away", "J", "kinetic energy of what was deleted", [](const auto& now) { return now.energy.carried_away; }),
+      quantity<number>("gravity_work", "J", "work of gravity", [](const auto& now) { return now.energy.gravity; }),
+      quantity<number>("load_work", "J", "work of the other loads", [](const auto& now) { return now.energy.loads; }),
+      quantity<number>("wall_work", "J", "work of walls that move", [](const auto& now) { return now.energy.walls; }),
+      quantity<number>("transfer_loss", "J", "kinetic energy lost between particles and nodes",
+                       [](const auto& now) { return now.energy.transfer; }),
+      quantity<number>("energy_defect", "J", "what the terms of the balance leave unexplained",
+                       [](const auto& now) { return now.energy.defect; }),
+      quantity<number>("residual", "-", "unbalanced force over the forces there are",
+                       [](const auto& now) { return now.run.state.residual; })};
+}
+
+/// Of each wall.
+constexpr auto reaction_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<vector>("reaction_{}_", "N", "mean force of the wall on the bodies since the row before",
+                                     [](const auto& wall) { return wall.reaction; })};
+}
+
+constexpr auto point_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<vector>("{}_", "m", "position", [](const auto& point) { return point.x; }),
+                    quantity<vector>("{}_u", "m", "displacement", [](const auto& point) { return point.u; }),
+                    quantity<vector>("{}_v", "m/s", "velocity", [](const auto& point) { return point.v; }),
+                    quantity<symmetric>("{}_s", "Pa", "Cauchy stress", [](const auto& point) { return point.stress; })};
+}
+
+constexpr auto front_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<number>("{}", "m", "coordinate that the share of the mass does not pass", [](const auto& at) { return at; })};
+}
+
+/// Of what bodies do to a wall.
+constexpr auto wall_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<number>("push_{}", "N", "mean force along the normal of the wall since the row before",
+                       [](const auto& wall) { return wall.push; }),
+      quantity<number>("shear_{}", "N", "mean force along the wall since the row before", [](const auto& wall) { return wall.shear; }),
+      quantity<number>("touched_{}", "m^(D-1)", "area of the wall with mass at its nodes", [](const auto& wall) { return wall.touched; }),
+      quantity<number>("pressure_{}", "Pa", "push over the area touched", [](const auto& wall) { return wall.pressure; }),
+      quantity<vector>("attack_{}_", "m", "where the line of action of the force crosses the wall",
+                       [](const auto& wall) { return wall.attack; })};
+}
+
+constexpr auto moved_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<number>("{}", "m", "displacement that the share of the mass does not exceed", [](const auto& way) { return way; })};
+}
+
+constexpr auto body_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<number>("mass_{}", "kg", "mass of the body", [](const auto& body) { return body.mass; }),
+      quantity<vector>("momentum_{}_", "kg m/s", "momentum of the body", [](const auto& body) { return body.momentum; }),
+      quantity<number>("kinetic_{}", "J", "kinetic energy of the body", [](const auto& body) { return body.kinetic; }),
+      quantity<number>("plastic_{}", "J", "energy that its law has dissipated", [](const auto& body) { return body.plastic; }),
+      quantity<vector>("force_{}_", "N", "mean force of walls and other bodies on it since the row before",
+                       [](const auto& body) { return body.force; })};
+}
+
+/// The columns that a quantity fills, by the name of what it belongs to: one for each of its components.
+std::vector<CsvColumn> csv_columns(std::string_view pattern, std::string_view unit, QuantityKind kind, std::string_view owner,
+                                   int dimension);
+
+template <class Table>
+std::vector<CsvColumn> csv_columns(const Table& table, std::string_view owner, int dimension)
+{
+  std::vector<CsvColumn> all;
+  for_each_quantity(table, [&](const auto& row) {
+    const auto more = csv_columns(row.name, row.unit, row.kind, owner, dimension);
+    all.insert(all.end(), more.begin(), more.end());
+  });
+  return all;
+}
+
+}  // namespace talus

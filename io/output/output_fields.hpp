@@ -1,0 +1,65 @@
+#pragma once
+// Fields of particles and nodes that a run can write: one row each.
+#include "core/tensor.hpp"
+#include "io/output/quantity.hpp"
+
+namespace talus {
+
+/// Fields of outputs.particles, besides the history variables of laws.  Each is called with a State and a row of its particles.
+constexpr auto particle_fields()
+{
+  using enum QuantityKind;
+  return std::tuple{
+      quantity<vector>("velocity", "m/s", "velocity", [](const auto& state, auto p) { return state.particles.v[p]; }),
+      quantity<vector>("displacement", "m", "position less the reference position",
+                       [](const auto& state, auto p) { return (state.particles.x[p] - state.particles.x0[p]).eval(); }),
+      quantity<symmetric>("stress", "Pa", "Cauchy stress, total, positive in tension",
+                          [](const auto& state, auto p) { return state.particles.stress[p]; }),
+      quantity<number>("pressure", "Pa", "minus the mean of the normal stresses",
+                       [](const auto& state, auto p) {
+                         const auto stress = state.particles.stress[p];
+                         return -(stress[0] + stress[1] + stress[2]) / 3;
+                       }),
+      quantity<number>("von_mises", "Pa", "von Mises stress",
+                       [](const auto& state, auto p) { return von_mises(unpack(state.particles.stress[p])); }),
+      quantity<number>("pore_pressure", "Pa", "pressure of water in the pores; 0 where there is none",
+                       [](const auto& state, auto p) { return state.particles.pore.empty() ? Real{0} : Real{state.particles.pore[p]}; }),
+      quantity<symmetric>("effective_stress", "Pa", "stress plus pore pressure",
+                          [](const auto& state, auto p) {
+                            Sym3 stress = state.particles.stress[p];
+                            if (!state.particles.pore.empty())
+                              stress.head<3>().array() += state.particles.pore[p];
+                            return stress;
+                          }),
+      quantity<number>("volume", "m^D", "volume now, of unit thickness in 2-D",
+                       [](const auto& state, auto p) { return state.particles.F[p].determinant() * state.particles.volume0[p]; }),
+      quantity<number>("mass", "kg", "mass", [](const auto& state, auto p) { return state.particles.mass[p]; }),
+      quantity<number>("cell", "-", "number of the cell of the mesh", [](const auto& state, auto p) { return state.particles.cell[p]; }),
+      quantity<number>("body", "-", "number of the body in the scene, from 0",
+                       [](const auto& state, auto p) { return body_of(state.bodies, static_cast<Index>(p)); }),
+      quantity<tensor>("F", "-", "deformation gradient, by rows", [](const auto& state, auto p) { return state.particles.F[p]; }),
+      quantity<tensor>("velocity_gradient", "1/s", "velocity gradient, by rows",
+                       [](const auto& state, auto p) { return embed(state.particles.L[p]); })};
+}
+
+/// Fields of outputs.mesh, as the last step left them.  Each is called with a RunView and a row of its nodes.
+constexpr auto node_fields()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<number>("mass", "kg", "mass", [](const auto& run, auto n) { return run.nodes.sum[n].mass; }),
+                    quantity<vector>("velocity", "m/s", "velocity", [](const auto& run, auto n) { return run.nodes.motion[n].v; }),
+                    quantity<vector>("force", "N", "internal force and loads other than gravity",
+                                     [](const auto& run, auto n) { return run.nodes.sum[n].force; }),
+                    // What changed the node's momentum besides forces and gravity; nodes under a wall are not damped.
+                    quantity<vector>("reaction", "N", "force of all walls on the node", [](const auto& run, auto n) {
+                      const auto& sum = run.nodes.sum[n];
+                      auto force = sum.force;
+                      if (run.nodes.active[n] == 0 || run.nodes.bound[n] == 0 || run.nodes.kick == 0)
+                        force.setZero();
+                      else
+                        force = sum.mass * (run.nodes.motion[n].change / run.nodes.kick - run.nodes.gravity) - sum.force;
+                      return force;
+                    })};
+}
+
+}  // namespace talus

@@ -1,0 +1,42 @@
+#pragma once
+// The sheet that a map or a section is drawn on: its size, the place of the panel, words around it.
+#include <vtkNew.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "io/pictures/render_frame.hpp"
+#include "io/pictures/render_png.hpp"
+#include "io/pictures/render_words.hpp"
+
+namespace talus::render {
+
+std::array<Real, 2> range_of(const std::vector<Real>& values);
+
+/// A place on the sheet for so wide a panel over so high a one, and the size of the picture around it.
+struct MapLayout {
+  std::array<int, 2> size;  ///< pixels of the picture
+  Place place;
+};
+MapLayout layout_for(Real aspect, const std::optional<std::array<int, 2>>& wanted);
+
+/// A window with one renderer, words and a place for the panel.
+template <class Draw>
+void on_sheet(const MapLayout& layout, const std::filesystem::path& png, Draw&& draw)
+{
+  vtkNew<vtkRenderWindow> window;
+  prepare(window, layout.size);
+  vtkNew<vtkRenderer> renderer;
+  renderer->SetBackground(1, 1, 1);
+  window->AddRenderer(renderer);
+  Sheet sheet(renderer, letter_height * oversampling * layout.size[0]);
+  draw(renderer.Get(), sheet);
+  save(window, png);
+}
+
+void add_title(Sheet& sheet, const MapLayout& layout, const std::string& title, const std::string& note);
+
+}  // namespace talus::render

@@ -1,0 +1,73 @@
+"""Tables (.csv) by their columns."""
+from __future__ import annotations
+
+import csv
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from .errors import Damaged, Missing
+
+PURE = "-"  # the unit of a pure number
+
+
+def _as_text(entry: str) -> str:
+    """Without the apostrophe that stands before what a spreadsheet would take for a formula."""
+    return entry[1:] if entry.startswith("'") and entry.lstrip("'")[:1] in ("=", "+", "-", "@") else entry
+
+
+class Table(Mapping[str, np.ndarray]):
+    """Columns of a .csv by name: `table["kinetic"]` has one number a row, an empty entry is nan.  A column with an entry that is no number is
+    an array of str.
+
+    path    of the file
+    units   {column: unit}
+    """
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = Path(path)
+        text = self.path.read_text(encoding="utf-8")
+        records = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))  # a last row that is still being written is left out
+        if not records:
+            raise Damaged(f"{self.path}: there is no heading")
+        self.units: dict[str, str] = {}
+        for heading in map(_as_text, records[0]):
+            name, mark, unit = heading.rpartition(" [")
+            self.units[name if mark else heading] = unit.removesuffix("]") if mark else PURE
+        for number, record in enumerate(records[1:], 2):
+            if len(record) != len(records[0]):
+                raise Damaged(f"{self.path}:{number}: {len(record)} entries for {len(records[0])} columns")
+        columns = zip(*records[1:]) if len(records) > 1 else ((),) * len(self.units)
+        self._columns = {name: _numbers(column) for name, column in zip(self.units, columns)}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self._columns:
+            raise Missing(self.path, "column", name, list(self._columns))
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    @property
+    def rows(self) -> int:
+        return len(next(iter(self._columns.values())))
+
+    @property
+    def array(self) -> np.ndarray:
+        """The same as a structured array, shape (rows,); `pandas.DataFrame(table.array)` takes it."""
+        whole = np.empty(self.rows, [(name, values.dtype) for name, values in self._columns.items()])
+        for name, values in self._columns.items():
+            whole[name] = values
+        return whole
+
+
+def _numbers(entries: Sequence[str]) -> np.ndarray:
+    try:
+        return np.array([float(entry or "nan") for entry in entries])
+    except ValueError:
+        return np.array([_as_text(entry) for entry in entries])
