@@ -33,7 +33,7 @@ using In = typename detail::In<S, Value>::type;
 enum class Rest : std::uint8_t { zero, identity };
 
 /// A row is a Real, a vector or a tensor.  Rows are read by value and written by set(), in double whatever they are kept in; loops
-/// over many particles go by a BunchOf<S> (solver/state/particle_pack.hpp), which knows the numbers S.
+/// over many particles go by a ParticlePackOf<S> (core/particle_pack.hpp), which knows the numbers S.
 template <class Value, Rest rest = Rest::zero>
 class ParticleColumn {
  public:

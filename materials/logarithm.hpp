@@ -21,23 +21,6 @@ typename E::Scalar trace(const Eigen::MatrixBase<E>& a) noexcept
   static_assert(E::RowsAtCompileTime == 6);
   return a[0] + a[1] + a[2];
 }
-/// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
-// Inlined by order, like others below: of lanes they are long enough to be calls, and would pass their tensors through memory.
-template <class E>
-[[gnu::always_inline]] inline Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s,
-                                                                         const Eigen::MatrixBase<E>& expression,
-                                                                         const typename E::Scalar& m) noexcept
-{
-  const Sym3Of<typename E::Scalar>& a = expression.derived();
-  Sym3Of<typename E::Scalar> sum;
-  sum << s * a[0] + m, s * a[1] + m, s * a[2] + m, s * a[3], s * a[4], s * a[5];
-  return sum;
-}
-template <class E>
-Sym3Of<typename E::Scalar> add_diagonal(const Eigen::MatrixBase<E>& a, const typename E::Scalar& m) noexcept
-{
-  return scale_and_shift(1, a, m);
-}
 /// a:a
 template <class E>
 typename E::Scalar squared_norm(const Eigen::MatrixBase<E>& expression) noexcept

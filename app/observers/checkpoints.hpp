@@ -68,7 +68,7 @@ class Checkpoints {
 /// What a state must fit to be one of this scene.
 struct StateLimits {
   Index cells, stages, particles;                 ///< particles: of all bodies as they are placed
-  std::span<const std::vector<AnyBatch>> laws{};  ///< of the bodies in each stage
+  std::span<const std::vector<Material>> laws{};  ///< of the bodies in each stage
 };
 
 /// The bodies of a run, read by themselves.
@@ -76,11 +76,11 @@ template <int D>
 struct KeptBodies {
   Particles<D> particles;
   std::vector<Body> bodies;
-  std::vector<AnyBatch> materials;
+  std::vector<Material> materials;
   Clock clock;
   StageState stage;
   EnergyLedger energy;
-  std::vector<std::vector<AnyBatch>> laws;  ///< of each stage, to be there already
+  std::vector<std::vector<Material>> laws;  ///< of each stage, to be there already
 };
 
 /// Checkpoints to go on from, the newest first.

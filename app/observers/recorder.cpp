@@ -52,8 +52,8 @@ BodySummary summary_of(const RunView<D>& view, std::size_t b)
   });
   view.problem.ranks->sum(sum);
   const Content content = sum.value();
-  return {body.name, std::visit([](const auto& batch) { return batch.name; }, view.state.materials[b]),
-          std::string(law_name(view.state.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
+  const Material& material = view.state.materials[b];
+  return {body.name, material.name, std::string(material.law().name()), static_cast<std::int64_t>(content.particles), content.mass};
 }
 
 /// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.

@@ -32,7 +32,7 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles);
 /// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  `to_come` are laws that bodies
 /// take on later: what they need is there from the beginning.
 template <int D>
-void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come = {});
+void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come = {});
 
 /// To be called when rows of particles have changed: finds the rows of tracked particles.
 template <int D>
@@ -61,7 +61,7 @@ Totals<D> totals(const Model<D>& m);
 
 /// Energy dissipated by the laws so far, of all ranks [J].  Every rank has to ask.
 template <int D>
-Real plastic_work(const std::vector<AnyBatch>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks);
+Real plastic_work(const std::vector<Material>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks);
 template <int D>
 Real plastic_work(const Model<D>& m)
 {

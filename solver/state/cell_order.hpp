@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/particles.hpp"
+#include "core/particle_pack.hpp"
 #include "mesh/blocks.hpp"
 
 namespace talus {
@@ -50,28 +50,6 @@ void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id,
 
 /// Share of the particles whose row does not follow that of the particle before them in the order.
 Real disorder(const CellOrder& order) noexcept;
-
-/// Calls ask(p) once for each of `rows`, well before its turn: memory answers while the rows before are worked on.
-template <class Ask>
-class PrefetchRows {
- public:
-  PrefetchRows(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
-  /// The rows before `end` are next.
-  void until(std::size_t end)
-  {
-    for (const std::size_t last = std::min(end + distance, rows_.size()); asked_ < last; ++asked_)
-      ask_(static_cast<std::size_t>(rows_[asked_]));
-  }
-
- private:
-  static constexpr std::size_t distance = 32;
-  std::span<const Index> rows_;
-  Ask ask_;
-  std::size_t asked_ = 0;
-};
-struct AskForNothing {
-  void operator()(std::size_t) const noexcept {}
-};
 
 /// f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as above.
 template <class F, class Ask = AskForNothing>
