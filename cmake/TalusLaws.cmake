@@ -21,7 +21,7 @@ function(talus_compile_laws target list)
 // Written by cmake/TalusLaws.cmake.
 #include "@header@"
 
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 
 namespace talus {
 

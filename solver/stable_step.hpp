@@ -1,7 +1,7 @@
 #pragma once
 // How long a step may be: a share of the time in which a wave crosses the cell of a particle.
 #include "core/parallel/threads.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {

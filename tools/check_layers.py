@@ -32,7 +32,7 @@ def folders_of(root):
 FOLDERS = folders_of(ROOT)
 # What tests of a folder may include: what is below it.
 TESTS_SEE = {"core": ["core"], "mesh": ["core", "mesh"], "kernels": ["core", "mesh", "kernels"], "materials": ["core", "materials"],
-             "solver": ["core", "mesh", "kernels", "materials", "solver"], "io": ["core", "mesh", "kernels", "materials", "io"], "app": TOP,
+             "solver": ["core", "mesh", "kernels", "materials", "solver"], "io": ["core", "mesh", "kernels", "materials", "solver", "io"], "app": TOP,
              "fuzz": TOP, "tutorials": ["core", "mesh", "kernels", "materials", "solver"], "ranks": TOP, "speed": ["core", "mesh", "kernels", "materials", "solver"]}
 
 # header pattern, files that may include it; tests/io/output/run_summary_test.cpp may include what io/output/run_summary.cpp may. The first match decides.

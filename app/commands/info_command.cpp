@@ -6,7 +6,7 @@
 #include "core/version.hpp"
 #include "io/scene/scene_rules.hpp"
 #include "kernels/kernels.hpp"
-#include "materials/any_law.hpp"
+#include "materials/interface/any_law.hpp"
 
 namespace talus {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "solver/model/model.hpp"
 
 namespace talus {

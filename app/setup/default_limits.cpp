@@ -65,30 +65,20 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
 }  // namespace
 
 template <int D>
-RunLimits guards_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
+RunLimits run_limits_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
 {
   constexpr Real far_beyond = 10;
   constexpr Real least_strain = 1e-6;  // waves of less are not looked at
-  const LimitsSpec& spec = scene.watch;
   const Waves waves = waves_in(mesh, setup, ranks);
   Real start = 0;
   for (Index row = 0; row < setup.state.particles.size(); ++row)
     start = std::max(start, setup.state.particles.v[static_cast<std::size_t>(row)].norm());
   start = ranks.max(start);
-  RunLimits guards;
-  if (spec.on_speed != LimitAction::ignore)
-    guards.speed = spec.speed.value_or(far_beyond * (waves.fastest + start + driven_speed(mesh, setup, ranks)));
-  if (spec.on_energy_gain != LimitAction::ignore)
-    guards.gain = spec.energy_gain;
-  if (spec.on_failure == OnFailure::remove)
-    guards.failed = spec.failed_mass;
-  guards.speed_stops = spec.on_speed == LimitAction::stop;
-  guards.gain_stops = spec.on_energy_gain == LimitAction::stop;
-  guards.least_energy = least_strain * least_strain * waves.energy;
-  return guards;
+  const Real fastest = scene.watch.on_speed == LimitAction::ignore || scene.watch.speed ? 0 : driven_speed(mesh, setup, ranks);
+  return {scene.watch, far_beyond * (waves.fastest + start + fastest), least_strain * least_strain * waves.energy};
 }
 
-template RunLimits guards_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&);
-template RunLimits guards_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&);
+template RunLimits run_limits_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&);
+template RunLimits run_limits_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&);
 
 }  // namespace talus

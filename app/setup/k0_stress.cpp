@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 

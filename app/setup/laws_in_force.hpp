@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "io/scene/scene.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 
 namespace talus {
 

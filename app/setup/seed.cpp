@@ -304,7 +304,7 @@ class Seeder {
       for (const Taken& taken : taken_)
         for_each_pair(seeds_.bodies[taken.body].begin, taken.rows, [&](std::size_t row, std::size_t there) { f(taken, row, there); });
     };
-    if (transfer_of(scene_.transfer).own_affine_field() && !from.C.empty()) {
+    if (scene_.transfer.own_affine_field() && !from.C.empty()) {
       p.C = p.L;
       if (scene_.initial->velocity == Carried::keep)
         for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.C.set(row, from.C[there]); });

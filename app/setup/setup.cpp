@@ -18,19 +18,6 @@
 
 namespace talus {
 
-TransferOptions transfer_of(const TransferSpec& spec)
-{
-  TransferOptions transfer;
-  constexpr Scheme schemes[] = {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip};  // in the order of TransferScheme
-  transfer.scheme = schemes[static_cast<std::size_t>(spec.scheme)];
-  transfer.musl = spec.musl.value_or(transfer.increments());
-  transfer.pic_damping_time = spec.pic_damping_time;
-  transfer.pic_damping_crossings = spec.pic_damping_crossings;
-  if (transfer.scheme == Scheme::aflip && !spec.pic_damping_time && !spec.pic_damping_crossings)
-    transfer.pic_damping_crossings = 25;  // measured: docs/reference/kernels.md
-  return transfer;
-}
-
 std::string describe(const OriginSummary& origin)
 {
   std::string text = fmt::format("  from {}, step {}, t = {:.6g} s of \"{}\":\n", origin.file, origin.step, origin.time, origin.title);
@@ -147,8 +134,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, complaints);
   ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
 
-  setup.conditions.transfer = transfer_of(scene.transfer);
-  setup.conditions.exits.policy = scene.on_exit == OnExit::stop ? OnExitPolicy::stop : OnExitPolicy::remove;
+  setup.conditions.transfer = scene.transfer.with_default_damping();
+  setup.conditions.exits.policy = scene.on_exit;
   setup.limits.cfl = scene.time.cfl.value();
   setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
   setup.limits.shortest = scene.time.min_step;
@@ -157,7 +144,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
       (wants_displacement(scene.outputs) ||
        std::any_of(setup.conditions.loads.of_place.begin(), setup.conditions.loads.of_place.end(), from_start)))
     setup.state.particles.x0 = setup.state.particles.x;
-  setup.conditions.limits = guards_of(scene, mesh, setup, ranks);
+  setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);
   setup.from_files = digest_of_files(setup);
   return setup;

@@ -43,9 +43,6 @@ Vec<D> vector_of(const std::vector<Real>& numbers)
   return numbers.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(Eigen::Map<const Vec<D>>(numbers.data()));
 }
 
-/// The scheme of a scene, with the defaults that go with it.
-TransferOptions transfer_of(const TransferSpec& spec);
-
 /// A line for each body that comes from another run, and where that is.
 std::string describe(const OriginSummary& origin);
 

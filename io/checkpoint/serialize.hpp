@@ -10,7 +10,7 @@
 #include "core/parallel/threads.hpp"
 #include "core/particles.hpp"
 #include "io/checkpoint/array_file.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 
 namespace talus {
 

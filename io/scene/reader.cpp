@@ -15,7 +15,7 @@
 #include "io/document/field_reader.hpp"
 #include "io/scene/accuracy.hpp"
 #include "io/scene/scene_rules.hpp"
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 

@@ -57,15 +57,6 @@ void TimeSpec::check(std::vector<std::string>& problems) const
     problems.push_back(fmt::format("max_step {} s is smaller than min_step {} s", *max_step, min_step));
 }
 
-void TransferSpec::check(std::vector<std::string>& problems) const
-{
-  const bool increments = scheme == TransferScheme::flip || scheme == TransferScheme::aflip;
-  if ((pic_damping_time || pic_damping_crossings) && !increments)
-    problems.push_back("pic_damping_time and pic_damping_crossings are for schemes flip and aflip only");
-  if (pic_damping_time && pic_damping_crossings)
-    problems.push_back("give pic_damping_time or pic_damping_crossings, not both");
-}
-
 void TractionSpec::check(std::vector<std::string>& problems) const
 {
   exactly_one("traction or pressure", !traction.empty() + pressure.has_value(), problems);

@@ -18,11 +18,12 @@
 #include "io/scene/scene_mesh.hpp"
 #include "io/scene/scene_output.hpp"
 #include "io/scene/scene_stages.hpp"
-#include "io/scene/scene_watch.hpp"
 #include "io/scene/scene_water.hpp"
 #include "kernels/projected_options.hpp"
 #include "kernels/umls_options.hpp"
 #include "mesh/conditions/conditions.hpp"
+#include "solver/options/limit_options.hpp"
+#include "solver/options/transfer_options.hpp"
 
 namespace talus {
 
@@ -45,32 +46,6 @@ struct TimeSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-enum class TransferScheme : std::uint8_t { flip, apic, tpic, aflip };
-constexpr std::array<std::string_view, 4> enum_names(TransferScheme) { return {"flip", "apic", "tpic", "aflip"}; }
-
-struct TransferSpec {
-  TransferScheme scheme = TransferScheme::aflip;
-  std::optional<bool> musl;
-  std::optional<Real> pic_damping_time, pic_damping_crossings;
-  SourceLocation where;
-  static constexpr auto fields()
-  {
-    return std::tuple{
-        optional_choice("scheme", &TransferSpec::scheme,
-                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient) or aflip (increments, affine)"),
-        optional("musl", &TransferSpec::musl, any, "-",
-                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip and aflip, false otherwise"),
-        optional("pic_damping_time", &TransferSpec::pic_damping_time, positive, "s",
-                 "flip and aflip: share dt/time of the nodes' velocity in each step; default none"),
-        optional("pic_damping_crossings", &TransferSpec::pic_damping_crossings, positive, "-",
-                 "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip")};
-  }
-  void check(std::vector<std::string>& problems) const;
-};
-
-enum class OnExit : std::uint8_t { stop, remove };
-constexpr std::array<std::string_view, 2> enum_names(OnExit) { return {"stop", "delete"}; }
-
 enum class Accuracy : std::uint8_t { draft, standard, fine };
 constexpr std::array<std::string_view, 3> enum_names(Accuracy) { return {"draft", "standard", "fine"}; }
 
@@ -87,7 +62,7 @@ struct Scene {
   std::optional<ProjectedOptions> projected;
   Precision precision = Precision::full;
   TimeSpec time;
-  TransferSpec transfer;
+  TransferOptions transfer;
   std::vector<MaterialSpec> materials;
   std::vector<BodySpec> bodies;
   std::optional<InitialSpec> initial;
@@ -97,7 +72,7 @@ struct Scene {
   std::vector<StageSpec> stages;
   OutputSpec outputs;
   OnExit on_exit = OnExit::stop;
-  LimitsSpec watch;
+  LimitOptions watch;
   Index threads = 0;
   bool strict = false;
   SourceLocation where;

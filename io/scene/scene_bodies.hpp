@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "core/fields.hpp"
 #include "io/scene/shape.hpp"
-#include "materials/any_law.hpp"
+#include "materials/interface/any_law.hpp"
 
 namespace talus {
 

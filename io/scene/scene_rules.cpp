@@ -39,7 +39,7 @@ class Rules : private SceneRuleBase {
     };
     only_of("umls", scene_.umls.has_value());
     only_of("projected", scene_.projected.has_value());
-    if (scene_.kernel == "projected" && scene_.transfer.scheme == TransferScheme::apic)
+    if (scene_.kernel == "projected" && scene_.transfer.scheme == Scheme::apic)
       add("transfer.scheme", "apic takes its matrix from the weights of particles, which projected does not make; take tpic or aflip");
   }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/any_law.hpp"
+#include "materials/interface/any_law.hpp"
 #include "materials/laboratory/point_path.hpp"
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 
 namespace talus {
 

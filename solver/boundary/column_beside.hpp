@@ -5,7 +5,7 @@
 
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/conditions/soil_column.hpp"
 #include "mesh/mesh.hpp"
 

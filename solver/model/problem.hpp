@@ -1,6 +1,5 @@
 #pragma once
 // What no step changes: the mesh and its part of this rank, loads, limits and options.  Stages may change it between two steps.
-#include <limits>
 #include <utility>
 
 #include "core/parallel/communicator.hpp"
@@ -9,21 +8,12 @@
 #include "mesh/part.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/loads/water.hpp"
-#include "solver/model/transfer_options.hpp"
+#include "solver/options/limit_options.hpp"
+#include "solver/options/transfer_options.hpp"
 #include "solver/particles/relocate.hpp"
 #include "solver/state/owned_nodes.hpp"
 
 namespace talus {
-
-/// What no state may pass; see solver/run_limits.hpp.
-struct RunLimits {
-  Real speed = std::numeric_limits<Real>::infinity();  ///< of any particle [m/s]
-  Real gain = std::numeric_limits<Real>::infinity();   ///< energy that nothing worked for, over the largest term
-  Real mass = 1e-9;                                    ///< between particles and nodes, over all of it
-  Real least_energy = 0;                               ///< smaller gains are round-off [J]
-  Real failed = 0;                                     ///< mass of particles that may fail and be deleted, over all of it
-  bool speed_stops = true, gain_stops = true;          ///< otherwise it is only counted
-};
 
 /// Columns of particles that not every run has.
 struct WantedColumns {
@@ -36,7 +26,7 @@ struct WantedColumns {
 /// What a scene prescribes besides the bodies and their boundary conditions.
 template <int D>
 struct SceneConditions {
-  TransferOptions transfer;
+  TransferOptions transfer{.scheme = Scheme::flip};  ///< plain unless set-up says otherwise
   Loads<D> loads;
   Water water;
   Exits exits;

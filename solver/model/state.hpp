@@ -10,7 +10,7 @@
 #include "core/member_count.hpp"
 #include "core/particles.hpp"
 #include "core/ramp.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "solver/boundary/boundary_conditions.hpp"
 #include "solver/state/ledger.hpp"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/particle_errors.hpp"
-#include "materials/stress_block.hpp"
+#include "materials/interface/stress_block.hpp"
 #include "solver/boundary/small_mass_nodes.hpp"
 #include "solver/particles/migrate.hpp"
 #include "solver/state/cell_order.hpp"

@@ -1,7 +1,7 @@
 #pragma once
 // Particles that have entered a block of another rank go there, with all that is theirs.
 #include "core/parallel/communicator.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/part.hpp"
 #include "solver/state/cell_order.hpp"
 

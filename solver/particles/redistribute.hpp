@@ -2,7 +2,7 @@
 // Particles dealt out anew among the ranks, whoever has them: for files, and for a start from files.
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/part.hpp"
 
 namespace talus {

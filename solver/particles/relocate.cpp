@@ -170,7 +170,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
         sums.departed.add({.held_count = 1});
         sums.largest_set_back = std::max(sums.largest_set_back, distance);
         moved = true;
-      } else if (exits.policy == OnExitPolicy::remove) {
+      } else if (exits.policy == OnExit::remove) {
         sums.departed.add(mark_deleted(bodies, materials, particles, row));
         deleted = true;
       } else {

@@ -1,18 +1,17 @@
 #pragma once
 // The cell of every particle, the order by cell, and particles that are about to leave the mesh.
 #include "core/particle_errors.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/locate.hpp"
+#include "solver/options/limit_options.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/step_sums.hpp"
 
 namespace talus {
 
-enum class OnExitPolicy : std::uint8_t { stop, remove };
-
 /// What happens at the boundary of the mesh.
 struct Exits {
-  OnExitPolicy policy = OnExitPolicy::stop;
+  OnExit policy = OnExit::stop;
   std::vector<std::uint8_t> closed;  ///< one bit per local facet of each cell: a wall that no particle passes
 };
 

@@ -6,7 +6,7 @@
 
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/state/cell_order.hpp"
 

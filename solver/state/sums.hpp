@@ -8,7 +8,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/exact_sum.hpp"
 #include "core/parallel/threads.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/ledger.hpp"
 #include "solver/state/owned_nodes.hpp"

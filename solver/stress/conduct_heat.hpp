@@ -1,6 +1,6 @@
 #pragma once
 // Heat between the particles of bodies whose law conducts it.
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "solver/stress/star_sums.hpp"
 
 namespace talus {

@@ -8,7 +8,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
 #include "core/time_table.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "mesh/part.hpp"
 #include "solver/state/cell_order.hpp"
 

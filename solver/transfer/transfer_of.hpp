@@ -55,7 +55,7 @@ class TransferOf final : public Transfer<D> {
 
   void prepare(const TransferOptions& options) override
   {
-    if (options.musl)
+    if (options.uses_musl())
       rows_.remapped.resize(static_cast<std::size_t>(rows_.blocks.rows_of_node.size()));
   }
 
@@ -86,7 +86,7 @@ class TransferOf final : public Transfer<D> {
   void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const typename Transfer<D>::StressUpdate& update) override
   {
     project_to_particles(m, kick);
-    if (m.problem.transfer.musl) {
+    if (m.problem.transfer.uses_musl()) {
       gather_and_return_momentum(m, rows_, dt);
       gather_from_remapped(m, kick.to, dt, update);
     } else {

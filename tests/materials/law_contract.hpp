@@ -5,7 +5,7 @@
 
 #include <numeric>
 
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 #include "materials/strength.hpp"
 #include "tests/materials/samples.hpp"
 

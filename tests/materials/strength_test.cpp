@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 #include "tests/materials/soil.hpp"
 
 namespace talus::strength_test {

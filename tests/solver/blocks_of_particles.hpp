@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "kernels/kernels.hpp"
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 #include "materials/laws.hpp"
 #include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"

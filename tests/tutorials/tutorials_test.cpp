@@ -6,7 +6,7 @@
 #include "docs/tutorials/own_law/maxwell.hpp"
 #include "docs/tutorials/own_law/sample.hpp"
 #include "kernels/kernels.hpp"
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 
 // The contracts are typed over lists; the names here are found before those of `talus`.
 namespace talus::law_contract_test {

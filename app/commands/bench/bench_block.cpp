@@ -78,11 +78,11 @@ Particles<D> bench_particles(const Mesh<D>& mesh, int per_cell, Real density)
 
 TransferOptions bench_transfer(const std::string& name)
 {
-  TransferSpec spec;
-  for (std::size_t i = 0; i < enum_names(TransferScheme{}).size(); ++i)
-    if (enum_names(TransferScheme{})[i] == name)
-      spec.scheme = static_cast<TransferScheme>(i);
-  return transfer_of(spec);
+  TransferOptions transfer;
+  for (std::size_t i = 0; i < enum_names(Scheme{}).size(); ++i)
+    if (enum_names(Scheme{})[i] == name)
+      transfer.scheme = static_cast<Scheme>(i);
+  return transfer.with_default_damping();
 }
 
 /// Walls and loads, by what the block is to have besides.

@@ -5,7 +5,7 @@
 #include "app/commands/bench/bench_block.hpp"
 #include "core/word_match.hpp"
 #include "io/scene/scene_rules.hpp"
-#include "materials/any_law.hpp"
+#include "materials/interface/any_law.hpp"
 #include "mesh/quadrature.hpp"
 
 namespace talus {
@@ -50,7 +50,7 @@ Axes axes_of(const BenchOptions& o, int all_threads)
   Axes axes;
   axes.kernels = chosen("--kernel", o.kernels, all ? kernel_names() : std::vector<std::string>{"projected", "umls", "linear"},
                         kernel_names(), problems);
-  const auto transfers = names_of(TransferScheme{}), precisions = names_of(Precision{});
+  const auto transfers = names_of(Scheme{}), precisions = names_of(Precision{});
   axes.transfers = chosen("--transfer", o.transfers, all ? transfers : std::vector<std::string>{"tpic", "aflip"}, transfers, problems);
   axes.laws = chosen("--law", o.laws, all ? law_names() : std::vector<std::string>{"neo_hookean"}, law_names(), problems);
   axes.precisions = chosen("--precision", o.precisions, all ? precisions : std::vector<std::string>{"double"}, precisions, problems);

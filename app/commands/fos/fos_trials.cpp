@@ -13,7 +13,7 @@
 #include "core/word_match.hpp"
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 #include "materials/strength.hpp"
 
 namespace talus {

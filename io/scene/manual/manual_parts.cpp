@@ -15,7 +15,7 @@
 #include "io/scene/manual/markdown_table.hpp"
 #include "io/scene/scene.hpp"
 #include "kernels/kernels.hpp"
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 

@@ -19,7 +19,7 @@
 #include "io/scene/manual/manual.hpp"
 #include "io/scene/scene_rules.hpp"
 #include "kernels/kernels.hpp"
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 

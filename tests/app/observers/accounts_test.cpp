@@ -6,7 +6,7 @@
 #include <array>
 
 #include "kernels/linear.hpp"
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 #include "materials/von_mises.hpp"
 #include "mesh/generate/generate.hpp"
 #include "solver/transfer/transfer_of.hpp"

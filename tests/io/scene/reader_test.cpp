@@ -10,7 +10,7 @@
 #include <random>
 #include <sstream>
 
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus::reader_test {
@@ -144,7 +144,7 @@ TEST(Reader, OverridesAddMissingMappings)
 {
   const Scene scene =
       read_scene(folder / "scenes/smallest.yaml", std::vector<std::string>{"transfer.scheme=tpic", "outputs.history.every=0.5"});
-  EXPECT_EQ(scene.transfer.scheme, TransferScheme::tpic);
+  EXPECT_EQ(scene.transfer.scheme, Scheme::tpic);
   EXPECT_EQ(scene.outputs.history.value().every, 0.5);
 }
 

@@ -8,7 +8,7 @@
 
 #include "io/scene/reader.hpp"
 #include "io/scene/scene.hpp"
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus::scene_test {
 namespace {
@@ -29,7 +29,7 @@ TEST(Scene, ReadsTheHead)
   EXPECT_EQ(s.time.cfl, 0.3);
   EXPECT_EQ(s.time.max_step, 1e-3);
   EXPECT_EQ(s.time.min_step, 1e-9);
-  EXPECT_EQ(s.transfer.scheme, TransferScheme::flip);
+  EXPECT_EQ(s.transfer.scheme, Scheme::flip);
   EXPECT_EQ(s.transfer.musl, false);
   EXPECT_EQ(s.transfer.pic_damping_time, 0.5);
   EXPECT_EQ(s.on_exit, OnExit::remove);
@@ -51,7 +51,7 @@ TEST(Scene, ReadsChoicesOfTheProjectedKernelAndItsTransfer)
   EXPECT_EQ(s.kernel, "projected");
   ASSERT_TRUE(s.projected.has_value());
   EXPECT_EQ(s.projected->alpha, 0.25);
-  EXPECT_EQ(s.transfer.scheme, TransferScheme::aflip);
+  EXPECT_EQ(s.transfer.scheme, Scheme::aflip);
   EXPECT_EQ(s.transfer.pic_damping_crossings, 3);
   EXPECT_FALSE(scene("plane.yaml").projected.has_value());
 }

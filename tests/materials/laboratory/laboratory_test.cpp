@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 #include "tests/materials/soil.hpp"
 
 namespace talus::laboratory_test {

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "materials/constitutive_law_of.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
 #include "materials/von_mises.hpp"
 #include "solver/state/sums.hpp"
 

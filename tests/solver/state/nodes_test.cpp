@@ -248,7 +248,7 @@ TEST(CellOrder, DisorderIsTheShareOfRowsThatDoNotFollow)
 }
 
 /// A block that flies to the right, out of the mesh.
-Model<2> leaving(OnExitPolicy policy, bool wall)
+Model<2> leaving(OnExit policy, bool wall)
 {
   auto m = make_model<Linear<2>>(unit_box<2>(6, 0.1));
   m.problem.exits.policy = policy;
@@ -262,7 +262,7 @@ Model<2> leaving(OnExitPolicy policy, bool wall)
 
 TEST(Exits, StopNamesTheParticleTheBodyAndThePlace)
 {
-  auto m = leaving(OnExitPolicy::stop, false);
+  auto m = leaving(OnExit::stop, false);
   try {
     run_until(m, 0.3);
     FAIL() << "the block has left the mesh";
@@ -276,7 +276,7 @@ TEST(Exits, StopNamesTheParticleTheBodyAndThePlace)
 
 TEST(Exits, DeleteKeepsAccountOfTheMass)
 {
-  auto m = leaving(OnExitPolicy::remove, false);
+  auto m = leaving(OnExit::remove, false);
   const Index before = m.state.particles.size();
   m.work.followed = FollowedRows(m.state.particles.id);
   run_until(m, 0.3);
@@ -294,7 +294,7 @@ TEST(Exits, DeleteKeepsAccountOfTheMass)
 
 TEST(Exits, AClosedWallKeepsParticlesIn)
 {
-  auto m = leaving(OnExitPolicy::stop, true);
+  auto m = leaving(OnExit::stop, true);
   m.state.particles.x[0] = {1 + 1e-4, 0.5};  // as weights off the wall may carry it
   advance(m, 1e-4);
   EXPECT_FALSE(m.work.health.worst());

@@ -1,7 +1,7 @@
 // Rows of nodes and hats: how they add up and when they count as seen; the share of PIC.
 #include <gtest/gtest.h>
 
-#include "solver/model/transfer_options.hpp"
+#include "solver/options/transfer_options.hpp"
 #include "solver/state/nodes.hpp"
 
 namespace talus::node_rows_test {
@@ -102,7 +102,8 @@ TEST(Transfer, KindsOfSchemes)
   const auto of = [](Scheme scheme, bool musl) {
     return TransferOptions{.scheme = scheme, .musl = musl, .pic_damping_time = {}, .pic_damping_crossings = {}};
   };
-  EXPECT_TRUE(TransferOptions{}.musl);
+  EXPECT_TRUE(TransferOptions{.scheme = Scheme::flip}.uses_musl() && TransferOptions{.scheme = Scheme::aflip}.uses_musl());
+  EXPECT_FALSE(TransferOptions{.scheme = Scheme::apic}.uses_musl() || TransferOptions{.scheme = Scheme::tpic}.uses_musl());
   for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip})
     for (const bool musl : {false, true}) {
       const TransferOptions transfer = of(scheme, musl);

@@ -1,6 +1,6 @@
-#include "materials/any_law.hpp"
+#include "materials/interface/any_law.hpp"
 
-#include "materials/law_variant.hpp"
+#include "materials/interface/law_variant.hpp"
 
 namespace talus {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/error.hpp"
-#include "materials/constitutive_law.hpp"
+#include "materials/interface/constitutive_law.hpp"
 
 namespace talus {
 

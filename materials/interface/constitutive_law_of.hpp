@@ -7,7 +7,7 @@
 
 #include "core/particle_pack.hpp"
 #include "core/type_list.hpp"
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 #include "materials/strength.hpp"
 #include "materials/weakly_compressible.hpp"
 

@@ -1,4 +1,4 @@
-#include "materials/material.hpp"
+#include "materials/interface/material.hpp"
 
 #include <chrono>
 

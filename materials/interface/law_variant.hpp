@@ -3,7 +3,7 @@
 #include <variant>
 
 #include "core/type_list.hpp"
-#include "materials/any_law.hpp"
+#include "materials/interface/any_law.hpp"
 #include "materials/laws.hpp"
 
 namespace talus {

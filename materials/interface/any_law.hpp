@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "materials/constitutive_law.hpp"
+#include "materials/interface/constitutive_law.hpp"
 
 namespace talus {
 

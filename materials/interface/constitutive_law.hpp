@@ -4,9 +4,9 @@
 #include <optional>
 #include <span>
 
-#include "materials/history_rows.hpp"
+#include "materials/interface/history_rows.hpp"
+#include "materials/interface/stress_block.hpp"
 #include "materials/law.hpp"
-#include "materials/stress_block.hpp"
 
 namespace talus {
 

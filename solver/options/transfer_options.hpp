@@ -1,0 +1,71 @@
+#pragma once
+// The block `transfer` of a scene: how momentum travels between particles and nodes.
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/fields.hpp"
+
+namespace talus {
+
+enum class Scheme : std::uint8_t {
+  flip,   ///< particles take the nodes' increments                      [Brackbill & Ruppel 1986]
+  apic,   ///< affine field C = B D^-1 from the weights' second moment   [Jiang et al. 2015]
+  tpic,   ///< affine field C = L, the kernel's own velocity gradient    [Nakamura et al. 2023]
+  aflip,  ///< increments as flip, affine field as tpic                  [affine FLIP, Fei et al. 2021, ACM Trans. Graph. 40]
+};
+constexpr std::array<std::string_view, 4> enum_names(Scheme) { return {"flip", "apic", "tpic", "aflip"}; }
+
+struct TransferOptions {
+  Scheme scheme = Scheme::aflip;
+  std::optional<bool> musl{};                   ///< see uses_musl()
+  std::optional<Real> pic_damping_time{};       ///< flip, aflip: each step takes the share dt/time of the velocity from the nodes [s]
+  std::optional<Real> pic_damping_crossings{};  ///< the same, time counted in the shortest in which a wave crosses a cell [-]
+  SourceLocation where{};
+  static constexpr auto fields()
+  {
+    return std::tuple{
+        optional_choice("scheme", &TransferOptions::scheme,
+                        "flip (increments), apic (affine, own matrix), tpic (affine, velocity gradient) or aflip (increments, affine)"),
+        optional("musl", &TransferOptions::musl, any, "-",
+                 "map momentum back to the nodes before the velocity gradient is taken; default true for flip and aflip, false otherwise"),
+        optional("pic_damping_time", &TransferOptions::pic_damping_time, positive, "s",
+                 "flip and aflip: share dt/time of the nodes' velocity in each step; default none"),
+        optional("pic_damping_crossings", &TransferOptions::pic_damping_crossings, positive, "-",
+                 "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip")};
+  }
+  void check(std::vector<std::string>& problems) const
+  {
+    if ((pic_damping_time || pic_damping_crossings) && !increments())
+      problems.emplace_back("pic_damping_time and pic_damping_crossings are for schemes flip and aflip only");
+    if (pic_damping_time && pic_damping_crossings)
+      problems.emplace_back("give pic_damping_time or pic_damping_crossings, not both");
+  }
+
+  bool affine() const noexcept { return scheme != Scheme::flip; }
+  bool increments() const noexcept { return scheme == Scheme::flip || scheme == Scheme::aflip; }
+  /// Momentum goes back to the nodes before L is taken [Sulsky, Zhou & Schreyer 1995].
+  bool uses_musl() const noexcept { return musl.value_or(increments()); }
+  /// The affine field is kept beside L: it is that of the step's own velocities while L is of remapped ones, or it is not L at all.
+  bool own_affine_field() const noexcept { return scheme == Scheme::apic || (affine() && uses_musl()); }
+  /// Share of the nodes' velocity in a step of length dt [s]; `crossing` [s] is the shortest time in which a wave crosses a cell, 0 if not
+  /// known.  One share for all particles: one that differed from cell to cell would not keep the momentum.
+  Real pic_share(Real dt, Real crossing) const noexcept
+  {
+    if (pic_damping_crossings)
+      return crossing > 0 ? std::min(dt / (*pic_damping_crossings * crossing), Real{1}) : Real{0};
+    return pic_damping_time ? std::min(dt / *pic_damping_time, Real{1}) : Real{0};
+  }
+  /// These options, with the damping that a scheme has unless another is given (measured: docs/reference/kernels.md).
+  TransferOptions with_default_damping() const noexcept
+  {
+    TransferOptions all = *this;
+    if (scheme == Scheme::aflip && !pic_damping_time && !pic_damping_crossings)
+      all.pic_damping_crossings = 25;
+    return all;
+  }
+};
+
+}  // namespace talus
