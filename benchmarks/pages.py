@@ -13,7 +13,7 @@ th,td{border:1px solid #ccc;padding:.2em .5em;text-align:left}th{background:#f3f
 .pass{color:#17692b}.FAIL{color:#b00020;font-weight:bold}.changed{color:#8a5a00}pre{white-space:pre-wrap;background:#f6f6f6;padding:.5em}
 h2{margin-top:1.6em}figure{margin:1em 0}figcaption{color:#555;font-size:14px}"""
 RELATIVE = re.compile(r'<a href="(?!https?:)[^"]*">(.*?)</a>', re.S)
-HEADS = ["measured", "value", "unit", "reference", "asked", "verdict", "last release", "cells", "particles", "kernel", "transfer", "s", "MB"]
+HEADS = ["measured", "value", "unit", "reference", "criterion", "verdict", "last release", "cells", "particles", "kernel", "transfer", "s", "MB"]
 
 
 def page(title, body):

@@ -41,7 +41,7 @@ def quantity(record):
 
 
 def criterion(record):
-    """What was asked, in words."""
+    """The criterion of a result in words."""
     kind, tolerance = record["criterion"], record["tolerance"]
     if kind == "within":
         return f"within {tolerance * 100:.3g} % of reference"
@@ -60,7 +60,7 @@ def line(record):
 
 def table(records):
     """All numbers of some results as a Markdown table."""
-    rows = ["| measured | value | unit | reference | asked | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
+    rows = ["| measured | value | unit | reference | criterion | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
     for r in records:
         rows.append(f"| {r['metric']} | {number(r['value'])} | {r['unit']} | {number(r['reference'])} | {criterion(r)} | {VERDICTS[r['pass']]} "
                     f"| {(r['mesh'] or '-').split()[0]} | {r['particles'] or '-'} | {number(r['processor_seconds'])} |")
@@ -88,8 +88,8 @@ def counts(records):
 def section(document, info):
     """One case of docs/development/verification.md."""
     case, records = info["case"], of(document, "results", info["case"])
-    lines = ["", f"## {info['title']}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../../benchmarks/{case}/README.md). "
-             f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s in all.", "", *table(records), "",
+    lines = ["", f"## {info['title']}", "", f"Problem, sources and measured quantities: [benchmarks/{case}](../../benchmarks/{case}/README.md).",
+             f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s of processor time in total.", "", *table(records), "",
              f"References: {'; '.join(dict.fromkeys(r['source'] for r in records if r['source']))}."]
     lines += [f"\n{r['metric']}: {r['error']}" for r in records if "error" in r]
     for convergence in of(document, "convergence", case):
@@ -101,12 +101,12 @@ def section(document, info):
 
 
 def price(case):
-    """What accuracy costs, where `talus tradeoff` was run for the documents."""
+    """The price of accuracy, where `talus tradeoff` was run for the documents."""
     path = ROOT / "benchmarks" / case / "tradeoff.json"
     if not path.exists():
         return []
     swept = json.loads(path.read_text(encoding="utf-8"))
-    return ["", f"![Error over processor time and memory](../images/{swept['figure']})", "", f"What accuracy costs: {swept['what']}, commit {swept['commit']}.", "",
+    return ["", f"![Error over processor time and memory](../images/{swept['figure']})", "", f"Price of accuracy: {swept['what']}, commit {swept['commit']}.", "",
             *(f"* {advice}" for advice in swept["advice"])]
 
 
@@ -114,7 +114,7 @@ def first_price(cases):
     """The figure of the first case that was swept, for README.md."""
     for case in cases:
         if lines := price(case):
-            return [lines[1].replace("](../images/", "](docs/images/"), "", f"{lines[3]} Ringed: what nothing beats in both; `talus tradeoff {case}`.", *lines[4:]]
+            return [lines[1].replace("](../images/", "](docs/images/"), "", f"{lines[3]}", f"Rings mark the Pareto-optimal choices: no other is better in both (`talus tradeoff {case}`).", *lines[4:]]
     return []
 
 
@@ -124,10 +124,12 @@ def page(document):
     programs = list(dict.fromkeys(f"{c['program']['version']} ({c['program']['compiler']})" for c in document["cases"]))
     judged, passed = counts(records)
     lines = ["# Verification", "",
-             "Written by `tools/verify.sh --write-docs`; do not edit. Every number is measured by running the built program on the scene of the benchmark: "
-             "[how to run and add one](benchmarks.md).", "",
-             f"Program {', '.join(programs)}. {len(records)} numbers, {passed} passed, {judged - passed} failed, the others are reported without a verdict.", "",
-             "Seconds are processor time of the run the number comes from, on whatever machine this was; cells and particles are those of that run."]
+             "This page compares results of Talus with exact solutions, published results and experiments.",
+             "Each number is measured by running the program on the scene of the benchmark:", "[how to run and add benchmarks](benchmarks.md).",
+             "The page is written by `tools/verify.sh --write-docs`; do not edit it.", "",
+             f"Program {', '.join(programs)}. Of {len(records)} numbers {passed} passed and {judged - passed} failed; the others are reported without a verdict.", "",
+             "`cells`, `particles` and `s` (processor time in seconds) are those of the run that the number comes from.",
+             "Times of different commits may come from different machines."]
     for info in document["cases"]:
         lines += section(document, info)
     return "\n".join(lines) + "\n"
@@ -152,8 +154,9 @@ def block(document):
     shown = {case for case, _, _ in README_ROWS}
     commits = ", ".join(dict.fromkeys(info["program"]["commit"] for info in document["cases"] if info["case"] in shown))
     judged, passed = counts(document["results"])
-    note = [f"Measured at commit {commits}, default kernel and transfer unless a row names another. {len(document['cases'])} benchmarks judge {judged} numbers, of which {passed} pass:",
-            "[all of them](docs/development/verification.md), also those that fail."]
+    note = [f"Measured at commit {commits}, with the default kernel and transfer unless a row names another.",
+            f"{len(document['cases'])} benchmarks judge {judged} numbers, of which {passed} pass.",
+            "[Verification](docs/development/verification.md) lists all of them, also those that fail."]
     return "\n".join([*rows, "", *note, "", *first_price([info["case"] for info in document["cases"]])]).rstrip()
 
 

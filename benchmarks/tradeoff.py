@@ -41,7 +41,7 @@ def combinations(axes, everything):
 
 
 def front(points):
-    """Indices of the points (cost, error) that no other point beats or equals in one and beats in the other, by cost."""
+    """Indices of the Pareto-optimal points (cost, error), by cost: no other point is at least as good in both and better in one."""
     best, found = np.inf, []
     for i in sorted(range(len(points)), key=lambda i: points[i]):
         if points[i][1] < best:
@@ -69,11 +69,12 @@ def advice(points):
 
 def sentence(targets, point, points):
     """One line of advice."""
-    shares = f"{', '.join(f'{target * 100:g}' for target in targets)} % error"
+    shares = [f"{target * 100:g}" for target in targets]
+    errors = f"{', '.join(shares[:-1])} or {shares[-1]} %" if len(shares) > 1 else f"{shares[0]} %"
     if point is None:
         best = min(points, key=lambda p: p["error"])
-        return f"{shares} is not reached; the least is {percent(best['error'])} with {best['name']}: {cost(best)}."
-    return f"For {shares} the cheapest is {point['name']}: {cost(point)}, error {percent(point['error'])}."
+        return f"An error of {errors} is not reached; the smallest is {percent(best['error'])} with {best['name']} ({cost(best)})."
+    return f"Cheapest choice for {errors} error: {point['name']} ({cost(point)}, error {percent(point['error'])})."
 
 
 def cost(point):
