@@ -74,7 +74,7 @@ def sentence(targets, point, points):
     if point is None:
         best = min(points, key=lambda p: p["error"])
         return f"An error of {errors} is not reached; the smallest is {percent(best['error'])} with {best['name']} ({cost(best)})."
-    return f"Cheapest choice for {errors} error: {point['name']} ({cost(point)}, error {percent(point['error'])})."
+    return f"Cheapest for {errors} error: {point['name']} ({cost(point)}, error {percent(point['error'])})."
 
 
 def cost(point):
