@@ -1,5 +1,6 @@
 #pragma once
-// Linear shape functions at the particles, sparse operators at the nodes: a continuous gradient with the integration constraint, at the cost of linear shape functions.
+// The kernel `projected`: linear shape functions at the particles and sparse operators at the nodes.  Its gradient is continuous and
+// satisfies the integration constraint, at about the cost of linear shape functions.
 #include "kernels/linear.hpp"
 #include "kernels/node_operators.hpp"
 #include "kernels/projected_options.hpp"
@@ -29,7 +30,7 @@ class Projected {
   Claims claims() const noexcept
   {
     return {.non_negative = true,
-            .linear_values = true,  // up to walls that are flat
+            .linear_values = true,  // up to flat walls
             .linear_gradients = true,
             .continuous_values = true,
             .continuous_gradient = true,
@@ -45,7 +46,7 @@ class Projected {
     hats_.evaluate(cell, x, count, out);
   }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
-  /// Nodes that have no positive weights which keep linear fields, and are treated as corners, ascending.
+  /// Nodes without positive weights that are exact for linear fields, ascending; they are treated as corners.
   std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }
 
  private:

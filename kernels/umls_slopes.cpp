@@ -1,4 +1,4 @@
-// The exact slopes of the values of moving least squares.
+// The exact gradients of the values of moving least squares.
 #include "kernels/umls_samples.hpp"
 
 namespace talus {

@@ -1,14 +1,15 @@
 #pragma once
-// Value stencils of a set of node operators: with which weights the linear shape function of a node stands for the unknowns of its ring.
+// Value stencils of node operators: the weights of the unknowns of a ring in the linear shape function of its node.
 #include "mesh/mesh.hpp"
 
 namespace talus {
 
-/// Rows of largest entropy, and the nodes for which there are none.
+/// Rows of maximum entropy, and the nodes without such a row.
 struct MaxentValues {
   std::vector<Real> S;  ///< rows on the entries of mesh.ring_of_node()
   std::vector<Index>
-      as_corners;  ///< nodes whose row is the node itself because no positive weights keep linear fields: treated as corners, ascending
+      /// nodes whose row is the node itself, because no positive weights are exact for linear fields; treated as corners, ascending
+      as_corners;
 };
 
 /// Weights of largest entropy about the prior a (1 for the node itself, `alpha` for its neighbours) under sum S_nv (x_v - x_n) = 0

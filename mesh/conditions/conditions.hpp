@@ -1,5 +1,5 @@
 #pragma once
-// The list of boundary conditions: what a scene may name, what the contract tests run over.  A new condition is one line here.
+// The list of boundary conditions: the types that a scene may name and that the contract tests check.  A new condition is one line here.
 #include <concepts>
 
 #include "core/type_list.hpp"
@@ -12,7 +12,7 @@
 
 namespace talus {
 
-/// Where several conditions hold all components of a node, the one that comes first here does.
+/// All conditions.  Where several prescribe all components of a node, the first one of this list does.
 // clang-format off
 template <int D>
 using Conditions = TypeList<
@@ -104,7 +104,7 @@ inline const BoundaryCommon& common_of(const BoundaryOptions& boundary)
   return std::visit([](const BoundaryCommon& options) -> const BoundaryCommon& { return options; }, boundary);
 }
 
-/// f.template operator()<C>() for the condition that has these options.
+/// Calls f.template operator()<C>() for the condition with these options.
 template <class Options, int D, class F>
 void with_condition_of(F&& f)
 {
