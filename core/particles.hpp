@@ -72,7 +72,7 @@ struct Particles {
   }
 
  private:
-  /// Calls plain(name, unit, column) for columns of fixed precision and kept(...) for those whose precision the scene chooses.
+  /// Calls plain(name, unit, column) for columns of fixed precision, and the other function for those whose precision the scene chooses.
   template <class Self, class Plain, class Kept>
   static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& saved)
   {

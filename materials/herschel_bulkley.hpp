@@ -1,5 +1,5 @@
 #pragma once
-// Mud, debris, fresh concrete: a fluid that flows above a yield stress, with a viscosity that depends on the rate.
+// Mud, debris flows and fresh concrete: a fluid with a yield stress and a viscosity that depends on the shear rate.
 #include <fmt/format.h>
 
 #include <limits>
@@ -36,7 +36,7 @@ struct HerschelBulkley : WeaklyCompressible {
             optional("highest_rate", &Law::highest_rate, positive, "1/s",
                      "shear rate above which the power law keeps its viscosity; for a flow_index above 1, and needed there")});
   }
-  /// A power law that thickens needs an end.
+  /// Appends an error if a shear-thickening law has no highest rate.
   void check(std::vector<std::string>& problems) const
   {
     if (flow_index > 1 && !highest_rate)
@@ -45,7 +45,7 @@ struct HerschelBulkley : WeaklyCompressible {
       problems.push_back(fmt::format("highest_rate needs a flow_index above 1, here {}", flow_index));
   }
 
-  /// The yield stress; what flows is as viscous as before.
+  /// Divides the yield stress by a factor; the viscosity of the flow stays.
   void divide_strength(Real factor) noexcept { yield_stress /= factor; }
 
   using State = FluidHistory;
@@ -57,7 +57,7 @@ struct HerschelBulkley : WeaklyCompressible {
     return {.slowest = flow_index < 1 ? 1 / regularisation : 0, .fastest = highest_rate.value_or(std::numeric_limits<Real>::infinity())};
   }
 
-  /// Pa s at a shear rate [1/s].
+  /// The viscosity [Pa s] at a shear rate [1/s].
   template <class T = Real>
   T viscosity(const std::type_identity_t<T>& rate, const Constants& c) const noexcept
   {
@@ -87,7 +87,8 @@ struct HerschelBulkley : WeaklyCompressible {
   {
     return sound_speed<T>(F.determinant());
   }
-  /// 4/3 of the largest viscosity over density; that of a shear-thickening fluid is counted as if rest and highest_rate met.
+  /// 4/3 of the largest viscosity over density [m^2/s]; for a shear-thickening fluid the sum of the viscosities at rest and at
+  /// highest_rate.
   Real diffusivity(const Constants& c) const noexcept
   {
     const Real power = std::pow(flow_index > 1 ? c.fastest : c.slowest, flow_index - 1);

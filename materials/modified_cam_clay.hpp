@@ -1,5 +1,5 @@
 #pragma once
-// Clay that hardens by compaction: the ellipse of Cam clay on elasticity whose pressure grows exponentially.
+// Clay that hardens by compaction: the ellipse of Cam clay on elasticity with an exponential pressure.
 #include <string>
 #include <string_view>
 
@@ -41,9 +41,10 @@ struct ModifiedCamClay {
         required("reference_pressure", &Law::reference_pressure, positive, "Pa",
                  "swelling_index times the bulk modulus at zero pressure, K = (p + reference_pressure) / swelling_index")};
   }
-  /// Rules between parameters.
+  /// Appends the violated rules between parameters.
   void check(std::vector<std::string>& problems) const;
-  /// tan(phi) of the friction angle in triaxial compression that M stands for, sin(phi) = 3 M / (6 + M); the preconsolidation stays.
+  /// Divides tan(phi) by a factor, where phi is the friction angle in triaxial compression that corresponds to M, sin(phi) = 3 M / (6 + M);
+  /// the preconsolidation stays.
   void divide_strength(Real factor) noexcept;
 
   struct State {
@@ -62,7 +63,7 @@ struct ModifiedCamClay {
   };
 
   struct Constants {
-    Real shear, reference, preconsolidation;  ///< Pa
+    Real shear, reference, preconsolidation;  ///< stresses [Pa]
     Real slope;                               ///< M [-]
     Real swelling, plastic;                   ///< kappa and lambda - kappa [-]
     Real pressure(Real compression) const noexcept { return reference * std::expm1(compression / swelling); }
@@ -71,14 +72,16 @@ struct ModifiedCamClay {
   Constants constants() const noexcept;
 
   Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
-  /// A stress outside the ellipse raises the preconsolidation to where it is on it; tension opens with the first step.
+  /// Sets the history for a stress.  A stress outside the ellipse raises the preconsolidation so that the stress lies on it; tension opens
+  /// the material in the first step.
   void prestress(const Mat3& stress, State& state) const noexcept;
-  /// (q^2 / M^2 + p (p - pc)) / pc of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is that over J.
+  /// The yield function (q^2 / M^2 + p (p - pc)) / pc [Pa] of the Kirchhoff stress that belongs to the elastic strain of `state`; the
+  /// Cauchy stress is the Kirchhoff stress over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
-  /// Of material that came to F from rest by elastic strain: without the history, plastic compaction makes the bound loose, and a prestress
-  /// or dilation may make the material stiffer than told.
+  /// A bound for material that reached F from rest by elastic strain.  Without the history, plastic compaction makes the bound large, and
+  /// after a prestress or dilation the material may be stiffer than the bound.
   Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
-  /// Of the elastic strain in the history: rho_0 c^2 = K + 4/3 G - (Kirchhoff stress)_nn.
+  /// The wave speed from the elastic strain in the history: rho_0 c^2 = K + 4/3 G - (Kirchhoff stress)_nn.
   Real wave_speed(const Mat3& F, const State& state, const Constants& c) const noexcept;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Root of one equation with one unknown, found whatever the slope does: for return maps.
+// The root of one equation with one unknown for any slope of the function, for return maps.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// A function at a point.
+/// The value of a function and its slope at a point.
 template <class T>
 struct ValueAndSlopeOf {
   T value, slope;
@@ -27,8 +27,8 @@ T positive_root(F&& f, std::type_identity_t<T> high, const std::type_identity_t<
   using std::abs, std::isfinite, std::min, std::sqrt;
   constexpr Real last_step = 1e-6;
   constexpr Real rounding = 1e-15;
-  constexpr int enough = 100;               // bisections of a bracket of one order of magnitude down to rounding take 52
-  T low = 0, down = 1e-2, step = 2 * high;  // a step may go anywhere in the bracket once, then it must halve
+  constexpr int enough = 100;               // bisections of a bracket of one order of magnitude to round-off take 52
+  T low = 0, down = 1e-2, step = 2 * high;  // the first step may go anywhere in the bracket, later ones must halve
   const auto middle = [&](const MaskOf<T>& asked) -> T {
     down = where(asked && low <= 0, down * down, down);
     return where(low > 0, sqrt(low) * sqrt(high), high * down);
