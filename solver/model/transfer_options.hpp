@@ -1,5 +1,5 @@
 #pragma once
-// How momentum travels between particles and nodes: what a scene chooses.
+// Options of the transfer of momentum between particles and nodes.
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -17,16 +17,17 @@ enum class Scheme : std::uint8_t {
 
 struct TransferOptions {
   Scheme scheme = Scheme::flip;
-  bool musl = true;                           ///< momentum goes back to the nodes before L is taken   [Sulsky, Zhou & Schreyer 1995]
-  std::optional<Real> pic_damping_time;       ///< flip, aflip: each step takes the share dt/time of the velocity from the nodes [s]
-  std::optional<Real> pic_damping_crossings;  ///< the same, time counted in the shortest in which a wave crosses a cell [-]
+  bool musl = true;                           ///< momentum returns to the nodes before L is computed   [Sulsky, Zhou & Schreyer 1995]
+  std::optional<Real> pic_damping_time;       ///< flip, aflip: in each step the fraction dt/time of the velocity comes from the nodes [s]
+  std::optional<Real> pic_damping_crossings;  ///< the same time in units of the shortest wave transit time of a cell [-]
 
   bool affine() const noexcept { return scheme != Scheme::flip; }
   bool increments() const noexcept { return scheme == Scheme::flip || scheme == Scheme::aflip; }
-  /// The affine field is kept beside L: it is that of the step's own velocities while L is of remapped ones, or it is not L at all.
+  /// Whether the affine field is stored separately from L: it is that of the step's own velocities while L is that of remapped ones, or it
+  /// differs from L.
   bool own_affine_field() const noexcept { return scheme == Scheme::apic || (affine() && musl); }
-  /// Share of the nodes' velocity in a step of length dt [s]; `crossing` [s] is the shortest time in which a wave crosses a cell, 0 if not
-  /// known.  One share for all particles: one that differed from cell to cell would not keep the momentum.
+  /// The fraction of the nodes' velocity in a step of length dt [s]; `crossing` [s] is the shortest wave transit time of a cell, 0 if
+  /// unknown.  It is equal for all particles: a fraction that differs between cells would not conserve momentum.
   Real pic_share(Real dt, Real crossing) const noexcept
   {
     if (pic_damping_crossings)

@@ -1,5 +1,5 @@
 #pragma once
-// Particles of a cell, four at a time, and what they see of the nodes.
+// Particles of a cell, four at a time, and the nodal values interpolated to them.
 #include <span>
 
 #include "core/particles.hpp"
@@ -8,27 +8,27 @@
 
 namespace talus {
 
-/// Up to four particles, side by side in the lanes of packs; their columns are kept in numbers S.
+/// Up to four particles, one per lane; their columns are stored in numbers of type S.
 template <class S>
 struct ParticlePackOf {
-  std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
+  std::size_t p[pack_size];  ///< rows; the last one is repeated if there are fewer than four
   int count;
 
-  /// Those of `rows` from `begin` on.
+  /// The pack of up to four of `rows` from `begin` on.
   ParticlePackOf(std::span<const Index> rows, std::size_t begin) noexcept
       : count(static_cast<int>(std::min<std::size_t>(pack_size, rows.size() - begin)))
   {
     for (std::size_t lane = 0; lane < pack_size; ++lane)
       p[lane] = static_cast<std::size_t>(rows[std::min(begin + lane, rows.size() - 1)]);
   }
-  /// f(p) of every lane.
+  /// Calls f(p) for every lane.
   template <class F>
   Pack lanes(F&& f) const noexcept
   {
     return Pack{f(p[0]), f(p[1]), f(p[2]), f(p[3])};
   }
 
-  /// The particles' entries of a column: numbers, vectors or tensors.
+  /// The entries of a column for these particles: numbers, vectors or tensors.
   template <class Value, Rest rest>
   [[gnu::always_inline]] auto load(const ParticleColumn<Value, rest>& column) const noexcept
   {
@@ -104,7 +104,7 @@ struct ParticlePackOf {
 };
 using ParticlePack = ParticlePackOf<Real>;
 
-/// f(S()) with the numbers the particles are kept in.
+/// Calls f(S()) with the number type in which the particles are stored.
 template <int D, class F>
 decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
 {
@@ -113,7 +113,7 @@ decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
   return f(Real());
 }
 
-/// Asks memory for the rows of a particle in some columns.
+/// Prefetches the rows of a particle in some columns.
 template <class S>
 struct Prefetch {
   template <class... Columns>
@@ -133,7 +133,7 @@ struct Prefetch {
   {
     return column.data();
   }
-  /// The end of a row that fills no whole line is asked for with the row after it.
+  /// The end of a row that does not fill a cache line is prefetched with the next row.
   template <class Row>
   static void lines(const Row* row) noexcept
   {
@@ -143,7 +143,7 @@ struct Prefetch {
   }
 };
 
-/// f(pack) for all rows, four at a time; ask(p) for each row before its turn.
+/// Calls f(pack) for all rows, four at a time, and ask(p) for each row before it is used.
 template <class S = Real, class F, class Ask = AskForNothing>
 void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
 {
@@ -153,7 +153,7 @@ void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
     f(ParticlePackOf<S>(rows, begin));
   }
 }
-/// f(pack, x) for the particles of a run, four at a time.
+/// Calls f(pack, x) for the particles of a cell batch, four at a time.
 template <class S, int D, class F>
 void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
 {
@@ -166,7 +166,7 @@ void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& place
   });
 }
 
-/// What four particles see of the nodes.
+/// Nodal values interpolated to four particles.
 template <int D>
 struct Seen {
   Pack v[D], change[D];  ///< sum w v,  sum w change  [m/s]

@@ -1,12 +1,12 @@
 #pragma once
-// What particles of a cell deposit on its stencil: mass, momentum and force through the weights of a kernel.
+// The contributions of the particles of a cell to its stencil: mass, momentum and force through the weights of a kernel.
 #include "kernels/kernel.hpp"
 #include "solver/halo/block_rows.hpp"
 #include "solver/state/particle_pack.hpp"
 
 namespace talus {
 
-/// Sums over the stencil of one cell, one array per component so that lanes run over nodes.
+/// Sums over the stencil of one cell, one array per component so that lanes are nodes.
 template <int D, int N>
 struct CellSums {
   alignas(64) Real mass[N];
@@ -21,7 +21,7 @@ struct CellSums {
       std::fill_n(force[i], n, 0.0);
     }
   }
-  /// `lightest` [kg] of the particles summed.
+  /// Adds the sums to the rows; `lightest` [kg] is the mass of the lightest particle summed.
   template <class Sum>
   void add_to(std::span<Sum> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
