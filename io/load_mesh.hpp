@@ -1,5 +1,5 @@
 #pragma once
-// The mesh a scene asks for, wherever it comes from: a .msh file, gmsh, or the built-in box.
+// The mesh of a scene from any source: a .msh file, gmsh, or the built-in box.
 #include <filesystem>
 
 #include "io/scene/scene.hpp"
@@ -17,7 +17,7 @@ namespace talus {
 template <int D>
 MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directory);
 
-/// The same, checked and renumbered; what Mesh refuses becomes SceneErrors, too.
+/// The mesh, checked and renumbered; errors of Mesh become SceneErrors too.
 template <int D>
 Mesh<D> load_mesh(const MeshSpec& spec, const std::filesystem::path& directory);
 

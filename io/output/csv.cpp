@@ -1,4 +1,4 @@
-// Comma-separated histories, written row by row and read back whole.
+// Comma-separated tables, written row by row and read back as a whole.
 #include "io/output/csv.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ std::string row(std::span<const Real> values)
   for (std::size_t c = 0; c < values.size(); ++c) {
     line += c == 0 ? "" : ",";
     if (!std::isnan(values[c]))
-      fmt::format_to(std::back_inserter(line), "{}", values[c]);  // {}: the shortest text with the same bits
+      fmt::format_to(std::back_inserter(line), "{}", values[c]);  // {}: the shortest text that gives bitwise the same number
   }
   return line + '\n';
 }
@@ -162,7 +162,7 @@ void HistoryFile::append(std::span<const Real> values)
 
 void HistoryFile::flush() const
 {
-  if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL)  // of what is no file
+  if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL)  // EINVAL: not an ordinary file
     throw EnvironmentError(fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));
 }
 
