@@ -1,5 +1,5 @@
 #pragma once
-// The block `watch` of a scene: what a run is watched for, and what becomes of it then.
+// The block `watch` of a scene: limits of a run, and the action if one is exceeded.
 #include <array>
 #include <optional>
 #include <string_view>
