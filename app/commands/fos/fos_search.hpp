@@ -18,17 +18,19 @@ struct AtRest {
   Real settlement() const noexcept { return gravity * height * height / (wave_speed * wave_speed); }
 };
 
-/// How long a trial takes [s]: three times in which a stone falls half the height, or waves have passed it twenty times; in two digits.
+/// The default duration of a trial [s]: three times the free fall over half the height, or twenty wave transit times, whichever is longer;
+/// rounded to two digits.
 Real usual_duration(const AtRest& bodies) noexcept;
 
-/// Two measures of whether a slope goes on, of a history from the moment its strength was divided.
+/// Two measures of whether a slope fails, from the history after its strength was divided.
 struct Motion {
-  Real moved = 0;       ///< at the end [m]: the largest of the columns looked at
-  Real growth = 0;      ///< moved in the second half of the time over that in the first, or over half of the settlement if that is more
-  Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak
-  Real duration = 0;    ///< s
+  Real moved = 0;  ///< displacement at the end, the largest of the columns [m]
+  /// displacement in the second half of the time over that in the first half, or over half of the settlement if that is larger [-]
+  Real growth = 0;
+  Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak [-]
+  Real duration = 0;    ///< duration of the trial [s]
 };
-/// Nothing if the history does not have the columns, or no two rows.
+/// Nothing if the history does not have the columns or has less than two rows.
 std::optional<Motion> motion_of(const HistoryTable& history, std::span<const std::string> moved, const AtRest& bodies);
 
 enum class Verdict : std::uint8_t { holds, fails, unclear };
