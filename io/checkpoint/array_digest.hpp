@@ -27,7 +27,7 @@ struct Pieces {
   Slice all;  // all rows, from row 0 on
   std::vector<std::uint64_t> digests;
 
-  /// The digests as stored: one for each piece, and one of all if there are several pieces.
+  /// The words to be stored: the digest of each piece; if there are several pieces, preceded by their size and lead.
   std::vector<std::uint64_t> words() const
   {
     std::vector<std::uint64_t> saved;

@@ -133,7 +133,7 @@ void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, H
   for (const NeighbourRank& border : copies.borders())
     parallel_for(static_cast<Index>(border.out.size()), [&](Index i) { add_up(border.out[static_cast<std::size_t>(i)]); });
   copies.send(sum, What{});
-  parallel_for(static_cast<Index>(sum.size()), add_up);  // all sums once more: cheaper than to find out which have changed
+  parallel_for(static_cast<Index>(sum.size()), add_up);  // repeats the few sums above, which is cheaper than to leave them out
   copies.take(sum, What{});
 }
 
