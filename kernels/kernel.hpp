@@ -31,12 +31,12 @@ struct NodeWeights {
   alignas(64) Real dw[D][N];
 };
 
-/// The weights of up to four particles of a cell in factors.  With numbers s_v and y_v of the nodes and the rest common to all nodes,
+/// The weights of up to four particles of a cell as factors.  With s_v and y_v for each node, and the rest common to all nodes,
 ///
 ///     w_v = s_v (value - slope . y_v)        G_v = s_v (H y_v - shift)
 ///
-/// H is symmetric.  Sums over a stencil then need products with s_v and s_v y_v only, and H is applied once per particle.  Lanes of
-/// packs are particles; those of particles that are not there repeat the last one.  Lives on the stack; y belongs to the open cell.
+/// H is symmetric.  Sums over a stencil then need products with s_v and s_v y_v only, and H is applied once per particle.  Lanes of packs
+/// are particles; missing ones repeat the last particle.  Lives on the stack; y belongs to the open cell.
 template <int D, int N>
 struct Weights {
   alignas(64) Real s[pack_size][N];

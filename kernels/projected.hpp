@@ -8,14 +8,15 @@
 
 namespace talus {
 
-/// With the linear shape functions N_n of the cell's vertices, S the values of largest entropy (kernels/value_stencils.hpp) and D the averaged gradient
-/// (kernels/node_operators.hpp):
+/// The kernel with the linear shape functions N_n of the cell's vertices, the values S of maximum entropy (kernels/value_stencils.hpp) and
+/// the averaged gradient D (kernels/node_operators.hpp):
 ///
 ///     w_v(x) = sum_n N_n(x) S_nv          G_v(x) = sum_n N_n(x) D_nv
 ///
-/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles see linear shape functions
-/// only: a scatter goes to the vertices of the cell, the transposed operators carry it on to the unknowns, and back.
-/// Relatives: dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys. 230].
+/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles use linear
+/// shape functions only: a scatter adds to the vertices of the cell, the transposed operators map these sums to the unknowns, and the
+/// operators map the motion back.  A related method is the dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys.
+/// 230].
 template <int D>
 class Projected {
  public:

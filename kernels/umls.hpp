@@ -7,16 +7,16 @@ namespace talus {
 
 /// Moving least squares with sample weights W_v(x) = eta_v(x) d(|x_v - x| / R(x)).
 ///
-/// eta_v = sum of the barycentric coordinates of those vertices of the cell that are adjacent to v (or are v): it fades a node out
-/// before the particle enters a cell that does not see it.  d is the quadratic B-spline of support 1.5 R and R(x) interpolates
-/// a radius R_v per vertex.  Values and gradients are the least-squares estimate of a linear field and of its slope at x, in the
-/// centred form: with r_v = x_v - x,
+/// eta_v is the sum of the barycentric coordinates of the vertices of the cell that are adjacent to v (or are v); with it the weight of a
+/// node vanishes before the particle enters a cell whose stencil does not contain the node.  d is the quadratic B-spline of support 1.5 R,
+/// and R(x) interpolates a radius R_v per vertex.  Values and gradients are the least-squares estimate of a linear field and of its
+/// gradient at x, in the centred form: with r_v = x_v - x,
 ///
 ///     W0 = sum W_v     c = sum W_v r_v / W0     S = sum W_v (r_v - c)(r_v - c)^T
 ///     G_v = W_v S^-1 (r_v - c)                  w_v = W_v / W0 - c . G_v
 ///
-/// R_v = h_v (mean length of the edges at v), times 1.25 or 1.5 for vertices of cells with a badly conditioned S, decided once.
-/// Where S is unusable even so, the particle takes the linear shape functions of its cell.  Linear fields are exact either way.
+/// R_v = h_v (mean length of the edges at v), times 1.25 or 1.5 for vertices of cells with a badly conditioned S, determined once.  If S is
+/// still singular, the particle uses the linear shape functions of its cell.  Linear fields are exact in either case.
 template <int D>
 class Umls {
  public:

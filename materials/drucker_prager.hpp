@@ -23,10 +23,10 @@ struct ConeOf {
 };
 using Cone = ConeOf<Real>;
 
-/// Drucker-Prager with non-associated flow (g = tau + q_psi s) in Kirchhoff stress and logarithmic strain, return by backward Euler;
-/// isotropy makes the return act on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens where the
-/// mean stress reaches the cut-off or the tip of the cone: the opened volume is kept, and closes at zero mean stress before
-/// compression is felt again.  Formulas and numbers: docs/reference/materials.md.
+/// Drucker-Prager with non-associated flow (g = tau + q_psi s) in Kirchhoff stress and logarithmic strain, with the return by backward
+/// Euler; for isotropic elasticity the return acts on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens
+/// where the mean stress reaches the cut-off or the tip of the cone: the opened volume is stored and must close at zero mean stress before
+/// the material is compressed again.  Formulas and numbers: docs/reference/materials.md.
 struct DruckerPrager : ConePlastic, SoilStrength {
   static constexpr std::string_view name = "drucker_prager";
   static constexpr std::string_view summary =

@@ -10,11 +10,11 @@
 
 namespace talus {
 
-/// Pressure from compression and energy, about the Hugoniot shock speed = c0 + s (particle speed).  With e = 1 - V/V0 and the internal
-/// energy E per initial volume
+/// Pressure from compression and internal energy, relative to the Hugoniot with shock speed = c0 + s (particle speed).  With e = 1 - V/V0
+/// and the internal energy E per initial volume
 ///     p = rho0 c0^2 e (1 - gamma e / 2) / (1 - s e)^2 + gamma E    in compression,
 ///     p = rho0 c0^2 (V0/V - 1) + gamma E                           in tension.       [Meyers 1994, ch. 5]
-/// Beyond 90 % of the pole e = 1/s the cold part goes on along its tangent.
+/// Beyond 90 % of the pole e = 1/s the cold part is continued along its tangent.
 struct MieGruneisen {
   Real c0{}, s{}, gamma{};
   static constexpr auto fields()

@@ -80,7 +80,7 @@ struct JohnsonCookMetal : Elasticity {
     T plastic_strain, plastic_work, temperature, damage, energy;
     bool keeps_damage, keeps_energy;
   };
-  /// Nothing, and no change of the memory, if somewhere there is no answer.
+  /// Returns nothing, and changes no history, if the law has no solution in some lane.
   template <class T>
   std::optional<Mat3Of<T>> update(const IncrementOf<T>& in, Memory<T>& memory, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, Sym3& elastic_left) const noexcept;
@@ -99,10 +99,11 @@ struct EnergyHistory {
 template <>
 struct EnergyHistory<false> {};
 
-/// Johnson & Cook's strength on logarithmic elasticity, return by backward Euler.  The Cauchy stress yields where
-///     sqrt(3 J2) = (A + B p^n) (1 + C ln(max(rate / reference_rate, 1))) (1 - T*^m),
-/// p the plastic strain, `rate` that of the step, T* = (T - T_room) / (T_melt - T_room) within [0, 1].  Plastic work heats the particle
-/// within the same solve, by the trapezoidal rule.  History is what the optional groups need: `with_damage`, `with_energy`.
+/// The strength of Johnson & Cook on logarithmic elasticity, with the return by backward Euler.  The Cauchy stress yields where
+///     sqrt(3 J2) = (A + B p^n) (1 + C ln(max(rate / reference_rate, 1))) (1 - T*^m)
+/// with the plastic strain p, the rate of the step and T* = (T - T_room) / (T_melt - T_room) within [0, 1].  Plastic work heats the
+/// particle within the same solution, by the trapezoidal rule.  The history contains what the optional groups need: `with_damage`,
+/// `with_energy`.
 template <bool with_damage, bool with_energy>
 struct JohnsonCookOf : JohnsonCookMetal {
   static constexpr std::string_view name = "johnson_cook";

@@ -18,10 +18,10 @@ struct Ending {
   Real p, q, compaction;
 };
 
-/// Backward Euler from a trial state outside the ellipse, in one unknown.  With the compaction x of the step
+/// The return by backward Euler from a trial state outside the ellipse, with one unknown.  With the compaction x of the step
 ///     p = p(compression - x),   pc = start exp(x / plastic),   q = q_trial / (1 + 6 G m / M^2),   multiplier m = x / (2 p - pc).
-/// On either side of the critical state x runs from 0 to where 2 p = pc; m grows from 0 to infinity, q falls to 0, so that the ellipse is
-/// crossed in between.
+/// On either side of the critical state x runs from 0 to where 2 p = pc; m increases from 0 to infinity and q decreases to 0, so the
+/// ellipse is crossed in between.
 struct EllipseReturn {
   const ModifiedCamClay::Constants& c;
   Real compression, q_trial, start;

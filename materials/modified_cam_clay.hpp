@@ -7,18 +7,18 @@
 
 namespace talus {
 
-/// Modified Cam clay (Roscoe & Burland 1968) in Kirchhoff stress and logarithmic strain, associated, return by backward Euler in the form
-/// of Borja & Tamagnini 1998 (CMAME 155, 73).  Pressure p = -tr/3 and shear stress q = sqrt(3 J2), compression positive:
+/// Modified Cam clay (Roscoe & Burland 1968) in Kirchhoff stress and logarithmic strain, associated, with the return by backward Euler in
+/// the form of Borja & Tamagnini 1998 (CMAME 155, 73).  Pressure p = -tr/3 and shear stress q = sqrt(3 J2), compression positive:
 ///     elastic     p = reference_pressure (exp(-e / swelling_index) - 1), e the elastic logarithmic volume strain; shear modulus constant
 ///     yield       q^2 / M^2 + p (p - pc) = 0
 ///     hardening   pc = preconsolidation_pressure exp(-plastic_volume / (compression_index - swelling_index)).
-/// The -1 is what differs from the usual form: it makes zero strain stress-free, and p + reference_pressure the pressure of which
-/// swelling lines are logarithmic.  The elasticity has a potential: closed cycles inside the ellipse cost nothing.
+/// The -1 differs from the usual form: with it zero strain is stress-free, and swelling lines are logarithmic in p + reference_pressure.
+/// The elasticity has a potential: closed cycles inside the ellipse do not dissipate.
 ///
-/// Cam clay bears no tension.  Where the trial pressure falls to zero the material opens: it is free of stress, the volume is kept and closes
-/// before compression is felt again, and the preconsolidation stays.  At positive pressure, however small, it dilates and softens along the
-/// dry side of the ellipse instead; the two join with an error in q of M sqrt(K de pc), de the strain of a step, K = reference_pressure /
-/// swelling_index.
+/// Cam clay bears no tension.  Where the trial pressure falls to zero the material opens: it is stress-free, the opened volume is stored
+/// and must close before the material is compressed again, and the preconsolidation stays.  At positive pressure, however small, it dilates
+/// and softens along the dry side of the ellipse instead; the two cases join with an error in q of M sqrt(K de pc), with the strain de of a
+/// step and K = reference_pressure / swelling_index.
 struct ModifiedCamClay {
   static constexpr std::string_view name = "modified_cam_clay";
   static constexpr std::string_view summary =

@@ -15,11 +15,11 @@ struct ShearStrength {
   Real cohesive;  ///< cohesion times cosine of the angle of friction [Pa]
 };
 
-/// Mohr-Coulomb with non-associated flow (the same form with the angle of dilation) and a Rankine limit of tension, in Kirchhoff stress and
-/// logarithmic strain.  The return is backward Euler, exact: to a plane, an edge, a corner or the apex in principal stresses (Clausen,
-/// Damkilde & Andersen 2006, IJNME 66, 1831; de Souza Neto, Peric & Owen 2008, ch. 8); isotropy makes it act on the elastic logarithmic
-/// strain itself (Simo 1992, CMAME 99, 61).  Material that all three principal stresses pull open keeps the opened volume, which closes at
-/// zero mean stress before compression is felt again; a crack across one direction alone is not kept.
+/// Mohr-Coulomb with non-associated flow (of the same form with the angle of dilation) and a Rankine limit of tension, in Kirchhoff stress
+/// and logarithmic strain.  The return is backward Euler, exact: to a plane, an edge, a corner or the apex in principal stresses (Clausen,
+/// Damkilde & Andersen 2006, IJNME 66, 1831; de Souza Neto, Peric & Owen 2008, ch. 8); for isotropic elasticity it acts on the elastic
+/// logarithmic strain itself (Simo 1992, CMAME 99, 61).  If the material opens in all three principal directions, the opened volume is
+/// stored and must close at zero mean stress before the material is compressed again; a crack across one direction only is not stored.
 struct MohrCoulomb : HenckyPlastic, SoilStrength {
   static constexpr std::string_view name = "mohr_coulomb";
   static constexpr std::string_view summary =

@@ -13,8 +13,8 @@ namespace talus {
 ///     mu(I) = mu_s + (mu_2 - mu_s) / (1 + I_0 / I),    I = g d sqrt(rho_s / p)         [Jop, Forterre & Pouliquen 2006, Nature 441, 727]
 /// where g is the rate of plastic shear, as elasto-viscoplasticity on the elastic logarithmic strain.  Flow keeps the volume.  A step is
 /// implicit, tau_trial - G dt g = mu(I(g)) p, in closed form (Dunatunga & Kamrin 2015, J. Fluid Mech. 779, 483).  Without pressure the
-/// material opens freely; the opened volume is kept and closes before compression is felt, as in DruckerPrager.  With mu_2 = mu_s this
-/// is a Drucker-Prager cone of slope mu_s without cohesion and dilation.
+/// material opens freely; the opened volume is stored and must close before the material is compressed again, as in DruckerPrager.  With
+/// mu_2 = mu_s this is a Drucker-Prager cone of slope mu_s without cohesion and dilation.
 struct MuI : ConePlastic {
   static constexpr std::string_view name = "mu_i";
   static constexpr std::string_view summary =

@@ -7,8 +7,8 @@
 namespace talus {
 
 /// stress = -p(J) I + 2 mu dev(D) + zeta tr(D) I.        [Landau & Lifshitz, Fluid Mechanics, section 15]
-/// Without tension the mean stress never exceeds zero.  The viscous stress is that of the whole step: the step is explicit in the
-/// viscosity, which bounds it through diffusivity().
+/// Without tension the mean stress never exceeds zero.  The viscous stress is constant over a step: the method is explicit in the
+/// viscosity, which limits the step through diffusivity().
 struct Newtonian : WeaklyCompressible {
   static constexpr std::string_view name = "newtonian";
   static constexpr std::string_view summary =

@@ -16,11 +16,11 @@ struct ValueAndSlopeOf {
 };
 using ValueAndSlope = ValueAndSlopeOf<Real>;
 
-/// The x in (0, high] where a falling function f, with f(0) > 0 >= f(high), is zero.  Newton's method from `guess`.  Where that would
-/// leave the bracket, or does not halve its own step (infinite slopes at zero do both), the bracket is halved by magnitude, so that roots
-/// of 1e-200 are found as well.  It ends with the first Newton step below 1e-6 of the root: convergence is quadratic, so what is left is
-/// of the order of 1e-12.  Of Lanes every lane is a search of its own; f is told again where one that ended did, and only those of
-/// `looking` are waited for.
+/// The zero in (0, high] of a decreasing function f, with f(0) > 0 >= f(high).  Newton's method from `guess`.  If a step would leave the
+/// bracket, or is not at most half of the previous one (both happen with infinite slopes at zero), the bracket is halved by magnitude, so
+/// that roots of 1e-200 are found as well.  It ends with the first Newton step below 1e-6 of the root: convergence is quadratic, so the
+/// remaining error is of the order of 1e-12.  With SimdReal every lane is a search of its own; f is called again for lanes that have
+/// converged, and only the lanes of `looking` have to converge.
 template <class T = Real, std::invocable<T> F>
 T positive_root(F&& f, std::type_identity_t<T> high, const std::type_identity_t<T>& guess, const MaskOf<T>& looking = T(1) > T(0)) noexcept
 {

@@ -38,8 +38,8 @@ struct CowperSymonds {
 };
 
 /// Von Mises plasticity, associated, with the return by backward Euler.  The Cauchy stress yields where
-///     sqrt(3 J2) = (yield_stress + H p + Q (1 - exp(-b p)) + K p^n) (1 + (rate / D)^(1/q)),
-/// p the accumulated plastic strain and `rate` that of the step.  Closed form where only H is given.
+///     sqrt(3 J2) = (yield_stress + H p + Q (1 - exp(-b p)) + K p^n) (1 + (rate / D)^(1/q))
+/// with the accumulated plastic strain p and the rate of the step.  The solution is in closed form if only H is given.
 struct VonMises : HenckyPlastic {
   static constexpr std::string_view name = "von_mises";
   static constexpr bool isochoric = true;

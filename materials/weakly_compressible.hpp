@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// Pressure of a liquid that is hardly compressible: what fluids inherit.
+/// The pressure of a nearly incompressible liquid, which fluids inherit.
 ///     p = K / n (J^-n - 1)       [Cole 1948, Underwater Explosions, eq. 2.17; Monaghan 1994, J. Comput. Phys. 110, 399]
 /// K may be far below that of the liquid as long as c = sqrt(K / density) is ten times the largest velocity: then J stays within 1 %.
 struct WeaklyCompressible {

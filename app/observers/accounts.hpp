@@ -4,7 +4,7 @@
 
 namespace talus {
 
-/// Energies since the start of the run [J].  Works are signed as done on the bodies; losses are positive.
+/// Energies since the start of the run [J].  Works are positive if done on the bodies; losses are positive.
 /// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + carried_away + transfer + defect.
 struct EnergyNow {
   Real kinetic_start{}, kinetic{};  ///< kinetic_start: at the start, plus that of bodies that appeared

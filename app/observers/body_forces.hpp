@@ -31,14 +31,16 @@ struct BodyImpulse {
   static constexpr auto fields() { return std::tuple{saved("given", &BodyImpulse::given), saved("unknown", &BodyImpulse::unknown)}; }
 };
 
-/// Follows the momentum of every body through each step.  All bodies share one velocity at a node, so there is no contact force to look up; but
-/// what the momentum of a body gains in a step, less gravity on its mass and the loads on its particles, is what walls and other bodies gave it:
+/// Tracks the momentum of every body through each step.  All bodies share one velocity at a node, so there are no explicit contact forces.
+/// The change of the momentum of a body in a step, minus gravity on its mass and the loads on its particles, is the impulse of walls and
+/// other bodies on it:
 ///
 ///     I_b += P_b(new) - P_b(old) + (momentum of its particles that were deleted) - kick (m_b g + f_b)
 ///
 /// with the time `kick` over which forces act in the step (docs/theory/algorithm.md).
-/// The sum over all bodies is what walls gave, mesh tractions and the damping of stages included, to round-off.  Changes between steps do not
-/// count: bodies that appear, and the motion that is taken out where a stage ends at rest.  Does nothing unless it is `wanted`.
+/// The sum over all bodies is the impulse of walls, including mesh tractions and the damping of stages, to round-off.  Changes between
+/// steps are not included: bodies that appear, and the motion that is removed where a stage ends in equilibrium.  Does nothing unless it is
+/// `wanted`.
 template <int D>
 class BodyForces {
  public:

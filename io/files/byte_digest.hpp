@@ -13,8 +13,9 @@ namespace talus {
 /// probability of 2^-64.
 inline std::uint64_t digest_step(std::uint64_t h, std::uint64_t word) noexcept { return std::rotl((h ^ word) * 0x9e3779b97f4a7c15U, 29); }
 
-// HDF5 has checksums of chunks only, which take words 0 and 65535 for the same, and with them a lost page (zeros) for entries of -1, and do not
-// know which array they stand in.  This digest does.  Eight lanes: as fast as memory.  Files are read by it: it must not change.
+// HDF5 has checksums of chunks only, which are equal for words 0 and 65535, and so for a lost page (zeros) and entries of -1, and do not
+// depend on the array.  This digest has neither weakness.  Eight lanes make it as fast as memory.  It is part of file formats and must not
+// change.
 class Digest {
  public:
   static constexpr std::size_t lanes = 8, block = lanes * sizeof(std::uint64_t);

@@ -59,10 +59,9 @@ std::vector<std::string> split(std::string_view line)
   return cells;
 }
 
-/// Spreadsheets run a cell that begins with =, +, - or @ as a formula, and a text may be a name out of a scene of somebody else: csv_cell() puts an
-/// apostrophe before such a text, if it is no number, and one more before one that begins with apostrophes and goes on like that, so that
-/// read_history() can take it off again.
-/// Whether a spreadsheet would take the text, behind the apostrophes that csv_cell() puts before it, for a formula.
+/// Whether a spreadsheet would run a text, after its leading apostrophes, as a formula: it begins with =, +, - or @ and is not a number.
+/// Texts may be names from the scene of another person.  csv_cell() puts an apostrophe before such a text, and one more before a text with
+/// leading apostrophes, so that read_history() can remove it.
 bool looks_like_formula(std::string_view text)
 {
   text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));

@@ -9,8 +9,8 @@
 
 namespace talus {
 
-/// Typical distance of neighbouring points [m]: the median, over a sample of them, of the mean distance to the nearest 4 (2-D) or 6.
-/// `positions`: 3 numbers a point.  Positive; one for fewer than two points.
+/// The typical distance of neighbouring points [m]: the median, over a sample of them, of the mean distance to the nearest 4 (2-D) or 6
+/// points.  `positions`: 3 numbers per point.  Positive; 1 for fewer than two points.
 Real spacing_of(std::span<const Real> positions, int dimension);
 
 /// The radius [m] with which points are drawn as disks or balls, so that neighbours leave no gaps and 3-D surfaces are closed.
@@ -19,10 +19,10 @@ inline Real drawn_radius(std::span<const Real> positions, int dimension)
   return (dimension == 2 ? 0.85 : 0.8) * spacing_of(positions, dimension);
 }
 
-/// Radius of each point [m], `radius` or larger, with which disks in the plane z = 0 leave no hole between neighbours.  A place is in a hole, and
-/// is covered by the disk of the nearest point, unless a disk of 2.2 times the radius that has no point inside reaches it: that is a void, or the
-/// outside (the closing of mathematical morphology).  It does not matter whether a narrow gap joins the hole to the outside.
-/// `positions`: 3 numbers a point.
+/// The radius of each point [m], at least `radius`, with which disks in the plane z = 0 leave no hole between neighbours.  A position is in
+/// a hole, and is covered by the disk of the nearest point, unless a disk of 2.2 times the radius without points inside reaches it: such a
+/// position is in a void or outside (the closing of mathematical morphology).  A narrow gap between a hole and the outside does not matter.
+/// `positions`: 3 numbers per point.
 std::vector<Real> closing_radii(std::span<const Real> positions, Real radius);
 
 /// The spacing of each particle relative to the usual one, for meshes with cells of different sizes.  It is computed from the first frame

@@ -20,13 +20,13 @@ struct ProjectedNodes {
   }
 };
 
-/// Linear shape functions -> unknowns, the transpose of the way back:
+/// Maps sums on linear shape functions to the unknowns, by the transpose of the map of the motion:
 ///
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
-/// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
-/// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  What the mass of
-/// a node is measured by is the mean mass of the linear shape functions around.
+/// with the affine moment K and the tension Z.  p_n refers to c_n = sum_v S_nv x_v, the position at which the row of n reads values: so
+/// momentum is conserved and linear fields are passed on exactly, for any S.  Nodes that are not `own` are left out.  The reference for the
+/// mass of a node is the mean mass of the linear shape functions around.
 template <int D>
 void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
                   const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
