@@ -31,7 +31,7 @@ README_ROWS = [  # case, metric, whether its reference is analytic or published 
 
 
 def number(value):
-    """Four digits, or a dash for nothing."""
+    """The number with four digits, or a dash for None."""
     return "-" if value is None else f"{value:.4g}"
 
 
@@ -51,7 +51,7 @@ def criterion(record):
 
 
 def line(record):
-    """One result as a line for the terminal."""
+    """One result as a line of text for the terminal."""
     verdict = VERDICTS[record["pass"]].strip("*")
     words = record.get("error") or f"{quantity(record)} (reference {number(record['reference'])}; {criterion(record)})"
     note = "".join(f" [{words}]" for words in ("known shortfall" if record.get("known") and record["pass"] is False else "", record.get("changed")) if words)
@@ -59,7 +59,7 @@ def line(record):
 
 
 def table(records):
-    """All numbers of some results as a Markdown table."""
+    """A Markdown table of results."""
     rows = ["| measured | value | unit | reference | criterion | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
     for r in records:
         rows.append(f"| {r['metric']} | {number(r['value'])} | {r['unit']} | {number(r['reference'])} | {criterion(r)} | {VERDICTS[r['pass']]} "
@@ -68,7 +68,7 @@ def table(records):
 
 
 def orders(convergence):
-    """Errors over sizes of cells with the order between neighbours, as a Markdown table."""
+    """A Markdown table of errors over sizes of cells, with the order between neighbouring sizes."""
     steps = ["-"] + [f"{number(order)}" for order in convergence["orders"]]
     wanted = "" if convergence["expected"] is None else f" (expected {convergence['expected']:g})"
     return [f"{convergence['name'].capitalize()}: order {number(convergence['order'])} by least squares{wanted}.", "", "| cell size [m] | error | order |",
@@ -76,17 +76,17 @@ def orders(convergence):
 
 
 def of(document, part, case):
-    """Those entries of a part of the document that belong to a case."""
+    """The entries of a part of the document that belong to a case."""
     return [entry for entry in document[part] if entry["case"] == case]
 
 
 def counts(records):
-    """How many results were judged and passed."""
+    """The numbers of results with a criterion, and of those that passed."""
     return sum(r["pass"] is not None for r in records), sum(r["pass"] is True for r in records)
 
 
 def section(document, info):
-    """One case of docs/development/verification.md."""
+    """The section of one case in docs/development/verification.md."""
     case, records = info["case"], of(document, "results", info["case"])
     lines = ["", f"## {info['title']}", "", f"Problem, sources and measured quantities: [benchmarks/{case}](../../benchmarks/{case}/README.md).",
              f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s of processor time in total.", "", *table(records), "",
@@ -119,7 +119,7 @@ def first_price(cases):
 
 
 def page(document):
-    """docs/development/verification.md as text."""
+    """The text of docs/development/verification.md."""
     records = document["results"]
     programs = list(dict.fromkeys(f"{c['program']['version']} ({c['program']['compiler']})" for c in document["cases"]))
     judged, passed = counts(records)
@@ -136,7 +136,7 @@ def page(document):
 
 
 def row(document, case, metric, kind):
-    """One row for README.md; ValueError where the suite does not measure that any more."""
+    """One row for README.md; raises ValueError if the suite no longer measures it."""
     info = next((info for info in document["cases"] if info["case"] == case), None)
     record = next((r for r in of(document, "results", case) if r["metric"] == metric), None)
     if record is None:
@@ -161,14 +161,14 @@ def block(document):
 
 
 def replace_block(text, content):
-    """`text` with what is between the markers replaced, or None where they are not there exactly once in order."""
+    """`text` with a new content between the markers, or None unless each marker occurs once, in order."""
     if text.count(BEGIN) != 1 or text.count(END) != 1 or text.index(BEGIN) > text.index(END):
         return None
     return f"{text.split(BEGIN)[0]}{BEGIN}\n{content}\n{END}{text.split(END)[1]}"
 
 
 def merge(old, new):
-    """The old document with the cases of the new one in their place, new cases at the end."""
+    """The old document with cases replaced by those of the new one; additional cases come at the end."""
     fresh = {info["case"]: info for info in new["cases"]}
     known = {info["case"] for info in old["cases"]}
     cases = [fresh.get(info["case"], info) for info in old["cases"]] + [info for case, info in fresh.items() if case not in known]
@@ -177,7 +177,7 @@ def merge(old, new):
 
 
 def write(new, images):
-    """Writes all three, and copies the figures; of a run with another kernel or transfer nothing is written."""
+    """Writes all three files and copies the figures; refuses runs with another kernel or transfer."""
     if any(info["overrides"] for info in new["cases"]):
         raise ValueError("the documents are written from runs without --kernel and --transfer")
     old = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"cases": []}
@@ -190,7 +190,7 @@ def write(new, images):
 
 
 def write_documents(document):
-    """docs/development/verification.md and the block in README.md."""
+    """Writes docs/development/verification.md and the block in README.md."""
     (ROOT / "docs/development/verification.md").write_text(page(document), encoding="utf-8")
     readme = ROOT / "README.md"
     text = replace_block(readme.read_text(encoding="utf-8"), block(document))
