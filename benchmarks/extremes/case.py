@@ -264,9 +264,9 @@ def bounded_or_refused(name, run):
 
 
 def refused(run, name, status, words, instead):
-    """The exit status of a run that must not start, or not go on; a number that is none where the reason is not in the words."""
+    """The exit status of a run that must be refused, or must fail; nan if the message does not contain the expected text."""
     code, said = run.ending
-    told = f"expected in the words: {words}; said: {said.splitlines()[0] if said else 'nothing'}"
+    told = f"expected text: {words or 'any error'}; printed: {said.splitlines()[0] if said else 'nothing'}"
     return tools.Result(CASE, f"exit status, {name}", "-", float(code) if words in said else float("nan"), "near", 0.0, float(status), told,
                         run if code < 2 else instead)
 
