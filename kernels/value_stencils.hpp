@@ -7,9 +7,8 @@ namespace talus {
 /// Rows of maximum entropy, and the nodes without such a row.
 struct MaxentValues {
   std::vector<Real> S;  ///< rows on the entries of mesh.ring_of_node()
-  std::vector<Index>
-      /// nodes whose row is the node itself, because no positive weights are exact for linear fields; treated as corners, ascending
-      as_corners;
+  /// Nodes whose row is the node itself, because no positive weights are exact for linear fields; treated as corners, ascending.
+  std::vector<Index> as_corners;
 };
 
 /// Weights of maximum entropy relative to the prior a (1 for the node itself, `alpha` for its neighbours) under sum S_nv (x_v - x_n) = 0

@@ -62,8 +62,7 @@ struct VonMisesReturn {
   T plastic_increment(const Mat3Of<T>& stress_before, const MaskOf<T>& yields) const noexcept
   {
     using std::max;
-    const T going_on = max(start.value, talus::von_mises(stress_before));  // continuing flow hardens from the present stress at the same
-                                                                           // rate
+    const T going_on = max(start.value, talus::von_mises(stress_before));  // continuing flow hardens at the same rate
     return positive_root<T>(*this, (mises - start.value) / stiffness, (mises - going_on) / (stiffness + start.slope), yields);
   }
 };
@@ -110,8 +109,7 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
   const ElasticTrial<T> trial(in, get(state, &State::elastic_left));
   if (!all_of(J > 0 && trial.is_finite()))
     return no_answer_somewhere(*this, in, state, c);
-  const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // change of the Cauchy stress per equivalent strain; J stays
-                                                                         // constant in the return
+  const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // change of the Cauchy stress per strain, at constant J
   const T plastic_strain = get(state, &State::plastic_strain);
   const Hardening<T> slow(*this, plastic_strain);
   const ValueAndSlopeOf<T> start = slow(plastic_strain);

@@ -72,7 +72,7 @@ class Mesh {
   const Csr& cells_of_node() const noexcept { return cells_of_node_; }  ///< ascending
   /// False for nodes on the cut out of a larger mesh, which lack some of their cells.
   bool is_whole(Index n) const noexcept { return cut_.empty() || cut_[static_cast<std::size_t>(n)] == 0; }
-  /// nodes that share a cell with each node, including itself, ascending
+  /// Nodes that share a cell with each node, including itself, ascending.
   const Csr& ring_of_node() const noexcept { return ring_of_node_; }
   std::span<const Facet> boundary_facets() const noexcept { return boundary_facets_; }
   bool on_boundary(Facet f) const noexcept;  ///< false where a larger mesh was cut

@@ -26,7 +26,7 @@ struct BodySums {
 template <int D>
 struct BodyImpulse {
   Vec<D> given = Vec<D>::Zero();  ///< impulse [N s]
-  /// duration of steps that are not included, because particles that left the mesh cannot be assigned to bodies [s]
+  /// Duration of steps that are not included, because particles that left the mesh cannot be assigned to bodies [s].
   Real unknown{};
   static constexpr auto fields() { return std::tuple{saved("given", &BodyImpulse::given), saved("unknown", &BodyImpulse::unknown)}; }
 };

@@ -271,8 +271,7 @@ void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Re
   const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // force on the wall
   const Vec<D> nowhere = Vec<D>::Constant(empty_entry);
   if (!(area > 0) || force.norm() == 0) {
-    const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // material that has just left the wall has acted on it, in an
-                                                                       // unknown direction
+    const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // material that has just left it acted on it
     put_all<D>(wall_columns(), WallNow<D>{none_or_unknown, none_or_unknown, area, area > 0 ? 0 : empty_entry, nowhere}, row);
     return;
   }

@@ -81,8 +81,7 @@ void let_waiting_threads_sleep_soon(char** arguments) noexcept
   std::error_code unknown;
   const std::filesystem::path self =
       std::filesystem::read_symlink("/proc/self/exe", unknown);            // by its name, which lists of processes show
-  const bool by_the_loader = self.filename().string().starts_with("ld-");  // called as an argument of the loader, which would be restarted
-                                                                           // instead
+  const bool by_the_loader = self.filename().string().starts_with("ld-");  // run by the loader, which would be restarted
   if (!unknown && !by_the_loader && ::setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
     ::execv(self.c_str(), arguments);
 }

@@ -51,8 +51,7 @@ constexpr auto node_fields()
                     quantity<vector>("velocity", "m/s", "velocity", [](const auto& run, auto n) { return run.nodes.motion[n].v; }),
                     quantity<vector>("force", "N", "internal force and loads other than gravity",
                                      [](const auto& run, auto n) { return run.nodes.sum[n].force; }),
-                    // The change of the node's momentum that is not due to forces and gravity; nodes with a boundary condition are not
-                    // damped.
+                    // The change of momentum not due to forces and gravity; nodes with a boundary condition are not damped.
                     quantity<vector>("reaction", "N", "force of all walls on the node", [](const auto& run, auto n) {
                       const auto& sum = run.nodes.sum[n];
                       auto force = sum.force;

@@ -122,7 +122,7 @@ struct RunSummary {
   RanksSummary ranks;
 
   std::int64_t mesh_nodes{}, mesh_cells{};
-  /// nodes on curved or creased boundaries for which the kernel finds no positive weights along the boundary
+  /// Nodes on curved or creased boundaries for which the kernel finds no positive weights along the boundary.
   std::int64_t nodes_as_corners{};
   std::string scene_digest;  ///< digest of the text and of the changes
   std::string mesh_digest;   ///< digest of nodes, cells and groups: equal for equal meshes

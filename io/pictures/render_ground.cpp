@@ -25,8 +25,7 @@ namespace {
 constexpr Real darkest = 0.4;          // brightness of ground that faces away from the light
 constexpr Colour rock{236, 231, 222};  // colour of ground that faces the light
 constexpr Colour contour_colour{150, 138, 122}, rigid_colour{110, 96, 80};
-constexpr Real sharp_edge = 40;           // angle between facets above which their normals are not averaged, as for walls of obstacles
-                                          // [degrees]
+constexpr Real sharp_edge = 40;           // angle [degrees] between facets above which their normals are not averaged
 constexpr Real contours_of_picture = 16;  // approximate number of contours over the height of the ground
 
 Vec3 node(const RigidGround& ground, Index n) { return Eigen::Map<const Vec3>(ground.nodes.data() + 3 * static_cast<std::size_t>(n)); }

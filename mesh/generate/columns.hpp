@@ -16,8 +16,8 @@ struct Plan {
 
 /// A layer between two surfaces over a plan.
 struct Slab {
-  /// elevation of the top at each plan node [m]; nowhere below the top of the slab underneath, and equal to it where the slab has no
-  /// thickness
+  /// Elevation of the top at each plan node [m]; nowhere below the top of the slab underneath, and equal to it where the slab has no
+  /// thickness.
   std::vector<Real> top;
   std::vector<Real> height;  ///< desired height of cells at each plan node [m]
   std::vector<Index> group;  ///< group of the cells over each plan cell, or `none` where they are left out

@@ -14,8 +14,7 @@ namespace talus {
 
 namespace {
 
-constexpr std::size_t sample = 250;  // number of points whose neighbours are searched; each is compared with all others, so no tree is
-                                     // needed
+constexpr std::size_t sample = 250;  // number of points whose neighbours are searched among all points
 
 constexpr Real widest_hole = 2.2;         // radius of a disk that fits into a void, relative to the radius of the drawn disks
 constexpr Real fineness = 8;              // grid positions per radius
@@ -186,8 +185,7 @@ Real spacing_of(std::span<const Real> positions, int dimension)
   std::vector<Real> means((n + stride - 1) / stride);
   parallel_for(static_cast<Index>(means.size()), [&](Index i) {
     const std::size_t p = static_cast<std::size_t>(i) * stride;
-    std::vector<Real> nearest(neighbours + 1, std::numeric_limits<Real>::infinity());  // squared distances, as a heap; they include the
-                                                                                       // point itself
+    std::vector<Real> nearest(neighbours + 1, std::numeric_limits<Real>::infinity());  // heap of squared distances, own one included
     for (std::size_t q = 0; q < n; ++q) {
       Real square = 0;
       for (std::size_t d = 0; d < 3; ++d)

@@ -87,8 +87,7 @@ Real TriangleGrid::height(const std::array<Real, 2>& place, const std::array<Ind
   const auto &a = corner(triangle[0]), &b = corner(triangle[1]), &c = corner(triangle[2]);
   const Real twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
   const Real size = std::max({std::abs(b[0] - a[0]), std::abs(b[1] - a[1]), std::abs(c[0] - a[0]), std::abs(c[1] - a[1])});
-  constexpr Real flat = 1e-12, slack = 1e-9;  // slack: a position on a common edge is found in one of the two triangles in spite of
-                                              // round-off
+  constexpr Real flat = 1e-12, slack = 1e-9;  // slack: a position on a common edge is always found in a triangle
   if (std::abs(twice_area) <= flat * size * size)
     return nowhere;
   const Real of_b = ((place[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (place[1] - a[1])) / twice_area;

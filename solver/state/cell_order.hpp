@@ -31,7 +31,7 @@ struct CellOrder {
 
   // Buffers of both sorts.
   std::vector<Index> count;  ///< particles per cell, or per block
-  /// the new `row`; particles that leave a block, stored in `moved` at the positions of the block in `row`
+  /// The new `row`; particles that leave a block, stored in `moved` at the positions of the block in `row`.
   std::vector<Index> next_row, moved;
   std::vector<Index> next_first, left, arrived;
 };

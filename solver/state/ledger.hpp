@@ -19,10 +19,9 @@ struct EnergyLedger {
   Real waves{};     ///< energy of waves incident on absorbing boundaries; a part of the work of walls, given for reference
   Real damping{};   ///< work of local damping, <= 0
   Real arrival{};   ///< kinetic energy lost where a boundary gives mass its motion, <= 0; part of the result of transfer()
-  Real
-      /// change of the nodes' kinetic energy within the steps without arrival, and work of boundaries on nodes of small mass and linear
-      /// shape functions
-      nodes{};
+  /// Change of the nodes' kinetic energy within the steps without arrival, and work of boundaries on nodes of small mass and linear shape
+  /// functions.
+  Real nodes{};
   Real remap{};     ///< MUSL: work of internal forces and loads in the part of the new velocities that the remap removes
   Real internal{};  ///< stress power of the particles: strain energy plus dissipation of the laws
   Real kinetic_start{}, plastic_start{};  ///< values at the beginning of the stage
@@ -30,7 +29,7 @@ struct EnergyLedger {
   Real carried_away{};                    ///< kinetic energy of deleted particles
   Real plastic_deleted{};                 ///< plastic work of deleted particles
   Real largest_before{};                  ///< largest term of the stages before
-  /// largest term at any time so far, at least the least energy that is judged: the size of the balance
+  /// Largest term at any time so far, at least the least energy that is judged: the size of the balance.
   Real largest_seen{};
   Real internal_ahead{}, loads_ahead{};  ///< parts of `internal`, and of `loads` on particles, done after the time of the velocities
   static constexpr auto fields()

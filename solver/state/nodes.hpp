@@ -16,9 +16,8 @@ template <int D>
 struct alignas(64) NodeSum {
   Real mass{};              ///< [kg]
   float lightest = unseen;  ///< mass of the lightest particle whose stencil contains the node [kg]
-  float
-      /// reference for `mass` [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around
-      gross{};
+  /// Reference for `mass` [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around.
+  float gross{};
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   void clear_momentum() noexcept { momentum.setZero(); }
@@ -125,7 +124,7 @@ struct Nodes {
   std::vector<NodeSum<D>> sum;
   std::vector<NodeMotion<D>> motion;
   std::vector<std::uint8_t> active;  ///< nodes with enough mass for a motion of their own
-  /// nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted
+  /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
   std::vector<std::uint8_t> bound;
   std::vector<Vec<D>> felt;         ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
   Vec<D> gravity = Vec<D>::Zero();  ///< gravity in the present step [m/s^2]

@@ -19,7 +19,7 @@ struct StepSums {
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
   ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
   ExactSums<Real> particles;                                  ///< number of particles
-  /// digits in use of these sums and of the impulses of boundary conditions, kept from step to step
+  /// Digits in use of these sums and of the impulses of boundary conditions, kept from step to step.
   Digits digits;
   void clear() noexcept
   {

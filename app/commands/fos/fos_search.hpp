@@ -25,7 +25,7 @@ Real usual_duration(const AtRest& bodies) noexcept;
 /// Two measures of whether a slope fails, from the history after its strength was divided.
 struct Motion {
   Real moved = 0;  ///< displacement at the end, the largest of the columns [m]
-  /// displacement in the second half of the time over that in the first half, or over half of the settlement if that is larger [-]
+  /// Displacement in the second half of the time over that in the first half, or over half of the settlement if that is larger [-].
   Real growth = 0;
   Real liveliness = 0;  ///< kinetic energy in the last tenth of the time over its peak [-]
   Real duration = 0;    ///< duration of the trial [s]
