@@ -9,6 +9,7 @@
 #include <tuple>
 #include <type_traits>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/types.hpp"
@@ -81,7 +82,8 @@ struct List {
 };
 
 /// One of several structs: the member is a std::variant of structs with fields(), each with `static constexpr std::string_view
-/// name`.  The key chooses which by its name; the fields of the chosen one stand in the same mapping.
+/// name`, or a type that holds such a variant and gives it by a function choices_of().  The key chooses which by its name; the fields of
+/// the chosen one stand in the same mapping.
 template <class Owner, class Value>
 struct Alternative {
   std::string_view key;
@@ -89,7 +91,15 @@ struct Alternative {
   std::string_view meaning;
 };
 
-/// A history variable of a law, written to outputs and checkpoints.  Value is Real or Sym3.
+template <class... T>
+std::variant<T...>& choices_of(std::variant<T...>& value) noexcept
+{
+  return value;
+}
+template <class Value>
+using ChoicesOf = std::remove_cvref_t<decltype(choices_of(std::declval<Value&>()))>;
+
+/// A history variable of a law: output, checkpoint.  Value is Real or Sym3.
 template <class Owner, class Value>
 struct History {
   std::string_view key;

@@ -74,4 +74,22 @@ constexpr Lame lame(Real youngs_modulus, Real poisson_ratio) noexcept
   return {youngs_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)), youngs_modulus / (2 * (1 + poisson_ratio))};
 }
 
+/// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
+// Inlined by order, like others below: of lanes they are long enough to be calls, and would pass their tensors through memory.
+template <class E>
+[[gnu::always_inline]] inline Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s,
+                                                                         const Eigen::MatrixBase<E>& expression,
+                                                                         const typename E::Scalar& m) noexcept
+{
+  const Sym3Of<typename E::Scalar>& a = expression.derived();
+  Sym3Of<typename E::Scalar> sum;
+  sum << s * a[0] + m, s * a[1] + m, s * a[2] + m, s * a[3], s * a[4], s * a[5];
+  return sum;
+}
+template <class E>
+Sym3Of<typename E::Scalar> add_diagonal(const Eigen::MatrixBase<E>& a, const typename E::Scalar& m) noexcept
+{
+  return scale_and_shift(1, a, m);
+}
+
 }  // namespace talus

@@ -20,25 +20,7 @@ typename E::Scalar trace(const Eigen::MatrixBase<E>& a) noexcept
   static_assert(E::RowsAtCompileTime == 6);
   return a[0] + a[1] + a[2];
 }
-/// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
-// Inlined explicitly, like others below: instantiations for SimdReal are long enough to become calls, which would pass tensors through
-// memory.
-template <class E>
-[[gnu::always_inline]] inline Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s,
-                                                                         const Eigen::MatrixBase<E>& expression,
-                                                                         const typename E::Scalar& m) noexcept
-{
-  const Sym3Of<typename E::Scalar>& a = expression.derived();
-  Sym3Of<typename E::Scalar> sum;
-  sum << s * a[0] + m, s * a[1] + m, s * a[2] + m, s * a[3], s * a[4], s * a[5];
-  return sum;
-}
-template <class E>
-Sym3Of<typename E::Scalar> add_diagonal(const Eigen::MatrixBase<E>& a, const typename E::Scalar& m) noexcept
-{
-  return scale_and_shift(1, a, m);
-}
-/// The double contraction a:a.
+/// a:a
 template <class E>
 typename E::Scalar squared_norm(const Eigen::MatrixBase<E>& expression) noexcept
 {

@@ -2,7 +2,7 @@
 // Shear strength divided by a factor: strength reduction, triggers.
 #include <concepts>
 
-#include "materials/batch.hpp"
+#include "core/types.hpp"
 
 namespace talus {
 
@@ -20,19 +20,6 @@ bool divide_strength(L& law, Real factor) noexcept
   if constexpr (HasStrength<L>)
     law.divide_strength(factor);
   return HasStrength<L>;
-}
-
-template <class L>
-bool divide_strength(Batch<L>& batch, Real factor) noexcept
-{
-  if (!divide_strength(batch.law, factor))
-    return false;
-  batch.constants = batch.law.constants();
-  return true;
-}
-inline bool divide_strength(AnyBatch& batch, Real factor) noexcept
-{
-  return std::visit([&](auto& typed) { return divide_strength(typed, factor); }, batch);
 }
 
 }  // namespace talus

@@ -207,7 +207,7 @@ void Mesh<D>::measure()
   node_size_.resize(nodes_.size());
   parallel_for(n_cells(), [&](Index c) {
     const Simplex<D> s = corners(c);
-    const std::array<Real, D + 1> heights = altitudes<D>(s);
+    const std::array<Real, D + 1> heights = talus::altitudes<D>(s);
     volume_[c] = signed_volume<D>(s);
     gradients_[c] = talus::gradients<D>(s);
     altitude_[c] = *std::min_element(heights.begin(), heights.end());

@@ -101,17 +101,38 @@ void record_node_sums(Model<D>& m)
   add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
 }
 
-/// Updates the stress of the particles of a body in a block, unless the law needs data of other blocks first.
+/// Stress of the particles of a body in a block.
 template <int D>
 void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
 {
-  Problem<D>& problem = m.problem;
-  State<D>& state = m.state;
+  const Mesh<D>& mesh = m.problem.mesh;
+  Particles<D>& particles = m.state.particles;
   Workspace<D>& work = m.work;
-  AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
-  if (const auto rows = work.order.rows(body, block); !rows.empty() && !averages_volume(material))
-    work.stress_sums[work.order.key(body, block)] = update_stress(problem.mesh, material, rows, dt, state.stage.elastic, work.averaged,
-                                                                  pore_water(m, body, state.clock.time + dt), state.particles, work.health);
+  const auto rows = work.order.rows(body, block);
+  const auto water = pore_water(m, body, m.state.clock.time + dt);
+  if (water)
+    for (const Index row : rows) {
+      const auto p = static_cast<std::size_t>(row);
+      work.pore_after[p] = water->pressure(mesh, particles.cell[p], particles.x[p]);
+    }
+  work.stress_sums[work.order.key(body, block)] =
+      update_stress(m.state.materials[static_cast<std::size_t>(body)],
+                    StressBlock<D>{.rows = rows,
+                                   .dt = dt,
+                                   .elastic = m.state.stage.elastic,
+                                   .altitudes = mesh.altitudes(),
+                                   .averaged = work.averaged,
+                                   .pore_after = water ? std::span<const Real>(work.pore_after) : std::span<const Real>(),
+                                   .particles = particles,
+                                   .health = work.health});
+}
+
+/// The same, unless the law must know the particles of other blocks first.
+template <int D>
+void update_stress_while_cached(Model<D>& m, Index body, Index block, Real dt)
+{
+  if (!m.work.order.rows(body, block).empty() && !m.state.materials[static_cast<std::size_t>(body)].averages_volume)
+    update_stress_block(m, body, block, dt);
 }
 
 /// Whether the volume ratios of the body have already been averaged together with bodies before it; otherwise sets `bodies` to it and those
@@ -140,15 +161,11 @@ void update_stress_bodies(Model<D>& m, Real dt)
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
   for (Index body = 0; body < m.n_bodies(); ++body) {
-    AnyBatch& material = state.materials[static_cast<std::size_t>(body)];
-    if (averages_volume(material)) {
+    Material& material = state.materials[static_cast<std::size_t>(body)];
+    if (material.averages_volume) {
       if (!averages_with_earlier(m, body, work.averaged_bodies))
         average_volume(problem.mesh, work.order, work.averaged_bodies, dt, state.particles, *work.stars, work.averaged);
-      parallel_for_uneven(work.order.blocks, [&](Index block) {
-        work.stress_sums[work.order.key(body, block)] =
-            update_stress(problem.mesh, material, work.order.rows(body, block), dt, state.stage.elastic, work.averaged,
-                          pore_water(m, body, state.clock.time + dt), state.particles, work.health);
-      });
+      parallel_for_uneven(work.order.blocks, [&](Index block) { update_stress_block(m, body, block, dt); });
     }
     if (work.heat)
       conduct_heat(problem.mesh, material, work.order, body, dt, state.particles, *work.heat);
@@ -221,8 +238,9 @@ void advance(Model<D>& m, Real dt)
   record_node_sums(m);
   watch.lap(state.timings.nodes);
   work.stress_sums.assign(work.order.first.size(), {});
-  transfer.nodes_to_particles(m, kick, dt, [&m, dt](Index body, Index block) { update_stress_block(m, body, block, dt); });  //  9 to 12
-  update_stress_bodies(m, dt);                                                                                               // 12
+  transfer.nodes_to_particles(m, kick, dt,
+                              [&m, dt](Index body, Index block) { update_stress_while_cached(m, body, block, dt); });  //  9 to 12
+  update_stress_bodies(m, dt);                                                                                         // 12
   update_balances(m);
   watch.lap(state.timings.gather);  // update_stress_bodies() measures the time of the stress update itself
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};

@@ -50,8 +50,8 @@ Real bytes_per_particle(const RunView<D>& view)
   std::size_t bytes = 0;
   view.state.particles.for_each_column(
       [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
-  for (const AnyBatch& material : view.state.materials)
-    std::visit([&](const auto& batch) { bytes += batch.history.size() * sizeof(batch.history[0]); }, material);
+  for (const Material& material : view.state.materials)
+    bytes += material.history.bytes();
   return view.problem.ranks->max(static_cast<Real>(bytes) / static_cast<Real>(std::max(view.state.particles.size(), Index{1})));
 }
 

@@ -1,30 +1,28 @@
 #pragma once
 // How long a step may be: a share of the time in which a wave crosses the cell of a particle.
-#include "solver/stress/update_stress.hpp"
+#include "core/parallel/threads.hpp"
+#include "materials/material.hpp"
+#include "mesh/mesh.hpp"
 
 namespace talus {
 
 /// The crossing_time of one particle.
-template <int D, class L>
-Real crossing_time_of(const Mesh<D>& mesh, const Batch<L>& batch, const Particles<D>& particles, Index i)
+template <int D>
+Real crossing_time_of(const Mesh<D>& mesh, const Material& material, const Particles<D>& particles, Index i)
 {
-  const auto p = static_cast<std::size_t>(batch.begin + i);
-  return crossing_time<D>(batch, mesh.altitude(particles.cell[p]), particles.v[p].norm(), batch.wave_speed(i, particles.F[p]),
-                          std::max(-particles.L[p].trace(), Real{0}));
+  const auto p = static_cast<std::size_t>(material.begin + i);
+  return crossing_time<D, Real>(material.law().diffusivity(), material.viscosity, mesh.altitude(particles.cell[p]), particles.v[p].norm(),
+                                material.wave_speed(i, particles.F[p]), std::max(-particles.L[p].trace(), Real{0}));
 }
 
 /// Smallest crossing_time over all particles [s]; infinite without particles.  Every step
 /// finds it anew while it has the particles at hand (update_stress); this is for the first one.
 template <int D>
-Real shortest_crossing(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
+Real shortest_crossing(const Mesh<D>& mesh, const std::vector<Material>& materials, const Particles<D>& particles)
 {
   Real least = std::numeric_limits<Real>::infinity();
   for (const auto& material : materials)
-    std::visit(
-        [&](const auto& batch) {
-          least = parallel_min(batch.size(), least, [&](Index i) { return crossing_time_of(mesh, batch, particles, i); });
-        },
-        material);
+    least = parallel_min(material.size(), least, [&](Index i) { return crossing_time_of(mesh, material, particles, i); });
   return least;
 }
 
@@ -62,16 +60,12 @@ Chosen lesser(const Particles<D>& particles, const Chosen& a, const Chosen& b) n
 
 /// The particle that asks for the shortest step, with its crossing_time.
 template <int D>
-Chosen slowest_particle(const Mesh<D>& mesh, const std::vector<AnyBatch>& materials, const Particles<D>& particles)
+Chosen slowest_particle(const Mesh<D>& mesh, const std::vector<Material>& materials, const Particles<D>& particles)
 {
   Chosen slowest;
   for (const auto& material : materials)
-    std::visit(
-        [&](const auto& batch) {
-          for (Index row = batch.begin; row < batch.end; ++row)
-            slowest = lesser(particles, slowest, {row, crossing_time_of(mesh, batch, particles, row - batch.begin)});
-        },
-        material);
+    for (Index row = material.begin; row < material.end; ++row)
+      slowest = lesser(particles, slowest, {row, crossing_time_of(mesh, material, particles, row - material.begin)});
   return slowest;
 }
 /// The fastest one, with minus the square of its speed.

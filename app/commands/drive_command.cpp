@@ -55,10 +55,7 @@ std::string csv_of(const PointTable& table, const std::vector<MeasuredColumn>& c
 }
 
 /// One particle of a law as a scene or a test file gives it.
-AnyBatch one_particle(const AnyLaw& law, const std::string& name, const SourceLocation& where)
-{
-  return std::visit([&](const auto& typed) { return make_any_batch(typed, 0, 1, name, where); }, law);
-}
+Material one_particle(const AnyLaw& law, const std::string& name, const SourceLocation& where) { return {law.model(), 0, 1, name, where}; }
 
 void drive_along_paths(const DriveOptions& options)
 {
@@ -154,11 +151,10 @@ void drive_through_test(const DriveOptions& options)
   const TestPlan plan = plan_of(options);
   const Scene scene = read_scene(options.file, options.set);
   const MaterialSpec& material = material_named(scene, options.material);
-  const AnyBatch batch = one_particle(material.law, material.name, material.where);
-  const TestResult result = perform(batch, plan);
+  const TestResult result = perform(one_particle(material.law, material.name, material.where), plan);
   fmt::print("{} of \"{}\" ({}): pressure {:.6g} Pa, strain {:.6g} at {:.6g} 1/s in {} steps\n", *options.test, material.name,
-             law_name(batch), plan.pressure, plan.strain, plan.rate, plan.steps);
-  const std::vector<ClosedForm> forms = closed_forms(batch, plan, result);
+             material.law.name(), plan.pressure, plan.strain, plan.rate, plan.steps);
+  const std::vector<ClosedForm> forms = closed_forms(material.law, plan, result);
   print_result(plan, result, forms);
   const auto [strain, stress] = columns_of(plan.test);
   if (!options.out && !options.plot)
@@ -166,7 +162,7 @@ void drive_through_test(const DriveOptions& options)
   const fs::path table = options.out.value_or(fs::path(options.plot.value_or("")).replace_extension(".csv"));
   write_whole(table, csv_of(result.table, {{strain, result.strain}, {stress, result.stress}}));
   if (options.plot)
-    plot_test(fmt::format("{} of {} ({})", *options.test, material.name, law_name(batch)), table, *options.plot, {strain, stress},
+    plot_test(fmt::format("{} of {} ({})", *options.test, material.name, material.law.name()), table, *options.plot, {strain, stress},
               plan.test == Laboratory::oedometer ? std::vector<ClosedForm>{} : forms);
 }
 

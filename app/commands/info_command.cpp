@@ -6,7 +6,7 @@
 #include "core/version.hpp"
 #include "io/scene/scene_rules.hpp"
 #include "kernels/kernels.hpp"
-#include "materials/laws.hpp"
+#include "materials/any_law.hpp"
 
 namespace talus {
 
@@ -15,7 +15,8 @@ void print_info()
   fmt::print("{}\n", describe(version()));
   fmt::print("threads: {}\n", threads());
   fmt::print("laws:\n");
-  for_each_type(Laws{}, []<class L>() { fmt::print("  {:<20} {}\n", L::name, L::summary); });
+  for (const auto& law : known_laws())
+    fmt::print("  {:<20} {}\n", law->name(), law->summary());
   fmt::print("kernels:\n");
   for_each_type(Kernels<2>{}, []<class K>() { fmt::print("  {:<20} {}\n", K::name, K::summary); });
   fmt::print(

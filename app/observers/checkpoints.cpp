@@ -42,14 +42,14 @@ void take_slice(std::int64_t first, std::int64_t end, std::vector<Body>& bodies)
 }
 
 void recall_laws(const ArrayReader& file, const std::vector<Body>& in_file, const std::vector<Body>& here, std::int64_t first,
-                 std::vector<AnyBatch>& materials)
+                 std::vector<Material>& materials)
 {
   for (std::size_t b = 0; b < materials.size(); ++b) {
     const Body &all = in_file[b], &body = here[b];
-    if (const std::string name = file.text(below("laws/name", b)); name != law_name(materials[b]))
+    if (const std::string name = file.text(below("laws/name", b)); name != materials[b].law().name())
       throw EnvironmentError(
-          fmt::format("the law of body \"{}\" is {} there and {} in the scene", body.name, name, law_name(materials[b])));
-    std::visit([&](auto& batch) { batch.begin = body.begin, batch.end = body.end; }, materials[b]);
+          fmt::format("the law of body \"{}\" is {} there and {} in the scene", body.name, name, materials[b].law().name()));
+    materials[b].set_range(body);
     const Slice rows = rows_of_body(all, body, {first});
     recall_history(file, history_of(b), static_cast<std::size_t>(rows.first), static_cast<std::size_t>(all.size()), materials[b]);
   }
@@ -73,7 +73,7 @@ void must(bool holds, const char* what)
 /// Parts of a state whose rows are written as arrays instead of fields.
 template <class Part>
 constexpr bool is_of_particles =
-    std::is_same_v<Part, Particles<2>> || std::is_same_v<Part, Particles<3>> || std::is_same_v<Part, std::vector<AnyBatch>>;
+    std::is_same_v<Part, Particles<2>> || std::is_same_v<Part, Particles<3>> || std::is_same_v<Part, std::vector<Material>>;
 
 /// Checks the length of a list against set-up before its items are replaced, because some members of items are not stored.
 void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
@@ -87,7 +87,7 @@ void check_count(const ArrayReader& arrays, const std::string& list, std::size_t
 /// contiguous, that all columns have equal numbers of rows, and that the necessary columns exist.  Returns the number of rows over all
 /// ranks.
 template <int D>
-std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::vector<Body>& bodies, std::vector<Material>& materials,
                           Particles<D>& particles)
 {
   load(arrays, "bodies", bodies);
@@ -130,8 +130,8 @@ void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::i
   must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
 }
 
-/// Sets the laws of bodies that change in a stage.
-void take_laws_of(const StageState& stage, std::span<const std::vector<AnyBatch>> laws, std::vector<AnyBatch>& materials)
+/// Bodies have other laws in another stage.
+void take_laws_of(const StageState& stage, std::span<const std::vector<Material>> laws, std::vector<Material>& materials)
 {
   if (laws.empty())
     return;
@@ -217,7 +217,7 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
           save(rest, name, part);
       });
       for (std::size_t b = 0; b < bodies.size(); ++b)
-        save(rest, below("laws/name", b), std::string(law_name(slice.materials[b])));
+        save(rest, below("laws/name", b), std::string(slice.materials[b].law().name()));
       save(rest, "recorder", recorder);
     });
   });

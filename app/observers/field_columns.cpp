@@ -58,25 +58,24 @@ template <int D>
 Column history_column(const State<D>& state, std::span<const Index> rows, std::string_view name)
 {
   Column column{std::string(name), 0, {}, ""};
-  for_each_type(Laws{}, [&]<class Law>() {
-    for_each_field<typename Law::State>([&]<class State, class Value>(const History<State, Value>& variable) {
+  for (const auto& law : known_laws())
+    for (const HistoryVariable& variable : law->variables())
       if (variable.key == name)
-        column.components = components_of_history<Value>, column.unit = unit_in(D, variable.unit);
-    });
-  });
+        column.components = variable.components, column.unit = unit_in(D, variable.unit);
   if (column.components == 0)
     no_such_field(name);
   const auto width = static_cast<std::size_t>(column.components);
   column.values.assign(width * rows.size(), 0);
   for (std::size_t b = 0; b < state.materials.size(); ++b)
-    for_each_history(state.materials[b], [&](std::string_view key, std::string_view, std::string_view, const auto& history) {
-      if (key != name)
-        return;
+    for (const HistoryVariable& variable : state.materials[b].law().variables()) {
+      if (variable.key != name)
+        continue;
       for (std::size_t i = 0; i < rows.size(); ++i)
         if (body_of(state.bodies, rows[i]) == b)
           for (std::size_t k = 0; k < width; ++k)
-            column.values[i * width + k] = static_cast<float>(history.component(rows[i] - state.bodies[b].begin, static_cast<int>(k)));
-    });
+            column.values[i * width + k] =
+                static_cast<float>(history_value(state.materials[b], variable, rows[i] - state.bodies[b].begin, static_cast<int>(k)));
+    }
   return column;
 }
 

@@ -52,8 +52,8 @@ BodySummary summary_of(const RunView<D>& view, std::size_t b)
   });
   view.problem.ranks->sum(sum);
   const Content content = sum.value();
-  return {body.name, std::visit([](const auto& batch) { return batch.name; }, view.state.materials[b]),
-          std::string(law_name(view.state.materials[b])), static_cast<std::int64_t>(content.particles), content.mass};
+  const Material& material = view.state.materials[b];
+  return {body.name, material.name, std::string(material.law().name()), static_cast<std::int64_t>(content.particles), content.mass};
 }
 
 /// Statistics of the ranks since `begin`, when `step_begin` steps had been done.  Collective.

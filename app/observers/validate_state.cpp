@@ -65,7 +65,17 @@ class Inspection {
       add(begin + bad, fmt::format("{} is not finite", name));
   }
 
-  /// Checks value(row) of each particle.
+  void finite(const HistoryVariable& variable, Index begin, const Material& material)
+  {
+    const auto is_bad = [&](Index i) {
+      const Real* const first = &history_value(material, variable, i);
+      return !std::all_of(first, first + variable.components, [](Real value) { return std::isfinite(value); });
+    };
+    if (const Index bad = first_bad(material.history.size(), is_bad); bad != none)
+      add(begin + bad, fmt::format("{} is not finite", variable.key));
+  }
+
+  /// What value(row) is of each particle.
   template <class F>
   void positive(std::string_view name, std::string_view unit, F&& value)
   {
@@ -118,7 +128,7 @@ void find_invalid(const EnergyLedger& energy, std::vector<std::string>& faults)
 }
 
 template <int D>
-void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
+void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<Material>& materials,
                   std::vector<std::string>& faults)
 {
   const std::size_t before = faults.size();
@@ -128,9 +138,8 @@ void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies
     inspection.finite(name, 0, static_cast<Index>(rows.size()), rows.data());
   });
   for (std::size_t b = 0; b < materials.size(); ++b)
-    for_each_history(materials[b], [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
-      inspection.finite(key, bodies[b].begin, column.size(), column);
-    });
+    for (const HistoryVariable& variable : materials[b].law().variables())
+      inspection.finite(variable, bodies[b].begin, materials[b]);
   if (faults.size() > before)
     return;  // values that are not finite cannot be compared
   constexpr std::string_view volume_unit = D == 2 ? " m^2" : " m^3";
@@ -140,7 +149,7 @@ void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies
   inspection.positive("det F", "", [&](std::size_t p) { return particles.F[p].determinant(); });
 }
 
-template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
-template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&, std::vector<std::string>&);
+template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<Material>&, std::vector<std::string>&);
+template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<Material>&, std::vector<std::string>&);
 
 }  // namespace talus

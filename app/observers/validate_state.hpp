@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "solver/model/model.hpp"
 
 namespace talus {
@@ -15,12 +15,12 @@ void find_invalid(const StageState& stage, const Clock& now, std::vector<std::st
 void find_invalid(const EnergyLedger& energy, std::vector<std::string>& faults);
 /// Adds the first particle with each kind of fault.  Bodies, histories and rows of columns must be consistent.
 template <int D>
-void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials,
+void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<Material>& materials,
                   std::vector<std::string>& faults);
 
-extern template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<AnyBatch>&,
+extern template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<Material>&,
                                      std::vector<std::string>&);
-extern template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<AnyBatch>&,
+extern template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<Material>&,
                                      std::vector<std::string>&);
 
 }  // namespace talus

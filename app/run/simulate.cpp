@@ -89,21 +89,13 @@ template <int D>
 Setup<D> without_particles(Setup<D>& setup)
 {
   Particles<D> particles = std::exchange(setup.state.particles, {});
-  std::vector<AnyBatch> materials = std::exchange(setup.state.materials, {});
+  std::vector<Material> materials = std::exchange(setup.state.materials, {});
   Setup<D> rest = setup;
   rest.state.particles.keep_in(particles.precision());
   for (Body& body : rest.state.bodies)
     body.begin = body.end = 0;
-  for (AnyBatch& material : materials)
-    std::visit(
-        [&](auto& batch) {
-          auto history = std::exchange(batch.history, {});
-          auto bare = batch;
-          bare.begin = bare.end = 0;
-          rest.state.materials.push_back(std::move(bare));
-          batch.history = std::move(history);
-        },
-        material);
+  for (const Material& material : materials)
+    rest.state.materials.push_back(material.without_particles());
   setup.state.particles = std::move(particles);
   setup.state.materials = std::move(materials);
   return rest;
@@ -308,7 +300,7 @@ class Simulation {
   const LoadBalancing<D>& moves_;
   std::vector<Stage> stages_;
   std::vector<StageChange<D>> changes_;
-  std::vector<std::vector<AnyBatch>> laws_;
+  std::vector<std::vector<Material>> laws_;
   StepLimits limits_;
   Setup<D> rest_;  // of the whole mesh, where shares may move
   std::optional<Model<D>> model_;
@@ -336,8 +328,8 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   const Model<D> m = build(scene, std::move(mesh), std::move(setup));
   const auto bytes = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
   m.state.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { cost.particle_bytes += bytes(column); });
-  for (const AnyBatch& material : m.state.materials)
-    std::visit([&](const auto& batch) { cost.particle_bytes += bytes(batch.history); }, material);
+  for (const Material& material : m.state.materials)
+    cost.particle_bytes += static_cast<std::int64_t>(material.history.bytes());
   const Mesh<D>& whole = m.problem.mesh;
   cost.mesh_bytes = static_cast<std::int64_t>(whole.nodes().size_bytes() + whole.cells().size_bytes()) +
                     whole.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(whole.cells_of_node().item) +

@@ -19,17 +19,15 @@ Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
   sort_by_cell(particles.cell, particles.id, setup.state.bodies, mesh.n_cells(), order);
   Real least = std::numeric_limits<Real>::infinity();  // minus the speed of the fastest
   ExactSums<Real> energy;
-  for (Index b = 0; b < static_cast<Index>(setup.state.materials.size()); ++b)
-    std::visit(
-        [&](const auto& batch) {
-          const auto speed = [&](Index i) { return batch.wave_speed(i, particles.F[static_cast<std::size_t>(batch.begin + i)]); };
-          least = parallel_min(batch.size(), least, [&](Index i) { return -speed(i); });
-          add_particles(order, {b, b + 1}, energy, [&](Index row) {
-            const Real c = speed(row - batch.begin);
-            return 0.5 * particles.mass[static_cast<std::size_t>(row)] * c * c;
-          });
-        },
-        setup.state.materials[static_cast<std::size_t>(b)]);
+  for (Index b = 0; b < static_cast<Index>(setup.state.materials.size()); ++b) {
+    const Material& material = setup.state.materials[static_cast<std::size_t>(b)];
+    const auto speed = [&](Index i) { return material.wave_speed(i, particles.F[static_cast<std::size_t>(material.begin + i)]); };
+    least = parallel_min(material.size(), least, [&](Index i) { return -speed(i); });
+    add_particles(order, {b, b + 1}, energy, [&](Index row) {
+      const Real c = speed(row - material.begin);
+      return 0.5 * particles.mass[static_cast<std::size_t>(row)] * c * c;
+    });
+  }
   ranks.sum(energy);
   return {std::max(Real{0}, -ranks.min(least)), energy.value()};
 }

@@ -149,19 +149,19 @@ std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneError
   }
 }
 
-void carry_history(const AnyBatch& from, std::span<const Index> rows, AnyBatch& to)
+void carry_history(const Material& from, std::span<const Index> rows, Material& to)
 {
-  for_each_history(to, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
-    for_each_history(from, [&](std::string_view other, std::string_view, std::string_view, const auto& source) {
-      if constexpr (std::decay_t<decltype(column)>::components == std::decay_t<decltype(source)>::components)
-        if (key == other)
-          parallel_for(column.size(), [&](Index i) { column[i] = source[rows[static_cast<std::size_t>(i)]]; });
-    });
-  });
+  for (const HistoryVariable& variable : to.law().variables())
+    for (const HistoryVariable& source : from.law().variables())
+      if (variable.key == source.key && variable.components == source.components)
+        parallel_for(to.history.size(), [&](Index i) {
+          for (int c = 0; c < variable.components; ++c)
+            history_value(to, variable, i, c) = history_value(from, source, rows[static_cast<std::size_t>(i)], c);
+        });
 }
 
 template <int D>
-Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, AnyBatch& material, Particles<D>& particles)
+Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, Material& material, Particles<D>& particles)
 {
   constexpr Real round_off = 1e-6;  // stresses in single precision
   const auto compare = [&](bool take_over) {
@@ -169,9 +169,9 @@ Real settle_stress(const Body& body, std::string_view law_there, Real dt, Commun
     return StressFit{ranks.max(here.largest), ranks.max(here.apart)};
   };
   const auto fits = [&](const StressFit& fit) { return fit.apart <= round_off * fit.largest; };
-  if (law_name(material) == law_there && fits(compare(false)))
+  if (material.law().name() == law_there && fits(compare(false)))
     return 0;
-  if (can_start_from_stress(material))
+  if (material.law().starts_from_stress())
     start_from_stress(body, material, particles);
   const StressFit fit = compare(false);
   if (fits(fit))
@@ -180,8 +180,8 @@ Real settle_stress(const Body& body, std::string_view law_there, Real dt, Commun
   return fit.apart / fit.largest;
 }
 
-template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, AnyBatch&, Particles<2>&);
-template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, AnyBatch&, Particles<3>&);
+template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<2>&);
+template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<3>&);
 template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
 template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
 

@@ -18,16 +18,16 @@ template <int D>
 std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& complaints, std::vector<std::string>& warnings);
 
 /// What two laws both remember: rows of one history become the history of the other.
-void carry_history(const AnyBatch& from, std::span<const Index> rows, AnyBatch& to);
+void carry_history(const Material& from, std::span<const Index> rows, Material& to);
 
 /// The body keeps its stress if its law can start from one; the elastic strain that belongs to it is found anew where the law makes another
 /// than `law_there`, which it comes from, because its constants have changed.  Any other law has the stress that it makes of the deformation.
 /// `dt`: of the step that led to the state [s].  Returns by how much the stress changes, over the largest there; every rank has to ask.
 template <int D>
-Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, AnyBatch& material, Particles<D>& particles);
+Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, Material& material, Particles<D>& particles);
 
-extern template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, AnyBatch&, Particles<2>&);
-extern template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, AnyBatch&, Particles<3>&);
+extern template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<2>&);
+extern template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<3>&);
 extern template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
 extern template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
 

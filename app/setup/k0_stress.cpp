@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "materials/law_variant.hpp"
+
 namespace talus {
 
 namespace {
@@ -60,7 +62,7 @@ std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene&
         std::find_if(scene.materials.begin(), scene.materials.end(), [&](const MaterialSpec& m) { return m.name == body.material; });
     if (!rule.from_friction || material == scene.materials.end())
       continue;
-    const auto sine = std::visit([](const auto& law) { return sine_of_friction(law); }, material->law);
+    const auto sine = std::visit([](const auto& law) { return sine_of_friction(law); }, choices_of(material->law));
     if (sine)
       table = constant(from_friction(*sine, rule.ocr));
     else

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "materials/strength.hpp"
-
 namespace talus {
 
 namespace {
@@ -58,10 +56,7 @@ Real weakened_by(const Scene& scene, const BodySpec& body, Index stage)
   return factor;
 }
 
-bool has_strength(const MaterialSpec& material)
-{
-  return std::visit([]<class L>(const L&) { return HasStrength<L>; }, material.law);
-}
+bool has_strength(const MaterialSpec& material) { return material.law.model()->has_strength(); }
 
 bool is_renewed(const Scene& scene, const BodySpec& body, Index stage)
 {
@@ -71,29 +66,21 @@ bool is_renewed(const Scene& scene, const BodySpec& body, Index stage)
   return &before != &after || (has_strength(after) && weakened_by(scene, body, stage) != weakened_by(scene, body, stage - 1));
 }
 
-AnyBatch law_in_force(const Scene& scene, const BodySpec& body, Index stage)
+Material law_in_force(const Scene& scene, const BodySpec& body, Index stage)
 {
-  const MaterialSpec& material = *material_of(scene, body, stage);
-  AnyBatch batch = std::visit(
-      [&](auto law) {
-        if (const Real factor = weakened_by(scene, body, stage); factor != 1)
-          divide_strength(law, factor);
-        return make_any_batch(law, 0, 0, material.name, material.where);
-      },
-      material.law);
-  std::visit(
-      [&]<class L>(Batch<L>& typed) {
-        typed.viscosity = material.bulk_viscosity;
-        typed.averages_volume = body.f_bar.value_or(is_isochoric<L>());
-        typed.averages_with = group_of_averages(scene, body, material, stage);
-      },
-      batch);
-  return batch;
+  const MaterialSpec& spec = *material_of(scene, body, stage);
+  Material material(spec.law.model(), 0, 0, spec.name, spec.where);
+  if (const Real factor = weakened_by(scene, body, stage); factor != 1)
+    material.weaken(factor);
+  material.viscosity = spec.bulk_viscosity;
+  material.averages_volume = body.f_bar.value_or(material.law().is_isochoric());
+  material.group = group_of_averages(scene, body, spec, stage);
+  return material;
 }
 
-std::vector<std::vector<AnyBatch>> laws_of_stages(const Scene& scene)
+std::vector<std::vector<Material>> laws_of_stages(const Scene& scene)
 {
-  std::vector<std::vector<AnyBatch>> laws(std::max(scene.stages.size(), std::size_t{1}));
+  std::vector<std::vector<Material>> laws(std::max(scene.stages.size(), std::size_t{1}));
   for (std::size_t s = 0; s < laws.size(); ++s)
     for (const BodySpec& body : scene.bodies)
       laws[s].push_back(law_in_force(scene, body, std::max(static_cast<Index>(s), presence_of(body.name, scene.stages).from)));

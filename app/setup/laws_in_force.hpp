@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "io/scene/scene.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 
 namespace talus {
 
@@ -21,9 +21,9 @@ bool is_renewed(const Scene& scene, const BodySpec& body, Index stage);
 
 /// Without particles.  The material must be there.  Bodies of one material average their volume ratio as one (Batch::averages_with) if their
 /// ratios count from the same state: they came in the same stage, were renewed in the same stage, and both were filled or both were not.
-AnyBatch law_in_force(const Scene& scene, const BodySpec& body, Index stage);
+Material law_in_force(const Scene& scene, const BodySpec& body, Index stage);
 
 /// Of all bodies in the order of the scene, for each stage; of a body before it is there what it begins with.
-std::vector<std::vector<AnyBatch>> laws_of_stages(const Scene& scene);
+std::vector<std::vector<Material>> laws_of_stages(const Scene& scene);
 
 }  // namespace talus

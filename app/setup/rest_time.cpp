@@ -19,7 +19,7 @@ Real passage_time(const Setup<D>& setup, const Vec<D>& up)
       of_body += setup.state.particles.volume0[p];
     }
     volume += of_body;
-    slowness += of_body > 0 ? of_body / wave_speed(setup.state.materials[b], Mat3::Identity()) : 0;
+    slowness += of_body > 0 ? of_body / setup.state.materials[b].law().wave_speed(Mat3::Identity()) : 0;
   }
   return volume > 0 ? (high - low) * slowness / volume : 0;
 }

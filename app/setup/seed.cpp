@@ -18,10 +18,7 @@ namespace talus {
 
 namespace {
 
-Real density_of(const MaterialSpec& material)
-{
-  return std::visit([](const auto& law) { return law.density; }, material.law);
-}
+Real density_of(const MaterialSpec& material) { return material.law.model()->density(); }
 
 template <int D>
 void make_room(std::size_t n, Particles<D>& p)
@@ -85,30 +82,30 @@ class Seeder {
     if (material == nullptr)
       return;
     const Body& source = initial.there.bodies[static_cast<std::size_t>(from)];
-    const AnyBatch& law_there = initial.there.materials[static_cast<std::size_t>(from)];
+    const Material& there = initial.there.materials[static_cast<std::size_t>(from)];
     const std::vector<Index> rows = rows_by_id(initial.there.particles, source);
     const Index begin = seeds_.particles.size(), end = begin + source.size();
     if (begin == end)
       complaints_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
     const Body body{spec.name, begin, end, spec.where};
-    AnyBatch batch = first_law(spec, begin, end);
-    copy(initial.there.particles, rows, density_of(*material) / density(law_there), begin, seeds_.n_particles);
+    Material material_here = first_law(spec, begin, end);
+    copy(initial.there.particles, rows, density_of(*material) / there.law().density(), begin, seeds_.n_particles);
     seeds_.n_particles += source.size();
     find_cells(body, source);
-    if (law_name(batch) == law_name(law_there)) {
+    if (material_here.law().name() == there.law().name()) {
       std::vector<Index> of_body(rows);
       for (Index& row : of_body)
         row -= source.begin;
-      carry_history(law_there, of_body, batch);
-    } else if (!can_start_from_stress(batch)) {
+      carry_history(there, of_body, material_here);
+    } else if (!material_here.law().starts_from_stress()) {
       complaints_.add(spec.where, "material",
                       fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
-                                  law_name(law_there), law_name(batch), or_list(laws_that_start_from_stress())));
+                                  there.law().name(), material_here.law().name(), or_list(laws_that_start_from_stress())));
     }
-    taken_.push_back({seeds_.bodies.size(), std::string(law_name(law_there)), rows});
+    taken_.push_back({seeds_.bodies.size(), std::string(there.law().name()), rows});
     initial.origin.bodies.push_back({spec.name, source.name, source.size()});
     seeds_.bodies.push_back(body);
-    seeds_.materials.push_back(std::move(batch));
+    seeds_.materials.push_back(std::move(material_here));
   }
 
   /// What concerns all bodies of another run together, once they are all there.
@@ -118,13 +115,13 @@ class Seeder {
     for (const auto& [body, law, rows] : taken_) {
       constexpr Real worth_a_word = 0.01;
       const Body& here = seeds_.bodies[body];
-      const AnyBatch& material = seeds_.materials[body];
+      const Material& material = seeds_.materials[body];
       const Real change = settle_stress(here, law, initial.there.clock.dt, ranks_, seeds_.materials[body], seeds_.particles);
       if (change > worth_a_word)
         warnings.push_back(fmt::format(
             "{}: the stress of body \"{}\" changes at the start, by up to {:.3g} % of the largest there: law \"{}\" makes another "
             "of the same state, with the constants of this scene",
-            to_string(here.where), here.name, 100 * change, law_name(material)));
+            to_string(here.where), here.name, 100 * change, material.law().name()));
     }
     seeds_.origin = initial.origin;
     seeds_.lag = initial.there.clock.lag;
@@ -170,11 +167,11 @@ class Seeder {
   Index first_stage(const BodySpec& spec) const { return presence_of(spec.name, scene_.stages).from; }
   /// If it is not there the reader has complained.
   const MaterialSpec* first_material(const BodySpec& spec) const { return material_of(scene_, spec, first_stage(spec)); }
-  AnyBatch first_law(const BodySpec& spec, Index begin, Index end) const
+  Material first_law(const BodySpec& spec, Index begin, Index end) const
   {
-    AnyBatch batch = law_in_force(scene_, spec, first_stage(spec));
-    begin_anew(begin, end, batch);
-    return batch;
+    Material material = law_in_force(scene_, spec, first_stage(spec));
+    begin_anew(begin, end, material);
+    return material;
   }
 
   /// f(x) for the particles of a cell that lie in the shape.
@@ -211,7 +208,7 @@ class Seeder {
     Particles<D> one;
     one.keep_in(scene_.precision);
     make_room(1, one);
-    std::size_t bytes = std::visit([]<class L>(const L&) { return sizeof(typename L::State); }, law);
+    std::size_t bytes = sizeof(Real) * static_cast<std::size_t>(law.model_of_all_kinds()->history_width());
     one.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
     const Real on_this_machine = static_cast<Real>(std::min(ranks_on_this_machine(), ranks_.size())) / ranks_.size();
     return ranks_.first(too_many(static_cast<Real>(more) * on_this_machine, "particles", static_cast<Real>(bytes)));
@@ -318,15 +315,16 @@ class Seeder {
       p.x0 = p.x;
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0[row] = from.x0[there]; });
     }
-    if (!from.volume_ratio.empty() && std::any_of(seeds_.materials.begin(), seeds_.materials.end(), averages_volume)) {
+    if (!from.volume_ratio.empty() &&
+        std::any_of(seeds_.materials.begin(), seeds_.materials.end(), [](const Material& one) { return one.averages_volume; })) {
       p.volume_ratio.assign(n, 1);
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
     }
     if (!from.viscous.empty()) {
-      if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), has_bulk_viscosity))
+      if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), [](const Material& one) { return one.viscosity.has_value(); }))
         p.viscous.assign(n, 0);
       for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
-        if (has_bulk_viscosity(seeds_.materials[taken.body]))
+        if (seeds_.materials[taken.body].viscosity)
           p.viscous.set(row, from.viscous[there]);
         else
           p.stress.set(row, add_diagonal(p.stress[row], from.viscous[there]));

@@ -12,7 +12,7 @@ struct Seeds {
   Particles<D> particles;  ///< those of this rank
   Index n_particles = 0;   ///< of all ranks
   std::vector<Body> bodies;
-  std::vector<AnyBatch> materials;
+  std::vector<Material> materials;
   std::optional<OriginSummary> origin;
   Real lag = 0;             ///< by how much the velocities of another run are behind its time, Clock::lag [s]
   Real largest_before = 0;  ///< largest term of the energy of that run [J]

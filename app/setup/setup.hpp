@@ -16,7 +16,7 @@ struct Setup {
   SceneConditions<D> conditions;
   std::vector<Stage> stages;
   std::vector<StageChange<D>> changes;      ///< of each stage
-  std::vector<std::vector<AnyBatch>> laws;  ///< of all bodies in each stage, without particles
+  std::vector<std::vector<Material>> laws;  ///< of all bodies in each stage, without particles
   StepLimits limits;
   std::vector<std::string> warnings;
   std::vector<std::string> notes;       ///< worth knowing before a run, such as how strong a record is

@@ -12,7 +12,7 @@ namespace {
 
 /// All that is in some rows, of all ranks.  Every rank has to ask.
 template <int D>
-RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles,
+RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<Material>& materials, const Particles<D>& particles,
                                Index begin, Index end, Communicator& ranks)
 {
   ExactSums<RemovedParticles<D>> sum;
@@ -55,23 +55,23 @@ void vanish(const std::vector<Index>& bodies, State<D>& state, Communicator& ran
 }
 
 template <int D>
-void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, State<D>& state, Communicator& ranks, StageReport& news)
+void renew(const std::vector<Renewal>& bodies, std::span<const Material> laws, State<D>& state, Communicator& ranks, StageReport& news)
 {
   constexpr Real worth_a_word = 0.01;
   Particles<D>& particles = state.particles;
   for (const auto& [b, becomes] : bodies) {
     const Body& body = state.bodies[static_cast<std::size_t>(b)];
-    AnyBatch& material = state.materials[static_cast<std::size_t>(b)];
-    const AnyBatch before = std::exchange(material, laws[static_cast<std::size_t>(b)]);
+    Material& material = state.materials[static_cast<std::size_t>(b)];
+    const Material before = std::exchange(material, laws[static_cast<std::size_t>(b)]);
     begin_anew(body.begin, body.end, material);
-    if (law_name(before) == law_name(material)) {
+    if (before.law().name() == material.law().name()) {
       std::vector<Index> same(static_cast<std::size_t>(body.size()));
       std::iota(same.begin(), same.end(), 0);
       carry_history(before, same, material);
     }
-    if (has_bulk_viscosity(before) && !has_bulk_viscosity(material))
+    if (before.viscosity && !material.viscosity)
       drop_viscosity(body, particles);
-    if (const Real heavier = density(material) / density(before); heavier != 1) {
+    if (const Real heavier = material.law().density() / before.law().density(); heavier != 1) {
       const RemovedParticles<D> then = content_of(state.bodies, state.materials, particles, body.begin, body.end, ranks);
       parallel_for(body.size(), [&](Index i) {
         const auto p = static_cast<std::size_t>(body.begin + i);
@@ -81,13 +81,13 @@ void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, S
       (heavier > 1 ? state.mass.placed : state.mass.taken) += std::abs(now.mass - then.mass);
       state.momentum.changes += now.momentum + -1 * then.momentum;
     }
-    const Real change = settle_stress(body, law_name(before), state.clock.dt, ranks, material, particles);
+    const Real change = settle_stress(body, before.law().name(), state.clock.dt, ranks, material, particles);
     news.told.push_back(fmt::format("body \"{}\" {}", body.name, becomes));
     if (change > worth_a_word)
       news.warnings.push_back(
           fmt::format("the stress of body \"{}\" changes with its material, by up to {:.3g} % of the largest: law \"{}\" makes another of "
                       "the same state",
-                      body.name, 100 * change, law_name(material)));
+                      body.name, 100 * change, material.law().name()));
   }
 }
 
@@ -118,8 +118,8 @@ void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<
 
 template void vanish<2>(const std::vector<Index>&, State<2>&, Communicator&, StageReport&);
 template void vanish<3>(const std::vector<Index>&, State<3>&, Communicator&, StageReport&);
-template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<2>&, Communicator&, StageReport&);
-template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<3>&, Communicator&, StageReport&);
+template void renew<2>(const std::vector<Renewal>&, std::span<const Material>, State<2>&, Communicator&, StageReport&);
+template void renew<3>(const std::vector<Renewal>&, std::span<const Material>, State<3>&, Communicator&, StageReport&);
 template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, State<2>&, Communicator&,
                         StageReport&);
 template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, State<3>&, Communicator&,

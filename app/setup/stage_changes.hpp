@@ -46,7 +46,7 @@ template <int D>
 void vanish(const std::vector<Index>& bodies, State<D>& state, Communicator& ranks, StageReport& news);
 /// The bodies keep their stress as in app/setup/initial.hpp.  `laws` are those of all bodies in the stage.
 template <int D>
-void renew(const std::vector<Renewal>& bodies, std::span<const AnyBatch> laws, State<D>& state, Communicator& ranks, StageReport& news);
+void renew(const std::vector<Renewal>& bodies, std::span<const Material> laws, State<D>& state, Communicator& ranks, StageReport& news);
 /// RunError naming `stage`: the place is taken.  Cells are those of this rank's mesh; `order` is that of the particles that are there.
 template <int D>
 void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
@@ -72,7 +72,7 @@ void take_table(Model<D>& m, const std::vector<Real>& table)
 
 /// Does all that the stage changes, between two steps, before the stage begins.  What comes is moved out of `change`.
 template <int D>
-StageReport enter(Model<D>& m, StageChange<D>& change, std::span<const AnyBatch> laws, const Stage& stage)
+StageReport enter(Model<D>& m, StageChange<D>& change, std::span<const Material> laws, const Stage& stage)
 {
   StageReport news{.told = change.told, .warnings = {}};
   if (!change.vanish.empty()) {
@@ -98,8 +98,8 @@ StageReport enter(Model<D>& m, StageChange<D>& change, std::span<const AnyBatch>
 
 extern template void vanish<2>(const std::vector<Index>&, State<2>&, Communicator&, StageReport&);
 extern template void vanish<3>(const std::vector<Index>&, State<3>&, Communicator&, StageReport&);
-extern template void renew<2>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<2>&, Communicator&, StageReport&);
-extern template void renew<3>(const std::vector<Renewal>&, std::span<const AnyBatch>, State<3>&, Communicator&, StageReport&);
+extern template void renew<2>(const std::vector<Renewal>&, std::span<const Material>, State<2>&, Communicator&, StageReport&);
+extern template void renew<3>(const std::vector<Renewal>&, std::span<const Material>, State<3>&, Communicator&, StageReport&);
 extern template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, State<2>&,
                                Communicator&, StageReport&);
 extern template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, State<3>&,

@@ -91,11 +91,11 @@ void set_stages(const Scene& scene, SceneErrorCollector& complaints, Setup<D>& s
       stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.state.bodies);
     for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
       const Index from = presence_of(setup.state.bodies[b].name, scene.stages).from;
-      if (std::cmp_equal(from, s) && !can_start_from_stress(setup.state.materials[b]))
+      if (std::cmp_equal(from, s) && !setup.state.materials[b].law().starts_from_stress())
         complaints.add(
             stage.where, "initial_stress",
             fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
-                        law_name(setup.state.materials[b]), setup.state.bodies[b].name));
+                        setup.state.materials[b].law().name(), setup.state.bodies[b].name));
     }
   }
 }
@@ -110,7 +110,7 @@ void check_laws(const Scene& scene, SceneErrorCollector& complaints)
     for (const NewMaterialSpec& change : changes_of(scene.stages[s]).change) {
       const MaterialSpec &before = *material_of(scene, *body_of(change.body), stage - 1),
                          &after = *material_of(scene, *body_of(change.body), stage);
-      const auto name = [](const MaterialSpec& material) { return std::visit([]<class L>(const L&) { return L::name; }, material.law); };
+      const auto name = [](const MaterialSpec& material) { return material.law.name(); };
       const auto can = laws_that_start_from_stress();
       if (name(before) != name(after) && std::find(can.begin(), can.end(), name(after)) == can.end())
         complaints.add(change.where, "material",

@@ -10,7 +10,7 @@
 #include "core/parallel/threads.hpp"
 #include "core/particles.hpp"
 #include "io/checkpoint/array_file.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 
 namespace talus {
 
@@ -138,35 +138,30 @@ void recall_columns(const ArrayReader& file, const std::string& path, std::size_
 }
 
 /// The history of a law, one array a variable.  `rows` as above.
-inline void share_history(const std::string& path, const AnyBatch& batch, const Slice& rows, std::vector<SharedArray>& arrays)
+inline void share_history(const std::string& path, const Material& material, const Slice& rows, std::vector<SharedArray>& arrays)
 {
-  std::visit(
-      [&](const auto& typed) {
-        for_each_history(typed, [&](std::string_view key, std::string_view unit, std::string_view, const auto& column) {
-          constexpr int columns = std::decay_t<decltype(column)>::components;
-          const std::byte* const first = column.size() > 0 ? reinterpret_cast<const std::byte*>(&column[0]) : nullptr;
-          arrays.push_back({below(path, key), NumberKind::float64, columns, std::string(unit), first,
-                            static_cast<std::size_t>(column.size()), sizeof(typed.history[0]), rows});
-        });
-      },
-      batch);
+  const HistoryRows& history = material.history;
+  for (const HistoryVariable& variable : material.law().variables())
+    arrays.push_back({below(path, variable.key), NumberKind::float64, variable.components, std::string(variable.unit),
+                      history.size() > 0 ? reinterpret_cast<const std::byte*>(&history_value(material, variable, 0)) : nullptr,
+                      static_cast<std::size_t>(history.size()), history.row_bytes(), rows});
 }
-/// Back from the rows from `first` on, of a batch whose range is right already, where the file has `n` of all ranks.
-inline void recall_history(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, AnyBatch& batch)
+/// Back from the rows from `first` on, of a material whose range is right already, where the file has `n` of all ranks.
+inline void recall_history(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, Material& material)
 {
-  std::visit([](auto& typed) { typed.history.resize(static_cast<std::size_t>(typed.size())); }, batch);
-  for_each_history(batch, [&](std::string_view key, std::string_view, std::string_view, const auto& column) {
-    constexpr int columns = std::decay_t<decltype(column)>::components;
-    const std::string at = below(path, key);
+  material.history.resize(material.size());
+  for (const HistoryVariable& variable : material.law().variables()) {
+    const int columns = variable.components;
+    const std::string at = below(path, variable.key);
     if (const std::size_t there = file.rows(at); there != n)
       throw EnvironmentError(fmt::format("{} has {} rows, not {}", at, there, n));
-    std::vector<Real> values(static_cast<std::size_t>(column.size() * columns));
+    std::vector<Real> values(static_cast<std::size_t>(material.size() * columns));
     file.read_rows<Real>(at, first, values, columns);
-    parallel_for(column.size(), [&](Index i) {
+    parallel_for(material.size(), [&](Index i) {
       for (int c = 0; c < columns; ++c)
-        column.component(i, c) = values[static_cast<std::size_t>(i * columns + c)];
+        history_value(material, variable, i, c) = values[static_cast<std::size_t>(i * columns + c)];
     });
-  });
+  }
 }
 
 }  // namespace talus

@@ -168,7 +168,7 @@ class FieldReader {
   template <class T, class Value>
   void read_field(Mapping& mapping, const Alternative<T, Value>& field, std::type_identity_t<T>& object)
   {
-    read_alternative(mapping, field.key, object.*field.member);
+    read_alternative(mapping, field.key, choices_of(object.*field.member));
   }
 
   template <class Value>

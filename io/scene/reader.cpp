@@ -16,6 +16,7 @@
 #include "io/document/field_reader.hpp"
 #include "io/scene/accuracy.hpp"
 #include "io/scene/scene_rules.hpp"
+#include "materials/law_variant.hpp"
 
 namespace talus {
 

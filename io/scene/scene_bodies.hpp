@@ -10,14 +10,10 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
-#include "core/type_list.hpp"
 #include "io/scene/shape.hpp"
-#include "materials/laws.hpp"
+#include "materials/any_law.hpp"
 
 namespace talus {
-
-/// A value of any law: std::variant<LinearElastic, ...>.
-using AnyLaw = variant_of<Laws, std::type_identity_t>;
 
 struct MaterialSpec {
   std::string name;

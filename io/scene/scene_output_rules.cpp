@@ -142,11 +142,6 @@ class OutputRules : private SceneRuleBase {
   {
     std::vector<ParticleField> known;
     for_each_quantity(particle_fields(), [&](const auto& field) { known.push_back({std::string(field.name), components_of(field.kind)}); });
-    const auto add_history = [&]<class Law>(const Law&) {
-      for_each_field<typename Law::State>([&]<class State, class Value>(const History<State, Value>& variable) {
-        known.push_back({std::string(variable.key), components_of_history<Value>});
-      });
-    };
     const std::vector<std::string> used = used_materials(), there = names(scene_.materials);
     const auto among = [](const auto& list) {
       return [&list](const std::string& name) { return std::find(list.begin(), list.end(), name) != list.end(); };
@@ -154,7 +149,8 @@ class OutputRules : private SceneRuleBase {
     const bool misspelt = !std::all_of(used.begin(), used.end(), among(there));  // any of them may be meant
     for (const MaterialSpec& material : scene_.materials)
       if (misspelt || among(used)(material.name))
-        std::visit(add_history, material.law);
+        for (const HistoryVariable& variable : material.law.model_of_all_kinds()->variables())
+          known.push_back({std::string(variable.key), variable.components});
     return known;
   }
 

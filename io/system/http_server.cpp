@@ -192,7 +192,7 @@ struct HttpServer::Inside {
     return host == fmt::format("{}:{}", loopback, port) || host == fmt::format("localhost:{}", port);
   }
 
-  Reply update_stress_block(const std::string& text) const
+  Reply respond(const std::string& text) const
   {
     const std::size_t end = text.find("\r\n\r\n");
     if (end == text.npos || end > longest_head)
@@ -256,7 +256,7 @@ struct HttpServer::Inside {
     if (one.state != Connection::State::takes && !one.receive())
       return false;
     if (one.state == Connection::State::asks && one.is_complete())
-      one.begin_answer(update_stress_block(one.request));
+      one.begin_answer(respond(one.request));
     if (one.state == Connection::State::takes && !one.send())
       return false;
     return Clock::now() < one.until;

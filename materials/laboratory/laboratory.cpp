@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <numbers>
 
+#include "materials/law_variant.hpp"
+
 namespace talus {
 
 namespace {
@@ -199,25 +201,23 @@ Real measured_stress(Laboratory test, const Mat3& stress)
   }
 }
 
-TestResult perform(const AnyBatch& batch, const TestPlan& plan)
+TestResult perform(const Material& material, const TestPlan& plan)
 {
   std::vector<PointPath> paths;
   Mat3 start = Mat3::Zero();
   Index before = 0;
-  AnyBatch probe = batch;
-  if (const Mat3 pressed = -plan.pressure * Mat3::Identity(); plan.pressure > 0 && prestress(probe, 0, pressed)) {
+  Material probe = material;
+  if (const Mat3 pressed = -plan.pressure * Mat3::Identity(); plan.pressure > 0 && probe.prestress(0, pressed)) {
     start = pressed;
   } else if (plan.pressure > 0) {
-    const bool fluid =
-        std::visit([](const auto& typed) { return std::is_base_of_v<WeaklyCompressible, std::decay_t<decltype(typed.law)>>; }, batch);
     constexpr Real slowly = 1e6;  // s: no viscous stress is left
-    paths.push_back({.time = slowly, .controls = consolidation(plan, fluid)});
+    paths.push_back({.time = slowly, .controls = consolidation(plan, material.law().is_fluid())});
     before = paths.front().steps;
   }
   paths.push_back({.steps = plan.steps, .time = plan.strain / plan.rate, .controls = controls_of(plan)});
 
   TestResult result;
-  result.table = drive(batch, paths, start);
+  result.table = drive(material, paths, start);
   auto& rows = result.table.rows;
   rows.erase(rows.begin(), rows.begin() + before);
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -231,16 +231,16 @@ TestResult perform(const AnyBatch& batch, const TestPlan& plan)
   return result;
 }
 
-std::vector<ClosedForm> closed_forms(const AnyBatch& batch, const TestPlan& plan, const TestResult& result)
+std::vector<ClosedForm> closed_forms(const AnyLaw& law, const TestPlan& plan, const TestResult& result)
 {
   return std::visit(
-      [&](const auto& typed) -> std::vector<ClosedForm> {
-        if constexpr (HasForms<std::decay_t<decltype(typed.law)>>)
-          return forms(typed.law, plan, result.stress.back());
+      [&]<class L>(const L& parameters) -> std::vector<ClosedForm> {
+        if constexpr (HasForms<L>)
+          return forms(parameters, plan, result.stress.back());
         else
           return {};
       },
-      batch);
+      choices_of(law));
 }
 
 }  // namespace talus

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "materials/any_law.hpp"
 #include "materials/laboratory/point_path.hpp"
 
 namespace talus {
@@ -41,7 +42,7 @@ struct TestResult {
 ///     simple shear  s_yy = -pressure, no strain along x and z, L_xy = rate
 ///     oedometer     z is compressed, no strain along x and y
 ///     uniaxial      as extension, from no pressure: the tension test of a metal
-TestResult perform(const AnyBatch& batch, const TestPlan& plan);
+TestResult perform(const Material& material, const TestPlan& plan);
 
 /// A number the test must measure, for small elastic strains.
 struct ClosedForm {
@@ -50,6 +51,6 @@ struct ClosedForm {
 };
 /// Of the law itself first, then for soils with an angle of friction those of Mohr-Coulomb and of the three Drucker-Prager cones that may
 /// stand for it.  Empty where there is none.  Strengths are those before softening; of modified Cam clay at critical state.
-std::vector<ClosedForm> closed_forms(const AnyBatch& batch, const TestPlan& plan, const TestResult& result);
+std::vector<ClosedForm> closed_forms(const AnyLaw& law, const TestPlan& plan, const TestResult& result);
 
 }  // namespace talus

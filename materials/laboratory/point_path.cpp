@@ -23,17 +23,15 @@ Real norm_of(const Unknowns& x)
   return x.norm();
 }
 
-template <class L>
 struct PointState {
   Mat3 F = Mat3::Identity(), stress = Mat3::Zero();
-  typename L::State history{};
+  std::vector<Real> history{};
 };
 
 /// One step of a path: finds the strain increments of the components whose stress is prescribed.
-template <class L>
 class StepSolver {
  public:
-  StepSolver(const Batch<L>& batch, const std::array<Control, 6>& controls, Real dt) : law_(batch.law), constants_(batch.constants), dt_(dt)
+  StepSolver(const ConstitutiveLaw& law, const std::array<Control, 6>& controls, Real dt) : law_(law), dt_(dt)
   {
     for (std::size_t k = 0; k < 6; ++k) {
       const auto [i, j] = places[k];
@@ -50,13 +48,13 @@ class StepSolver {
 
   /// The next state, or why there is none.  `target`: stresses at the end of the step, used where stress is controlled.  A step that
   /// is too long to be solved is cut into more and more parts.
-  std::optional<std::string> advance(PointState<L>& state, const Sym3& target)
+  std::optional<std::string> advance(PointState& state, const Sym3& target)
   {
     const Sym3 start = pack(state.stress);
     std::optional<std::string> problem;
     constexpr Index most_parts = 256;
     for (Index parts = 1; parts <= most_parts; parts *= 4) {
-      PointState<L> end = state;
+      PointState end = state;
       for (Index part = 1; part <= parts; ++part)
         if (problem = advance(end, start + (target - start) * part / parts, dt_ / parts); problem)
           break;
@@ -69,13 +67,13 @@ class StepSolver {
   }
 
  private:
-  std::optional<std::string> advance(PointState<L>& state, const Sym3& target, Real dt)
+  std::optional<std::string> advance(PointState& state, const Sym3& target, Real dt)
   {
     Unknowns x = last_rate_ * dt;
-    PointState<L> end = deform(state, x, dt);
+    PointState end = deform(state, x, dt);
     if (!end.stress.allFinite())
       end = deform(state, x.setZero(), dt);
-    const Real stiffness = law_.density * std::pow(law_.wave_speed(state.F, constants_), 2);
+    const Real stiffness = law_.density() * std::pow(law_.wave_speed(state.F), 2);
     Unknowns residual = missing(end, target);
     // Aimed at 1e-12 of the stress; what rounding of a stress made of stiffness times differences from one allows is good enough.
     const auto relative = [&] { return norm_of(residual) / std::max(target.norm(), end.stress.norm()); };
@@ -93,20 +91,20 @@ class StepSolver {
     return std::nullopt;
   }
 
-  PointState<L> deform(const PointState<L>& from, const Unknowns& x, Real dt) const
+  PointState deform(const PointState& from, const Unknowns& x, Real dt) const
   {
     Mat3 H = rate_ * dt;
     for (std::size_t a = 0; a < free_.size(); ++a) {
       const auto [i, j] = places[free_[a]];
       H(i, j) = H(j, i) = x[static_cast<Eigen::Index>(a)];
     }
-    PointState<L> to = from;
+    PointState to = from;
     to.F += H * from.F;
-    to.stress = law_.update(Increment{to.F, H / dt, from.stress, dt, 0, false}, to.history, constants_);
+    to.stress = law_.update(Increment{to.F, H / dt, from.stress, dt, 0, false}, to.history.data());
     return to;
   }
 
-  Unknowns missing(const PointState<L>& at, const Sym3& target) const
+  Unknowns missing(const PointState& at, const Sym3& target) const
   {
     Unknowns r(static_cast<Eigen::Index>(free_.size()));
     for (std::size_t a = 0; a < free_.size(); ++a)
@@ -115,8 +113,7 @@ class StepSolver {
   }
 
   /// One Newton step, halved until the residual falls.  The tangent is probed over a small part of the strain the stress stands for.
-  bool improve(const PointState<L>& from, const Sym3& target, Real dt, Unknowns& x, Unknowns& residual, PointState<L>& end,
-               Real strain) const
+  bool improve(const PointState& from, const Sym3& target, Real dt, Unknowns& x, Unknowns& residual, PointState& end, Real strain) const
   {
     const Real probe = std::clamp(1e-4 * strain, 1e-15, 1e-6);
     Tangent tangent(x.size(), x.size());
@@ -131,7 +128,7 @@ class StepSolver {
     Real share = 1;
     for (int i = 0; i < halvings; ++i, share /= 2) {
       const Unknowns trial = x + share * direction;
-      const PointState<L> reached = deform(from, trial, dt);
+      const PointState reached = deform(from, trial, dt);
       const Unknowns left = missing(reached, target);
       if (norm_of(left) < norm_of(residual)) {
         x = trial;
@@ -152,57 +149,51 @@ class StepSolver {
                        residual[worst]);
   }
 
-  const L& law_;
-  const typename L::Constants& constants_;
+  const ConstitutiveLaw& law_;
   Real dt_;
   Mat3 rate_ = Mat3::Zero();  ///< prescribed part of the velocity gradient [1/s]
   std::vector<std::size_t> free_;
   Unknowns last_rate_;  ///< of the components with prescribed stress [1/s]
 };
 
-template <class L>
-PointRow row_of(Real time, const PointState<L>& state)
+PointRow row_of(Real time, const ConstitutiveLaw& law, const PointState& state)
 {
   PointRow row{time, state.F, state.stress, -state.stress.trace() / 3, von_mises(state.stress), {}};
-  for_each_field<typename L::State>([&](const auto& field) {
-    const auto& value = state.history.*(field.member);
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Real>)
-      row.history.push_back(value);
-    else
-      row.history.insert(row.history.end(), value.begin(), value.end());
-  });
+  for (const HistoryVariable& variable : law.variables())
+    row.history.insert(row.history.end(), state.history.begin() + variable.first,
+                       state.history.begin() + variable.first + variable.components);
   return row;
 }
 
-template <class L>
-std::vector<std::string> history_names()
+std::vector<std::string> history_names(const ConstitutiveLaw& law)
 {
   std::vector<std::string> all;
-  for_each_field<typename L::State>([&]<class Owner, class Value>(const History<Owner, Value>& field) {
-    if constexpr (std::is_same_v<Value, Real>)
-      all.emplace_back(field.key);
+  for (const HistoryVariable& variable : law.variables())
+    if (variable.components == 1)
+      all.emplace_back(variable.key);
     else
       for (const std::string_view name : names)
-        all.push_back(fmt::format("{}_{}", field.key, name));
-  });
+        all.push_back(fmt::format("{}_{}", variable.key, name));
   return all;
 }
 
-template <class L>
-PointTable drive(Batch<L>& batch, std::span<const PointPath> paths, const Mat3& initial_stress)
+}  // namespace
+
+PointTable drive(Material material, std::span<const PointPath> paths, const Mat3& initial_stress)
 {
-  if (batch.history.empty())
+  const ConstitutiveLaw& law = material.law();
+  if (material.history.size() == 0)
     throw RunError("a path needs one particle to drive");
-  if (!initial_stress.isZero(0) && !prestress(batch, 0, initial_stress))
-    throw RunError(fmt::format("{} cannot start from a stress: reach it by a path", L::name));
-  PointState<L> state{.stress = initial_stress, .history = batch.history.front()};
-  PointTable table{history_names<L>(), {row_of<L>(0, state)}};
+  if (!initial_stress.isZero(0) && !material.prestress(0, initial_stress))
+    throw RunError(fmt::format("{} cannot start from a stress: reach it by a path", law.name()));
+  PointState state{.stress = initial_stress, .history = {material.history.row(0), material.history.row(0) + law.history_width()}};
+  PointTable table{history_names(law), {row_of(0, law, state)}};
   Real time = 0;
   for (std::size_t n = 0; n < paths.size(); ++n) {
     const PointPath& path = paths[n];
     const auto controls = path.controls.all();
     const Real dt = path.time / path.steps;
-    StepSolver<L> solver(batch, controls, dt);
+    StepSolver solver(law, controls, dt);
     const Sym3 start = pack(state.stress);
     for (Index step = 1; step <= path.steps; ++step) {
       Sym3 target = start;
@@ -212,20 +203,13 @@ PointTable drive(Batch<L>& batch, std::span<const PointPath> paths, const Mat3& 
       if (const auto problem = solver.advance(state, target)) {
         const std::string place = to_string(path.where);
         throw RunError(fmt::format("{}{}path {}, step {} of {}, t = {:.6g} s: {} ({})", place, place.empty() ? "" : ": ", n + 1, step,
-                                   path.steps, time + step * dt, *problem, L::name));
+                                   path.steps, time + step * dt, *problem, law.name()));
       }
-      table.rows.push_back(row_of<L>(time + step * dt, state));
+      table.rows.push_back(row_of(time + step * dt, law, state));
     }
     time += path.time;
   }
   return table;
-}
-
-}  // namespace
-
-PointTable drive(AnyBatch batch, std::span<const PointPath> paths, const Mat3& initial_stress)
-{
-  return std::visit([&](auto& typed) { return drive(typed, paths, initial_stress); }, batch);
 }
 
 }  // namespace talus

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 
 namespace talus {
 
@@ -70,6 +70,6 @@ struct PointTable {
 /// Drives the first particle of `batch` (which must have one) along `paths`, one after the other, from rest with `initial_stress` [Pa].
 /// Strain rates that belong to prescribed stresses are found by Newton's method with numerical tangent and line search.
 /// RunError, with path, step and time: the law has no answer, cannot start from a stress, or the stress cannot be reached.
-PointTable drive(AnyBatch batch, std::span<const PointPath> paths, const Mat3& initial_stress = Mat3::Zero());
+PointTable drive(Material batch, std::span<const PointPath> paths, const Mat3& initial_stress = Mat3::Zero());
 
 }  // namespace talus

@@ -21,7 +21,7 @@ struct LayerContent {
 
 template <int D>
 std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const Facet> facets, const Vec<D>& up,
-                                           const Particles<D>& particles, std::span<const AnyBatch> materials, Communicator& ranks)
+                                           const Particles<D>& particles, std::span<const Material> materials, Communicator& ranks)
 {
   SoilColumn<D> column;
   column.up = up;
@@ -58,23 +58,19 @@ std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const 
   }
   std::vector<ExactSums<LayerContent>> sums(column.layer.size());
   std::int64_t without_modulus = 0;
-  for (const AnyBatch& material : materials)
-    std::visit(
-        [&](const auto& batch) {
-          for (Index p = batch.begin; p < batch.end; ++p) {
-            const auto i = static_cast<std::size_t>(p);
-            const auto at = layer_of_cell.find(particles.cell[i]);
-            if (at == layer_of_cell.end())
-              continue;
-            const Real mass = particles.mass[i], volume = particles.volume0[i];
-            const Real c = batch.wave_speed(p - batch.begin, particles.F[i]);
-            if constexpr (requires { batch.constants.shear; })
-              sums[at->second].add({mass, volume, volume * batch.constants.shear, mass * c * c});
-            else
-              ++without_modulus;
-          }
-        },
-        material);
+  for (const Material& material : materials)
+    for (Index p = material.begin; p < material.end; ++p) {
+      const auto i = static_cast<std::size_t>(p);
+      const auto at = layer_of_cell.find(particles.cell[i]);
+      if (at == layer_of_cell.end())
+        continue;
+      const Real mass = particles.mass[i], volume = particles.volume0[i];
+      const Real c = material.wave_speed(p - material.begin, particles.F[i]);
+      if (const auto shear = material.law().shear_modulus())
+        sums[at->second].add({mass, volume, volume * *shear, mass * c * c});
+      else
+        ++without_modulus;
+    }
   ranks.sum(std::span(sums));
   if (ranks.sum(without_modulus) > 0)
     return std::nullopt;
@@ -95,8 +91,8 @@ std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const 
 }
 
 template std::optional<SoilColumn<2>> column_beside<2>(const Mesh<2>&, std::span<const Facet>, const Vec<2>&, const Particles<2>&,
-                                                       std::span<const AnyBatch>, Communicator&);
+                                                       std::span<const Material>, Communicator&);
 template std::optional<SoilColumn<3>> column_beside<3>(const Mesh<3>&, std::span<const Facet>, const Vec<3>&, const Particles<3>&,
-                                                       std::span<const AnyBatch>, Communicator&);
+                                                       std::span<const Material>, Communicator&);
 
 }  // namespace talus

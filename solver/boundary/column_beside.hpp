@@ -5,7 +5,7 @@
 
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "mesh/conditions/soil_column.hpp"
 #include "mesh/mesh.hpp"
 
@@ -16,6 +16,6 @@ namespace talus {
 /// or if one of them has a law without a shear modulus.  Collective.
 template <int D>
 std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const Facet> facets, const Vec<D>& up,
-                                           const Particles<D>& particles, std::span<const AnyBatch> materials, Communicator& ranks);
+                                           const Particles<D>& particles, std::span<const Material> materials, Communicator& ranks);
 
 }  // namespace talus

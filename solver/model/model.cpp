@@ -39,6 +39,8 @@ void update_tracked_rows(Model<D>& m)
   m.work.averaged_bodies.reserve(m.state.bodies.size());
   if (m.work.stars)
     m.work.averaged.resize(m.state.particles.id.size());
+  if (!m.state.particles.pore.empty())
+    m.work.pore_after.resize(m.state.particles.id.size());
   m.work.followed.find(m.state.particles.id);
 }
 
@@ -75,7 +77,7 @@ void bind_boundary_conditions(Model<D>& m)
 }
 
 template <int D>
-void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come)
+void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
 {
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
@@ -83,18 +85,18 @@ void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come)
   Transfer<D>& transfer = *m.transfer;
   if (state.particles.volume.empty())
     state.particles.volume = state.particles.volume0;
-  const auto any_material = [&](bool (*has)(const AnyBatch&) noexcept) {
-    const auto any_of = [&](const std::vector<AnyBatch>& laws) { return std::any_of(laws.begin(), laws.end(), has); };
+  const auto any_material = [&](bool (*has)(const Material&)) {
+    const auto any_of = [&](const std::vector<Material>& laws) { return std::any_of(laws.begin(), laws.end(), has); };
     return any_of(state.materials) || std::any_of(to_come.begin(), to_come.end(), any_of);
   };
   problem.columns = {.affine = problem.transfer.own_affine_field(),
                      .applied = problem.loads.any_on_particles(),
-                     .volume_ratio = any_material(averages_volume),
-                     .viscous = any_material(has_bulk_viscosity),
+                     .volume_ratio = any_material([](const Material& material) { return material.averages_volume; }),
+                     .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
                      .pore = problem.water.any()};
   fill_columns(problem.columns, state.particles);
   const bool alone = problem.share.alone();
-  if (any_material(conducts_heat))
+  if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
     alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.share);
   if (problem.columns.volume_ratio)
     alone ? work.stars.emplace(problem.mesh) : work.stars.emplace(*problem.ranks, problem.mesh, problem.share);
@@ -123,7 +125,7 @@ Totals<D> totals(const Model<D>& m)
 }
 
 template <int D>
-Real plastic_work(const std::vector<AnyBatch>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks)
+Real plastic_work(const std::vector<Material>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks)
 {
   ExactSums<Real> sum;
   for (std::size_t b = 0; b < materials.size(); ++b)
@@ -135,14 +137,14 @@ Real plastic_work(const std::vector<AnyBatch>& materials, const CellOrder& order
 #define TALUS_INSTANTIATE(D)                                                   \
   template struct Model<D>;                                                    \
   template void fill_columns(const WantedColumns&, Particles<D>&);             \
-  template void make_ready(Model<D>&, std::span<const std::vector<AnyBatch>>); \
+  template void make_ready(Model<D>&, std::span<const std::vector<Material>>); \
   template void update_tracked_rows(Model<D>&);                                \
   template void update_rows(Model<D>&);                                        \
   template void adopt_state(Model<D>&);                                        \
   template void bind_boundary_conditions(Model<D>&);                           \
   template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);  \
   template Totals<D> totals(const Model<D>&);                                  \
-  template Real plastic_work(const std::vector<AnyBatch>&, const CellOrder&, const Particles<D>&, Communicator&);
+  template Real plastic_work(const std::vector<Material>&, const CellOrder&, const Particles<D>&, Communicator&);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)
 #undef TALUS_INSTANTIATE

@@ -32,7 +32,7 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles);
 /// Allocates what depends on the particles and finds their cells.  To be called once, when bodies, walls and loads are complete.  `to_come`
 /// are laws that bodies get in later stages: what these need is allocated from the beginning.
 template <int D>
-void make_ready(Model<D>& m, std::span<const std::vector<AnyBatch>> to_come = {});
+void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come = {});
 
 /// To be called after rows of particles have changed: finds the rows of tracked particles.
 template <int D>
@@ -61,7 +61,7 @@ Totals<D> totals(const Model<D>& m);
 
 /// Energy dissipated by the laws so far, over all ranks [J].  Collective.
 template <int D>
-Real plastic_work(const std::vector<AnyBatch>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks);
+Real plastic_work(const std::vector<Material>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks);
 template <int D>
 Real plastic_work(const Model<D>& m)
 {

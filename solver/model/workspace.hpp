@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/particle_errors.hpp"
+#include "materials/stress_block.hpp"
 #include "solver/boundary/small_mass_nodes.hpp"
 #include "solver/particles/migrate.hpp"
 #include "solver/state/cell_order.hpp"
@@ -11,7 +12,6 @@
 #include "solver/state/step_sums.hpp"
 #include "solver/state/tracked_particles.hpp"
 #include "solver/stress/conduct_heat.hpp"
-#include "solver/stress/update_stress.hpp"
 
 namespace talus {
 
@@ -29,8 +29,9 @@ struct Workspace {
 
   std::optional<StarSums<D, 2>> stars;  ///< used if a body averages its volume
   std::vector<Real> averaged;           ///< volume ratios of average_volume()
-  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() treats as one
-  std::optional<HeatSums<D>> heat;      ///< used if a body conducts heat
+  std::vector<Real> pore_after;         ///< pore pressure of each particle at the end of the step [Pa]
+  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() takes as one
+  std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
 
   explicit Workspace(Index n_nodes)
   {

@@ -32,7 +32,7 @@ struct Turnover {
 /// Rows [begin, end) of each body so that the leaving ones are gone and there is room at the end for those who arrive: others take their
 /// places, as few as possible, whatever the order.
 template <int D>
-void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
                std::span<const std::int64_t> keepers, std::vector<std::pair<Index, Index>>& moves)
 {
   moves.clear();
@@ -48,11 +48,7 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
       if (hole >= last)
         break;
       moves.emplace_back(--last, hole);
-      std::visit(
-          [&](auto& batch) {
-            batch.history[static_cast<std::size_t>(hole - batch.begin)] = batch.history[static_cast<std::size_t>(last - batch.begin)];
-          },
-          materials[b]);
+      materials[b].history.copy_row(last - materials[b].begin, hole - materials[b].begin);
     }
     stay[b] = bodies[b].size() - static_cast<Index>(leaving.size());
   }
@@ -62,12 +58,8 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
   for (std::size_t b = 0; b < bodies.size(); ++b)
     begin[b] = std::exchange(total, total + stay[b] + turnovers[b].arriving);
   const auto rotate = [&](std::size_t b, Index by) {  // to the left; of a history, whose rows count from the body's first
-    std::visit(
-        [&](auto& batch) {
-          batch.history.resize(static_cast<std::size_t>(stay[b]));
-          std::rotate(batch.history.begin(), batch.history.begin() + by, batch.history.end());
-        },
-        materials[b]);
+    materials[b].history.resize(stay[b]);
+    materials[b].history.rotate(by);
   };
   for (std::size_t b = 0; b < bodies.size(); ++b)  // down: the last rows become the first
     if (const Index by = std::min(bodies[b].begin - begin[b], stay[b]); begin[b] < bodies[b].begin) {
@@ -91,12 +83,8 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     bodies[b].begin = begin[b];
     bodies[b].end = begin[b] + stay[b] + turnovers[b].arriving;
-    std::visit(
-        [&](auto& batch) {
-          batch.begin = bodies[b].begin, batch.end = bodies[b].end;
-          batch.history.resize(static_cast<std::size_t>(batch.size()));
-        },
-        materials[b]);
+    materials[b].set_range(bodies[b]);
+    materials[b].history.resize(materials[b].size());
   }
 }
 
@@ -125,7 +113,7 @@ void Migration<D>::agree_on_columns(const Particles<D>& particles)
 }
 
 template <int D>
-bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
                               CellOrder& order)
 {
   if (neighbours_.empty())
@@ -141,8 +129,8 @@ bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies,
         append_bytes(static_cast<Index>(b), letter);
         append_bytes(share.whole_cell(particles.cell[p]), letter);
         for_each_kept_column(particles, keepers_, [&](auto& column) { append_bytes(column[p], letter); });
-        std::visit([&](const auto& batch) { append_bytes(batch.history[static_cast<std::size_t>(row - batch.begin)], letter); },
-                   materials[b]);
+        const auto history = std::as_const(materials[b].history).bytes_of_row(row - materials[b].begin);
+        letter.insert(letter.end(), history.begin(), history.end());
         turnovers[b].leaving.push_back(row);
       }
     std::sort(turnovers[b].leaving.begin(), turnovers[b].leaving.end());
@@ -152,16 +140,13 @@ bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies,
   // How long a record is depends on its body alone.
   std::size_t columns = 2 * sizeof(Index);
   for_each_kept_column(particles, keepers_, [&](auto& column) { columns += sizeof(column[0]); });
-  const auto history_bytes = [&](std::size_t b) {
-    return std::visit([](const auto& batch) { return sizeof(batch.history[0]); }, materials[b]);
-  };
   std::vector<std::vector<std::span<const std::byte>>> records(bodies.size());
   bool busy = false;
   for (std::span<const std::byte> letter : in)
     while (!letter.empty()) {
       Index body{};
       std::memcpy(&body, letter.data(), sizeof(Index));
-      const std::size_t bytes = columns + history_bytes(static_cast<std::size_t>(body));
+      const std::size_t bytes = columns + materials[static_cast<std::size_t>(body)].history.row_bytes();
       records[static_cast<std::size_t>(body)].push_back(letter.first(bytes));
       letter = letter.subspan(bytes);
     }
@@ -183,7 +168,7 @@ bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies,
       Index body{}, cell{};
       take_bytes(record, body), take_bytes(record, cell);
       for_each_kept_column(particles, keepers_, [&](auto& column) { take_bytes(record, column[p]); });
-      std::visit([&](auto& batch) { take_bytes(record, batch.history[static_cast<std::size_t>(row - batch.begin)]); }, materials[b]);
+      std::ranges::copy(record, materials[b].history.bytes_of_row(row - materials[b].begin).begin());
       particles.cell[p] = share.local_cell(cell);
       arrived.push_back(row++);
     }

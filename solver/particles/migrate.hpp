@@ -1,7 +1,7 @@
 #pragma once
 // Particles that have entered a block of another rank go there, with all that is theirs.
 #include "core/parallel/communicator.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "mesh/part.hpp"
 #include "solver/state/cell_order.hpp"
 
@@ -18,7 +18,7 @@ class Migration {
   void agree_on_columns(const Particles<D>& particles);
   /// `order` is that of the cells, those of other ranks included; so it is afterwards, without them.  Neighbours have to ask alike.
   /// True if rows changed place.
-  bool operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+  bool operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
                   CellOrder& order);
   /// Particles that came or went so far.
   std::int64_t moved() const noexcept { return moved_; }

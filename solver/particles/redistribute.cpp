@@ -13,21 +13,28 @@ namespace {
 using RowsOfRanks = std::vector<std::vector<Index>>;
 
 /// Sends out[r] of `rows` to rank r; what comes from rank r stands in the rows in[r] of `n` then.
-template <class Column>
-void send_rows(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t n, Column& rows)
+/// Rows are `bytes` long; row_at(i) is the address of row i, and make_room() makes `rows` those that there are then.
+template <class RowAt, class MakeRoom>
+void send_rows(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t bytes, RowAt&& row_at, MakeRoom&& make_room)
 {
-  using Row = typename Column::value_type;
-  std::vector<std::vector<std::byte>> letters(out.size());
-  for (std::size_t r = 0; r < out.size(); ++r) {
-    letters[r].resize(out[r].size() * sizeof(Row));
-    for (std::size_t i = 0; i < out[r].size(); ++i)
-      std::memcpy(letters[r].data() + i * sizeof(Row), static_cast<const void*>(&rows[static_cast<std::size_t>(out[r][i])]), sizeof(Row));
-  }
-  letters = ranks.all_to_all(letters);
-  rows = Column(n);
+  std::vector<std::vector<std::byte>> messages(out.size());
+  for (std::size_t r = 0; r < out.size(); ++r)
+    for (const Index row : out[r]) {
+      const auto* const first = static_cast<const std::byte*>(row_at(row));
+      messages[r].insert(messages[r].end(), first, first + bytes);
+    }
+  messages = ranks.all_to_all(messages);
+  make_room();
   for (std::size_t r = 0; r < in.size(); ++r)
-    for (std::size_t i = 0; i < in[r].size(); ++i)
-      std::memcpy(static_cast<void*>(&rows[static_cast<std::size_t>(in[r][i])]), letters[r].data() + i * sizeof(Row), sizeof(Row));
+    for (std::size_t i = 0; i < in[r].size() && bytes > 0; ++i)
+      std::memcpy(row_at(in[r][i]), messages[r].data() + i * bytes, bytes);
+}
+template <class Column>
+void send_column(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t n, Column& rows)
+{
+  send_rows(
+      ranks, out, in, sizeof(typename Column::value_type),
+      [&](Index row) { return static_cast<void*>(&rows[static_cast<std::size_t>(row)]); }, [&] { rows = Column(n); });
 }
 
 /// What says where a row comes to stand.
@@ -73,7 +80,7 @@ RowsOfRanks within(const RowsOfRanks& rows, Index begin, Index end)
 }  // namespace
 
 template <int D>
-void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<Material>& materials,
                   Particles<D>& particles)
 {
   assert(rank_of_row.size() == particles.id.size());
@@ -98,24 +105,23 @@ void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::ve
       size_of_body[static_cast<std::size_t>(name.body)] += 1;
   }
   names = {};
-  for_each_kept_column(particles, keepers, [&](auto& column) { send_rows(ranks, out, in, n, column); });
+  for_each_kept_column(particles, keepers, [&](auto& column) { send_column(ranks, out, in, n, column); });
   Index begin = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     Body& body = bodies[b];
     const RowsOfRanks leaving = within(out, body.begin, body.end);
     body.begin = begin, body.end = begin += size_of_body[b];
     const RowsOfRanks arriving = within(in, body.begin, body.end);
-    std::visit(
-        [&](auto& batch) {
-          send_rows(ranks, leaving, arriving, static_cast<std::size_t>(body.size()), batch.history);
-          batch.begin = body.begin, batch.end = body.end;
-        },
-        materials[b]);
+    HistoryRows& history = materials[b].history;
+    send_rows(
+        ranks, leaving, arriving, history.row_bytes(), [&](Index row) { return static_cast<void*>(history.row(row)); },
+        [&] { history.resize(body.size()); });
+    materials[b].set_range(body);
   }
 }
 
 template <int D>
-void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials,
                              Particles<D>& particles)
 {
   std::vector<int> rank_of_row;
@@ -127,9 +133,9 @@ void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::v
     cell = share.local_cell(cell);
 }
 
-template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
+template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
 
 }  // namespace talus

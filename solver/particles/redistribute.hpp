@@ -2,7 +2,7 @@
 // Particles dealt out anew among the ranks, whoever has them: for files, and for a start from files.
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "mesh/part.hpp"
 
 namespace talus {
@@ -11,17 +11,17 @@ namespace talus {
 /// bodies and ids, whoever had them, and columns that any rank keeps are kept by all; cells are what they were, numbers of the whole mesh
 /// as a rule.  Column by column: besides the particles there is room needed for one column only.
 template <int D>
-void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::vector<Body>& bodies, std::vector<Material>& materials,
                   Particles<D>& particles);
 
 /// Gives each row, of a cell of the whole mesh, to the rank whose cell it is, and to the cell of its part.  As above.
 template <int D>
-void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials,
                              Particles<D>& particles);
 
-extern template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-extern template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+extern template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+extern template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
+extern template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+extern template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
 
 }  // namespace talus

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <numeric>
 
-#include "solver/state/particle_pack.hpp"
+#include "core/particle_pack.hpp"
 
 namespace talus {
 
@@ -36,7 +36,7 @@ void permute(std::vector<T, Allocator>& column, std::span<const Index> order, st
 }  // namespace
 
 template <int D>
-void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+void drop_lost(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles)
 {
   std::vector<std::uint8_t> stays(z(particles.size()));
   for (Index p = 0; p < particles.size(); ++p)
@@ -48,16 +48,13 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
         column[to++] = column[z(p)];
     return to;
   };
-  for (auto& material : materials)
-    std::visit(
-        [&](auto& batch) {
-          std::size_t to = 0;
-          for (Index i = 0; i < batch.size(); ++i)
-            if (stays[z(batch.begin + i)])
-              batch.history[to++] = batch.history[z(i)];
-          batch.history.resize(to);
-        },
-        material);
+  for (auto& material : materials) {
+    Index to = 0;
+    for (Index i = 0; i < material.size(); ++i)
+      if (stays[z(material.begin + i)])
+        material.history.copy_row(i, to++);
+    material.history.resize(to);
+  }
   const Index all = particles.size();
   particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
     if (!column.empty())
@@ -68,12 +65,12 @@ void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Part
     const auto count = static_cast<Index>(std::count(stays.begin() + bodies[b].begin, stays.begin() + bodies[b].end, 1));
     bodies[b].begin = begin;
     bodies[b].end = begin += count;
-    std::visit([&](auto& batch) { batch.begin = bodies[b].begin, batch.end = bodies[b].end; }, materials[b]);
+    materials[b].set_range(bodies[b]);
   }
 }
 
 template <int D>
-RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles,
+RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<Material>& materials, const Particles<D>& particles,
                                Index row)
 {
   const std::size_t p = z(row);
@@ -94,7 +91,7 @@ RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vecto
 namespace {
 
 template <int D>
-RemovedParticles<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, Particles<D>& particles,
+RemovedParticles<D> mark_deleted(const std::vector<Body>& bodies, const std::vector<Material>& materials, Particles<D>& particles,
                                  Index row)
 {
   particles.cell[z(row)] = none;
@@ -104,7 +101,7 @@ RemovedParticles<D> mark_deleted(const std::vector<Body>& bodies, const std::vec
 }  // namespace
 
 template <int D>
-void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
                    CellOrder& order, ExactSums<RemovedParticles<D>>& departed)
 {
   for (Index row = 0; row < particles.size(); ++row) {
@@ -122,7 +119,7 @@ void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<A
 
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health)
+              std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
@@ -146,7 +143,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
       for (Index body = 0; body < static_cast<Index>(bodies.size()); ++body)
         for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
           const auto probe = locator.probe(mesh, c);
-          for_each_bunch(run, [&](const ParticlePack& pack) {
+          for_each_pack(run, [&](const ParticlePack& pack) {
             if (const auto deep = probe.deep_each(pack.load(particles.x)); !all_of(deep))
               for (int lane = 0; lane < pack.count; ++lane)
                 if (!deep[lane])
@@ -194,7 +191,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
 }
 
 template <int D>
-bool sort_by_cell(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order)
+bool sort_by_cell(const std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& order)
 {
   if (!std::exchange(order.is_new, false) || disorder(order) <= most_disorder)
     return false;
@@ -205,25 +202,25 @@ bool sort_by_cell(const std::vector<Body>& bodies, std::vector<AnyBatch>& materi
     within.resize(z(bodies[b].size()));
     for (Index i = 0; i < bodies[b].size(); ++i)
       within[z(i)] = order.row[z(bodies[b].begin + i)] - bodies[b].begin;
-    permute(materials[b], within);
+    materials[b].history.permute(within);
   }
   std::iota(order.row.begin(), order.row.end(), 0);
   return true;
 }
 
-template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
-template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
-template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
+template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<Material>&, const Particles<2>&, Index);
+template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<Material>&, const Particles<3>&, Index);
+template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<2>&,
                           CellOrder&, StepSums<2>&, ParticleErrors&);
-template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
+template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<3>&,
                           CellOrder&, StepSums<3>&, ParticleErrors&);
-template void drop_lost<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void drop_lost<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
-template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
-template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&,
+template void drop_lost<2>(std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+template void drop_lost<3>(std::vector<Body>&, std::vector<Material>&, Particles<3>&);
+template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&);
+template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&);
+template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&,
                                ExactSums<RemovedParticles<2>>&);
-template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&,
+template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&,
                                ExactSums<RemovedParticles<3>>&);
 
 }  // namespace talus

@@ -1,7 +1,7 @@
 #pragma once
 // The cell of every particle, the order by cell, and particles that are about to leave the mesh.
 #include "core/particle_errors.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "mesh/locate.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/step_sums.hpp"
@@ -22,39 +22,39 @@ struct Exits {
 /// True if rows changed place.
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health);
+              std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health);
 
 /// Drops the particles whose cell is `none`.
 template <int D>
-void drop_lost(std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles);
+void drop_lost(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles);
 
 /// Sorts the arrays by `order` where too many rows are out of place.  True if rows changed place.
 template <int D>
-bool sort_by_cell(const std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles, CellOrder& order);
+bool sort_by_cell(const std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& order);
 
 /// What a particle takes along that goes, or brings that comes, as far as it is a number.
 template <int D>
-RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<AnyBatch>& materials, const Particles<D>& particles,
+RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<Material>& materials, const Particles<D>& particles,
                                Index row);
 
 /// Deletes the particles that no step can go on from: position, velocity, deformation or stress not finite, or turned inside out.
 template <int D>
-void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles,
+void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
                    CellOrder& order, ExactSums<RemovedParticles<D>>& departed);
 
-extern template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<2>&, Index);
-extern template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<AnyBatch>&, const Particles<3>&, Index);
-extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&,
+extern template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<Material>&, const Particles<2>&, Index);
+extern template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<Material>&, const Particles<3>&, Index);
+extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<2>&,
                                  CellOrder&, StepSums<2>&, ParticleErrors&);
-extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&,
+extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<3>&,
                                  CellOrder&, StepSums<3>&, ParticleErrors&);
-extern template void drop_lost<2>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-extern template void drop_lost<3>(std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-extern template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&);
-extern template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&);
-extern template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&, CellOrder&,
+extern template void drop_lost<2>(std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+extern template void drop_lost<3>(std::vector<Body>&, std::vector<Material>&, Particles<3>&);
+extern template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&);
+extern template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&);
+extern template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&,
                                       ExactSums<RemovedParticles<2>>&);
-extern template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&, CellOrder&,
+extern template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&,
                                       ExactSums<RemovedParticles<3>>&);
 
 }  // namespace talus

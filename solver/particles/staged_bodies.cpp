@@ -43,7 +43,7 @@ void interleave(const Column& there, const std::byte* coming, const std::vector<
 }  // namespace
 
 template <int D>
-ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bodies, std::vector<AnyBatch>& materials,
+ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bodies, std::vector<Material>& materials,
                               Particles<D>& particles)
 {
   ParticleSet<D> out{bodies, materials, particles};
@@ -57,7 +57,7 @@ ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bo
 }
 
 template <int D>
-void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vector<AnyBatch>& materials, Particles<D>& particles)
+void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles)
 {
   assert(crowd.bodies.size() == bodies.size());
   const std::size_t come = crowd.particles.id.size(), n = particles.id.size() + come;
@@ -78,17 +78,11 @@ void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vect
   });
   Index begin = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    std::visit(
-        [&]<class L>(Batch<L>& batch) {
-          if (crowd.bodies[b].size() > 0) {  // of others the law may have changed since
-            const auto& more = std::get<Batch<L>>(crowd.materials[b]).history;
-            batch.history.insert(batch.history.end(), more.begin(), more.end());
-          }
-          batch.begin = begin, batch.end = begin + static_cast<Index>(batch.history.size());
-        },
-        materials[b]);
+    if (crowd.bodies[b].size() > 0)  // of others the law may have changed since
+      materials[b].history.append(crowd.materials[b].history);
     const Index size = bodies[b].size() + crowd.bodies[b].size();
     bodies[b].begin = begin, bodies[b].end = begin += size;
+    materials[b].set_range(bodies[b]);
   }
 }
 
@@ -128,10 +122,10 @@ Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<c
   return found;
 }
 
-template ParticleSet<2> extract_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template ParticleSet<3> extract_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
-template void insert_particles<2>(ParticleSet<2>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
-template void insert_particles<3>(ParticleSet<3>, std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+template ParticleSet<2> extract_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+template ParticleSet<3> extract_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
+template void insert_particles<2>(ParticleSet<2>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
+template void insert_particles<3>(ParticleSet<3>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
 template Overlap<2> overlap<2>(const Mesh<2>&, std::span<const Real>, std::span<const Real>, Communicator&);
 template Overlap<3> overlap<3>(const Mesh<3>&, std::span<const Real>, std::span<const Real>, Communicator&);
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/particles.hpp"
+#include "core/particle_pack.hpp"
 #include "mesh/blocks.hpp"
 
 namespace talus {
@@ -52,29 +52,7 @@ void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id,
 /// The fraction of the particles whose row does not follow that of the previous particle in the order.
 Real disorder(const CellOrder& order) noexcept;
 
-/// Calls ask(p) once for each of `rows`, well before it is used, so that the memory can be prefetched.
-template <class Ask>
-class PrefetchRows {
- public:
-  PrefetchRows(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
-  /// Prefetches before the rows before `end` are used.
-  void until(std::size_t end)
-  {
-    for (const std::size_t last = std::min(end + distance, rows_.size()); asked_ < last; ++asked_)
-      ask_(static_cast<std::size_t>(rows_[asked_]));
-  }
-
- private:
-  static constexpr std::size_t distance = 32;
-  std::span<const Index> rows_;
-  Ask ask_;
-  std::size_t asked_ = 0;
-};
-struct AskForNothing {
-  void operator()(std::size_t) const noexcept {}
-};
-
-/// Calls f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as in PrefetchRows.
+/// f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as above.
 template <class F, class Ask = AskForNothing>
 void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f, Ask ask = {})
 {

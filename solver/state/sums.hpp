@@ -7,7 +7,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/exact_sum.hpp"
 #include "core/parallel/threads.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/ledger.hpp"
 #include "solver/state/owned_nodes.hpp"
@@ -57,11 +57,10 @@ void add_particles(const CellOrder& order, ExactSums<T>& sum, F&& f)
 }
 
 /// Adds the energy [J] that the law of a body has dissipated.
-inline void add_plastic_work(const AnyBatch& material, const CellOrder& order, Index body, const Rows<Real>& volume0, ExactSums<Real>& sum)
+inline void add_plastic_work(const Material& material, const CellOrder& order, Index body, const Rows<Real>& volume0, ExactSums<Real>& sum)
 {
-  const Index begin = std::visit([](const auto& batch) { return batch.begin; }, material);
   add_particles(order, {body, body + 1}, sum,
-                [&](Index row) { return plastic_work(material, row - begin, volume0[static_cast<std::size_t>(row)]); });
+                [&](Index row) { return plastic_work(material, row - material.begin, volume0[static_cast<std::size_t>(row)]); });
 }
 
 /// The sum over the particles of all ranks.  Collective.

@@ -8,12 +8,6 @@ namespace talus {
 
 namespace {
 
-template <class L>
-constexpr bool starts_from_stress = requires(const L& law, typename L::State& state)
-{
-  law.prestress(Mat3(), state);
-};
-
 /// What lies above a particle.
 struct Above {
   Real mass = 0;   ///< per area [kg/m^(D-1)]
@@ -123,7 +117,7 @@ std::vector<Above> weight_above(const Mesh<D>& mesh, const Subdomain& share, Com
 template <int D>
 void set_start_stress(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
                       std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
-                      std::vector<AnyBatch>& materials, Particles<D>& particles)
+                      std::vector<Material>& materials, Particles<D>& particles)
 {
   const Real g = gravity.norm();
   const std::vector<Above> above = weight_above(mesh, share, ranks, gravity, start, order, particles);
@@ -145,40 +139,25 @@ void set_start_stress(const Mesh<D>& mesh, const Subdomain& share, Communicator&
         const Real ratio = k0(above[p].depth);
         stress = (u - g * above[p].mass) * (ratio * Mat3::Identity() + (1 - ratio) * along);
       }
-      if (!prestress(materials[b], row - bodies[b].begin, stress))
+      if (!materials[b].prestress(row - bodies[b].begin, stress))
         throw SceneErrors(
             bodies[b].where,
             fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let the loads grow (ramp)",
-                        law_name(materials[b]), bodies[b].name));
+                        materials[b].law().name(), bodies[b].name));
       stress.diagonal().array() -= u;
       particles.stress.set(p, pack(stress));
     }
   }
 }
 
-bool can_start_from_stress(const AnyBatch& material)
-{
-  return std::visit([]<class L>(const Batch<L>&) { return starts_from_stress<L>; }, material);
-}
-
-std::vector<std::string> laws_that_start_from_stress()
-{
-  std::vector<std::string> names;
-  for_each_type(Laws{}, [&]<class L>() {
-    if (starts_from_stress<L>)
-      names.emplace_back(L::name);
-  });
-  return names;
-}
-
 template <int D>
-void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& particles)
+void start_from_stress(const Body& body, Material& material, Particles<D>& particles)
 {
   parallel_for(body.size(), [&](Index i) {
     const auto p = static_cast<std::size_t>(body.begin + i);
     Mat3 stress = unpack(Sym3(particles.stress[p]));
     stress.diagonal().array() += beside_law(particles, p);
-    prestress(material, i, stress);
+    material.prestress(i, stress);
     particles.F.set(p, Mat3::Identity());
     particles.volume0[p] = particles.volume[p];
     if (!particles.volume_ratio.empty())
@@ -187,37 +166,37 @@ void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& parti
 }
 
 template <int D>
-StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool take_over, Particles<D>& particles)
+StressFit fit_stress(const Body& body, const Material& material, Real dt, bool take_over, Particles<D>& particles)
 {
-  const auto fit_one = [&]<class L>(const Batch<L>& batch, Index i) {
+  const ConstitutiveLaw& law = material.law();
+  // A law that starts from a stress moves on by dt L, another finds its stress from F and the rate of that step.
+  const bool moves_on = law.starts_from_stress();
+  const auto width = static_cast<std::size_t>(law.history_width());
+  return parallel_sum<StressFit>(body.size(), [&](Index i) {
     const auto p = static_cast<std::size_t>(body.begin + i);
     const Sym3 before = particles.stress[p];
     Mat3 F = particles.F[p], L_there = Mat3::Zero(), stress = unpack(before);
-    if (batch.averages_volume && !particles.volume_ratio.empty())
+    if (material.averages_volume && !particles.volume_ratio.empty())
       F.topLeftCorner<D, D>() *= particles.volume_ratio[p];
     L_there.topLeftCorner<D, D>() = particles.L[p];
     const Real q = particles.viscous.empty() ? 0 : particles.viscous[p], others = beside_law(particles, p);
     stress.diagonal().array() += others;
-    auto history = batch.history[static_cast<std::size_t>(i)];
-    // The one kind moves on by dt L, the other finds its stress from F and the rate of that step.
-    constexpr bool moves_on = starts_from_stress<L>;
-    Mat3 answer = batch.law.update(Increment{F, L_there, stress, moves_on ? 0 : dt, q, moves_on}, history, batch.constants);
+    std::vector<Real> history(material.history.row(i), material.history.row(i) + width);
+    Mat3 answer = law.update(Increment{F, L_there, stress, moves_on ? 0 : dt, q, moves_on}, history.data());
     answer.diagonal().array() -= others;
     if (const Sym3 after = pack(answer); take_over && after.allFinite())
       particles.stress.set(p, after);
     return StressFit{unpack(before).norm(), (answer - unpack(before)).norm()};
-  };
-  return std::visit([&](const auto& batch) { return parallel_sum<StressFit>(body.size(), [&](Index i) { return fit_one(batch, i); }); },
-                    material);
+  });
 }
 
-template void start_from_stress<2>(const Body&, AnyBatch&, Particles<2>&);
-template void start_from_stress<3>(const Body&, AnyBatch&, Particles<3>&);
-template StressFit fit_stress<2>(const Body&, const AnyBatch&, Real, bool, Particles<2>&);
-template StressFit fit_stress<3>(const Body&, const AnyBatch&, Real, bool, Particles<3>&);
+template void start_from_stress<2>(const Body&, Material&, Particles<2>&);
+template void start_from_stress<3>(const Body&, Material&, Particles<3>&);
+template StressFit fit_stress<2>(const Body&, const Material&, Real, bool, Particles<2>&);
+template StressFit fit_stress<3>(const Body&, const Material&, Real, bool, Particles<3>&);
 template void set_start_stress<2>(const Mesh<2>&, const Subdomain&, Communicator&, const Vec<2>&, std::span<const StartStress>,
-                                  const CellOrder&, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<2>&);
+                                  const CellOrder&, const std::vector<Body>&, std::vector<Material>&, Particles<2>&);
 template void set_start_stress<3>(const Mesh<3>&, const Subdomain&, Communicator&, const Vec<3>&, std::span<const StartStress>,
-                                  const CellOrder&, const std::vector<Body>&, std::vector<AnyBatch>&, Particles<3>&);
+                                  const CellOrder&, const std::vector<Body>&, std::vector<Material>&, Particles<3>&);
 
 }  // namespace talus

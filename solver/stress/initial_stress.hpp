@@ -8,7 +8,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
 #include "core/time_table.hpp"
-#include "materials/batch.hpp"
+#include "materials/material.hpp"
 #include "mesh/part.hpp"
 #include "solver/state/cell_order.hpp"
 
@@ -28,16 +28,12 @@ struct StartStress {
 template <int D>
 void set_start_stress(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
                       std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
-                      std::vector<AnyBatch>& materials, Particles<D>& particles);
-
-bool can_start_from_stress(const AnyBatch& material);
-/// Names of the laws that can.
-std::vector<std::string> laws_that_start_from_stress();
+                      std::vector<Material>& materials, Particles<D>& particles);
 
 /// The body keeps its stress and forgets the deformation that led to it: F = I, and its history is that of the stress.  For laws that can
 /// start from a stress.
 template <int D>
-void start_from_stress(const Body& body, AnyBatch& material, Particles<D>& particles);
+void start_from_stress(const Body& body, Material& material, Particles<D>& particles);
 
 /// How the stress of a body compares to what its law makes of the same state, nothing moving on.
 struct StressFit {
@@ -52,6 +48,6 @@ struct StressFit {
 /// `dt`: of the step that led to the state [s].  Laws that can start from a stress are asked without yielding, which is for the next step to do.
 /// `take_over`: the stress becomes that of the law, less the viscous and the pore pressure; otherwise nothing changes.
 template <int D>
-StressFit fit_stress(const Body& body, const AnyBatch& material, Real dt, bool take_over, Particles<D>& particles);
+StressFit fit_stress(const Body& body, const Material& material, Real dt, bool take_over, Particles<D>& particles);
 
 }  // namespace talus

@@ -2,7 +2,7 @@
 // The contributions of the particles of a cell to its stencil: mass, momentum and force through the weights of a kernel.
 #include "kernels/kernel.hpp"
 #include "solver/halo/block_rows.hpp"
-#include "solver/state/particle_pack.hpp"
+#include "solver/state/interpolated.hpp"
 
 namespace talus {
 

@@ -71,7 +71,7 @@ template <bool with_change, bool with_gradient, int D, int N>
 
 /// Interpolates to the particles; `change` and `L` are computed only if needed.
 template <bool with_change, bool with_gradient, int D, int N>
-Seen<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int count) noexcept
+Interpolated<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int count) noexcept
 {
   StencilSums<D, with_change, with_gradient> of[pack_size];
   for (int lane = 0; lane < pack_size; ++lane)
@@ -84,7 +84,7 @@ Seen<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int co
     return sums(entry(of[0]), entry(of[1]), entry(of[2]), entry(of[3]));
   };
 
-  Seen<D> seen;
+  Interpolated<D> seen;
   for (int i = 0; i < D; ++i) {
     seen.v[i] = total([&](const auto& one) { return one.v[i]; });
     if constexpr (with_change)
@@ -170,7 +170,7 @@ class DirectTransfer {
 
   void read(const std::vector<NodeMotion<D>>& nodes) noexcept { motion_.read(nodes, cell_.nodes, cell_.padded_size); }
   template <bool with_change, bool with_gradient, class S>
-  Seen<D> see(const ParticlePackOf<S>& pack) const noexcept
+  Interpolated<D> see(const ParticlePackOf<S>& pack) const noexcept
   {
     return talus::see<with_change, with_gradient>(motion_, weights_, pack.count);
   }

@@ -8,9 +8,10 @@ namespace detail {
 /// Computes v_p and, if needed, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme stores it
 /// separately.  With `musl` L is computed later, from remapped velocities.
 template <bool increments, bool with_gradient, bool musl, int D, class Through_, class S>
-Seen<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const ParticlePackOf<S>& pack, Particles<D>& particles) noexcept
+Interpolated<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const ParticlePackOf<S>& pack,
+                              Particles<D>& particles) noexcept
 {
-  const Seen<D> seen = through.template see<increments, with_gradient>(pack);
+  const Interpolated<D> seen = through.template see<increments, with_gradient>(pack);
   VecOf<D> v = vector_of(seen.v);
   if constexpr (increments)
     v = SimdReal(1 - pic) * (pack.load(particles.v) + vector_of(seen.change)) + SimdReal(pic) * v;
@@ -77,9 +78,9 @@ void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then)
             m, of, b, of.motion(m.work.nodes),
             [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.L); },
             [&](Index, std::span<const Index> run, auto& through) {
-              for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+              for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
                 through.place(pack, x);
-                const Seen<D> seen =
+                const Interpolated<D> seen =
                     take_velocity<increments, true, false>(through, m.problem.transfer.scheme, pic, pack, m.state.particles);
                 move(pack, x, seen.v, dt, m.state.particles);
               });
@@ -103,7 +104,7 @@ void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
         [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields()); },
         [&](Index c, std::span<const Index> run, auto& through) {
           through.clear();
-          for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+          for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
             through.place(pack, x);
             take_velocity<increments, affine, true>(through, m.problem.transfer.scheme, pic, pack, m.state.particles);
             through.template deposit<affine, false, false>(m.state.particles, pack, x, m.state.particles.affine_fields());
@@ -153,9 +154,9 @@ void gather_gradient(Model<D>& m, KernelRows<D, K>& of, const std::vector<typena
       detail::for_each_reading_run(
           m, of, b, remapped, [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.L); },
           [&](Index, std::span<const Index> run, auto& through) {
-            for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+            for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
               through.place(pack, x);
-              const Seen<D> seen = through.template see<true, true>(pack);
+              const Interpolated<D> seen = through.template see<true, true>(pack);
               pack.store(matrix_of(seen.L), m.state.particles.L);
               detail::move(pack, x, seen.change, dt, m.state.particles);
             });

@@ -2,7 +2,7 @@
 // Transfer between the particles of a cell and the linear shape functions of its vertices, for a kernel with node operators: four particles
 // at a time.
 #include "kernels/linear.hpp"
-#include "solver/state/particle_pack.hpp"
+#include "solver/state/interpolated.hpp"
 #include "solver/transfer/projected_nodes.hpp"
 
 namespace talus {
@@ -146,7 +146,7 @@ void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::
 /// Values of the linear shape functions of a cell interpolated to four particles.
 template <bool with_change, int D>
 [[gnu::always_inline]] inline void see_velocity(const std::array<ProjectedNodeMotion<D>, D + 1>& projected, const CornerWeights<D>& shares,
-                                                Seen<D>& seen) noexcept
+                                                Interpolated<D>& seen) noexcept
 {
   for (int i = 0; i < D; ++i) {
     seen.v[i] = seen.change[i] = Pack{};
@@ -159,7 +159,7 @@ template <bool with_change, int D>
 }
 template <int D>
 [[gnu::always_inline]] inline void see_gradient(const std::array<ProjectedNodeMotion<D>, D + 1>& projected, const CornerWeights<D>& shares,
-                                                Seen<D>& seen) noexcept
+                                                Interpolated<D>& seen) noexcept
 {
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
@@ -220,9 +220,9 @@ class ProjectedTransfer {
 
   void read(const std::vector<ProjectedNodeMotion<D>>& projected) noexcept { motion_ = hats_of(projected, cell_.nodes); }
   template <bool with_change, bool with_gradient, class S>
-  Seen<D> see(const ParticlePackOf<S>&) const noexcept
+  Interpolated<D> see(const ParticlePackOf<S>&) const noexcept
   {
-    Seen<D> seen;
+    Interpolated<D> seen;
     see_velocity<with_change>(motion_, shares_, seen);
     if constexpr (with_gradient)
       see_gradient(motion_, shares_, seen);

@@ -37,7 +37,7 @@ void scatter(Model<D>& m, KernelRows<D, K>& of)
               std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});
             through.enter(m.problem.mesh, c);
             through.clear();
-            for_each_placed_bunch<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+            for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
               through.place(pack, x);
               through.template deposit<affine, loaded, true>(m.state.particles, pack, x, m.state.particles.affine_fields());
             });

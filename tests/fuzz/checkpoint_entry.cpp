@@ -15,6 +15,7 @@
 #include "app/observers/checkpoints.hpp"
 #include "core/error.hpp"
 #include "io/files/atomic_file.hpp"
+#include "materials/von_mises.hpp"
 #include "mesh/generate/generate.hpp"
 #include "mesh/simplex.hpp"
 #include "tests/fuzz/entries.hpp"
@@ -84,7 +85,7 @@ struct SmallRun {
     const auto make_room = [](auto&... columns) { (columns.resize(n_particles), ...); };
     state.crossing = 1;
     state.bodies = {{"block", 0, n_particles, {}}};
-    state.materials.push_back(make_any_batch(VonMises{}, 0, n_particles, "steel"));
+    state.materials.push_back(make_material(VonMises{}, 0, n_particles, "steel"));
     Particles<2>& p = state.particles;
     make_room(p.id, p.cell, p.x, p.x0, p.v, p.L, p.F, p.stress, p.volume0, p.volume, p.mass);
     for (std::size_t row = 0; row < n_particles; ++row) {
@@ -120,7 +121,7 @@ void begin_with(const CheckpointList& checkpoints)
 {
   KeptBodies<2> saved;
   saved.bodies = {{"block", 0, 0, {}}};
-  saved.materials.push_back(make_any_batch(VonMises{}, 0, 0, "steel"));
+  saved.materials.push_back(make_material(VonMises{}, 0, 0, "steel"));
   checkpoints.read(saved);
   const Particles<2>& p = saved.particles;
   volatile Real sum = 0;  // so that it is worked out

@@ -141,7 +141,7 @@ TEST(JohnsonCook, TensionTestReadsTheCauchyStressAtThePlasticRate)
   law.initial_temperature = 696;
   const Control none{Controlled::stress, 0};
   const PointPath pull{.steps = 400, .time = 1e-4, .controls = {.xx = Control{Controlled::strain_rate, 4000}, .yy = none, .zz = none}};
-  const auto [names, rows] = drive(make_any_batch(law, 0, 1, "bar"), {&pull, 1});
+  const auto [names, rows] = drive(make_material(law, 0, 1, "bar"), {&pull, 1});
   ASSERT_EQ(names, (std::vector<std::string>{"elastic_left_xx", "elastic_left_yy", "elastic_left_zz", "elastic_left_xy", "elastic_left_yz",
                                              "elastic_left_xz", "plastic_strain", "plastic_work", "temperature"}));
   const Real E = law.moduli().youngs;

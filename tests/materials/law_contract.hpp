@@ -5,6 +5,7 @@
 
 #include <numeric>
 
+#include "materials/constitutive_law_of.hpp"
 #include "materials/strength.hpp"
 #include "tests/materials/samples.hpp"
 

@@ -61,18 +61,17 @@ TYPED_TEST(LawContract, SuperposedRotationTurnsTheStressWithIt)
     EXPECT_GE(worst, 0.1 * testing::sample_stiffness) << "this law is better than it says";
 }
 
-TYPED_TEST(LawContract, AnswersTheSameAloneAndInABatch)
+TYPED_TEST(LawContract, AnswersTheSameAloneAndInABody)
 {
   Dice dice(3);
-  AnyBatch any = make_batch(sample<TypeParam>(), 10, 13, "body");
-  auto& batch = std::get<Batch<TypeParam>>(any);
+  Material body = make_material(sample<TypeParam>(), 10, 13, "body");
   std::array<Point<TypeParam>, 3> alone{this->point(), this->point(), this->point()};
   for (int n = 0; n < 50; ++n)
     for (Index i = 0; i < 3; ++i) {
       auto& point = alone[static_cast<std::size_t>(i)];
       const Mat3 f = Mat3::Identity() + dice.matrix(0.02), before = point.stress;
       point.step(f, n < 3);
-      const Mat3 stress = batch.update(i, {point.F, (f - Mat3::Identity()) / 1e-3, before, 1e-3, 0, n < 3});
+      const Mat3 stress = body.law().update({point.F, (f - Mat3::Identity()) / 1e-3, before, 1e-3, 0, n < 3}, body.history.row(i));
       ASSERT_EQ((stress - point.stress).norm(), 0);
     }
 }
@@ -176,11 +175,12 @@ TYPED_TEST(LawContract, ElasticStepsLeaveHardeningAlone)
 
 TYPED_TEST(LawContract, StartsFromAStressIfItSaysSo)
 {
-  AnyBatch batch = make_batch(sample<TypeParam>(), 0, 1, "body");
+  Material body = make_material(sample<TypeParam>(), 0, 1, "body");
   const Mat3 start = Vec3(-2e4, -5e4, -3e4).asDiagonal();
-  if (prestress(batch, 0, start)) {
+  EXPECT_EQ(body.law().starts_from_stress(), body.prestress(0, start));
+  if (body.law().starts_from_stress()) {
     const Mat3 rest = Mat3::Zero(), F = Mat3::Identity();
-    const Mat3 stress = std::get<Batch<TypeParam>>(batch).update(0, {F, rest, start, 1e-3, 0, true});  // as a stage that seeks rest asks
+    const Mat3 stress = body.law().update({F, rest, start, 1e-3, 0, true}, body.history.row(0));  // as in a stage that seeks rest
     EXPECT_LE((stress - start).norm(), rounding);
   }
 }
@@ -330,20 +330,14 @@ TYPED_TEST(LawContract, HistoryCopiedFieldByFieldContinuesWithTheSameBits)
   auto point = this->point();
   for (const Mat3& f : random_steps(dice))
     point.step(f);
-  AnyBatch from = make_batch(sample<TypeParam>(), 0, 1, "a"), to = make_batch(sample<TypeParam>(), 0, 1, "b");
-  std::get<Batch<TypeParam>>(from).history[0] = point.state;
-  std::vector<Real> stored;
-  for_each_history(std::as_const(from), [&](auto, auto, auto, const auto& column) {
-    for (int c = 0; c < column.components; ++c)
-      stored.push_back(column.component(0, c));
-  });
-  auto next = stored.begin();
-  for_each_history(to, [&](auto, auto, auto, const auto& column) {
-    for (int c = 0; c < column.components; ++c)
-      column.component(0, c) = *next++;
-  });
+  const auto law = constitutive_law_of_all_kinds(sample<TypeParam>());
+  Material from(law, 0, 1, "a"), to(law, 0, 1, "b");
+  ConstitutiveLawOf<TypeParam>::state_of(from.history.row(0)) = point.state;
+  for (const HistoryVariable& variable : law->variables())
+    for (int c = 0; c < variable.components; ++c)
+      history_value(to, variable, 0, c) = history_value(std::as_const(from), variable, 0, c);
   auto resumed = point;
-  resumed.state = std::get<Batch<TypeParam>>(to).history[0];
+  resumed.state = ConstitutiveLawOf<TypeParam>::state_of(to.history.row(0));
   for (const Mat3& f : random_steps(dice)) {
     point.step(f);
     resumed.step(f);
@@ -353,19 +347,19 @@ TYPED_TEST(LawContract, HistoryCopiedFieldByFieldContinuesWithTheSameBits)
 
 TYPED_TEST(LawContract, PermutationMovesHistoryWithItsParticle)
 {
-  AnyBatch any = make_batch(sample<TypeParam>(), 0, 5, "body");
-  for_each_history(any, [](auto, auto, auto, const auto& column) {
-    for (Index i = 0; i < column.size(); ++i)
-      for (int c = 0; c < column.components; ++c)
-        column.component(i, c) = 10.0 * i + c;
-  });
+  Material body(constitutive_law_of_all_kinds(sample<TypeParam>()), 0, 5, "body");
+  const auto for_each_value = [&](auto&& f) {
+    for (const HistoryVariable& variable : body.law().variables())
+      for (Index i = 0; i < body.size(); ++i)
+        for (int c = 0; c < variable.components; ++c)
+          f(i, variable.first + c, history_value(body, variable, i, c));
+  };
+  for_each_value([](Index i, int number, Real& value) { value = 10.0 * i + number; });
   const std::array<Index, 5> order{3, 0, 4, 1, 2};
-  permute(any, order);
-  permute(any, order);
-  for_each_history(std::as_const(any), [&](auto, auto, auto, const auto& column) {
-    for (Index i = 0; i < column.size(); ++i)
-      for (int c = 0; c < column.components; ++c)
-        EXPECT_EQ(column.component(i, c), 10.0 * order[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] + c);
+  body.history.permute(order);
+  body.history.permute(order);
+  for_each_value([&](Index i, int number, Real& value) {
+    EXPECT_EQ(value, 10.0 * order[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] + number);
   });
 }
 

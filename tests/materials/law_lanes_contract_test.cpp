@@ -4,11 +4,19 @@
 namespace talus::law_contract_test {
 namespace {
 
+template <class L>
+constexpr auto kinds_of()
+{
+  if constexpr (requires { typename L::Kinds; })
+    return typename L::Kinds{};
+  else
+    return TypeList<L>{};
+}
 template <class List>
 struct AllKinds;
 template <class... L>
 struct AllKinds<TypeList<L...>> {
-  using Types = typename AsGtest<decltype(detail::all_kinds(TypeList<L...>{}))>::Types;
+  using Types = typename AsGtest<decltype(joined(kinds_of<L>()...))>::Types;
 };
 /// Laws in all their kinds, for several particles at once.
 template <class L>
@@ -75,8 +83,9 @@ Real difference(const State& a, const State& b)
 template <class L>
 class Neighbours {
  public:
-  explicit Neighbours(const L& law) : together_(make_batch(law, 0, pack_size, "lanes")), alone_(together_)
+  explicit Neighbours(const L& law) : law_(law)
   {
+    together_.fill(at_rest());
     F_.fill(Mat3::Identity());
     stress_.fill(Mat3::Zero());
   }
@@ -86,12 +95,12 @@ class Neighbours {
     constexpr Real dt = 1e-3;
     Mat3Of<SimdReal> F, rate, before;
     SimdReal pressure = 0;
-    Index rows[pack_size];
-    const auto untold = together_.history;
+    StateRows<State> rows{{}, count};
+    const auto before_step = together_;
     for (int lane = 0; lane < pack_size; ++lane) {
       const int from = std::min(lane, count - 1);
       const auto i = static_cast<std::size_t>(from);
-      rows[lane] = from;
+      rows.row[lane] = &together_[i];
       const Mat3 end = f[i] * F_[i], velocity = (f[i] - Mat3::Identity()) / dt;
       for (Index k = 0; k < 9; ++k) {
         F(k).set(lane, end(k));
@@ -100,26 +109,26 @@ class Neighbours {
       }
       pressure.set(lane, viscous * (1 + from));
     }
-    alone_.history = together_.history;
-    const Mat3Of<SimdReal> answers = together_.update(rows, count, IncrementOf<SimdReal>{F, rate, before, dt, pressure, elastic});
-    const SimdReal speeds = together_.wave_speed(rows, count, F);
+    auto alone = together_;
+    const Mat3Of<SimdReal> answers = law_.update(IncrementOf<SimdReal>{F, rate, before, dt, pressure, elastic}, rows);
+    const SimdReal speeds = law_.wave_speed(F, rows);
     for (int lane = 0; lane < pack_size; ++lane) {
       const auto i = static_cast<std::size_t>(lane);
       if (lane >= count) {
-        ASSERT_EQ(difference(together_.history[i], untold[i]), 0) << "row " << lane << " beyond " << count << " has changed";
+        ASSERT_EQ(difference(together_[i], before_step[i]), 0) << "row " << lane << " beyond " << count << " has changed";
         continue;
       }
       const Mat3 end = lane_of(F, lane), velocity = lane_of(rate, lane);
-      const Mat3 expected = alone_.update(lane, Increment{end, velocity, stress_[i], dt, pressure[lane], elastic});
+      const Mat3 expected = law_.update(Increment{end, velocity, stress_[i], dt, pressure[lane], elastic}, row_of(alone[i]));
       const Mat3 answer = lane_of(answers, lane);
       ASSERT_EQ(answer.allFinite(), expected.allFinite()) << "lane " << lane << " of " << count;
       const Real size = std::max(testing::sample_stiffness, expected.norm());
       if (expected.allFinite()) {
         ASSERT_LE((answer - expected).norm(), allowed * size) << "lane " << lane << " of " << count;
-        const Real speed = alone_.wave_speed(lane, end);
+        const Real speed = law_.wave_speed(end, row_of(alone[i]));
         ASSERT_NEAR(speeds[lane], speed, allowed * speed);
       }
-      ASSERT_LE(difference(together_.history[i], alone_.history[i]), allowed) << "lane " << lane << " of " << count;
+      ASSERT_LE(difference(together_[i], alone[i]), allowed) << "lane " << lane << " of " << count;
       F_[i] = end;
       stress_[i] = answer;
     }
@@ -128,14 +137,25 @@ class Neighbours {
   {
     F_[i] = Mat3::Identity();
     stress_[i] = Mat3::Zero();
-    together_.history[i] = make_batch(together_.law, 0, 1, "new").history[0];
+    together_[i] = at_rest();
   }
-  const auto& history(std::size_t i) const { return together_.history[i]; }
+  const auto& history(std::size_t i) const { return together_[i]; }
 
  private:
   // Twenty roundings of numbers of order one, and what the root finder leaves, 1e-12 of plastic strains up to one.
   static constexpr Real allowed = 4e-12;
-  Batch<L> together_, alone_;
+  using State = typename L::State;
+
+  State at_rest() const
+  {
+    State state{};
+    law_.initial_history(row_of(state));
+    return state;
+  }
+  static Real* row_of(State& state) { return reinterpret_cast<Real*>(&state); }
+
+  ConstitutiveLawOf<L> law_;
+  std::array<State, pack_size> together_;
   std::array<Mat3, pack_size> F_, stress_;
 };
 

@@ -141,7 +141,7 @@ constexpr Control held(Real value) { return {Controlled::stress, value}; }
 std::vector<PointRow> triaxial(const ModifiedCamClay& law, Real axial_strain, Real p)
 {
   const PointPath path{.steps = 1000, .controls = {.xx = held(-p), .yy = held(-p), .zz = rate(axial_strain / stiffening)}};
-  return drive(make_batch(law, 0, 1, "sample"), {&path, 1}, -p * Mat3::Identity()).rows;
+  return drive(make_material(law, 0, 1, "sample"), {&path, 1}, -p * Mat3::Identity()).rows;
 }
 
 TEST(ModifiedCamClay, DrainedTriaxialTestsEndAtTheCriticalState)

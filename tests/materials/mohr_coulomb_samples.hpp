@@ -62,7 +62,7 @@ inline std::vector<PointRow> test_of(const MohrCoulomb& law, const Controls& con
                                      const Mat3& start = -p0 * Mat3::Identity())
 {
   const PointPath path{.steps = steps, .controls = controls};
-  return drive(make_batch(law, 0, 1, "sample"), {&path, 1}, start).rows;
+  return drive(make_material(law, 0, 1, "sample"), {&path, 1}, start).rows;
 }
 /// Axial (zz) strain in units of soil strains under constant cell pressure p0.
 inline std::vector<PointRow> triaxial(const MohrCoulomb& law, Real axial_strain)

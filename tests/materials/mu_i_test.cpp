@@ -41,7 +41,7 @@ TEST(MuI, SteadyShearUnderConstantPressureMobilisesTheFrictionOfItsInertialNumbe
     const PointPath path{.steps = 60,
                          .time = 60 * shear_of_step / rate,
                          .controls = {.xx = pressed, .yy = pressed, .zz = pressed, .xy = Control{Controlled::velocity_gradient, rate}}};
-    const auto end = drive(make_batch(law, 0, 1, "beads"), {&path, 1}, -p * Mat3::Identity()).rows.back();
+    const auto end = drive(make_material(law, 0, 1, "beads"), {&path, 1}, -p * Mat3::Identity()).rows.back();
     const Real friction = law.static_friction + (law.limiting_friction - law.static_friction) / (1 + law.inertial_number / inertial);
     EXPECT_NEAR(end.stress(0, 1) / p, friction, 1e-8 * friction) << inertial;  // elastic strain squared 1e-10, shear of a step squared
     EXPECT_NEAR(end.p, p, 1e-9 * p);

@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <random>
 
-#include "materials/batch.hpp"
 #include "materials/law_examples.hpp"
+#include "materials/material.hpp"
 
 namespace talus::testing {
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "materials/constitutive_law_of.hpp"
 #include "tests/materials/soil.hpp"
 
 namespace talus::strength_test {
@@ -117,14 +118,14 @@ TEST(Strength, CamClayFallsInTheTangentOfItsFrictionAngle)
 
 TEST(Strength, OfABodyWithItsConstants)
 {
-  AnyBatch batch = make_batch(planes(), 0, 1, "clay");
-  ASSERT_TRUE(divide_strength(batch, 2));
-  const auto& body = std::get<Batch<MohrCoulomb>>(batch);
-  EXPECT_EQ(body.constants.peak.cohesive, body.law.constants().peak.cohesive);
-  EXPECT_LT(body.constants.peak.cohesive, 0.55 * planes().constants().peak.cohesive);
+  Material clay = make_material(planes(), 0, 1, "clay");
+  ASSERT_TRUE(clay.weaken(2));
+  const auto& weaker = *law_as<MohrCoulomb>(clay);
+  EXPECT_EQ(weaker.constants().peak.cohesive, weaker.parameters().constants().peak.cohesive);
+  EXPECT_LT(weaker.constants().peak.cohesive, 0.55 * planes().constants().peak.cohesive);
 
-  AnyBatch rubber = make_batch(testing::sample<NeoHookean>(), 0, 1, "rubber");
-  EXPECT_FALSE(divide_strength(rubber, 2));
+  Material rubber = make_material(testing::sample<NeoHookean>(), 0, 1, "rubber");
+  EXPECT_FALSE(rubber.weaken(2));
 }
 
 }  // namespace

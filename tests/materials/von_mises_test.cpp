@@ -122,7 +122,7 @@ TEST(VonMises, TensionTestReadsTheCauchyStress)
       .time = 0.5,
       .controls = {.xx = Control{Controlled::strain_rate, 1}, .yy = Control{Controlled::stress, 0}, .zz = Control{Controlled::stress, 0}}};
   const VonMises law = fast();
-  const auto rows = drive(make_batch(law, 0, 1, "bar"), {&pull, 1}).rows;
+  const auto rows = drive(make_material(law, 0, 1, "bar"), {&pull, 1}).rows;
   constexpr std::size_t p = 6;  // history: elastic_left, plastic_strain
   for (std::size_t n = 1; n < rows.size(); ++n) {
     const Real axial = rows[n].stress(0, 0), kirchhoff = axial * rows[n].F.determinant();

@@ -12,6 +12,8 @@
 #include "core/error.hpp"
 #include "io/checkpoint/serialize.hpp"
 #include "io/files/atomic_file.hpp"
+#include "materials/neo_hookean.hpp"
+#include "materials/von_mises.hpp"
 #include "mesh/generate/generate.hpp"
 #include "solver/particles/redistribute.hpp"
 #include "tests/io/full_disk.hpp"
@@ -28,7 +30,7 @@ inline constexpr std::int64_t small_piece = 16;
 struct Cloud {
   Particles<2> particles;
   std::vector<Body> bodies{{"low", 0, 0, {}}, {"none", 0, 0, {}}, {"high", 0, 0, {}}};
-  std::vector<AnyBatch> materials;
+  std::vector<Material> materials;
 };
 
 /// A cloud whose every number follows from the id: its first body has three fifths of it, its second one nothing.
@@ -52,13 +54,13 @@ struct Maker {
           ++end;
         }
       body.end = end;
-      cloud.materials.push_back(b == 2 ? make_any_batch(NeoHookean{}, body.begin, body.end, "rubber")
-                                       : make_any_batch(VonMises{}, body.begin, body.end, "steel"));
-      for_each_history(cloud.materials.back(), [&](std::string_view, std::string_view, std::string_view, const auto& column) {
-        for (Index i = 0; i < column.size(); ++i)
-          for (int c = 0; c < std::decay_t<decltype(column)>::components; ++c)
-            column.component(i, c) = history(cloud.particles.id[static_cast<std::size_t>(body.begin + i)], c);
-      });
+      cloud.materials.push_back(b == 2 ? make_material(NeoHookean{}, body.begin, body.end, "rubber")
+                                       : make_material(VonMises{}, body.begin, body.end, "steel"));
+      Material& material = cloud.materials.back();
+      for (const HistoryVariable& variable : material.law().variables())
+        for (Index i = 0; i < material.size(); ++i)
+          for (int c = 0; c < variable.components; ++c)
+            history_value(material, variable, i, c) = history(cloud.particles.id[static_cast<std::size_t>(body.begin + i)], c);
     }
     return cloud;
   }
@@ -102,11 +104,11 @@ struct Maker {
     }
     EXPECT_TRUE(p.C.empty());
     for (std::size_t b = 0; b < cloud.bodies.size(); ++b)
-      for_each_history(cloud.materials[b], [&](std::string_view, std::string_view, std::string_view, const auto& column) {
-        ASSERT_EQ(column.size(), cloud.bodies[b].size());
-        for (Index i = 0; i < column.size(); ++i)
-          ASSERT_EQ(column.component(i, 0), history(ids[static_cast<std::size_t>(cloud.bodies[b].begin + i)], 0));
-      });
+      for (const HistoryVariable& variable : cloud.materials[b].law().variables()) {
+        ASSERT_EQ(cloud.materials[b].history.size(), cloud.bodies[b].size());
+        for (Index i = 0; i < cloud.bodies[b].size(); ++i)
+          ASSERT_EQ(history_value(cloud.materials[b], variable, i), history(ids[static_cast<std::size_t>(cloud.bodies[b].begin + i)], 0));
+      }
   }
 };
 

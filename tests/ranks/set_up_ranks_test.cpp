@@ -51,8 +51,8 @@ class SetUpOnRanks : public testing::Test {
       const Body &mine = part.state.bodies[b], &all = whole.state.bodies[b];
       EXPECT_EQ(mine.name, all.name);
       EXPECT_EQ(ranks.sum(std::int64_t{mine.size()}), all.size());
-      EXPECT_EQ(std::visit([](const auto& batch) { return std::pair(batch.begin, batch.end); }, part.state.materials[b]),
-                std::pair(mine.begin, mine.end));
+      EXPECT_EQ(part.state.materials[b].begin, mine.begin);
+      EXPECT_EQ(part.state.materials[b].end, mine.end);
       for (Index row = mine.begin; row < mine.end; ++row) {
         const std::size_t p = z(row), id = z(part.state.particles.id[p]);
         EXPECT_TRUE(row == mine.begin || part.state.particles.id[p - 1] < part.state.particles.id[p]);

@@ -3,6 +3,8 @@
 #include <functional>
 
 #include "kernels/kernels.hpp"
+#include "materials/constitutive_law_of.hpp"
+#include "materials/laws.hpp"
 #include "mesh/generate/generate.hpp"
 #include "mesh/quadrature.hpp"
 #include "solver/advance.hpp"
@@ -45,7 +47,14 @@ void add_body(
     }
   }
   m.state.bodies.push_back({name, begin, p.size(), {}});
-  m.state.materials.push_back(make_any_batch(law, begin, p.size(), name));
+  m.state.materials.push_back(make_material(law, begin, p.size(), name));
+}
+
+/// Particles of the only body, to be updated without averaged volumes and pore water.
+template <int D>
+StressBlock<D> stress_block(Model<D>& m, std::span<const Index> rows, Real dt)
+{
+  return {rows, dt, false, m.problem.mesh.altitudes(), m.work.averaged, {}, m.state.particles, m.work.health};
 }
 
 /// The transfer of a model whose kernel is known.

@@ -46,8 +46,7 @@ TEST(SinglePrecision, AddsUpStrainsBelowItsRounding)
   m.state.particles.L.assign(m.state.particles.L.size(), Mat<2>{{rate, 0}, {0, 0}});
   for (int step = 0; step < steps; ++step)
     for (Index block = 0; block < m.work.order.blocks; ++block)
-      update_stress(m.problem.mesh, m.state.materials[0], m.work.order.rows(0, block), dt, false, m.work.averaged, {}, m.state.particles,
-                    m.work.health);
+      update_stress(m.state.materials[0], stress_block(m, m.work.order.rows(0, block), dt));
   const Real strain = steps * dt * rate, modulus = 1e7 * (1 - 0.3) / ((1 + 0.3) * (1 - 2 * 0.3));
   ASSERT_LT(strain, 1e-5);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {

@@ -2,6 +2,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "materials/constitutive_law_of.hpp"
 #include "tests/materials/samples.hpp"
 
 namespace {
@@ -16,10 +17,11 @@ enum class Regime { elastic, flowing, flowing_on, large_strain };
 template <class L>
 struct Body {
   static constexpr int n = 1024;
-  Batch<L> batch;
+  ConstitutiveLawOf<L> law;
+  std::vector<typename L::State> history;
   std::vector<Mat3> gradient, F, stress;
 
-  explicit Body(Regime regime) : batch(make_batch(law_in(regime), 0, n, "body"))
+  explicit Body(Regime regime) : law(law_in(regime)), history(n)
   {
     Dice dice(1);
     const Real size = regime == Regime::elastic ? 1e-6 : regime == Regime::large_strain ? 0.3 : 1e-2;
@@ -27,16 +29,18 @@ struct Body {
       gradient.push_back(dice.matrix(size));
       F.push_back(Mat3::Identity() + gradient.back());
       stress.push_back(-1e5 * Mat3::Identity());
-      prestress(batch, i, stress.back());
+      law.initial_history(row(static_cast<std::size_t>(i)));
+      law.prestress(stress.back(), row(static_cast<std::size_t>(i)));
     }
     if (regime == Regime::flowing_on)
       for (int i = 0; i < n; ++i) {
         const auto p = static_cast<std::size_t>(i);
-        stress[p] = batch.update(i, Increment{F[p], gradient[p], stress[p], 1.0, 0, false});
+        stress[p] = law.update(Increment{F[p], gradient[p], stress[p], 1.0, 0, false}, row(p));
         gradient[p] *= 0.01;
         F[p] += gradient[p] * F[p];
       }
   }
+  Real* row(std::size_t p) { return reinterpret_cast<Real*>(&history[p]); }
   static L law_in(Regime regime)
   {
     L law = sample<L>();
@@ -51,12 +55,12 @@ template <class L>
 void update(benchmark::State& timer, Regime regime)
 {
   Body<L> body(regime);
-  const auto start = body.batch.history;
+  const auto start = body.history;
   for (auto _ : timer) {
-    body.batch.history = start;
+    body.history = start;
     for (Index i = 0; i < body.n; ++i) {
       const auto p = static_cast<std::size_t>(i);
-      body.stress[p] = body.batch.update(i, Increment{body.F[p], body.gradient[p], body.stress[p], 1.0, 0, false});
+      body.stress[p] = body.law.update(Increment{body.F[p], body.gradient[p], body.stress[p], 1.0, 0, false}, body.row(p));
     }
     benchmark::DoNotOptimize(body.stress.data());
   }
@@ -77,13 +81,14 @@ void update_in_lanes(benchmark::State& timer, Regime regime)
   };
   const auto gradient = packed(body.gradient), F = packed(body.F);
   auto stress = packed(body.stress);
-  const auto start = body.batch.history;
+  const auto start = body.history;
   for (auto _ : timer) {
-    body.batch.history = start;
+    body.history = start;
     for (Index i = 0; i < body.n; i += pack_size) {
       const auto p = static_cast<std::size_t>(i / pack_size);
-      const Index rows[pack_size] = {i, i + 1, i + 2, i + 3};
-      stress[p] = body.batch.update(rows, pack_size, IncrementOf<SimdReal>{F[p], gradient[p], stress[p], 1.0, 0, false});
+      auto* const first = &body.history[static_cast<std::size_t>(i)];
+      StateRows<typename L::State> rows{{first, first + 1, first + 2, first + 3}, pack_size};
+      stress[p] = body.law.update(IncrementOf<SimdReal>{F[p], gradient[p], stress[p], 1.0, 0, false}, rows);
     }
     benchmark::DoNotOptimize(stress.data());
   }

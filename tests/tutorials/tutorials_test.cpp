@@ -6,24 +6,12 @@
 #include "docs/tutorials/own_law/maxwell.hpp"
 #include "docs/tutorials/own_law/sample.hpp"
 #include "kernels/kernels.hpp"
+#include "materials/constitutive_law_of.hpp"
 
 // The contracts are typed over lists; the names here are found before those of `talus`.
 namespace talus::law_contract_test {
 
 using Laws = TypeList<Maxwell>;
-using AnyBatch = std::variant<Batch<Maxwell>>;
-
-template <class Any, class F>
-requires std::is_same_v<std::remove_const_t<Any>, AnyBatch>
-void for_each_history(Any& batch, F&& f) { talus::for_each_history(std::get<0>(batch), f); }
-inline bool prestress(AnyBatch& batch, Index i, const Mat3& stress) noexcept { return talus::prestress(std::get<0>(batch), i, stress); }
-inline void permute(AnyBatch& batch, std::span<const Index> order)
-{
-  auto& history = std::get<0>(batch).history;
-  const auto former = history;
-  for (std::size_t i = 0; i < order.size(); ++i)
-    history[i] = former[static_cast<std::size_t>(order[i])];
-}
 
 }  // namespace talus::law_contract_test
 namespace talus::test::kernel_contract_test {

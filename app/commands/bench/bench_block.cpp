@@ -116,14 +116,14 @@ void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
   }
 }
 
-AnyBatch bench_material(const std::string& name, Index n)
+Material bench_material(const std::string& name, Index n)
 {
-  AnyBatch batch;
+  Material material;
   for_each_type(Laws{}, [&]<class L>() {
     if (L::name == name)
-      batch = make_any_batch(law_example<L>(), 0, n, name);
+      material = make_material(law_example<L>(), 0, n, name);
   });
-  return batch;
+  return material;
 }
 
 }  // namespace
@@ -147,19 +147,15 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   const Index n = setting.per_cell * block.mesh.n_cells();
   setup.state.bodies.push_back({"block", 0, n, {}});
   setup.state.materials.push_back(bench_material(setting.law, n));
-  const Real density = std::visit([](const auto& batch) { return batch.law.density; }, setup.state.materials.front());
+  Material& material = setup.state.materials.front();
+  const Real density = material.law().density();
   setup.state.particles = bench_particles<D>(block.mesh, setting.per_cell, density);
   setup.state.particles.keep_in(block.scene.precision);
-  Real wave = 0, pressure = 0;
-  std::visit(
-      [&]<class L>(Batch<L>& batch) {
-        batch.averages_volume = is_isochoric<L>() || setting.option == bench_options::f_bar;
-        if (setting.option == bench_options::bulk_viscosity)
-          batch.viscosity = BulkViscosity{};
-        wave = batch.wave_speed(0, Mat3::Identity());
-        pressure = 1e-3 * batch.law.density * wave * wave;  // strains of the order of 0.1 %
-      },
-      setup.state.materials.front());
+  material.averages_volume = material.law().is_isochoric() || setting.option == bench_options::f_bar;
+  if (setting.option == bench_options::bulk_viscosity)
+    material.viscosity = BulkViscosity{};
+  const Real wave = material.wave_speed(0, Mat3::Identity());
+  const Real pressure = 1e-3 * density * wave * wave;  // strains of the order of 0.1 %
   set_swirling<D>(bench_swirl * wave, setup.state.particles);
   setup.conditions.transfer = bench_transfer(setting.transfer);
   close_in(setting, pressure, block);

@@ -5,7 +5,7 @@
 #include "app/commands/bench/bench_block.hpp"
 #include "core/word_match.hpp"
 #include "io/scene/scene_rules.hpp"
-#include "materials/laws.hpp"
+#include "materials/any_law.hpp"
 #include "mesh/quadrature.hpp"
 
 namespace talus {
@@ -22,7 +22,8 @@ std::vector<std::string> names_of(Choice choice)
 std::vector<std::string> law_names()
 {
   std::vector<std::string> names;
-  for_each_type(Laws{}, [&]<class L>() { names.emplace_back(L::name); });
+  for (const auto& law : known_laws())
+    names.emplace_back(law->name());
   return names;
 }
 

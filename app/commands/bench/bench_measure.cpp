@@ -121,13 +121,8 @@ Real bytes_moved(const RunView<D>& view)
     const bool changes = std::find(constants.begin(), constants.end(), name) == constants.end();
     total += (changes ? 2 : 1) * bytes(column);
   });
-  for (const AnyBatch& material : view.state.materials)
-    std::visit(
-        [&]<class L>(const Batch<L>& batch) {
-          if constexpr (!std::is_empty_v<typename L::State>)
-            total += 2 * bytes(batch.history);
-        },
-        material);
+  for (const Material& material : view.state.materials)
+    total += 2 * static_cast<Real>(material.history.bytes());
   total += 2 * (bytes(view.nodes.sum) + bytes(view.nodes.motion));
   return total / static_cast<Real>(view.state.particles.size());
 }

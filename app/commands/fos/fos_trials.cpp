@@ -13,6 +13,7 @@
 #include "core/word_match.hpp"
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"
+#include "materials/law_variant.hpp"
 #include "materials/strength.hpp"
 
 namespace talus {
@@ -99,7 +100,7 @@ AtRest measured(const FosPlan& plan)
     const Body& body = setup.state.bodies[b];
     if (std::find(plan.bodies.begin(), plan.bodies.end(), body.name) == plan.bodies.end())
       continue;
-    before.wave_speed = std::min(before.wave_speed, wave_speed(setup.state.materials[b], Mat3::Identity()));
+    before.wave_speed = std::min(before.wave_speed, setup.state.materials[b].law().wave_speed(Mat3::Identity()));
     for (Index row = body.begin; row < body.end; ++row) {
       const Real at = up.dot(setup.state.particles.x[static_cast<std::size_t>(row)]);
       low = std::min(low, at), high = std::max(high, at);
@@ -250,7 +251,7 @@ std::vector<std::string> divided(const FosPlan& plan, Real factor)
           divide_strength(weaker, factor);
           tell_difference(law, weaker, fmt::format("materials[{}]", number), changes);
         },
-        plan.spec.materials[static_cast<std::size_t>(number)].law);
+        choices_of(plan.spec.materials[static_cast<std::size_t>(number)].law));
   return changes;
 }
 
@@ -317,11 +318,7 @@ FosPlan plan_fos(const FosOptions& options)
     moved.push_back(fmt::format("{{name: moved, mass_share: {}}}", options.mass_share));
   }
   plan.keeps_strain = std::any_of(plan.materials.begin(), plan.materials.end(), [&](Index number) {
-    return std::visit(
-        []<class L>(const L&) {
-          return requires(typename L::State state) { state.plastic_strain; };
-        },
-        scene.materials[static_cast<std::size_t>(number)].law);
+    return scalar_variable(*scene.materials[static_cast<std::size_t>(number)].law.model_of_all_kinds(), "plastic_strain").has_value();
   });
   plan.fields = plan.keeps_strain ? "[velocity, displacement, plastic_strain]" : "[velocity, displacement]";
   plan.moved = fmt::format("[{}]", fmt::join(moved, ", "));

@@ -15,6 +15,7 @@
 #include "io/scene/manual/markdown_table.hpp"
 #include "io/scene/scene.hpp"
 #include "kernels/kernels.hpp"
+#include "materials/law_variant.hpp"
 
 namespace talus {
 
@@ -176,7 +177,7 @@ class Manual {
   template <class T, class Value>
   void add_alternatives_of(const Alternative<T, Value>& field, const std::string& path)
   {
-    add_each_alternative(field.key, path, "", std::type_identity<Value>{});
+    add_each_alternative(field.key, path, "", std::type_identity<ChoicesOf<Value>>{});
   }
 
   static std::string sentence(std::string_view text)
@@ -221,10 +222,13 @@ class Manual {
   {
     return row_of(field.key, "list of " + link<Item>(path_of(prefix, field.key)), "", "", need(field.need, "none"), field.meaning);
   }
-  template <class T, class... Law>
-  ManualRow row(const Alternative<T, std::variant<Law...>>& field, const std::type_identity_t<T>&, const std::string&)
+  template <class T, class Value>
+  ManualRow row(const Alternative<T, Value>& field, const std::type_identity_t<T>&, const std::string&)
   {
-    return row_of(field.key, "word", "-", in_words(std::array<std::string_view, sizeof...(Law)>{Law::name...}), "required", field.meaning);
+    const auto names = []<class... One>(std::type_identity<std::variant<One...>>) {
+      return std::array<std::string_view, sizeof...(One)>{One::name...};
+    }(std::type_identity<ChoicesOf<Value>>{});
+    return row_of(field.key, "word", "-", in_words(names), "required", field.meaning);
   }
 
   static std::string meaning_of(std::string_view key, std::string_view meaning)

@@ -19,6 +19,7 @@
 #include "io/scene/manual/manual.hpp"
 #include "io/scene/scene_rules.hpp"
 #include "kernels/kernels.hpp"
+#include "materials/law_variant.hpp"
 
 namespace talus {
 
@@ -251,7 +252,7 @@ void add_key(Json& schema, const List<T, Item>& field)
 template <class T, class Value>
 void add_key(Json& schema, const Alternative<T, Value>& field)
 {
-  schema = one_of(schema, std::string(field.key), field.meaning, structs_of(std::type_identity<Value>{}));
+  schema = one_of(schema, std::string(field.key), field.meaning, structs_of(std::type_identity<ChoicesOf<Value>>{}));
 }
 
 /// Alternatives come last in a field list, because they multiply the keys before them.
@@ -276,9 +277,9 @@ Words words_of_table(const Table& table)
 Words particle_field_words()
 {
   Words words = words_of_table(particle_fields());
-  for_each_type(Laws{}, [&]<class L>() {
-    for_each_field<typename L::State>([&](const auto& variable) { words.emplace(variable.key, variable.meaning); });
-  });
+  for (const auto& law : known_laws())
+    for (const HistoryVariable& variable : law->variables())
+      words.emplace(variable.key, variable.meaning);
   return words;
 }
 

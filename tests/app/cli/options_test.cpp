@@ -14,7 +14,7 @@ namespace {
 
 class Options : public Program {
  protected:
-  AnyBatch material(const std::string& law, const std::string& body_keys, const std::string& material_keys = "") const
+  Material material(const std::string& law, const std::string& body_keys, const std::string& material_keys = "") const
   {
     write("scene.yaml",
           "title: Block\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [1, 1], cells: [2, 2]}}\ntime: {end: 1}\n"
@@ -32,10 +32,10 @@ const std::string elastic = "density: 1000, youngs_modulus: 1.0e6, poisson_ratio
 
 TEST_F(Options, VolumesAreAveragedByDefaultWherePlasticFlowKeepsThem)
 {
-  EXPECT_TRUE(averages_volume(material("von_mises, yield_stress: 1.0e3, " + elastic, "")));
-  EXPECT_FALSE(averages_volume(material("von_mises, yield_stress: 1.0e3, " + elastic, ", f_bar: false")));
-  EXPECT_FALSE(averages_volume(material("neo_hookean, " + elastic, "")));
-  EXPECT_TRUE(averages_volume(material("neo_hookean, " + elastic, ", f_bar: true")));
+  EXPECT_TRUE(material("von_mises, yield_stress: 1.0e3, " + elastic, "").averages_volume);
+  EXPECT_FALSE(material("von_mises, yield_stress: 1.0e3, " + elastic, ", f_bar: false").averages_volume);
+  EXPECT_FALSE(material("neo_hookean, " + elastic, "").averages_volume);
+  EXPECT_TRUE(material("neo_hookean, " + elastic, ", f_bar: true").averages_volume);
 }
 
 /// Which bodies average their volume ratio as one, by stage.
@@ -78,10 +78,10 @@ TEST_F(Options, BodiesOfOneMaterialAreAveragedAsOneWhileTheirVolumesCountFromOne
 
 TEST_F(Options, BulkViscosityBelongsToTheMaterial)
 {
-  EXPECT_FALSE(has_bulk_viscosity(material("neo_hookean, " + elastic, "")));
-  const AnyBatch viscous = material("neo_hookean, " + elastic, "", "bulk_viscosity: {linear: 0.25}, ");
-  ASSERT_TRUE(has_bulk_viscosity(viscous));
-  const BulkViscosity viscosity = *std::get<Batch<NeoHookean>>(viscous).viscosity;
+  EXPECT_FALSE(material("neo_hookean, " + elastic, "").viscosity);
+  const Material viscous = material("neo_hookean, " + elastic, "", "bulk_viscosity: {linear: 0.25}, ");
+  ASSERT_TRUE(viscous.viscosity);
+  const BulkViscosity viscosity = *viscous.viscosity;
   EXPECT_EQ(viscosity.linear, 0.25);
   EXPECT_EQ(viscosity.quadratic, BulkViscosity{}.quadratic);
 }

@@ -1,14 +1,15 @@
 // The accounts of a run of three stages by hand: every term of every stage is another number.
 #include "app/observers/accounts.hpp"
-#include "solver/transfer/transfer_of.hpp"
 
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "kernels/linear.hpp"
+#include "materials/constitutive_law_of.hpp"
 #include "materials/von_mises.hpp"
 #include "mesh/generate/generate.hpp"
+#include "solver/transfer/transfer_of.hpp"
 
 namespace talus::accounts_test {
 namespace {
@@ -30,14 +31,14 @@ struct Scene {
     VonMises law;
     law.density = 1, law.youngs_modulus = 1, law.yield_stress = 1;
     m.state.bodies.push_back({"body", 0, 2, {}});
-    m.state.materials.push_back(make_any_batch(law, 0, 2, "body"));
+    m.state.materials.push_back(make_material(law, 0, 2, "body"));
     m.work.order.row = {0, 1}, m.work.order.first = {0, 2}, m.work.order.blocks = 1;
   }
   /// The first particle moves at `speed`, so that the kinetic energy is its square.
   void now(Real speed, Real plastic_work)
   {
     m.state.particles.v.set(0, Vec<2>(speed, 0));
-    std::get<Batch<VonMises>>(m.state.materials[0]).history[0].plastic_work = plastic_work / 2;
+    state_of<VonMises>(m.state.materials[0], 0).plastic_work = plastic_work / 2;
   }
   void see(RunEvent moment) { accounts.see(view_of(m, stage), moment); }
   EnergyNow energy() const { return accounts.energy(view_of(m, stage)); }

@@ -15,6 +15,7 @@
 #include "io/checkpoint/array_file.hpp"
 #include "io/files/atomic_file.hpp"
 #include "tests/io/bytes.hpp"
+#include "tests/io/checkpoint/small_array_file.hpp"
 #include "tests/io/full_disk.hpp"
 #include "tests/io/scratch_folder.hpp"
 

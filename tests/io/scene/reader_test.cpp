@@ -10,6 +10,7 @@
 #include <random>
 #include <sstream>
 
+#include "materials/law_variant.hpp"
 #include "tests/io/scratch_folder.hpp"
 
 namespace talus::reader_test {
@@ -136,7 +137,7 @@ TEST(Reader, OverridesReplaceValues)
   EXPECT_EQ(scene.bodies.at(0).particles_per_cell, 8);
   EXPECT_EQ(std::get<GravitySpec>(scene.loads.at(0)).acceleration, (std::vector<Real>{1, -2}));
   EXPECT_EQ(scene.title, "a = b");
-  EXPECT_EQ(std::get<DruckerPrager>(scene.materials.at(0).law).cohesion, 7e3);
+  EXPECT_EQ(std::get<DruckerPrager>(choices_of(scene.materials.at(0).law)).cohesion, 7e3);
 }
 
 TEST(Reader, OverridesAddMissingMappings)
@@ -209,7 +210,7 @@ path:
       zz: {quantity: strain_rate, value: -0.01}
 )");
   const PointTest test = read_point_path(file);
-  EXPECT_EQ(std::get<LinearElastic>(test.material.law).youngs_modulus, 1e7);
+  EXPECT_EQ(std::get<LinearElastic>(choices_of(test.material.law)).youngs_modulus, 1e7);
   EXPECT_EQ(test.initial_stress, (std::array<Real, 6>{-1e5, -1e5, -1e5, 0, 0, 0}));
   ASSERT_EQ(test.path.size(), 1U);
   EXPECT_EQ(test.path[0].steps, 50);

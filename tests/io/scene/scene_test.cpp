@@ -8,6 +8,7 @@
 
 #include "io/scene/reader.hpp"
 #include "io/scene/scene.hpp"
+#include "materials/law_variant.hpp"
 
 namespace talus::scene_test {
 namespace {
@@ -138,14 +139,14 @@ TEST(Scene, ReadsMaterialsWithTheKeysOfTheirLaws)
   const Scene s = scene("plane.yaml");
   ASSERT_EQ(s.materials.size(), 2U);
   EXPECT_EQ(s.materials[0].name, "clay");
-  const auto& clay = std::get<DruckerPrager>(s.materials[0].law);
+  const auto& clay = std::get<DruckerPrager>(choices_of(s.materials[0].law));
   EXPECT_EQ(clay.density, 1900);
   EXPECT_EQ(clay.youngs_modulus, 5e6);
   EXPECT_EQ(clay.poisson_ratio, 0.3);
   EXPECT_EQ(clay.friction_angle, 31);
   EXPECT_EQ(clay.dilation_angle, 1);
   EXPECT_EQ(enum_names(clay.match)[static_cast<std::size_t>(clay.match)], "plane_strain");
-  const auto& rock = std::get<LinearElastic>(s.materials[1].law);
+  const auto& rock = std::get<LinearElastic>(choices_of(s.materials[1].law));
   EXPECT_EQ(rock.density, 2650);
   EXPECT_EQ(rock.bulk_modulus, 3e9);
   EXPECT_EQ(rock.shear_modulus, 2e9);
@@ -155,7 +156,7 @@ TEST(Scene, ReadsMaterialsWithTheKeysOfTheirLaws)
 TEST(Scene, ReadsGroupsOfALaw)
 {
   const Scene s = scene("solid.yaml");
-  const auto& copper = std::get<JohnsonCook>(s.materials.at(1).law);
+  const auto& copper = std::get<JohnsonCook>(choices_of(s.materials.at(1).law));
   EXPECT_EQ(copper.reference_rate, JohnsonCook{}.reference_rate);
   EXPECT_EQ(copper.conductivity, 386);
   EXPECT_EQ(copper.damage.value().d3, -3.03);

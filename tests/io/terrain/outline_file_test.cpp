@@ -4,6 +4,8 @@
 namespace talus::surface_file_test {
 namespace {
 
+using OutlineFile = SurfaceFile;
+
 TEST_F(OutlineFile, OutlinesInDegreesAreBroughtToTheMap)
 {
   plan.crs = "EPSG:32633";

@@ -4,6 +4,8 @@
 namespace talus::surface_file_test {
 namespace {
 
+using SurfacePoints = SurfaceFile;
+
 TEST_F(SurfacePoints, ScatteredPointsAreTriangulated)
 {
   std::string text = "east,north,elevation\n# survey of spring\n";

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "materials/law_variant.hpp"
 #include "tests/materials/soil.hpp"
 
 namespace talus::laboratory_test {
@@ -12,9 +13,9 @@ using testing::radians;
 using testing::soft_soil;
 
 template <class L>
-AnyBatch one(const L& law)
+Material one(const L& law)
 {
-  return make_any_batch(law, 0, 1, "sample");
+  return make_material(law, 0, 1, "sample");
 }
 TestPlan plan_of(Laboratory test, Real strain, Index steps = 200)
 {
@@ -35,9 +36,8 @@ Real value(const std::vector<ClosedForm>& forms, std::string_view name)
 template <class L>
 Real peak_ratio(const L& law, const TestPlan& plan)
 {
-  const AnyBatch batch = one(law);
-  const TestResult result = perform(batch, plan);
-  const auto forms = closed_forms(batch, plan, result);
+  const TestResult result = perform(one(law), plan);
+  const auto forms = closed_forms(AnyLaw(law), plan, result);
   if (forms.empty())
     return 0;
   EXPECT_EQ(result.stress[result.peak], *std::max_element(result.stress.begin(), result.stress.end()));
@@ -80,8 +80,8 @@ TEST(Laboratory, SimpleShearMobilisesTheStrengthOfCoaxialFlow)
 TEST(Laboratory, ClosedFormsAreThePublishedNumbers)
 {
   // phi 30, c 5 kPa under 100 kPa: 2 (c cos + p sin) / (1 -+ sin), and the cones' by hand.
-  const AnyBatch batch = one(soft_soil(ConeMatch::inner, 30, 5e3));
-  const auto forms = [&](Laboratory test) { return closed_forms(batch, usual_plan(test), perform(batch, usual_plan(test))); };
+  const auto soil = soft_soil(ConeMatch::inner, 30, 5e3);
+  const auto forms = [&](Laboratory test) { return closed_forms(AnyLaw(soil), usual_plan(test), perform(one(soil), usual_plan(test))); };
   const auto compression = forms(Laboratory::triaxial_compression), extension = forms(Laboratory::triaxial_extension);
   EXPECT_EQ(compression.front().name, "drucker_prager");
   EXPECT_NEAR(compression.front().value, 130392.3, 0.05);
@@ -90,9 +90,9 @@ TEST(Laboratory, ClosedFormsAreThePublishedNumbers)
   EXPECT_NEAR(value(compression, "Drucker-Prager inner"), 130392.3, 0.05);
   EXPECT_NEAR(value(extension, "Mohr-Coulomb"), 72440.2, 0.05);
   EXPECT_NEAR(value(extension, "Drucker-Prager inner"), 72440.2, 0.05);
-  const AnyBatch sand = one(soft_soil(ConeMatch::outer, 30, 0));
+  const auto sand = soft_soil(ConeMatch::outer, 30, 0);
   const TestPlan plan = usual_plan(Laboratory::simple_shear);
-  const auto shear = closed_forms(sand, plan, perform(sand, plan));
+  const auto shear = closed_forms(AnyLaw(sand), plan, perform(one(sand), plan));
   EXPECT_NEAR(std::atan(value(shear, "Drucker-Prager outer") / plan.pressure) / radians(1), 34.72, 0.005);
   EXPECT_NEAR(std::atan(value(shear, "Drucker-Prager inner") / plan.pressure) / radians(1), 26.33, 0.005);
   EXPECT_NEAR(value(shear, "Mohr-Coulomb") / plan.pressure, 0.5, 1e-12) << "sin(30): the planes slip under 45 degrees without dilation";
@@ -101,9 +101,8 @@ TEST(Laboratory, ClosedFormsAreThePublishedNumbers)
 TEST(Laboratory, OedometerMeasuresElasticEarthPressureOrThatOfTheStrength)
 {
   const auto check = [](const auto& law, const TestPlan& plan) {
-    const AnyBatch batch = one(law);
-    const TestResult result = perform(batch, plan);
-    const auto forms = closed_forms(batch, plan, result);
+    const TestResult result = perform(one(law), plan);
+    const auto forms = closed_forms(AnyLaw(law), plan, result);
     EXPECT_NEAR(result.lateral_over_vertical, forms.front().value, 1e-8);
     return result.lateral_over_vertical;
   };
@@ -126,8 +125,7 @@ TEST(Laboratory, TensionCutoffLimitsTheStrengthInExtension)
   law.tension_cutoff = 1e3;
   EXPECT_NEAR(peak_ratio(cone, plan), 1, 1e-8);
   EXPECT_NEAR(peak_ratio(law, plan), 1, 1e-8);
-  const AnyBatch batch = one(cone);
-  EXPECT_NEAR(closed_forms(batch, plan, perform(batch, plan)).front().value, 3e3, 1e-9 * 3e3);
+  EXPECT_NEAR(closed_forms(AnyLaw(cone), plan, perform(one(cone), plan)).front().value, 3e3, 1e-9 * 3e3);
 }
 
 TEST(Laboratory, FluidsShowTheirViscosityInShearAndThreeTimesItInExtension)
@@ -182,17 +180,16 @@ TEST(Laboratory, MetalHardensAlongItsCurve)
   plan.rate = 10;
   EXPECT_NEAR(peak_ratio(steel, plan), 1, 1e-3);
   steel.yield_stress = 1e15;
-  const AnyBatch batch = one(steel);
   plan = plan_of(Laboratory::uniaxial_strain_rate, 1e-6, 10);
-  EXPECT_NEAR(closed_forms(batch, plan, perform(batch, plan)).front().value, 210e6, 1) << "it stays elastic";
+  EXPECT_NEAR(closed_forms(AnyLaw(steel), plan, perform(one(steel), plan)).front().value, 210e6, 1) << "it stays elastic";
 }
 
 TEST(Laboratory, ElasticSolidsHaveNoStrengthButCanBeDriven)
 {
-  const AnyBatch batch = one(testing::sample<NeoHookean>());
+  const auto rubber = testing::sample<NeoHookean>();
   const TestPlan plan = plan_of(Laboratory::triaxial_compression, 0.01, 20);
-  const TestResult result = perform(batch, plan);
-  EXPECT_TRUE(closed_forms(batch, plan, result).empty());
+  const TestResult result = perform(one(rubber), plan);
+  EXPECT_TRUE(closed_forms(AnyLaw(rubber), plan, result).empty());
   ASSERT_EQ(result.strain.size(), 21u);
   EXPECT_EQ(result.strain.front(), 0);
   EXPECT_NEAR(result.strain.back(), 0.01, 1e-12);

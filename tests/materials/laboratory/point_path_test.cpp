@@ -26,7 +26,7 @@ constexpr Real p0 = 1e5;
 template <class L>
 PointTable drive_one(const L& law, const PointPath& path, const Mat3& start = Mat3::Zero())
 {
-  return drive(make_batch(law, 0, 1, "sample"), {&path, 1}, start);
+  return drive(make_material(law, 0, 1, "sample"), {&path, 1}, start);
 }
 
 /// Axial (zz) strain in units of soil strains under constant cell pressure p0.
@@ -168,7 +168,7 @@ TEST(PointPath, PathsFollowOneAnother)
   const std::array<PointPath, 2> paths{
       PointPath{.steps = 5, .time = 2, .controls = {.xx = stress(-p0), .yy = stress(-p0), .zz = stress(-p0)}},
       PointPath{.steps = 10, .time = 3, .controls = {.xy = gradient(1e-3)}}};
-  const auto table = drive(make_batch(sample<DruckerPrager>(), 0, 1, "soil"), paths);
+  const auto table = drive(make_material(sample<DruckerPrager>(), 0, 1, "soil"), paths);
   ASSERT_EQ(table.rows.size(), 16u);
   EXPECT_NEAR(table.rows[5].p, p0, 1e-8 * p0);
   EXPECT_NEAR(table.rows[2].p, 0.4 * p0, 1e-8 * p0);
@@ -206,7 +206,7 @@ TEST(PointPath, SaysWhereAStressCannotBeReached)
 TEST(PointPath, RefusesAStartFromStressWhereTheLawHasNone)
 {
   EXPECT_THROW(drive_one(sample<NeoHookean>(), {}, -Mat3::Identity()), RunError);
-  EXPECT_THROW(drive(make_batch(sample<NeoHookean>(), 0, 0, "empty"), {}), RunError);
+  EXPECT_THROW(drive(make_material(sample<NeoHookean>(), 0, 0, "empty"), {}), RunError);
 }
 
 }  // namespace

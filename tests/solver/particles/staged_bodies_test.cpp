@@ -38,7 +38,7 @@ TEST(BodiesOfStages, AreTheSameAfterTheyWentAndCame)
   EXPECT_EQ(m.state.particles.size(), before.size() - bodies[1].size());
   EXPECT_EQ(out.particles.size(), bodies[1].size());
   EXPECT_EQ(out.particles.id.front(), bodies[1].begin) << "its number";
-  std::visit([&](const auto& batch) { EXPECT_EQ(batch.begin, m.state.bodies[2].begin); }, m.state.materials[2]);
+  EXPECT_EQ(m.state.materials[2].begin, m.state.bodies[2].begin);
 
   insert_particles(std::move(out), m.state.bodies, m.state.materials, m.state.particles);
   EXPECT_EQ(m.state.particles.id, before.id);
@@ -46,7 +46,8 @@ TEST(BodiesOfStages, AreTheSameAfterTheyWentAndCame)
   for (std::size_t b = 0; b < m.state.bodies.size(); ++b) {
     EXPECT_EQ(m.state.bodies[b].begin, bodies[b].begin);
     EXPECT_EQ(m.state.bodies[b].end, bodies[b].end);
-    std::visit([&](const auto& batch) { EXPECT_EQ(batch.size(), m.state.bodies[b].size()); }, m.state.materials[b]);
+    EXPECT_EQ(m.state.materials[b].size(), m.state.bodies[b].size());
+    EXPECT_EQ(m.state.materials[b].history.size(), m.state.bodies[b].size());
   }
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     EXPECT_EQ(m.state.particles.v[p][0], static_cast<Real>(p));

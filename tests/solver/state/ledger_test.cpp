@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "materials/constitutive_law_of.hpp"
 #include "materials/von_mises.hpp"
 #include "solver/state/sums.hpp"
 
@@ -201,9 +202,8 @@ TEST(SumsByHand, PlasticWorkIsThatOfTheBodyAlone)
 {
   VonMises law;
   law.density = 1000, law.youngs_modulus = 1e6, law.poisson_ratio = 0.3, law.yield_stress = 1e4;
-  AnyBatch second = make_any_batch(law, 200, 202, "second");
-  auto& history = std::get<Batch<VonMises>>(second).history;
-  history[0].plastic_work = 10, history[1].plastic_work = 1000;
+  Material second = make_material(law, 200, 202, "second");
+  state_of<VonMises>(second, 0).plastic_work = 10, state_of<VonMises>(second, 1).plastic_work = 1000;
   Rows<Real> volume0(202, 7);
   volume0[200] = 2, volume0[201] = 3;
   CellOrder order;

@@ -41,7 +41,7 @@ void update_all(Model<D>& m, Real dt)
 {
   std::vector<Index> rows(m.state.particles.id.size());
   std::iota(rows.begin(), rows.end(), 0);
-  update_stress(m.problem.mesh, m.state.materials[0], rows, dt, false, m.work.averaged, {}, m.state.particles, m.work.health);
+  update_stress(m.state.materials[0], testing::stress_block(m, rows, dt));
 }
 
 JohnsonCook metal(std::optional<Real> conductivity)
@@ -151,7 +151,7 @@ std::vector<Real> pressure_after_steps(int bodies, std::initializer_list<Index> 
 {
   auto m = drawn_as<2>(bodies, rubber(1e5, 0.49, 1000));
   for (std::size_t b = 0; b < m.state.materials.size(); ++b)
-    std::visit([&](auto& batch) { batch.averages_volume = true, batch.averages_with = std::data(groups)[b]; }, m.state.materials[b]);
+    m.state.materials[b].averages_volume = true, m.state.materials[b].group = std::data(groups)[b];
   testing::close_off(m, "y_min", Fixed<2>{});
   m.problem.loads.gravity.acceleration = {0, -9.81};
   make_ready(m);
@@ -180,7 +180,7 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
 {
   const auto stress_of = [](const auto& law) {
     auto m = block<2>(law, 3);
-    std::visit([](auto& batch) { batch.averages_volume = true; }, m.state.materials[0]);
+    m.state.materials[0].averages_volume = true;
     make_ready(m);
     sort(m);
     std::mt19937 bits(2);
@@ -213,7 +213,7 @@ TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
     return m;
   };
   const auto update = [](auto& m, std::span<const Index> rows) {
-    return update_stress(m.problem.mesh, m.state.materials[0], rows, 1e-3, false, m.work.averaged, {}, m.state.particles, m.work.health);
+    return update_stress(m.state.materials[0], testing::stress_block(m, rows, 1e-3));
   };
   const std::vector<Index> rows{7, 2, 3, 11, 5, 0};
   for (std::size_t n = 1; n <= rows.size(); ++n) {
@@ -243,7 +243,7 @@ TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
   law.poisson_ratio = 0;
   auto plain = block<2>(law, 2, 0), viscous = block<2>(law, 2, 0);
   const BulkViscosity viscosity{.linear = 0.3, .quadratic = 2};
-  std::visit([&](auto& batch) { batch.viscosity = viscosity; }, viscous.state.materials[0]);
+  viscous.state.materials[0].viscosity = viscosity;
   make_ready(plain);
   make_ready(viscous);
   constexpr Real dt = 1e-4, rate = 3;
@@ -254,7 +254,7 @@ TEST(BulkViscosity, ActsInCompressionOnlyAndStaysOutOfTheLaw)
     }
     const Real h = viscous.problem.mesh.altitude(viscous.state.particles.cell[0]);
     const Real density = viscous.state.particles.mass[0] / viscous.state.particles.volume[0];
-    const Real c = wave_speed(viscous.state.materials[0], viscous.state.particles.F[0]);
+    const Real c = viscous.state.materials[0].wave_speed(0, viscous.state.particles.F[0]);
     const Real q = sign < 0 ? density * h * rate * (viscosity.quadratic * h * rate + viscosity.linear * c) : 0;
     for (int k = 0; k < 3; ++k)
       EXPECT_NEAR(plain.state.particles.stress[0][k] - viscous.state.particles.stress[0][k], q, 1e-12 * 1e6);
@@ -267,18 +267,18 @@ TEST(BulkViscosity, ShortensTheStep)
   make_ready(m);
   m.state.particles.L.assign(m.state.particles.L.size(), -Mat<2>::Identity());
   const Real without = shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
-  std::visit([](auto& batch) { batch.viscosity = BulkViscosity{.linear = 1, .quadratic = 0}; }, m.state.materials[0]);
+  m.state.materials[0].viscosity = BulkViscosity{.linear = 1, .quadratic = 0};
   const Real with = shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
   EXPECT_NEAR(without / with, 1 + std::sqrt(2), 1e-12);  // Q = c:  Q + sqrt(Q^2 + c^2)
 }
 
 /// Mean of T cos(pi x) over the block, twice: the amplitude of the first mode.
 template <int D>
-Real first_mode(const Model<D>& m, const auto& history)
+Real first_mode(const Model<D>& m, auto&& temperature)
 {
   Real sum = 0;
-  for (std::size_t p = 0; p < history.size(); ++p)
-    sum += 2 * m.state.particles.volume0[p] * history[p].temperature * std::cos(std::numbers::pi * m.state.particles.x[p][0]);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    sum += 2 * m.state.particles.volume0[p] * temperature(p) * std::cos(std::numbers::pi * m.state.particles.x[p][0]);
   return sum;
 }
 
@@ -288,28 +288,29 @@ TEST(ConductHeat, DecaysAsTheHeatEquationSaysAndKeepsTheHeat)
   auto m = block<2>(law, 20);
   make_ready(m);
   sort(m);
-  auto& batch = std::get<Batch<JohnsonCookOf<false, false>>>(m.state.materials[0]);
-  for (std::size_t p = 0; p < batch.history.size(); ++p)
-    batch.history[p].temperature = 400 + 50 * std::cos(std::numbers::pi * m.state.particles.x[p][0]);
+  Material& rod = m.state.materials[0];
+  const auto temperature = [&](std::size_t p) -> Real& { return rod.history.row(static_cast<Index>(p))[rod.law().heat()->temperature]; };
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    temperature(p) = 400 + 50 * std::cos(std::numbers::pi * m.state.particles.x[p][0]);
   const auto heat = [&] {
     Real sum = 0;
-    for (std::size_t p = 0; p < batch.history.size(); ++p)
-      sum += m.state.particles.mass[p] * batch.history[p].temperature;
+    for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+      sum += m.state.particles.mass[p] * temperature(p);
     return sum;
   };
-  const Real before = heat(), mode_before = first_mode(m, batch.history);
+  const Real before = heat(), mode_before = first_mode(m, temperature);
   const Real diffusivity = 200.0 / (8000 * 400), duration = 0.5 / (diffusivity * std::pow(std::numbers::pi, 2));
   constexpr int steps = 300;
   for (int step = 0; step < steps; ++step)
     conduct_heat(m.problem.mesh, m.state.materials[0], m.work.order, 0, duration / steps, m.state.particles, *m.work.heat);
   EXPECT_NEAR(heat() / before, 1, 1e-13);
-  EXPECT_NEAR(first_mode(m, batch.history) / mode_before, std::exp(-0.5), 0.005 * std::exp(-0.5));  // twenty cells a half wave: h^2 terms
+  EXPECT_NEAR(first_mode(m, temperature) / mode_before, std::exp(-0.5), 0.005 * std::exp(-0.5));  // twenty cells a half wave: h^2 terms
 }
 
 TEST(ConductHeat, NeedsAConductivity)
 {
-  EXPECT_TRUE(conducts_heat(make_any_batch(metal(200), 0, 1, "rod")));
-  EXPECT_FALSE(conducts_heat(make_any_batch(metal(std::nullopt), 0, 1, "rod")));
+  EXPECT_TRUE(constitutive_law(metal(200))->heat());
+  EXPECT_FALSE(constitutive_law(metal(std::nullopt))->heat());
   auto m = block<2>(metal(std::nullopt), 2);
   make_ready(m);
   EXPECT_FALSE(m.work.heat.has_value());

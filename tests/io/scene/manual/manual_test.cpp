@@ -11,6 +11,7 @@
 
 #include "io/output/output_fields.hpp"
 #include "io/scene/scene_rules.hpp"
+#include "materials/laws.hpp"
 
 namespace talus::manual_test {
 

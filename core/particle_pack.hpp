@@ -1,10 +1,9 @@
 #pragma once
-// Particles of a cell, four at a time, and the nodal values interpolated to them.
+// Particles four at a time: rows of the columns side by side in the lanes of packs.
 #include <span>
 
 #include "core/particles.hpp"
-#include "kernels/pack.hpp"
-#include "solver/state/cell_order.hpp"
+#include "core/simd.hpp"
 
 namespace talus {
 
@@ -48,6 +47,11 @@ struct ParticlePackOf {
   }
   template <class Row, class Allocator>
   [[gnu::always_inline]] auto load(const std::vector<Row, Allocator>& column) const noexcept
+  {
+    return load(column.data());
+  }
+  template <class Row>
+  [[gnu::always_inline]] auto load(std::span<const Row> column) const noexcept
   {
     return load(column.data());
   }
@@ -113,7 +117,29 @@ decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
   return f(Real());
 }
 
-/// Prefetches the rows of a particle in some columns.
+/// Calls ask(p) once for each of `rows`, well before its turn: memory answers while the rows before are worked on.
+template <class Ask>
+class PrefetchRows {
+ public:
+  PrefetchRows(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
+  /// The rows before `end` are next.
+  void until(std::size_t end)
+  {
+    for (const std::size_t last = std::min(end + distance, rows_.size()); asked_ < last; ++asked_)
+      ask_(static_cast<std::size_t>(rows_[asked_]));
+  }
+
+ private:
+  static constexpr std::size_t distance = 32;
+  std::span<const Index> rows_;
+  Ask ask_;
+  std::size_t asked_ = 0;
+};
+struct AskForNothing {
+  void operator()(std::size_t) const noexcept {}
+};
+
+/// Asks memory for the rows of a particle in some columns.
 template <class S>
 struct Prefetch {
   template <class... Columns>
@@ -145,7 +171,7 @@ struct Prefetch {
 
 /// Calls f(pack) for all rows, four at a time, and ask(p) for each row before it is used.
 template <class S = Real, class F, class Ask = AskForNothing>
-void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
+void for_each_pack(std::span<const Index> rows, F&& f, Ask ask = {})
 {
   PrefetchRows ahead(rows, ask);
   for (std::size_t begin = 0; begin < rows.size(); begin += pack_size) {
@@ -153,47 +179,10 @@ void for_each_bunch(std::span<const Index> rows, F&& f, Ask ask = {})
     f(ParticlePackOf<S>(rows, begin));
   }
 }
-/// Calls f(pack, x) for the particles of a cell batch, four at a time.
-template <class S, int D, class F>
-void for_each_placed_bunch(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
-{
-  for_each_bunch<S>(run, [&](const ParticlePackOf<S>& pack) {
-    Pack x[D];
-    const auto place = pack.load(places);
-    for (int d = 0; d < D; ++d)
-      x[d] = place[d].of;
-    f(pack, std::as_const(x));
-  });
-}
-
-/// Nodal values interpolated to four particles.
-template <int D>
-struct Seen {
-  Pack v[D], change[D];  ///< sum w v,  sum w change  [m/s]
-  Pack L[D][D];          ///< sum v (x) G  [1/s]
-};
-
 /// Vectors and tensors of four particles.
 template <int D>
 using VecOf = Eigen::Matrix<SimdReal, D, 1, Eigen::DontAlign>;
 template <int D>
 using MatOf = Eigen::Matrix<SimdReal, D, D, Eigen::DontAlign>;
-template <int D>
-VecOf<D> vector_of(const Pack (&v)[D]) noexcept
-{
-  VecOf<D> all;
-  for (int i = 0; i < D; ++i)
-    all[i] = v[i];
-  return all;
-}
-template <int D>
-MatOf<D> matrix_of(const Pack (&L)[D][D]) noexcept
-{
-  MatOf<D> all;
-  for (int i = 0; i < D; ++i)
-    for (int j = 0; j < D; ++j)
-      all(i, j) = L[i][j];
-  return all;
-}
 
 }  // namespace talus

@@ -1,0 +1,306 @@
+#pragma once
+// A constitutive law behind the interface, and its stress update of four particles at a time.  Included by the units in which the laws of the
+// list are compiled, one unit per law (cmake/TalusLaws.cmake), and by tests.
+#include <array>
+#include <type_traits>
+#include <variant>
+
+#include "core/particle_pack.hpp"
+#include "core/type_list.hpp"
+#include "materials/material.hpp"
+#include "materials/strength.hpp"
+#include "materials/weakly_compressible.hpp"
+
+namespace talus {
+
+namespace detail {
+/// The in-plane part of a multiplied by s, in 3-D all of it.
+template <int D>
+Mat3Of<SimdReal> scaled_in_plane(Mat3Of<SimdReal> a, const SimdReal& s) noexcept
+{
+  a.topLeftCorner<D, D>() *= s;
+  return a;
+}
+
+/// StressSums, one particle per lane.
+struct StressLanes {
+  SimdReal work = 0, crossing = std::numeric_limits<Real>::infinity(), speed = 0;
+  StressSums total() const noexcept
+  {
+    StressSums sums{sum(work.of)};
+    for (int lane = 0; lane < pack_size; ++lane)
+      sums.crossing = std::min(sums.crossing, crossing[lane]), sums.speed = std::max(sums.speed, speed[lane]);
+    return sums;
+  }
+};
+
+/// a : L, with L in the plane where D is 2.
+template <int D>
+SimdReal stress_power(const Sym3Of<SimdReal>& a, const MatOf<D>& L) noexcept
+{
+  SimdReal power = a[0] * L(0, 0) + a[1] * L(1, 1) + a[3] * (L(0, 1) + L(1, 0));
+  if constexpr (D == 3)
+    power += a[2] * L(2, 2) + a[4] * (L(1, 2) + L(2, 1)) + a[5] * (L(0, 2) + L(2, 0));
+  return power;
+}
+
+/// Where each history variable of a law stands in a row.
+template <class State>
+auto variables_of()
+{
+  constexpr std::size_t n = std::tuple_size_v<decltype(State::fields())>;
+  std::array<HistoryVariable, n> all{};
+  const State state{};
+  std::size_t number = 0;
+  for_each_field<State>([&]<class Owner, class Value>(const History<Owner, Value>& field) {
+    static_assert(std::is_same_v<Value, Real> || std::is_same_v<Value, Sym3>);
+    const auto bytes = reinterpret_cast<const std::byte*>(&(state.*field.member)) - reinterpret_cast<const std::byte*>(&state);
+    all[number++] = {field.key, field.unit, field.meaning, static_cast<int>(bytes / static_cast<std::ptrdiff_t>(sizeof(Real))),
+                     static_cast<int>(sizeof(Value) / sizeof(Real))};
+  });
+  return all;
+}
+}  // namespace detail
+
+template <class L>
+class ConstitutiveLawOf final : public ConstitutiveLaw {
+  static_assert(Law<L>);
+
+ public:
+  using State = typename L::State;
+  static_assert(std::is_trivially_destructible_v<State> && (std::is_empty_v<State> || sizeof(State) % sizeof(Real) == 0),
+                "a history consists of numbers and symmetric tensors");
+
+  explicit ConstitutiveLawOf(const L& law) : law_(law), constants_(law.constants()) {}
+
+  const L& parameters() const noexcept { return law_; }
+  const typename L::Constants& constants() const noexcept { return constants_; }
+  /// The row of a particle as the struct of the law.
+  static State& state_of(Real* history) noexcept
+  {
+    if constexpr (std::is_empty_v<State>) {
+      static State nothing;
+      return nothing;
+    } else {
+      return *reinterpret_cast<State*>(history);
+    }
+  }
+  static const State& state_of(const Real* history) noexcept { return state_of(const_cast<Real*>(history)); }
+
+  std::string_view name() const noexcept override { return L::name; }
+  std::string_view summary() const noexcept override { return L::summary; }
+  Real density() const noexcept override { return law_.density; }
+  std::span<const HistoryVariable> variables() const noexcept override
+  {
+    static const auto all = detail::variables_of<State>();
+    return all;
+  }
+  int history_width() const noexcept override { return std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(Real)); }
+  void initial_history(Real* history) const noexcept override
+  {
+    if constexpr (requires { law_.initial_state(); })
+      state_of(history) = law_.initial_state();
+    else if constexpr (!std::is_empty_v<State>)
+      state_of(history) = {};
+  }
+
+  Mat3 update(const Increment& step, Real* history) const noexcept override { return law_.update(step, state_of(history), constants_); }
+  /// Of several particles, one per lane; lanes beyond `count` repeat the last one and are not changed.  Where the law is not written for
+  /// lanes, one after the other.
+  Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& step, StateRows<State>& rows) const noexcept
+  {
+    if constexpr (LawInLanes<L>)
+      return law_.update(step, rows, constants_);
+    else
+      return update_one_by_one(law_, step, rows, constants_);
+  }
+  StressSums update_stress(Material& material, const StressBlock<2>& block) const noexcept override
+  {
+    return update_block(material, block);
+  }
+  StressSums update_stress(Material& material, const StressBlock<3>& block) const noexcept override
+  {
+    return update_block(material, block);
+  }
+
+  Real wave_speed(const Mat3& F) const noexcept override { return law_.wave_speed(F, constants_); }
+  Real wave_speed(const Mat3& F, const Real* history) const noexcept override { return wave_speed(F, state_of(history)); }
+  SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateRows<State>& rows) const noexcept
+  {
+    if constexpr (LawInLanes<L>) {
+      return law_.wave_speed(F, constants_);
+    } else {
+      SimdReal speed = 1;
+      for (int lane = 0; lane < rows.count; ++lane)
+        speed.set(lane, wave_speed(lane_of(F, lane), *rows.row[lane]));
+      return speed;
+    }
+  }
+  std::optional<Real> diffusivity() const noexcept override
+  {
+    if constexpr (requires { law_.diffusivity(constants_); })
+      return law_.diffusivity(constants_);
+    else
+      return std::nullopt;
+  }
+
+  bool starts_from_stress() const noexcept override { return has_prestress; }
+  bool prestress(const Mat3& stress, Real* history) const noexcept override
+  {
+    if constexpr (has_prestress)
+      law_.prestress(stress, state_of(history));
+    return has_prestress;
+  }
+  bool has_strength() const noexcept override { return HasStrength<L>; }
+  std::shared_ptr<const ConstitutiveLaw> weakened(Real factor) const override
+  {
+    L weaker = law_;
+    return divide_strength(weaker, factor) ? std::make_shared<const ConstitutiveLawOf>(weaker) : nullptr;
+  }
+  std::optional<Real> shear_modulus() const noexcept override
+  {
+    if constexpr (requires { constants_.shear; })
+      return constants_.shear;
+    else
+      return std::nullopt;
+  }
+  std::optional<HeatConduction> heat() const noexcept override
+  {
+    if constexpr (requires { law_.conductivity; })
+      if (law_.conductivity)
+        if (const auto temperature = scalar_variable(*this, "temperature"))
+          return HeatConduction{*law_.conductivity, law_.specific_heat, *temperature};
+    return std::nullopt;
+  }
+  bool is_isochoric() const noexcept override { return talus::is_isochoric<L>(); }
+  bool is_fluid() const noexcept override { return std::is_base_of_v<WeaklyCompressible, L>; }
+
+ private:
+  static constexpr bool has_prestress = requires(const L& law, State& state) { law.prestress(Mat3(), state); };
+
+  Real wave_speed(const Mat3& F, const State& state) const noexcept
+  {
+    if constexpr (requires { law_.wave_speed(F, state, constants_); })
+      return law_.wave_speed(F, state, constants_);
+    else
+      return law_.wave_speed(F, constants_);
+  }
+
+  template <int D>
+  StressSums update_block(Material& material, const StressBlock<D>& block) const noexcept
+  {
+    detail::StressLanes lanes;
+    in_numbers_of(block.particles, [&]<class S>(S) {
+      for_each_pack<S>(
+          block.rows, [&](const ParticlePackOf<S>& pack) { update_pack(material, pack, block, lanes); },
+          [&](std::size_t p) {
+            const Particles<D>& particles = block.particles;
+            Prefetch<S>::row(p, particles.F, particles.stress, particles.volume, particles.volume0, particles.mass);
+          });
+    });
+    return lanes.total();
+  }
+
+  template <int D, class S>
+  [[gnu::flatten]] void update_pack(Material& material, const ParticlePackOf<S>& pack, const StressBlock<D>& block,
+                                    detail::StressLanes& sums) const noexcept
+  {
+    Particles<D>& particles = block.particles;
+    const Real dt = block.dt;
+    const auto rate = pack.load(particles.L);
+    const Mat3Of<SimdReal> velocity_gradient = embed(rate);
+    Mat3Of<SimdReal> F = pack.load(particles.F);
+    F.template topLeftCorner<D, D>() += SimdReal(dt) * (rate * F.template topLeftCorner<D, D>());
+    pack.store(F, particles.F);
+    const SimdReal J = F.determinant();
+    const auto good = J > 0;  // false for NaN
+    if (!all_of(good))
+      for (int lane = 0; lane < pack.count; ++lane)
+        if (!good[lane])
+          block.health.report(particles.id[pack.p[lane]], std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+    const SimdReal volume_before = pack.load(particles.volume), volume = J * pack.load(particles.volume0);
+    pack.store(volume, particles.volume);
+    const SimdReal shrinking = max(-SimdReal(rate.trace()), 0);
+    const SimdReal h = pack.lanes([&](std::size_t p) { return block.altitudes[static_cast<std::size_t>(particles.cell[p])]; });
+
+    const Sym3Of<SimdReal> stored = pack.load(particles.stress);
+    Mat3Of<SimdReal> F_of_law = F, L_of_law = velocity_gradient, stress_of_law = unpack(stored);
+    if (material.averages_volume) {
+      const SimdReal to_average = pack.load(block.averaged) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
+      const SimdReal s = ratio / pack.load(particles.volume_ratio);
+      pack.store(ratio, particles.volume_ratio);
+      F_of_law = detail::scaled_in_plane<D>(F, ratio);
+      L_of_law = detail::scaled_in_plane<D>(velocity_gradient, s);
+      for (int d = 0; d < D; ++d)
+        L_of_law(d, d) += (s - 1) / dt;
+    }
+    StateRows<State> states{{}, pack.count};
+    for (int lane = 0; lane < pack_size; ++lane)
+      states.row[lane] = &state_of(material.history.row(static_cast<Index>(pack.p[lane]) - material.begin));
+    const SimdReal speed_of_waves = wave_speed(F_of_law, states);
+    SimdReal q = 0;
+    if (material.viscosity) {
+      stress_of_law.diagonal().array() += pack.load(particles.viscous);
+      q = pack.load(particles.mass) / volume * h * shrinking *
+          (material.viscosity->quadratic * h * shrinking + material.viscosity->linear * speed_of_waves);
+      pack.store(q, particles.viscous);
+    }
+    SimdReal u = 0;
+    if (!block.pore_after.empty()) {
+      stress_of_law.diagonal().array() += pack.load(particles.pore);
+      u = pack.load(block.pore_after);
+      pack.store(u, particles.pore);
+    }
+    Mat3Of<SimdReal> after = update({F_of_law, L_of_law, stress_of_law, dt, q, block.elastic}, states);
+    after.diagonal().array() -= q + u;
+    const Sym3Of<SimdReal> stress = talus::pack(after);
+    const auto answered = isfinite(SimdReal(stress.sum()));
+    if (!all_of(answered))
+      for (int lane = 0; lane < pack.count; ++lane)
+        if (good[lane] && !answered[lane])
+          block.health.report(particles.id[pack.p[lane]], Trouble::no_answer);
+    pack.store(stress, particles.stress);
+
+    const SimdReal work =
+        0.5 * dt * (volume_before * detail::stress_power<D>(stored, rate) + volume * detail::stress_power<D>(stress, rate));
+    const SimdReal speed = sqrt(SimdReal(pack.load(particles.v).squaredNorm()));
+    const SimdReal crossing = crossing_time<D>(diffusivity(), material.viscosity, h, speed, speed_of_waves, shrinking);
+    const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(pack.count);
+    sums.work += where(counts, work, 0);  // lanes that repeat a particle change no extreme
+    sums.crossing = where(sound, min(sums.crossing, crossing), sums.crossing);
+    sums.speed = where(sound, max(sums.speed, speed), sums.speed);
+  }
+
+  L law_;
+  typename L::Constants constants_;
+};
+
+template <class L>
+std::shared_ptr<const ConstitutiveLaw> constitutive_law_of_all_kinds(const L& law)
+{
+  return std::make_shared<const ConstitutiveLawOf<L>>(law);
+}
+
+template <class L>
+std::shared_ptr<const ConstitutiveLaw> constitutive_law(const L& law)
+{
+  if constexpr (requires { law.kind(); })
+    return std::visit([](const auto& kind) { return constitutive_law_of_all_kinds(kind); }, law.kind());
+  else
+    return constitutive_law_of_all_kinds(law);
+}
+
+/// The law of a material as the type that it is; nullptr if it is another.
+template <class L>
+const ConstitutiveLawOf<L>* law_as(const Material& material) noexcept
+{
+  return dynamic_cast<const ConstitutiveLawOf<L>*>(&material.law());
+}
+/// What particle i remembers, as the struct of its law.
+template <class L>
+typename L::State& state_of(Material& material, Index i) noexcept
+{
+  return ConstitutiveLawOf<L>::state_of(material.history.row(i));
+}
+
+}  // namespace talus

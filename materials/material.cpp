@@ -1,0 +1,53 @@
+#include "materials/material.hpp"
+
+#include <chrono>
+
+namespace talus {
+
+Material::Material(std::shared_ptr<const ConstitutiveLaw> law, Index begin_row, Index end_row, std::string of_name, SourceLocation of_where)
+    : where(std::move(of_where)), name(std::move(of_name)), history(law->history_width()), law_(std::move(law))
+{
+  begin_anew(begin_row, end_row, *this);
+}
+
+Material Material::without_particles() const
+{
+  Material bare(law_, 0, 0, name, where);
+  bare.viscosity = viscosity, bare.averages_volume = averages_volume, bare.group = group;
+  return bare;
+}
+
+bool Material::weaken(Real factor)
+{
+  std::shared_ptr<const ConstitutiveLaw> weaker = law_->weakened(factor);
+  if (weaker)
+    law_ = std::move(weaker);
+  return law_->has_strength();
+}
+
+void begin_anew(Index begin, Index end, Material& material)
+{
+  material.begin = begin, material.end = end;
+  material.history.resize(0);
+  material.history.resize(material.size());
+  parallel_for(material.size(), [&](Index i) { material.law().initial_history(material.history.row(i)); });
+}
+
+template <int D>
+StressSums update_stress(Material& material, const StressBlock<D>& block) noexcept
+{
+  const auto begin = std::chrono::steady_clock::now();
+  StressSums sums = material.law().update_stress(material, block);
+  sums.seconds = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
+  return sums;
+}
+template StressSums update_stress<2>(Material&, const StressBlock<2>&) noexcept;
+template StressSums update_stress<3>(Material&, const StressBlock<3>&) noexcept;
+
+Real plastic_work(const Material& material, Index i, Real volume0) noexcept
+{
+  const auto work = scalar_variable(material.law(), "plastic_work");
+  return work ? volume0 * material.history.row(i)[*work] : 0;
+}
+
+}  // namespace talus

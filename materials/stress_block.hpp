@@ -1,0 +1,38 @@
+#pragma once
+// The particles of one body in one block of cells, and what their law needs to update their stress.
+#include <limits>
+#include <span>
+
+#include "core/particle_errors.hpp"
+#include "core/particles.hpp"
+
+namespace talus {
+
+/// What the particles of a body report of a step.
+struct StressSums {
+  Real work = 0;                                          ///< stress power times dt [J], trapezoidal in the Kirchhoff stress
+  Real crossing = std::numeric_limits<Real>::infinity();  ///< shortest altitude of a particle's cell / (wave speed + |v|) [s]
+  Real speed = 0;                                         ///< of the fastest particle [m/s]
+  Real seconds = 0;                                       ///< processor time [s]
+  /// Combines everything but the work.
+  void take_extremes(const StressSums& other) noexcept
+  {
+    crossing = std::min(crossing, other.crossing);
+    speed = std::max(speed, other.speed);
+    seconds += other.seconds;
+  }
+};
+
+template <int D>
+struct StressBlock {
+  std::span<const Index> rows;       ///< the particles
+  Real dt;                           ///< [s]
+  bool elastic;                      ///< a stage that suspends yielding
+  std::span<const Real> altitudes;   ///< least altitude of each cell [m]
+  std::span<const Real> averaged;    ///< averaged volume ratio of each particle [-], of a body that averages it
+  std::span<const Real> pore_after;  ///< pore pressure of each particle at the end of the step [Pa]; empty where there is none
+  Particles<D>& particles;
+  ParticleErrors& health;
+};
+
+}  // namespace talus
