@@ -99,7 +99,7 @@ std::variant<T...>& choices_of(std::variant<T...>& value) noexcept
 template <class Value>
 using ChoicesOf = std::remove_cvref_t<decltype(choices_of(std::declval<Value&>()))>;
 
-/// A history variable of a law: output, checkpoint.  Value is Real or Sym3.
+/// A history variable of a law, written to outputs and checkpoints.  Value is Real or Sym3.
 template <class Owner, class Value>
 struct History {
   std::string_view key;

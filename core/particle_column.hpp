@@ -32,8 +32,8 @@ using In = typename detail::In<S, Value>::type;
 /// The value that is subtracted before a row is stored in single precision, so that small differences keep their digits.
 enum class Rest : std::uint8_t { zero, identity };
 
-/// A row is a Real, a vector or a tensor.  Rows are read by value and written by set(), in double whatever they are kept in; loops
-/// over many particles go by a ParticlePackOf<S> (core/particle_pack.hpp), which knows the numbers S.
+/// A column whose rows are Reals, vectors or tensors.  Rows are read by value and written by set(), always in double; loops over many
+/// particles use a ParticlePackOf<S> (core/particle_pack.hpp), which knows the stored type S.
 template <class Value, Rest rest = Rest::zero>
 class ParticleColumn {
  public:

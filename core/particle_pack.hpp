@@ -1,5 +1,5 @@
 #pragma once
-// Particles four at a time: rows of the columns side by side in the lanes of packs.
+// Particles four at a time: rows of the columns in the lanes of packs.
 #include <span>
 
 #include "core/particles.hpp"
@@ -117,12 +117,12 @@ decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
   return f(Real());
 }
 
-/// Calls ask(p) once for each of `rows`, well before its turn: memory answers while the rows before are worked on.
+/// Calls ask(p) once for each of `rows`, well before it is used, so that the memory can be prefetched.
 template <class Ask>
 class PrefetchRows {
  public:
   PrefetchRows(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
-  /// The rows before `end` are next.
+  /// Prefetches before the rows before `end` are used.
   void until(std::size_t end)
   {
     for (const std::size_t last = std::min(end + distance, rows_.size()); asked_ < last; ++asked_)
@@ -139,7 +139,7 @@ struct AskForNothing {
   void operator()(std::size_t) const noexcept {}
 };
 
-/// Asks memory for the rows of a particle in some columns.
+/// Prefetches the rows of a particle in some columns.
 template <class S>
 struct Prefetch {
   template <class... Columns>

@@ -75,7 +75,8 @@ constexpr Lame lame(Real youngs_modulus, Real poisson_ratio) noexcept
 }
 
 /// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
-// Inlined by order, like others below: of lanes they are long enough to be calls, and would pass their tensors through memory.
+// Inlined explicitly, like others below: instantiations for SimdReal are long enough to become calls, which would pass tensors through
+// memory.
 template <class E>
 [[gnu::always_inline]] inline Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s,
                                                                          const Eigen::MatrixBase<E>& expression,

@@ -20,7 +20,7 @@ typename E::Scalar trace(const Eigen::MatrixBase<E>& a) noexcept
   static_assert(E::RowsAtCompileTime == 6);
   return a[0] + a[1] + a[2];
 }
-/// a:a
+/// The double contraction a:a.
 template <class E>
 typename E::Scalar squared_norm(const Eigen::MatrixBase<E>& expression) noexcept
 {

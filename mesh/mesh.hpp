@@ -57,8 +57,8 @@ class Mesh {
   const Cell& cell(Index c) const noexcept { return cells_[static_cast<std::size_t>(c)]; }
 
   Real volume(Index c) const noexcept { return volume_[static_cast<std::size_t>(c)]; }        ///< area in 2-D [m^D]
-  Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }    ///< the smallest one [m]
-  std::span<const Real> altitudes() const noexcept { return altitude_; }                      ///< of all cells
+  Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }    ///< smallest altitude [m]
+  std::span<const Real> altitudes() const noexcept { return altitude_; }                      ///< smallest altitude of each cell [m]
   Real node_size(Index n) const noexcept { return node_size_[static_cast<std::size_t>(n)]; }  ///< h_n, mean length of the edges at n [m]
   Real largest_edge() const noexcept { return largest_edge_; }                                ///< longest edge of all cells [m]
   const Vec<D>& low() const noexcept { return low_; }                                         ///< corners of the bounding box [m]

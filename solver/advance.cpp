@@ -101,7 +101,7 @@ void record_node_sums(Model<D>& m)
   add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
 }
 
-/// Stress of the particles of a body in a block.
+/// Updates the stress of the particles of a body in a block.
 template <int D>
 void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
 {
@@ -127,7 +127,7 @@ void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
                                    .health = work.health});
 }
 
-/// The same, unless the law must know the particles of other blocks first.
+/// Updates the stress as above, unless the law needs data of other blocks first.
 template <int D>
 void update_stress_while_cached(Model<D>& m, Index body, Index block, Real dt)
 {

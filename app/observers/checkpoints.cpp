@@ -130,7 +130,7 @@ void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::i
   must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
 }
 
-/// Bodies have other laws in another stage.
+/// Sets the laws of bodies that change in a stage.
 void take_laws_of(const StageState& stage, std::span<const std::vector<Material>> laws, std::vector<Material>& materials)
 {
   if (laws.empty())

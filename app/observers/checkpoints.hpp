@@ -67,8 +67,8 @@ class Checkpoints {
 
 /// The sizes of a state of this scene.
 struct StateLimits {
-  Index cells, stages, particles;                 ///< particles: of all bodies as they are placed
-  std::span<const std::vector<Material>> laws{};  ///< of the bodies in each stage
+  Index cells, stages, particles;                 ///< particles: initial number of all bodies
+  std::span<const std::vector<Material>> laws{};  ///< laws of the bodies in each stage
 };
 
 /// The bodies of a run, read without the rest of its state.
@@ -80,7 +80,7 @@ struct KeptBodies {
   Clock clock;
   StageState stage;
   EnergyLedger energy;
-  std::vector<std::vector<Material>> laws;  ///< of each stage, to be there already
+  std::vector<std::vector<Material>> laws;  ///< laws of each stage, to be set before reading
 };
 
 /// Checkpoints to resume from, the newest first.

@@ -75,7 +75,7 @@ class Inspection {
       add(begin + bad, fmt::format("{} is not finite", variable.key));
   }
 
-  /// What value(row) is of each particle.
+  /// Checks value(row) of each particle.
   template <class F>
   void positive(std::string_view name, std::string_view unit, F&& value)
   {

@@ -106,7 +106,7 @@ struct State {
   Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is proportional to it
   BoundaryConditions<D> walls;
   std::vector<Body> bodies;
-  std::vector<Material> materials;  ///< one for each body, of the same rows
+  std::vector<Material> materials;  ///< one for each body, with the same rows
   Particles<D> particles;
 
   static constexpr auto parts()

@@ -30,8 +30,8 @@ struct Workspace {
   std::optional<StarSums<D, 2>> stars;  ///< used if a body averages its volume
   std::vector<Real> averaged;           ///< volume ratios of average_volume()
   std::vector<Real> pore_after;         ///< pore pressure of each particle at the end of the step [Pa]
-  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() takes as one
-  std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
+  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() treats as one
+  std::optional<HeatSums<D>> heat;      ///< used if a body conducts heat
 
   explicit Workspace(Index n_nodes)
   {

@@ -52,7 +52,7 @@ void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id,
 /// The fraction of the particles whose row does not follow that of the previous particle in the order.
 Real disorder(const CellOrder& order) noexcept;
 
-/// f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as above.
+/// Calls f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as in PrefetchRows.
 template <class F, class Ask = AskForNothing>
 void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f, Ask ask = {})
 {
