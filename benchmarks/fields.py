@@ -1,4 +1,4 @@
-"""Measures of what particle files hold that more than one case takes."""
+"""Measures of fields in particle files that several cases use."""
 import numpy as np
 
 
@@ -11,6 +11,6 @@ def checkerboard(frame):
 
 
 def extended(places, values, at, count=12):
-    """Value `at` a place where no particle sits: a linear field fitted to the values at the `count` places nearest to it."""
+    """The value at a position without a particle: a linear field fitted to the values at the `count` nearest positions."""
     nearest = np.argsort(np.linalg.norm(places - at, axis=1))[:count]
     return np.linalg.lstsq(np.c_[np.ones(count), places[nearest] - at], values[nearest], rcond=None)[0][0]

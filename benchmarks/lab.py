@@ -1,4 +1,4 @@
-"""What every benchmark needs: runs of talus, readers of what they wrote, measures of error, results and figures.
+"""Functions for all benchmarks: runs of talus, readers of their results, error measures, results and figures.
 
 A benchmark is a folder with scene.yaml, README.md, its reference values and case.py; `evaluate(lab)` in case.py returns results.
 Units are SI, as in the scenes.
@@ -32,16 +32,16 @@ import talus  # noqa: E402
 matplotlib.use("Agg")
 
 matplotlib.rcParams.update({"font.size": 9, "axes.grid": True, "grid.alpha": 0.3, "legend.frameon": False, "figure.constrained_layout.use": True})
-METHODS = {  # for sweeps, the default first; linear with tpic turns points inside out
+METHODS = {  # for sweeps, the default first; linear with tpic inverts particles
     f"{kernel}, {scheme}": {"kernel": kernel, "transfer.scheme": scheme}
     for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
 METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
-SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> the transfer that suits it
+SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> suitable transfer
 OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme", "precision": "precision"}  # option of the command line -> key of the scene
 
 
 class RunFailed(RuntimeError):
-    """A run that did not end well, with the program's own words."""
+    """A run that failed, with the message of the program."""
 
 
 class Run:
@@ -84,7 +84,7 @@ class Run:
 
     @functools.cached_property
     def frames(self):
-        """Particle files in order of time, a talus.Series; empty where the scene asks for none."""
+        """Particle files in order of time as a talus.Series; empty if the scene writes none."""
         return talus.Run(self.folder).particles if (self.folder / "particles.pvd").exists() else []
 
     def last_frame(self):
@@ -98,7 +98,7 @@ class Run:
         return tuple(json.loads(path.read_text(encoding="utf-8"))) if path.exists() else (0, "")
 
     def failure(self):
-        """Waits; the words of a run that failed, or None."""
+        """Waits for the end of the run; returns the message of a failed run, or None."""
         try:
             self._future.result()
         except RunFailed as failed:
@@ -153,7 +153,7 @@ class Result:
 
     @property
     def passed(self):
-        """True, False, or None where nothing is judged. A number that is not finite never passes."""
+        """True or False, or None without a criterion.  A number that is not finite never passes."""
         if self.criterion == "reported":
             return None
         checks = {"at most": lambda: self.value <= self.tolerance, "at least": lambda: self.value >= self.tolerance,
@@ -162,7 +162,7 @@ class Result:
         return bool(np.isfinite(self.value) and checks[self.criterion]())
 
     def record(self):
-        """What verify.json holds of it; a value that is not finite is null there."""
+        """The entry of verify.json; a value that is not finite is null."""
         own = {key: plain(getattr(self, key)) for key in ("case", "metric", "unit", "value", "reference", "source", "criterion", "tolerance")}
         summary = self.run.summary
         return {**own, "pass": self.passed, "mesh": f"{self.run.cells} cells", "particles": self.run.particles, "kernel": summary["kernel"],
@@ -223,16 +223,16 @@ class Lab:
         return handle
 
     def runs_of(self, case):
-        """All runs that a case asked for, in their order."""
+        """All runs of a case, in the order of their start."""
         with self._lock:
             return [run for (owner, _), (_, run) in self._handles.items() if owner == case]
 
     def close(self):
-        """No more runs: those that have not begun never will."""
+        """Cancels the runs that have not started."""
         self._pool.shutdown(cancel_futures=True)
 
     def _work(self, path, out, words, inputs, may_fail, command):
-        """Runs, or finds the results of an earlier run of the same inputs; returns the processor time [s]."""
+        """Starts the run, or finds the results of an earlier run with the same input; returns the processor time [s]."""
         stamp = out / "inputs.json"
         seconds = self._seconds_of(stamp, inputs)
         if seconds is None:
@@ -242,14 +242,14 @@ class Lab:
         return seconds
 
     def _seconds_of(self, stamp, inputs):
-        """What the run of the same inputs took, or None where there is none to use again."""
+        """The processor time [s] of an earlier run with the same input, or None if there is none."""
         if not (self.reuse and stamp.exists()):
             return None
         known = json.loads(stamp.read_text(encoding="utf-8"))
         return known["seconds"] if known["inputs"] == inputs else None
 
     def _start(self, scene, out, words, may_fail, command):
-        """Runs the program; returns the processor time it took [s], which a busy machine changes less than that of the clock."""
+        """Runs the program; returns its processor time [s], which depends less on other work of the machine than wall time."""
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
         line = [self.program, command[0], scene, "--out", out, "--threads", str(self.threads), "--quiet", *command[1:]]
@@ -261,7 +261,7 @@ class Lab:
             child.returncode = os.waitstatus_to_exitcode(status)
             output.seek(0)
             said = output.read().strip()
-        for folder in {self.runs, self.runs.resolve(), ROOT}:  # what is said shall be the same on any machine
+        for folder in {self.runs, self.runs.resolve(), ROOT}:  # messages must be equal on all machines
             said = said.replace(f"{folder}/", "")
         if may_fail and child.returncode in (1, 2, 3):
             (out / "ending.json").write_text(json.dumps([child.returncode, said]), encoding="utf-8")
@@ -290,12 +290,12 @@ class Lab:
 
 
 def overridden(settings, overrides):
-    """`settings`, and of `overrides` those that they leave open: neither the key itself nor the block around it is set."""
+    """`settings` with those `overrides` whose key, or a block around it, is not set in `settings`."""
     return {**{key: word for key, word in overrides.items() if key not in settings and key.split(".")[0] not in settings}, **settings}
 
 
 def plain(value):
-    """A number of numpy as one of Python, one that is not finite as None: neither is JSON."""
+    """A number of numpy as a Python number, or None if it is not finite: JSON has neither."""
     if isinstance(value, (float, np.floating)):
         return float(value) if np.isfinite(value) else None
     return int(value) if isinstance(value, np.integer) else value
@@ -313,7 +313,7 @@ def reference(case, name="reference.json"):
 
 
 def module(case, name="case"):
-    """The module case.py of a benchmark, or another of its files of Python."""
+    """The module case.py of a benchmark, or another of its Python files."""
     spec = importlib.util.spec_from_file_location(f"{name}_{case}", ROOT / "benchmarks" / case / f"{name}.py")
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)
@@ -321,7 +321,7 @@ def module(case, name="case"):
 
 
 def label(name):
-    """A name of a result as one of a folder."""
+    """The name of a result as the name of a folder."""
     return re.sub(r"[^\w.-]+", "_", name)
 
 
@@ -331,17 +331,17 @@ def ends(runs):
 
 
 def ended(run, measure):
-    """What is measured of a run that ended well; not a number where it did not."""
+    """The measured value of a run; nan if the run failed."""
     return measure(run) if run.ending[0] == 0 else float("nan")
 
 
 def rms(values):
-    """Root of the mean square over everything."""
+    """Root mean square over all entries."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 
 def observed_order(sizes, errors):
-    """Slope of log(error) over log(size) by least squares."""
+    """Order of convergence: slope of log(error) over log(size) by least squares."""
     return float(np.polyfit(np.log(sizes), np.log(errors), 1)[0])
 
 
@@ -351,7 +351,7 @@ def neighbours(sizes, errors):
 
 
 def size_axis(axis, sizes):
-    """Ticks of a logarithmic axis at the sizes of cells and nowhere else."""
+    """Sets ticks of a logarithmic axis at the sizes of cells only."""
     axis.set_xscale("log")
     axis.set_xticks(sizes, [f"{size:g}" for size in sizes])
     axis.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())

@@ -1,4 +1,4 @@
-"""Meshes of boxes that nobody would make on purpose, as files of gmsh (version 2.2): nodes and cells as arrays."""
+"""Badly shaped meshes of boxes for tests, as files of gmsh (version 2.2): nodes and cells as arrays."""
 import hashlib
 import itertools
 
@@ -20,7 +20,7 @@ def box(axes):
 
 
 def middle(facet):
-    """The point of a facet that is equally far from its edges (of an edge: its middle), and that distance."""
+    """The incentre of a facet (of an edge: its middle), and its distance from the edges."""
     if len(facet) == 2:
         return facet.mean(axis=0), np.linalg.norm(facet[1] - facet[0]) / 2
     sides = np.array([np.linalg.norm(facet[(i + 1) % 3] - facet[(i + 2) % 3]) for i in range(3)])
@@ -47,13 +47,13 @@ def slivered(nodes, cells, angle, every):
 
 
 def alternating(low, high, pairs, ratio):
-    """Coordinates whose intervals are in turn wide and narrow, by the ratio."""
+    """Coordinates with alternating wide and narrow intervals of the given ratio."""
     widths = np.tile([ratio, 1.0], pairs)
     return low + (high - low) * np.concatenate([[0], np.cumsum(widths) / widths.sum()])
 
 
 def text(nodes, cells):
-    """The file."""
+    """The text of the mesh file."""
     kind = 2 if cells.shape[1] == 3 else 4
     points = np.c_[nodes, np.zeros((len(nodes), 3 - nodes.shape[1]))]
     listed = [f"{n + 1} {x!r} {y!r} {z!r}" for n, (x, y, z) in enumerate(points.tolist())]
@@ -64,7 +64,7 @@ def text(nodes, cells):
 
 
 def written(lab, case, name, nodes, cells):
-    """Settings for a mesh of our own: its file stands beside the runs of the case and bears a mark of what it holds."""
+    """Writes a mesh beside the runs of the case, with a digest of its contents in its name; returns the settings for it."""
     content = text(nodes, cells)
     path = lab.runs.resolve() / f"{case}_meshes" / f"{name}_{hashlib.sha256(content.encode()).hexdigest()[:8]}.msh"
     path.parent.mkdir(parents=True, exist_ok=True)

@@ -13,17 +13,17 @@ th,td{border:1px solid #ccc;padding:.2em .5em;text-align:left}th{background:#f3f
 .pass{color:#17692b}.FAIL{color:#b00020;font-weight:bold}.changed{color:#8a5a00}pre{white-space:pre-wrap;background:#f6f6f6;padding:.5em}
 h2{margin-top:1.6em}figure{margin:1em 0}figcaption{color:#555;font-size:14px}"""
 RELATIVE = re.compile(r'<a href="(?!https?:)[^"]*">(.*?)</a>', re.S)
-HEADS = ["measured", "value", "unit", "reference", "asked", "verdict", "last release", "cells", "particles", "kernel", "transfer", "s", "MB"]
+HEADS = ["measured", "value", "unit", "reference", "criterion", "verdict", "last release", "cells", "particles", "kernel", "transfer", "s", "MB"]
 
 
 def page(title, body):
-    """A whole page."""
+    """A complete HTML page."""
     return (f'<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n<meta name="viewport" content="width=device-width, initial-scale=1">\n'
             f"<title>{html.escape(title)}</title>\n<style>\n{STYLE}\n</style>\n</head>\n<body>\n{body}\n</body>\n</html>\n")
 
 
 def cells(words, tag="td"):
-    """One row of a table; what begins with '<' is HTML already."""
+    """One row of a table; entries that begin with '<' are HTML already."""
     return "<tr>" + "".join(f"<{tag}>{word if word.startswith('<') else html.escape(word)}</{tag}>" for word in words) + "</tr>"
 
 
@@ -39,7 +39,7 @@ def verdict(passed):
 
 
 def row(r):
-    """One number."""
+    """A row for one number."""
     since = f'<span class="changed">{html.escape(r["changed"])}</span>' if r.get("changed") else "new" if r.get("release") is None else "same"
     memory = "-" if r["peak_memory [B]"] is None else f"{r['peak_memory [B]'] / 1e6:.0f}"
     return [r["metric"], report.number(r["value"]), r["unit"], report.number(r["reference"]), report.criterion(r), verdict(r["pass"]), since,
@@ -47,7 +47,7 @@ def row(r):
 
 
 def problem(case):
-    """The README.md of the case without its title; links to files of the repository lead nowhere from here and are text."""
+    """The README.md of the case without its title; links to files of the repository become text."""
     path = ROOT / "benchmarks" / case / "README.md"
     if not path.exists():
         return "<p>(no description)</p>"
@@ -56,7 +56,7 @@ def problem(case):
 
 
 def outcome(records):
-    """The verdict of a case in a sentence."""
+    """A sentence with the verdict of a case."""
     judged, passed = report.counts(records)
     changed = sum(bool(r.get("changed")) for r in records)
     return (f"{verdict(passed == judged if judged else None)} {passed} of {judged} judged numbers pass, {len(records) - judged} are reported only"
@@ -64,7 +64,7 @@ def outcome(records):
 
 
 def case_page(document, info):
-    """Problem, verdict, numbers, convergence, pictures."""
+    """The page of a case: problem, verdict, numbers, convergence, pictures."""
     case = info["case"]
     records, figures = report.of(document, "results", case), report.of(document, "figures", case)
     other = "".join(f", {key} {word} by option" for key, word in info["overrides"].items())
@@ -87,7 +87,7 @@ def case_page(document, info):
 
 
 def index(document):
-    """The list of cases."""
+    """The page with the list of cases."""
     rows = []
     for info in document["cases"]:
         records = report.of(document, "results", info["case"])
@@ -101,7 +101,7 @@ def index(document):
 
 
 def write(document, folder):
-    """All pages into a folder; pictures are expected in its folder images/."""
+    """Writes all pages into a folder; pictures are expected in its folder images/."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "index.html").write_text(index(document), encoding="utf-8")
     for info in document["cases"]:
@@ -109,7 +109,7 @@ def write(document, folder):
 
 
 def draw_particles(figure, frame, dimension):
-    """Particles where they are in a frame, as seen along the shortest side of the body, coloured by displacement or else by speed."""
+    """Draws the particles of a frame, viewed along the shortest side of the body, coloured by displacement or speed."""
     points = frame["position"]
     extent = np.ptp(points, axis=0)
     across = 2 if dimension == 2 else int(np.argmin(extent))

@@ -1,4 +1,4 @@
-"""What single precision costs: every number of two verification runs, one in double and one in single, side by side.
+"""Effect of single precision: every number of two verification runs, one in double and one in single, side by side.
 
 Usage: precision.py DOUBLE/verify.json SINGLE/verify.json [--write-docs]      the table goes to the terminal, or into docs/development/precision.md
 """
@@ -11,7 +11,7 @@ from lab import ROOT
 PAGE = ROOT / "docs" / "development" / "precision.md"
 BEGIN, END = "<!-- table: begin, written by benchmarks/precision.py -->", "<!-- table: end -->"
 STEPS = (1e-6, 1e-4, 1e-2)  # relative changes that are counted
-NOTHING = 1e-9  # errors and drifts below this are rounding in either precision
+NOTHING = 1e-9  # errors and drifts below this are round-off in both precisions
 
 
 def numbers(path):
@@ -21,7 +21,7 @@ def numbers(path):
 
 
 def change(double, single):
-    """Relative change of a number; None where there is no number in either, 1 where there is in one."""
+    """Relative change of a number; None if neither run has it, 1 if only one has it."""
     a, b = double["value"], single["value"] if single else None
     if a is None and b is None:
         return None
@@ -32,7 +32,7 @@ def change(double, single):
 
 
 def rows(double, single):
-    """A row of the table for every case: what changed, by how much, and how many verdicts did."""
+    """A row of the table for every case: changes of numbers and of verdicts."""
     table = []
     for case in dict.fromkeys(case for case, _ in double):
         changes = {metric: change(record, single.get((case, metric))) for (of, metric), record in double.items() if of == case}
@@ -46,7 +46,7 @@ def rows(double, single):
 
 
 def markdown(table):
-    """The table, and its sum."""
+    """The table with its totals."""
     heads = ["case", "numbers", *(f"changed by more than {step:.0e}".replace("e-0", "e-") for step in STEPS), "most", "of", "judged numbers that fail in single only"]
     total = ["**all**", *(sum(row[k] for row in table) for k in range(1, 2 + len(STEPS))), "", "", sum(row[-1] for row in table)]
     lines = [heads, ["---"] * len(heads), *table, total]

@@ -12,12 +12,12 @@ NOTHING = 1e-12  # a ratio smaller than this is rounding: drifts of momentum, ch
 
 
 def path(case):
-    """Where the values of a case are."""
+    """The file with the values of a case."""
     return ROOT / "benchmarks" / case / "release.json"
 
 
 def stored(case):
-    """{metric: value} of the last release, and the metrics that failed in it; empty where there was none."""
+    """{metric: value} of the last release, and the metrics that failed in it; empty without a release."""
     known = json.loads(path(case).read_text(encoding="utf-8")) if path(case).exists() else {"values": {}, "failed": []}
     return known["values"], known["failed"]
 
@@ -34,7 +34,7 @@ def differs(value, old, digits=DIGITS):
 
 
 def change(value, old):
-    """A change in words."""
+    """A change as text."""
     if value is None or old is None or not old:
         return f"changed from {old} to {value}"
     return f"changed by {(value - old) / abs(old) * 100:+.2g} %, was {old:.{DIGITS}g}, is {value:.{DIGITS}g}"
@@ -52,7 +52,7 @@ def compare(records, values, failed, digits=DIGITS):
 
 
 def write(document):
-    """Stores the values of all cases that gave any; a single run that did not end well is a known shortfall, like a number that is wrong."""
+    """Stores the values of all cases that have any; a failed run is a known shortfall, like a failed number."""
     measured = {record["case"] for record in document["results"] if "error" not in record}
     for case in document["cases"]:
         if case["case"] not in measured:

@@ -31,7 +31,7 @@ README_ROWS = [  # case, metric, whether its reference is analytic or published 
 
 
 def number(value):
-    """Four digits, or a dash for nothing."""
+    """The number with four digits, or a dash for None."""
     return "-" if value is None else f"{value:.4g}"
 
 
@@ -41,7 +41,7 @@ def quantity(record):
 
 
 def criterion(record):
-    """What was asked, in words."""
+    """The criterion of a result in words."""
     kind, tolerance = record["criterion"], record["tolerance"]
     if kind == "within":
         return f"within {tolerance * 100:.3g} % of reference"
@@ -51,7 +51,7 @@ def criterion(record):
 
 
 def line(record):
-    """One result as a line for the terminal."""
+    """One result as a line of text for the terminal."""
     verdict = VERDICTS[record["pass"]].strip("*")
     words = record.get("error") or f"{quantity(record)} (reference {number(record['reference'])}; {criterion(record)})"
     note = "".join(f" [{words}]" for words in ("known shortfall" if record.get("known") and record["pass"] is False else "", record.get("changed")) if words)
@@ -59,8 +59,8 @@ def line(record):
 
 
 def table(records):
-    """All numbers of some results as a Markdown table."""
-    rows = ["| measured | value | unit | reference | asked | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
+    """A Markdown table of results."""
+    rows = ["| measured | value | unit | reference | criterion | verdict | cells | particles | s |", "|---|---|---|---|---|---|---|---|---|"]
     for r in records:
         rows.append(f"| {r['metric']} | {number(r['value'])} | {r['unit']} | {number(r['reference'])} | {criterion(r)} | {VERDICTS[r['pass']]} "
                     f"| {(r['mesh'] or '-').split()[0]} | {r['particles'] or '-'} | {number(r['processor_seconds'])} |")
@@ -68,7 +68,7 @@ def table(records):
 
 
 def orders(convergence):
-    """Errors over sizes of cells with the order between neighbours, as a Markdown table."""
+    """A Markdown table of errors over sizes of cells, with the order between neighbouring sizes."""
     steps = ["-"] + [f"{number(order)}" for order in convergence["orders"]]
     wanted = "" if convergence["expected"] is None else f" (expected {convergence['expected']:g})"
     return [f"{convergence['name'].capitalize()}: order {number(convergence['order'])} by least squares{wanted}.", "", "| cell size [m] | error | order |",
@@ -76,20 +76,20 @@ def orders(convergence):
 
 
 def of(document, part, case):
-    """Those entries of a part of the document that belong to a case."""
+    """The entries of a part of the document that belong to a case."""
     return [entry for entry in document[part] if entry["case"] == case]
 
 
 def counts(records):
-    """How many results were judged and passed."""
+    """The numbers of results with a criterion, and of those that passed."""
     return sum(r["pass"] is not None for r in records), sum(r["pass"] is True for r in records)
 
 
 def section(document, info):
-    """One case of docs/development/verification.md."""
+    """The section of one case in docs/development/verification.md."""
     case, records = info["case"], of(document, "results", info["case"])
-    lines = ["", f"## {info['title']}", "", f"Problem, sources and what is measured: [benchmarks/{case}](../../benchmarks/{case}/README.md). "
-             f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s in all.", "", *table(records), "",
+    lines = ["", f"## {info['title']}", "", f"Problem, sources and measured quantities: [benchmarks/{case}](../../benchmarks/{case}/README.md).",
+             f"Commit {info['program']['commit']}, level `{info['level']}`, {info['processor_seconds']:.0f} s of processor time in total.", "", *table(records), "",
              f"References: {'; '.join(dict.fromkeys(r['source'] for r in records if r['source']))}."]
     lines += [f"\n{r['metric']}: {r['error']}" for r in records if "error" in r]
     for convergence in of(document, "convergence", case):
@@ -101,12 +101,12 @@ def section(document, info):
 
 
 def price(case):
-    """What accuracy costs, where `talus tradeoff` was run for the documents."""
+    """The price of accuracy, where `talus tradeoff` was run for the documents."""
     path = ROOT / "benchmarks" / case / "tradeoff.json"
     if not path.exists():
         return []
     swept = json.loads(path.read_text(encoding="utf-8"))
-    return ["", f"![Error over processor time and memory](../images/{swept['figure']})", "", f"What accuracy costs: {swept['what']}, commit {swept['commit']}.", "",
+    return ["", f"![Error over processor time and memory](../images/{swept['figure']})", "", f"Price of accuracy: {swept['what']}, commit {swept['commit']}.", "",
             *(f"* {advice}" for advice in swept["advice"])]
 
 
@@ -114,27 +114,29 @@ def first_price(cases):
     """The figure of the first case that was swept, for README.md."""
     for case in cases:
         if lines := price(case):
-            return [lines[1].replace("](../images/", "](docs/images/"), "", f"{lines[3]} Ringed: what nothing beats in both; `talus tradeoff {case}`.", *lines[4:]]
+            return [lines[1].replace("](../images/", "](docs/images/"), "", f"{lines[3]}", f"Rings mark the Pareto-optimal choices: no other is better in both (`talus tradeoff {case}`).", *lines[4:]]
     return []
 
 
 def page(document):
-    """docs/development/verification.md as text."""
+    """The text of docs/development/verification.md."""
     records = document["results"]
     programs = list(dict.fromkeys(f"{c['program']['version']} ({c['program']['compiler']})" for c in document["cases"]))
     judged, passed = counts(records)
     lines = ["# Verification", "",
-             "Written by `tools/verify.sh --write-docs`; do not edit. Every number is measured by running the built program on the scene of the benchmark: "
-             "[how to run and add one](benchmarks.md).", "",
-             f"Program {', '.join(programs)}. {len(records)} numbers, {passed} passed, {judged - passed} failed, the others are reported without a verdict.", "",
-             "Seconds are processor time of the run the number comes from, on whatever machine this was; cells and particles are those of that run."]
+             "This page compares results of Talus with exact solutions, published results and experiments.",
+             "Each number is measured by running the program on the scene of the benchmark:", "[how to run and add benchmarks](benchmarks.md).",
+             "The page is written by `tools/verify.sh --write-docs`; do not edit it.", "",
+             f"Program {', '.join(programs)}. Of {len(records)} numbers {passed} passed and {judged - passed} failed; the others are reported without a verdict.", "",
+             "`cells`, `particles` and `s` (processor time in seconds) are those of the run that the number comes from.",
+             "Times of different commits may come from different machines."]
     for info in document["cases"]:
         lines += section(document, info)
     return "\n".join(lines) + "\n"
 
 
 def row(document, case, metric, kind):
-    """One row for README.md; ValueError where the suite does not measure that any more."""
+    """One row for README.md; raises ValueError if the suite no longer measures it."""
     info = next((info for info in document["cases"] if info["case"] == case), None)
     record = next((r for r in of(document, "results", case) if r["metric"] == metric), None)
     if record is None:
@@ -152,20 +154,21 @@ def block(document):
     shown = {case for case, _, _ in README_ROWS}
     commits = ", ".join(dict.fromkeys(info["program"]["commit"] for info in document["cases"] if info["case"] in shown))
     judged, passed = counts(document["results"])
-    note = [f"Measured at commit {commits}, default kernel and transfer unless a row names another. {len(document['cases'])} benchmarks judge {judged} numbers, of which {passed} pass:",
-            "[all of them](docs/development/verification.md), also those that fail."]
+    note = [f"Measured at commit {commits}, with the default kernel and transfer unless a row names another.",
+            f"{len(document['cases'])} benchmarks judge {judged} numbers, of which {passed} pass.",
+            "[Verification](docs/development/verification.md) lists all of them, also those that fail."]
     return "\n".join([*rows, "", *note, "", *first_price([info["case"] for info in document["cases"]])]).rstrip()
 
 
 def replace_block(text, content):
-    """`text` with what is between the markers replaced, or None where they are not there exactly once in order."""
+    """`text` with a new content between the markers, or None unless each marker occurs once, in order."""
     if text.count(BEGIN) != 1 or text.count(END) != 1 or text.index(BEGIN) > text.index(END):
         return None
     return f"{text.split(BEGIN)[0]}{BEGIN}\n{content}\n{END}{text.split(END)[1]}"
 
 
 def merge(old, new):
-    """The old document with the cases of the new one in their place, new cases at the end."""
+    """The old document with cases replaced by those of the new one; additional cases come at the end."""
     fresh = {info["case"]: info for info in new["cases"]}
     known = {info["case"] for info in old["cases"]}
     cases = [fresh.get(info["case"], info) for info in old["cases"]] + [info for case, info in fresh.items() if case not in known]
@@ -174,7 +177,7 @@ def merge(old, new):
 
 
 def write(new, images):
-    """Writes all three, and copies the figures; of a run with another kernel or transfer nothing is written."""
+    """Writes all three files and copies the figures; refuses runs with another kernel or transfer."""
     if any(info["overrides"] for info in new["cases"]):
         raise ValueError("the documents are written from runs without --kernel and --transfer")
     old = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {"cases": []}
@@ -187,7 +190,7 @@ def write(new, images):
 
 
 def write_documents(document):
-    """docs/development/verification.md and the block in README.md."""
+    """Writes docs/development/verification.md and the block in README.md."""
     (ROOT / "docs/development/verification.md").write_text(page(document), encoding="utf-8")
     readme = ROOT / "README.md"
     text = replace_block(readme.read_text(encoding="utf-8"), block(document))

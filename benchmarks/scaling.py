@@ -36,7 +36,7 @@ def environment():
 
 
 def measure(given, particles, ranks):
-    """One run of the bench, as its file has it."""
+    """The results of one run of talus bench."""
     file = given.out / f"{particles}_on_{ranks}.json"
     if not (given.reuse and file.exists()):
         words = [str(given.program), "bench", "--mpi", "--particles", str(particles), "--steps", str(given.steps), "--repeats", str(given.repeats),
@@ -53,7 +53,7 @@ def measure(given, particles, ranks):
 
 
 def most(run, key):
-    """Of any rank."""
+    """The largest value over the ranks."""
     return max(rank[key] for rank in run["ranks"])
 
 
@@ -64,7 +64,7 @@ def mean(run, key):
 # ---- parts of a box
 
 def split(ranks, dimension):
-    """How many parts along each axis: `ranks` in factors, with the least area between parts of a cube."""
+    """The numbers of parts along each axis: factors of `ranks` with the smallest area between parts of a cube."""
     best = None
     for first in (p for p in range(1, ranks + 1) if ranks % p == 0):
         for rest in [(ranks // first,)] if dimension == 2 else [(q, ranks // first // q) for q in range(1, ranks // first + 1) if ranks // first % q == 0]:
@@ -76,7 +76,7 @@ def split(ranks, dimension):
 
 
 class Part:
-    """A rank with as many neighbours as any has, its part taken for a box; lengths in cubes (squares) of the mesh."""
+    """The part of a rank with the largest number of neighbours, as a box; lengths in cubes (squares) of the mesh."""
 
     def __init__(self, whole, parts):
         self.whole = whole
@@ -84,16 +84,16 @@ class Part:
         self.sides = [min(p - 1, 2) for p in parts]  # with a neighbour, along each axis
 
     def area(self):
-        """Of the faces that it shares with others [faces of cubes]."""
+        """The area of the faces to other parts [faces of cubes]."""
         volume = math.prod(self.lengths)
         return sum(sides * volume / length for sides, length in zip(self.sides, self.lengths))
 
     def neighbours(self):
-        """Across faces, edges and corners."""
+        """The number of neighbours across faces, edges and corners."""
         return math.prod(1 + sides for sides in self.sides) - 1
 
     def held(self, width):
-        """Cubes of its own and of a layer of that width around, as far as the box goes."""
+        """The number of own cubes and of those in a layer of that width around, within the box."""
         return math.prod(min(self.whole, length + sides * width) for length, sides in zip(self.lengths, self.sides))
 
 
@@ -103,7 +103,7 @@ def part_of(run):
 
 
 def inner_part(setting, particles, ranks):
-    """One of very many: neighbours on all sides."""
+    """A part with neighbours on all sides, as for very many ranks."""
     dimension = setting["dimension"]
     length = (particles / ranks / setting["per_cell"] / SIMPLICES[dimension]) ** (1 / dimension)
     return Part(length * ranks ** (1 / dimension), [max(3, ranks ** (1 / dimension))] * dimension) if ranks > 1 else Part(length, [1] * dimension)
@@ -112,13 +112,13 @@ def inner_part(setting, particles, ranks):
 # ---- the model
 
 def slope(x, y):
-    """Of the line through the origin."""
+    """The slope of a line through the origin by least squares."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     return float(x @ y / (x @ x)) if x @ x > 0 else 0.0
 
 
 def line(x, y):
-    """Slope and start, neither below zero."""
+    """Slope and intercept of a line, neither below zero."""
     x, y = np.asarray(x, float), np.asarray(y, float)
     if np.ptp(x) > 0:
         a, b = np.polyfit(x, y, 1)
@@ -130,7 +130,7 @@ def line(x, y):
 
 
 def fit(runs):
-    """Numbers of the model out of runs on one rank and on several."""
+    """The parameters of the model from runs on one rank and on several."""
     alone = max((run for run in runs if len(run["ranks"]) == 1), key=lambda run: run["particles"])
     shared = [run for run in runs if len(run["ranks"]) > 1]
     setting = alone["setting"]
@@ -157,7 +157,7 @@ def fit(runs):
 
 
 def predict(model, network, particles, ranks):
-    """A step of an inner rank: seconds by reason, bytes, messages, memory."""
+    """The model of a step of an inner rank: seconds by cause, bytes, messages, memory."""
     setting = model["setting"]
     part, own = inner_part(setting, particles, ranks), particles / ranks
     cubes = SIMPLICES[setting["dimension"]]
@@ -234,7 +234,7 @@ def predicted_table(predictions):
 
 
 def draw(model, network, file):
-    """Where the time of a step goes on the left, efficiency of several sizes on the right."""
+    """Draws the parts of the time of a step on the left, the efficiency for several sizes on the right."""
     figure = matplotlib.figure.Figure(figsize=(9, 3.6))
     left, right = figure.subplots(1, 2)
     ranks = np.unique(np.logspace(1.5, 5.5, 60).astype(int))  # enough for an inner rank

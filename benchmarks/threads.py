@@ -29,7 +29,7 @@ WAITED = 0.5  # s
 
 
 def busy_seconds():
-    """Processor time of everything on this machine, also of what its host took away (steal)."""
+    """Processor time of all processes on this machine, including the time taken by its host (steal)."""
     numbers = pathlib.Path("/proc/stat").read_text(encoding="ascii").split("\n", 1)[0].split()[1:9]
     user, nice, system, _idle, _io, irq, softirq, steal = map(int, numbers)
     return (user + nice + system + irq + softirq + steal) / os.sysconf("SC_CLK_TCK")
@@ -41,7 +41,7 @@ def own_seconds():
 
 
 class Watch:
-    """The cores that others had since it was made."""
+    """The number of cores used by other processes since its construction."""
 
     def __init__(self):
         self._at, self._busy, self._own = time.monotonic(), busy_seconds(), own_seconds()
@@ -77,7 +77,7 @@ def run(given, scene, threads, spin):
 
 
 def turn(given, scene):
-    """One run of each kind, or nothing where other work came between."""
+    """One run of each kind; nothing if other work interfered."""
     made = {}
     for spin in [False, True] if given.spin else [False]:
         for threads in [*given.threads, None]:
@@ -88,7 +88,7 @@ def turn(given, scene):
 
 
 def measure(given):
-    """All turns of each scene, the scenes in turn."""
+    """All turns of all scenes, in alternation."""
     turns, until = {scene: [] for scene in SCENES}, time.monotonic() + (given.idle or 0)
     while missing := [scene for scene, made in turns.items() if len(made) < given.repeats]:
         for scene in missing:
@@ -103,7 +103,7 @@ def measure(given):
 
 
 def row(scene, turns):
-    """A line of the table."""
+    """A row of the table."""
     first = turns[0]
     medians = {key: statistics.median(made[key][0] for made in turns) for key in first}
     own = medians[None, False]

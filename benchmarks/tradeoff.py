@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What accuracy costs: sweeps mesh, particles per cell, kernel, transfer and time step of a case, draws error over processor time and memory.
+"""Price of accuracy: sweeps mesh, particles per cell, kernel, transfer and time step of a case, draws error over processor time and memory.
 
 Usage: talus tradeoff case [--level quick|full] [--out DIR]
 Level quick takes every mesh with one of the other choices changed at a time, level full all combinations.
@@ -15,11 +15,11 @@ import numpy as np
 import report
 
 TARGETS = [0.1, 0.03, 0.01, 0.003, 0.001]
-MOST_COLOURS = 10  # lines with a colour of their own; beyond, only those that touch the front have one
+MOST_COLOURS = 10  # largest number of coloured lines; if there are more, only those on the front are coloured
 
 
 def cases():
-    """Cases that can be swept."""
+    """The cases with a sweep."""
     return [case for case in verify.CASES if (verify.SUITE / case / "case.py").exists() and "\ndef tradeoff(" in (verify.SUITE / case / "case.py").read_text(encoding="utf-8")]
 
 
@@ -41,7 +41,7 @@ def combinations(axes, everything):
 
 
 def front(points):
-    """Indices of the points (cost, error) that no other point beats or equals in one and beats in the other, by cost."""
+    """Indices of the Pareto-optimal points (cost, error), by cost: no other point is at least as good in both and better in one."""
     best, found = np.inf, []
     for i in sorted(range(len(points)), key=lambda i: points[i]):
         if points[i][1] < best:
@@ -55,7 +55,7 @@ def percent(share):
 
 
 def advice(points):
-    """For each error of TARGETS the cheapest of the points, in words, errors with the same answer together; last, the best where one is not reached."""
+    """A sentence on the cheapest choice for each error of TARGETS, or on the smallest error if it is not reached; errors with the same choice share a sentence."""
     answers = []
     for target in TARGETS:
         reached = [p for p in points if p["error"] <= target]
@@ -69,11 +69,12 @@ def advice(points):
 
 def sentence(targets, point, points):
     """One line of advice."""
-    shares = f"{', '.join(f'{target * 100:g}' for target in targets)} % error"
+    shares = [f"{target * 100:g}" for target in targets]
+    errors = f"{', '.join(shares[:-1])} or {shares[-1]} %" if len(shares) > 1 else f"{shares[0]} %"
     if point is None:
         best = min(points, key=lambda p: p["error"])
-        return f"{shares} is not reached; the least is {percent(best['error'])} with {best['name']}: {cost(best)}."
-    return f"For {shares} the cheapest is {point['name']}: {cost(point)}, error {percent(point['error'])}."
+        return f"An error of {errors} is not reached; the smallest is {percent(best['error'])} with {best['name']} ({cost(best)})."
+    return f"Cheapest for {errors} error: {point['name']} ({cost(point)}, error {percent(point['error'])})."
 
 
 def cost(point):
@@ -81,7 +82,7 @@ def cost(point):
 
 
 def sweep(lab, case, description, everything):
-    """Runs all combinations; those that ended as points, those that did not as words."""
+    """Runs all combinations; returns points for completed runs and messages for failed ones."""
     chosen = combinations(description.axes, everything)
     asked = []
     for choice in chosen:
@@ -103,7 +104,7 @@ def sweep(lab, case, description, everything):
 
 
 def series(points, axes):
-    """Points by what they share besides the first axis."""
+    """The points grouped by all axes except the first."""
     lines = {}
     for point in points:
         lines.setdefault(", ".join(point["choice"][name] for name in list(axes)[1:]), []).append(point)
@@ -111,7 +112,7 @@ def series(points, axes):
 
 
 def draw(figure, points, axes, what):
-    """Error over processor time on the left, over memory on the right; the front ringed and joined."""
+    """Draws error over processor time on the left, over memory on the right, with the Pareto front as a line with rings."""
     rows = figure.add_gridspec(2, 2, height_ratios=[5, 1])
     left = figure.add_subplot(rows[0, 0])
     right = figure.add_subplot(rows[0, 1], sharey=left)
@@ -126,13 +127,13 @@ def draw(figure, points, axes, what):
         axis.plot([points[i][price] * scale for i in best], [points[i]["error"] * 100 for i in best], "ko--", markersize=8, fillstyle="none", linewidth=0.8,
                   label="Pareto front")
         axis.set(xlabel=label, yscale="log")
-    left.set(xscale="log", ylabel="error [%]")  # memory is mostly that of the program itself: less than a decade
+    left.set(xscale="log", ylabel="error [%]")  # memory is mostly that of the program, so its range is less than a decade
     for axis in (left.xaxis, left.yaxis, right.yaxis):
         axis.set_major_formatter(lambda value, _: f"{value:g}")
         axis.set_minor_formatter(lambda value, _: f"{value:g}" if f"{value:e}"[0] in "25" else "")
     told = None
     for i in front([(p["processor_seconds"], p["error"]) for p in points]):
-        if points[i]["choice"][first] != told:  # once for neighbours that share it
+        if points[i]["choice"][first] != told:  # once for neighbouring points with the same label
             told = points[i]["choice"][first]
             left.annotate(told, (points[i]["processor_seconds"], points[i]["error"] * 100), textcoords="offset points", xytext=(7, 4), fontsize=7)
     figure.suptitle(what[0].upper() + what[1:], fontsize=10)

@@ -72,7 +72,7 @@ def parser(text):
 
 
 def settle(options, given, name):
-    """Completes what was given: folders, number of jobs; ends with a message where something is missing."""
+    """Sets defaults of the options: folders, number of jobs; ends with a message for invalid options."""
     if not given.program.exists():
         options.error(f"{given.program} is not there: make build")
     given.out = given.out or given.runs or pathlib.Path("runs") / name
@@ -105,25 +105,25 @@ def arguments():
 
 
 def judged():
-    """The cases of which a number passed in the release."""
+    """The cases with at least one number that passed in the release."""
     results = json.loads((SUITE / "results.json").read_text(encoding="utf-8"))["results"]
     return [case for case in CASES if any(record["case"] == case and record["pass"] for record in results)]
 
 
 def chosen(given):
-    """The cases that the command line asks for."""
+    """The cases selected on the command line."""
     cases = given.cases or (judged() if given.judged else CASES)
     return [case for case in cases if case not in given.but]
 
 
 def failed(case, metric, words):
-    """The record of what did not end."""
+    """The record of a failed run or evaluation."""
     blank = dict.fromkeys(["value", "reference", "tolerance", "mesh", "particles", "kernel", "transfer", "processor_seconds", "peak_memory [B]", "threads", "commit"])
     return {"case": case, "metric": metric, "unit": "-", **blank, "source": "", "criterion": "runs", "pass": False, "error": words}
 
 
 def measure(lab, case, overrides, digits=regression.DIGITS):
-    """All results of one case as records, and what the reports say of it as a whole; runs that fail and errors in case.py are results that failed."""
+    """All results of one case as records, and its summary for the reports; failed runs and errors in case.py are failed results."""
     try:
         records = [result.record() for result in tools.module(case).evaluate(lab)]
         names = [record["metric"] for record in records]
@@ -132,7 +132,7 @@ def measure(lab, case, overrides, digits=regression.DIGITS):
         picture(lab, case)
     except tools.RunFailed:
         records = []
-    except Exception as error:  # whatever it is, the other cases go on
+    except Exception as error:  # the other cases continue
         records = [failed(case, "evaluation", f"{type(error).__name__}: {error}\n{traceback.format_exc()}")]
     runs = lab.runs_of(case)
     broken = [failed(case, f"run {run.label}", words) for run in runs if (words := run.failure())]
@@ -146,13 +146,13 @@ def measure(lab, case, overrides, digits=regression.DIGITS):
 
 
 def title(case):
-    """The first line of the case's README.md, without the marks."""
+    """The title in the README.md of the case."""
     path = SUITE / case / "README.md"
     return path.read_text(encoding="utf-8").splitlines()[0].lstrip("# ") if path.exists() else case
 
 
 def picture(lab, case):
-    """Draws the last frame of the run with the most particles, for the pages of the run."""
+    """Draws the last frame of the run with the most particles, for the HTML report."""
     framed = [run for run in lab.runs_of(case) if not run.failure() and run.frames]
     if framed:
         run = max(framed, key=lambda run: run.particles)
@@ -161,7 +161,7 @@ def picture(lab, case):
 
 
 def conduct(lab, cases, overrides, digits):
-    """Runs all cases side by side; the document that verify.json holds, in the order of the cases."""
+    """Runs all cases in parallel; returns the contents of verify.json, in the order of the cases."""
     with concurrent.futures.ThreadPoolExecutor(max(1, len(cases))) as pool:
         try:
             pending = {pool.submit(measure, lab, case, overrides, digits): case for case in cases}
@@ -199,7 +199,7 @@ def main():
 
 
 def conclude(document, given, seconds):
-    """Says what came out; the exit status."""
+    """Prints the outcome; returns the exit status."""
     records = document["results"]
     judged, passed = report.counts(records)
     changed = [record for record in records if record["changed"]]

@@ -1,5 +1,5 @@
 #pragma once
-// How a field of vectors or tensors is shown by one number an item, and what that number is called: the same in pictures, pages and tables.
+// Vectors and tensors shown as one number per item, with the name of that number, for pictures, pages and tables.
 #include <optional>
 #include <span>
 #include <string>
@@ -10,21 +10,23 @@
 
 namespace talus {
 
-/// x, y, z of a vector; xx, yy, zz, xy, yz, xz of a symmetric tensor; xx, xy, ... by rows of any tensor; none of anything else.
+/// Names of the components: x, y, z of a vector; xx, yy, zz, xy, yz, xz of a symmetric tensor; xx, xy, ... by rows of any other tensor; no
+/// names for other numbers of components.
 std::vector<std::string> component_names(int components);
 
-/// A scalar as it is, a symmetric tensor by its von Mises value, anything else by its length.
+/// The number shown for an entry: a scalar itself, the von Mises value of a symmetric tensor, the length of anything else.
 Real viewed_value(std::span<const Real> entry) noexcept;
 
-/// A field as a user asks for it: "velocity", "velocity:x", "stress:xy".
+/// A field as the user names it: "velocity", "velocity:x" or "stress:xy".
 struct ViewedField {
   std::string name;
   std::string component = {};  ///< empty: all of them, by viewed_value()
 
   static ViewedField of(std::string_view text);
-  /// Number of the component in a field of so many; nothing where none was asked for.  Error: it has no such one.
+  /// Index of the component in a field with `components` components; nothing if no component is named.  Throws Error if the field has no
+  /// such component.
   std::optional<int> component_of(int components) const;
-  /// "stress (von Mises)", "velocity x", "plastic strain".
+  /// The name to print, such as "stress (von Mises)", "velocity x" or "plastic strain".
   std::string label(int components) const;
 };
 

@@ -1,8 +1,7 @@
 #pragma once
-// One declaration per parameter: what parses it, checks it, documents it, echoes it, writes it out and stores it.
-//
-// A struct that takes part has `static constexpr auto fields()` returning a std::tuple of the descriptions below.  The value
-// a default-constructed struct holds is the fallback of its optional fields, so no default is written twice.
+// Descriptions of parameters.  One declaration per parameter serves to parse, check, document, print and store it.  A struct with described
+// members has `static constexpr auto fields()`, which returns a std::tuple of the descriptions below.  The default of an optional field is
+// the value in a default-constructed struct, so no default is written twice.
 #include <cmath>
 #include <limits>
 #include <string>
@@ -17,7 +16,7 @@
 
 namespace talus {
 
-/// The values a number may take, and how to say so.
+/// The values that a number may have, and their text in messages.
 struct Range {
   Real low = -std::numeric_limits<Real>::infinity();
   Real high = std::numeric_limits<Real>::infinity();
@@ -30,14 +29,14 @@ struct Range {
 inline constexpr Range any{};
 inline constexpr Range positive{.low = 0};
 inline constexpr Range non_negative{.low = 0, .low_allowed = true};
-/// (low, high)
+/// The open range (low, high).
 constexpr Range between(Real low, Real high) { return {.low = low, .high = high}; }
-/// [low, high]
+/// The closed range [low, high].
 constexpr Range within(Real low, Real high) { return {.low = low, .high = high, .low_allowed = true, .high_allowed = true}; }
-/// [low, high)
+/// The half-open range [low, high).
 constexpr Range from_to_below(Real low, Real high) { return {.low = low, .high = high, .low_allowed = true}; }
 constexpr Range at_least(Real low) { return {.low = low, .low_allowed = true}; }
-/// "[0, 90)", "> 0", "any"
+/// The range as text, such as "[0, 90)", "> 0" or "any".
 std::string to_string(const Range& range);
 
 enum class Need : std::uint8_t { required, optional };
@@ -54,8 +53,8 @@ struct Parameter {
   std::string_view unit, meaning;
 };
 
-/// One of a few named words.  `Value` is an enum with `constexpr auto words(Value) -> std::array<std::string_view, N>`, found by
-/// argument-dependent lookup, listing the words in the order of the enumerators.
+/// One of a few named words.  `Value` is an enum with `constexpr auto enum_names(Value) -> std::array<std::string_view, N>`, found by
+/// argument-dependent lookup, which lists the words in the order of the enumerators.
 template <class Owner, class Value>
 struct Choice {
   std::string_view key;
@@ -100,7 +99,7 @@ std::variant<T...>& choices_of(std::variant<T...>& value) noexcept
 template <class Value>
 using ChoicesOf = std::remove_cvref_t<decltype(choices_of(std::declval<Value&>()))>;
 
-/// A history variable of a law: output, checkpoint.  Value is Real or Sym3.
+/// A history variable of a law, written to outputs and checkpoints.  Value is Real or Sym3.
 template <class Owner, class Value>
 struct History {
   std::string_view key;
@@ -108,8 +107,8 @@ struct History {
   std::string_view unit, meaning;
 };
 
-/// What a step leaves to the next one: checkpoint.  Value is a number, bool, enum, text, vector of space, struct with fields(), std::variant of
-/// structs, or a std::vector of any of these.
+/// A part of the state that a checkpoint stores.  Value is a number, bool, enum, text, vector of space, struct with fields(), std::variant
+/// of structs, or a std::vector of any of these.
 template <class Owner, class Value>
 struct Kept {
   std::string_view key;
@@ -174,7 +173,7 @@ concept HasFields = requires
   T::fields();
 };
 
-/// f(field) for every field of T, in order of declaration.
+/// Calls f(field) for every field of T, in order of declaration.
 template <class T, class F>
 constexpr void for_each_field(F&& f)
 {

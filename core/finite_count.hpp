@@ -1,6 +1,6 @@
 #pragma once
-// Counts too large to be reached, such as the steps of 1e18 seconds: a floating-point number that is turned into an integer too small
-// for it is undefined behaviour, and shows as a negative count.
+// Conversion of floating-point numbers to counts that may be too large for an integer, such as the steps of 1e18 seconds.  A plain
+// conversion would be undefined behaviour and may give a negative count.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,10 +12,10 @@
 
 namespace talus {
 
-/// The most that is counted of anything: well below what the integer holds, so that some of them can be added.
+/// The largest count.  It is well below the largest 64-bit integer, so that a few of them can be added.
 inline constexpr std::int64_t most_counted = 1'000'000'000'000'000'000;
 
-/// The integer part of a number, at most most_counted and at least -most_counted.  What is no number counts as the most.
+/// The integer part of a number, limited to [-most_counted, most_counted].  NaN gives most_counted.
 inline std::int64_t counted(Real x) noexcept
 {
   constexpr auto most = static_cast<Real>(most_counted);
@@ -24,7 +24,7 @@ inline std::int64_t counted(Real x) noexcept
   return static_cast<std::int64_t>(x);
 }
 
-/// A sum of two such counts that are not negative.
+/// The sum of two such counts that are not negative, at most most_counted.
 inline std::int64_t counted_sum(std::int64_t a, std::int64_t b) noexcept { return std::min(a + b, most_counted); }
 
 inline std::string count_in_words(std::int64_t n) { return n >= most_counted ? "more than 1e18" : fmt::format("{}", n); }

@@ -1,6 +1,6 @@
 #pragma once
-// Arrays of many particles in large pages of memory: a step goes through dozens of arrays at once, more than a processor keeps the
-// addresses of in pages of 4 kB.
+// Arrays of many particles in large pages of memory.  A step reads dozens of arrays at once, more than a processor can keep addresses of in
+// pages of 4 kB.
 #include <sys/mman.h>
 
 #include <cstddef>
@@ -9,7 +9,8 @@
 
 namespace talus {
 
-/// Asks for large pages where an array fills some.  Where the system grants none it is as any other allocator.
+/// An allocator that requests large pages for arrays that fill at least one.  Where the system grants none it works like any other
+/// allocator.
 template <class T>
 struct LargePages {
   using value_type = T;
@@ -26,7 +27,7 @@ struct LargePages {
     if (!fills_some(n))
       return static_cast<T*>(::operator new(n * sizeof(T)));
     void* const memory = ::operator new (n * sizeof(T), std::align_val_t{page});
-    madvise(memory, n * sizeof(T), MADV_HUGEPAGE);  // a wish: nothing depends on the answer
+    madvise(memory, n * sizeof(T), MADV_HUGEPAGE);  // a request only: the result does not matter
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t n) noexcept
@@ -39,7 +40,7 @@ struct LargePages {
   friend bool operator==(const LargePages&, const LargePages&) noexcept { return true; }
 };
 
-/// One row a particle.
+/// An array with one row per particle.
 template <class T>
 using Rows = std::vector<T, LargePages<T>>;
 

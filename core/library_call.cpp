@@ -9,7 +9,7 @@ namespace talus {
 
 namespace {
 
-// Memory of its own: where it is needed there may be none to be had.
+// Static memory, because the name may be needed when memory has run out.
 std::array<char, 512> call_name{};
 volatile std::sig_atomic_t call_length = 0;
 

@@ -1,5 +1,5 @@
 #pragma once
-// How many members an aggregate has: so that a list of them by hand can be checked to be whole.
+// The number of members of an aggregate, to check that a hand-written list of them is complete.
 #include <cstddef>
 #include <utility>
 
@@ -20,7 +20,7 @@ constexpr bool takes(std::index_sequence<I...>)
 
 }  // namespace detail
 
-/// The number of members of the aggregate T, which has no base classes and no arrays as members.
+/// The number of members of the aggregate T, which must not have base classes or arrays as members.
 template <class T, std::size_t N = 0>
 constexpr std::size_t member_count()
 {

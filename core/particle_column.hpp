@@ -1,5 +1,5 @@
 #pragma once
-// One quantity of all particles, kept in double or in single precision.
+// One quantity of all particles, stored in double or in single precision.
 #include <array>
 #include <cstddef>
 #include <string_view>
@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// In which numbers particles are kept.  What is worked out from them is worked out in double either way.
+/// The precision in which particle data are stored.  Computations are in double precision in either case.
 enum class Precision : std::uint8_t { full, single };
 constexpr auto enum_names(Precision) { return std::array<std::string_view, 2>{"double", "single"}; }
 
@@ -25,15 +25,15 @@ struct In<S, Eigen::Matrix<Real, R, C, Eigen::DontAlign>> {
   using type = Eigen::Matrix<S, R, C, Eigen::DontAlign>;
 };
 }  // namespace detail
-/// A Real, vector or tensor in numbers S.
+/// The type Value, a Real, vector or tensor, with numbers of type S.
 template <class S, class Value>
 using In = typename detail::In<S, Value>::type;
 
-/// What a column in single precision keeps the difference to, so that small differences keep their digits.
+/// The value that is subtracted before a row is stored in single precision, so that small differences keep their digits.
 enum class Rest : std::uint8_t { zero, identity };
 
-/// A row is a Real, a vector or a tensor.  Rows are read by value and written by set(), in double whatever they are kept in; loops
-/// over many particles go by a ParticlePackOf<S> (core/particle_pack.hpp), which knows the numbers S.
+/// A column whose rows are Reals, vectors or tensors.  Rows are read by value and written by set(), always in double; loops over many
+/// particles use a ParticlePackOf<S> (core/particle_pack.hpp), which knows the stored type S.
 template <class Value, Rest rest = Rest::zero>
 class ParticleColumn {
  public:
@@ -63,7 +63,7 @@ class ParticleColumn {
 
   void push_back(const Value& value) { is_single_ ? single_.push_back(narrowed(value)) : full_.push_back(value); }
 
-  /// Rounds what there is.
+  /// Converts the column to this precision; existing rows are rounded.
   void keep_in(Precision precision)
   {
     const bool single = precision == Precision::single;
@@ -77,7 +77,7 @@ class ParticleColumn {
   }
   Precision precision() const noexcept { return is_single_ ? Precision::single : Precision::full; }
 
-  /// f(rows) with the vector that holds the rows as they are kept.
+  /// Calls f(rows) with the vector that stores the rows.
   template <class F>
   decltype(auto) visit(F&& f)
   {
@@ -88,7 +88,7 @@ class ParticleColumn {
   {
     return is_single_ ? f(single_) : f(full_);
   }
-  /// The rows as they are kept, for who knows that it is in S.
+  /// The stored rows, for callers that know that they are of type S.
   template <class S>
   Row<S>* rows() noexcept
   {
@@ -103,7 +103,7 @@ class ParticleColumn {
     return const_cast<ParticleColumn*>(this)->rows<S>();
   }
 
-  /// A row as it is kept -> in double, and back.
+  /// Conversion of a stored row to double, and back.
   static Value widened(const Row<float>& row) noexcept
   {
     if constexpr (std::is_same_v<Value, Real>)

@@ -1,6 +1,6 @@
 #pragma once
-// What went wrong in a loop over particles: the worst kind of trouble, of it the lowest particle id, so the message is the same for any
-// number of threads.
+// Errors in a loop over particles.  The worst kind is reported, of the particle with the lowest id, so that the message does not depend on
+// the number of threads.
 #include <atomic>
 #include <cstdint>
 #include <limits>
@@ -8,7 +8,8 @@
 
 namespace talus {
 
-/// Causes before what may follow from them in the same step: the average of volumes carries one inverted particle to its neighbours.
+/// Kinds of errors.  Causes come before their possible consequences in the same step: the averaging of volumes passes one inverted particle
+/// on to its neighbours.
 enum class Trouble : std::uint8_t {
   lost,        ///< outside the mesh
   inverted,    ///< det F <= 0
@@ -31,7 +32,7 @@ class ParticleErrors {
     return *this;
   }
 
-  /// Called from any thread; only ever on the way to the end of a run, so its cost does not matter.
+  /// Records an error.  May be called from any thread; it is called only when a run is about to end, so its cost does not matter.
   void report(std::int64_t id, Trouble trouble) noexcept
   {
     const std::int64_t word = static_cast<std::int64_t>(trouble) * ids + id;
@@ -47,7 +48,7 @@ class ParticleErrors {
     return Finding{word % ids, static_cast<Trouble>(word / ids)};
   }
   void clear() noexcept { worst_ = fine; }
-  /// The worst as a number, the smaller the worse: what several ranks agree on.
+  /// The worst error as a number, smaller being worse, for a minimum over ranks.
   std::int64_t word() const noexcept { return worst_.load(); }
   void take(std::int64_t word) noexcept { worst_ = word; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Particles four at a time: rows of the columns side by side in the lanes of packs.
+// Particles four at a time: rows of the columns in the lanes of packs.
 #include <span>
 
 #include "core/particles.hpp"
@@ -7,27 +7,27 @@
 
 namespace talus {
 
-/// Up to four particles, side by side in the lanes of packs; their columns are kept in numbers S.
+/// Up to four particles, one per lane; their columns are stored in numbers of type S.
 template <class S>
 struct ParticlePackOf {
-  std::size_t p[pack_size];  ///< rows; the last one repeated where there are fewer than four
+  std::size_t p[pack_size];  ///< rows; the last one is repeated if there are fewer than four
   int count;
 
-  /// Those of `rows` from `begin` on.
+  /// The pack of up to four of `rows` from `begin` on.
   ParticlePackOf(std::span<const Index> rows, std::size_t begin) noexcept
       : count(static_cast<int>(std::min<std::size_t>(pack_size, rows.size() - begin)))
   {
     for (std::size_t lane = 0; lane < pack_size; ++lane)
       p[lane] = static_cast<std::size_t>(rows[std::min(begin + lane, rows.size() - 1)]);
   }
-  /// f(p) of every lane.
+  /// Calls f(p) for every lane.
   template <class F>
   Pack lanes(F&& f) const noexcept
   {
     return Pack{f(p[0]), f(p[1]), f(p[2]), f(p[3])};
   }
 
-  /// The particles' entries of a column: numbers, vectors or tensors.
+  /// The entries of a column for these particles: numbers, vectors or tensors.
   template <class Value, Rest rest>
   [[gnu::always_inline]] auto load(const ParticleColumn<Value, rest>& column) const noexcept
   {
@@ -108,7 +108,7 @@ struct ParticlePackOf {
 };
 using ParticlePack = ParticlePackOf<Real>;
 
-/// f(S()) with the numbers the particles are kept in.
+/// Calls f(S()) with the number type in which the particles are stored.
 template <int D, class F>
 decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
 {
@@ -117,12 +117,12 @@ decltype(auto) in_numbers_of(const Particles<D>& particles, F&& f)
   return f(Real());
 }
 
-/// Calls ask(p) once for each of `rows`, well before its turn: memory answers while the rows before are worked on.
+/// Calls ask(p) once for each of `rows`, well before it is used, so that the memory can be prefetched.
 template <class Ask>
 class PrefetchRows {
  public:
   PrefetchRows(std::span<const Index> rows, Ask ask) : rows_(rows), ask_(std::move(ask)) {}
-  /// The rows before `end` are next.
+  /// Prefetches before the rows before `end` are used.
   void until(std::size_t end)
   {
     for (const std::size_t last = std::min(end + distance, rows_.size()); asked_ < last; ++asked_)
@@ -139,7 +139,7 @@ struct AskForNothing {
   void operator()(std::size_t) const noexcept {}
 };
 
-/// Asks memory for the rows of a particle in some columns.
+/// Prefetches the rows of a particle in some columns.
 template <class S>
 struct Prefetch {
   template <class... Columns>
@@ -159,7 +159,7 @@ struct Prefetch {
   {
     return column.data();
   }
-  /// The end of a row that fills no whole line is asked for with the row after it.
+  /// The end of a row that does not fill a cache line is prefetched with the next row.
   template <class Row>
   static void lines(const Row* row) noexcept
   {
@@ -169,7 +169,7 @@ struct Prefetch {
   }
 };
 
-/// f(pack) for all rows, four at a time; ask(p) for each row before its turn.
+/// Calls f(pack) for all rows, four at a time, and ask(p) for each row before it is used.
 template <class S = Real, class F, class Ask = AskForNothing>
 void for_each_pack(std::span<const Index> rows, F&& f, Ask ask = {})
 {

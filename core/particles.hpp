@@ -1,5 +1,5 @@
 #pragma once
-// The particles of a run as a struct of arrays; bodies are contiguous ranges of it.
+// The particles of a run as a struct of arrays; each body is a contiguous range of rows.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,38 +11,38 @@
 
 namespace talus {
 
-/// Rows [begin, end) of the particle arrays.
+/// A body: rows [begin, end) of the particle arrays.
 struct Body {
   std::string name;
   Index begin, end;
-  SourceLocation where;  ///< the scene line that made it
+  SourceLocation where;  ///< position in the scene of the declaration of the body
   Index size() const noexcept { return end - begin; }
   static constexpr auto fields() { return std::tuple{saved("begin", &Body::begin), saved("end", &Body::end)}; }
 };
 
-/// All particles.  The columns in the second group are empty unless the scene needs them.  Places and volumes stay in double whatever the
-/// rest is kept in: a slow particle moves less in a step than a coordinate can tell in single precision, and a stiff volume answers a rounding
-/// with pressure.  F is kept as its difference to I then, for the same reasons.
+/// All particles.  Columns of the second group are empty unless the scene needs them.  Positions and volumes are always stored in double
+/// precision: a slow particle moves less in a step than the spacing of single precision, and in a stiff material rounding of the volume
+/// causes pressure.  For the same reasons F is stored as its difference to I in single precision.
 template <int D>
 struct Particles {
-  std::vector<std::int64_t> id;            ///< survives sorting and deletion
+  std::vector<std::int64_t> id;            ///< number that survives sorting and deletion of particles
   std::vector<Index> cell;                 ///< the cell that holds x
   Rows<Vec<D>> x;                          ///< position [m]
   ParticleColumn<Vec<D>> v;                ///< velocity [m/s]
   ParticleColumn<Mat<D>> L;                ///< velocity gradient [1/s]
   ParticleColumn<Mat3, Rest::identity> F;  ///< deformation gradient, plane strain in 2-D
   ParticleColumn<Sym3> stress;             ///< Cauchy stress [Pa], tension positive
-  ParticleColumn<Real> mass;               ///< [kg]
+  ParticleColumn<Real> mass;               ///< mass [kg]
   Rows<Real> volume0;                      ///< volume at the start [m^D, unit thickness in 2-D]
-  Rows<Real> volume;                       ///< det F times volume0
+  Rows<Real> volume;                       ///< present volume, det F times volume0
 
-  ParticleColumn<Mat<D>> C;        ///< affine field, where it is not L [1/s]
-  Rows<Vec<D>> x0;                 ///< where displacement counts from [m]
+  ParticleColumn<Mat<D>> C;        ///< affine velocity field, where it differs from L [1/s]
+  Rows<Vec<D>> x0;                 ///< position from which the displacement counts [m]
   ParticleColumn<Vec<D>> applied;  ///< force of loads other than gravity [N]
   std::vector<Real> applied_at;    ///< applied . x before the move [J]
-  Rows<Real> volume_ratio;         ///< of a body that averages its volume: (averaged / own volume ratio)^(1/D)
+  Rows<Real> volume_ratio;         ///< bodies with averaged volumes: (averaged / own volume ratio)^(1/D)
   ParticleColumn<Real> viscous;    ///< artificial viscous pressure, part of `stress` [Pa]
-  ParticleColumn<Real> pore;       ///< pore pressure, part of `stress`; 0 in bodies whose laws see total stress [Pa]
+  ParticleColumn<Real> pore;       ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
   const ParticleColumn<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
@@ -55,7 +55,7 @@ struct Particles {
         [&](std::string_view, std::string_view, auto& column) { column.keep_in(precision); });
   }
 
-  /// f(name, unit, rows) for every column, empty ones too: resizing, sorting, bytes per particle.
+  /// Calls f(name, unit, rows) for every column, including empty ones: for resizing, sorting and counting of bytes.
   template <class F_>
   void for_each_column(F_&& f)
   {
@@ -72,7 +72,7 @@ struct Particles {
   }
 
  private:
-  /// plain(name, unit, column) for columns that are always kept alike, kept(...) for those that the precision concerns.
+  /// Calls plain(name, unit, column) for columns of fixed precision, and the other function for those whose precision the scene chooses.
   template <class Self, class Plain, class Kept>
   static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& saved)
   {

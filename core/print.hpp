@@ -1,5 +1,5 @@
 #pragma once
-// Printing in the midst of a run, which a full disk below a log, or a pipe that nobody reads, must not end.
+// Printing during a run.  A full disk under a log file, or a pipe that is not read, must not end the run.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// As fmt::print(), but what cannot be written is lost: the error flag of the stream stays set, for a check at the end.
+/// As fmt::print(), but text that cannot be written is discarded: the error flag of the stream stays set and is checked at the end.
 template <class... Args>
 void say(std::FILE* to, fmt::format_string<Args...> format, Args&&... args)
 {

@@ -8,7 +8,7 @@ namespace talus {
 
 namespace {
 
-/// Velocities at the ends of the intervals, from zero on.
+/// Velocities [m/s] at the ends of the intervals, integrated from zero.
 std::vector<Real> integral(const std::vector<Real>& time, const std::vector<Real>& acceleration)
 {
   std::vector<Real> velocity(time.size(), 0);
@@ -17,7 +17,7 @@ std::vector<Real> integral(const std::vector<Real>& time, const std::vector<Real
   return velocity;
 }
 
-/// Without a T s + b T s^2 in the velocity, s going from 0 to 1 over the duration T.
+/// Subtracts a T s + b T s^2 from the velocity, with s from 0 to 1 over the duration T.
 Record without(Record record, Real a, Real b)
 {
   const Real begin = record.time.front(), duration = record.time.back() - begin;
@@ -33,7 +33,7 @@ Record without(Record record, Real a, Real b)
   return record;
 }
 
-/// The same record with no motion in it but that of a and b.
+/// A record with the times of the given one whose only motion is that of a and b.
 Record alone(const Record& record, Real a, Real b)
 {
   Record still = record;
@@ -70,7 +70,7 @@ Real Record::displacement() const noexcept
 
 Real Record::peak_velocity() const noexcept
 {
-  Real peak = 0;  // within an interval of sampled accelerations it is reached where they pass zero
+  Real peak = 0;  // within an interval of sampled accelerations the peak is where the acceleration is zero
   for (std::size_t k = 0; k < time.size(); ++k) {
     peak = std::max(peak, std::abs(velocity[k]));
     if (k > 0 && !acceleration.empty() && acceleration[k - 1] * acceleration[k] < 0) {
@@ -112,7 +112,7 @@ Record ends_without_velocity(Record record)
 
 Record ends_where_it_began(Record record)
 {
-  // what a unit of each leaves at the end, as the samples make it of it: two equations for a and b
+  // The velocity and displacement at the end of a unit of a and of b, from the samples: two equations for a and b.
   const Record first = alone(record, 1, 0), second = alone(record, 0, 1);
   const Real v1 = first.velocity.back(), v2 = second.velocity.back(), u1 = first.displacement(), u2 = second.displacement();
   const Real v = record.velocity.back(), u = record.displacement(), det = v1 * u2 - v2 * u1;

@@ -1,5 +1,5 @@
 #pragma once
-// A motion that was recorded: a velocity in time, from samples of itself or of its acceleration, and what is left at its end.
+// A recorded motion: velocity over time, from samples of velocity or acceleration, and corrections of its end.
 #include <array>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// The unit tells whether velocities or accelerations were sampled.
+/// Whether velocities or accelerations were sampled.
 enum class RecordUnit : std::uint8_t {
   metres_per_second,
   centimetres_per_second,
@@ -45,27 +45,28 @@ struct RecordOptions {
   }
 };
 
-/// Samples of a velocity are joined by straight lines; where the acceleration was sampled, its samples are, and the velocity is their exact
-/// integral from zero on (a parabola in each interval).  Before the first sample and after the last one the velocity stays as it is there.
+/// A recorded motion.  Sampled velocities are joined by straight lines; sampled accelerations are joined by straight lines too, and the
+/// velocity is their exact integral from zero (a parabola in each interval).  Before the first and after the last sample the velocity is
+/// constant.
 struct Record {
   std::vector<Real> time;          ///< [s], increasing
-  std::vector<Real> velocity;      ///< at these times [m/s]
-  std::vector<Real> acceleration;  ///< at these times [m/s^2]; empty where velocities were sampled
+  std::vector<Real> velocity;      ///< velocity at these times [m/s]
+  std::vector<Real> acceleration;  ///< acceleration at these times [m/s^2]; empty if velocities were sampled
 
   /// Velocity [m/s].
   Real operator()(Real t) const noexcept;
-  Real displacement() const noexcept;  ///< from the first sample to the last [m], exactly
+  Real displacement() const noexcept;  ///< from the first to the last sample [m], exact
   Real peak_velocity() const noexcept;
-  Real peak_acceleration() const noexcept;  ///< of velocities: the steepest line
+  Real peak_acceleration() const noexcept;  ///< the steepest line of sampled velocities [m/s^2]
 };
 
-/// Of samples of a velocity [m/s] or of an acceleration [m/s^2].  There are as many as times, at least two.
+/// A record of sampled velocities [m/s] or accelerations [m/s^2].  There is one sample for each time, and at least two.
 Record record_of_velocity(std::vector<Real> time, std::vector<Real> velocity);
 Record record_of_acceleration(std::vector<Real> time, std::vector<Real> acceleration);
 
-/// Takes a straight line through the beginning off the velocity (a constant off the acceleration), such that the motion ends with none.
+/// Subtracts a straight line through the origin from the velocity (a constant from the acceleration), so that the final velocity is zero.
 Record ends_without_velocity(Record record);
-/// Takes a parabola off the velocity, such that the motion ends with none and where it began.
+/// Subtracts a parabola from the velocity, so that final velocity and displacement are zero.
 Record ends_where_it_began(Record record);
 
 }  // namespace talus

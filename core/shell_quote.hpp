@@ -1,11 +1,11 @@
 #pragma once
-// Words of commands that messages tell to type.
+// Quoting of words in the commands that messages suggest.
 #include <filesystem>
 #include <string>
 
 namespace talus {
 
-/// As a shell takes it for one word.
+/// The word, quoted so that a shell takes it as one word.
 std::string shell_word(const std::filesystem::path& word);
 
 }  // namespace talus

@@ -1,6 +1,6 @@
 #pragma once
-// Packs of numbers: sums over a stencil run over whole packs, so that they use the vector unit and need no scalar tail; and numbers of
-// several particles that compute like one, for laws.
+// Packs of numbers.  Sums over a stencil run over whole packs, so that they use the vector unit without a scalar remainder.  For laws,
+// SimdReal holds one number of several particles and is used like a Real.
 #ifdef __AVX__
 #include <immintrin.h>
 #endif
@@ -21,14 +21,14 @@ constexpr int padded(int n) noexcept { return (n + pack_size - 1) / pack_size * 
 
 using Pack = Real __attribute__((vector_size(pack_size * sizeof(Real))));
 
-/// From an address that is a multiple of the pack's size.
+/// Loads a pack from an aligned address.
 inline Pack load(const Real* from) noexcept { return *reinterpret_cast<const Pack*>(__builtin_assume_aligned(from, sizeof(Pack))); }
 inline void store(Real* to, const Pack& pack) noexcept { *reinterpret_cast<Pack*>(__builtin_assume_aligned(to, sizeof(Pack))) = pack; }
 inline Real sum(const Pack& a) noexcept { return (a[0] + a[1]) + (a[2] + a[3]); }
-/// A pack at any address.  (A memcpy would be made in halves, which the load that follows must wait for.)
+/// A pack at any address.  (The compiler would split a memcpy into halves, and the following load would wait for both.)
 using LoosePack = Real __attribute__((vector_size(sizeof(Pack)), aligned(sizeof(Real)), may_alias));
 
-/// Rows to columns of four by four numbers.
+/// Transposes four by four numbers.
 inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 {
   const Pack ab_even = __builtin_shufflevector(a, b, 0, 4, 2, 6), ab_odd = __builtin_shufflevector(a, b, 1, 5, 3, 7);
@@ -38,10 +38,10 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
   c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
   d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
-/// Four numbers at any address, kept in double or in single precision.
+/// Loads four numbers from any address, stored in double or single precision.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
-#ifdef __AVX__  // the compiler converts in halves, by way of memory
+#ifdef __AVX__  // the compiler would convert in halves, through memory
 [[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept { return _mm256_cvtps_pd(_mm_loadu_ps(from)); }
 [[gnu::always_inline]] inline void store_loose(float* to, const Pack& pack) noexcept { _mm_storeu_ps(to, _mm256_cvtpd_ps(pack)); }
 #else
@@ -52,7 +52,8 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
     to[i] = static_cast<float>(pack[i]);
 }
 #endif
-/// n consecutive numbers of four rows -> one pack per number, each lane a row; and back, the first `count` rows.  N is double or float.
+/// Converts n consecutive numbers of four rows to one pack per number, with one row per lane, and back for the first `count` rows.  N is
+/// double or float.
 template <int n, class N>
 [[gnu::always_inline]] inline void load_rows(const N* const (&row)[pack_size], Pack* to) noexcept
 {
@@ -81,11 +82,11 @@ template <int n, class N>
 }
 static_assert(pack_size == 4);
 
-/// The same number of several particles, one per lane.  What is written for a Real works for Lanes if it has no `if` about values:
-/// `where` takes their place, and `somewhere` and `everywhere` ask about all lanes at once.
+/// One number of several particles, one per lane.  A template for Real also works for SimdReal if it has no `if` on values: `where` selects
+/// values instead, and any_of and all_of test all lanes at once.
 struct SimdReal {
   Pack of;
-  /// Which lanes something holds for.
+  /// The lanes for which a condition holds.
   struct Mask {
     using Bits = std::int64_t __attribute__((vector_size(sizeof(Pack))));
     Bits of;
@@ -118,17 +119,17 @@ struct SimdReal {
   friend Mask operator==(const SimdReal& a, const SimdReal& b) noexcept { return {a.of == b.of}; }
 };
 
-/// `a` where the condition holds, else `b`; both are worked out.
+/// `a` where the condition holds, else `b`; both are evaluated.
 inline SimdReal where(const SimdReal::Mask& condition, const SimdReal& a, const SimdReal& b) noexcept { return condition.of ? a.of : b.of; }
 inline Real where(bool condition, Real a, Real b) noexcept { return condition ? a : b; }
 inline bool any_of(const SimdReal::Mask& mask) noexcept { return ((mask.of[0] | mask.of[1]) | (mask.of[2] | mask.of[3])) != 0; }
 inline bool all_of(const SimdReal::Mask& mask) noexcept { return ((mask.of[0] & mask.of[1]) & (mask.of[2] & mask.of[3])) != 0; }
 inline bool any_of(bool condition) noexcept { return condition; }
 inline bool all_of(bool condition) noexcept { return condition; }
-/// bool for a Real, Lanes::Mask for Lanes.
+/// The type of a condition: bool for a Real, SimdReal::Mask for SimdReal.
 template <class T>
 using MaskOf = decltype(std::declval<T>() > std::declval<T>());
-/// The same of tensors, entry by entry.
+/// As where() above for tensors, entry by entry.
 template <class T>
 Sym3Of<T> where(const MaskOf<T>& condition, const Sym3Of<T>& a, const Sym3Of<T>& b) noexcept
 {
@@ -138,7 +139,7 @@ Sym3Of<T> where(const MaskOf<T>& condition, const Sym3Of<T>& a, const Sym3Of<T>&
   return chosen;
 }
 
-/// f(lane) of every lane: for what has no form of its own in packs.
+/// Calls f(lane) for every lane, for functions without a vector form.
 template <class F>
 SimdReal in_each_lane(F&& f) noexcept
 {
@@ -146,7 +147,7 @@ SimdReal in_each_lane(F&& f) noexcept
 }
 
 namespace detail {
-/// f(array) by Eigen's vectorised functions.
+/// Calls f(array) with Eigen's vectorised functions.
 template <class F>
 SimdReal by_array(const SimdReal& a, F&& f) noexcept
 {
@@ -160,7 +161,8 @@ SimdReal by_array(const SimdReal& a, F&& f) noexcept
 }
 }  // namespace detail
 
-// Found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, within 2 units of the last place.
+// Mathematical functions, found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, accurate to
+// 2 units in the last place.
 inline SimdReal sqrt(const SimdReal& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.sqrt(); });
@@ -177,10 +179,10 @@ inline SimdReal exp(const SimdReal& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.exp(); });
 }
-/// a^n of a > 0, to 2 |n ln a| units of the last place, what two of the logarithm come to; 0 of a = 0 with n > 0.
+/// a^n for a > 0, accurate to 2 |n ln a| units in the last place, twice the error of the logarithm; 0 for a = 0 with n > 0.
 inline SimdReal pow(const SimdReal& a, Real n) noexcept { return where(a == 0 && SimdReal(n) > 0, 0, exp(n * log(a))); }
 
-/// ln(1 + a), of small a to the last digits.
+/// ln(1 + a), accurate for small a.
 inline SimdReal log1p(const SimdReal& a) noexcept
 {
   // 2 artanh(s): the first term that the series leaves out is below 0.0527^16 / 17 of the first.
@@ -192,11 +194,11 @@ inline SimdReal log1p(const SimdReal& a) noexcept
       sum = 1.0 / k + sum * s2;
     return 2 * s + 2 * s * (s2 * sum);
   }
-  // What rounding of 1 + a does to the logarithm it does to the denominator as well.       [Kahan; Higham 2002, ch. 1.14.1]
+  // The rounding of 1 + a affects logarithm and denominator in the same ratio.  [Kahan; Higham 2002, ch. 1.14.1]
   const SimdReal u = 1 + a, rounded = u - 1;
   return where(rounded == 0 || !isfinite(u), where(u < 0, std::numeric_limits<Real>::quiet_NaN(), a), log(u) * (a / rounded));
 }
-/// exp(a) - 1, of small a to the last digits.
+/// exp(a) - 1, accurate for small a.
 inline SimdReal expm1(const SimdReal& a) noexcept
 {
   // The first term that the series leaves out is below 0.1^11 / 12! of the first.
@@ -207,7 +209,7 @@ inline SimdReal expm1(const SimdReal& a) noexcept
       sum = 1 + sum * a * (1.0 / k);
     return a + a * (0.5 * a * sum);
   }
-  // As above; beyond the middle range exp(a) alone is as good.
+  // The same method as in log1p; beyond the middle range exp(a) alone is as accurate.
   const SimdReal u = exp(a), rounded = u - 1;
   return where(abs(a) < 1, where(rounded == 0, a, rounded * (a / log(u))), rounded);
 }

@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// Adds the time since the last lap to a phase.
+/// Adds the time since the last call to a phase.
 class StopWatch {
  public:
   void lap(Real& phase) noexcept

@@ -1,5 +1,5 @@
 #pragma once
-// Small-tensor algebra that Eigen does not name: packing, deviators, Lame constants, embedding of plane tensors.
+// Functions of small tensors that Eigen does not have: packing, deviators, Lame constants, embedding of plane tensors.
 #include <cmath>
 
 #include "core/types.hpp"
@@ -38,7 +38,7 @@ Mat3Of<typename E::Scalar> dev(const Eigen::MatrixBase<E>& expression) noexcept
   return a - T(a.trace() / 3) * Mat3Of<T>::Identity();
 }
 
-/// J2 = s:s/2 of the deviator of a; sqrt(J2) is the shear measure tau of the Drucker-Prager law.
+/// J2 = s:s/2 with the deviator s of a; sqrt(J2) is the shear stress tau of the Drucker-Prager law.
 template <class E>
 typename E::Scalar second_invariant(const Eigen::MatrixBase<E>& a) noexcept
 {
@@ -52,7 +52,7 @@ typename E::Scalar von_mises(const Eigen::MatrixBase<E>& a) noexcept
   return sqrt(T(3 * second_invariant(a)));
 }
 
-/// A plane tensor in 3-D: zeros out of plane (plane strain for a velocity gradient).  D is the size of `a`.
+/// A plane tensor in 3-D, with zeros out of plane (plane strain for a velocity gradient).  D is the size of `a`.
 template <class T, int D>
 Mat3Of<T> embed(const Eigen::Matrix<T, D, D, Eigen::DontAlign>& a) noexcept
 {
@@ -68,14 +68,15 @@ Mat3Of<T> embed(const Eigen::Matrix<T, D, D, Eigen::DontAlign>& a) noexcept
 struct Lame {
   Real lambda, mu;  ///< Pa
 };
-/// From Young's modulus [Pa] and Poisson's ratio in (-1, 0.5).
+/// The Lame constants from Young's modulus [Pa] and Poisson's ratio in (-1, 0.5).
 constexpr Lame lame(Real youngs_modulus, Real poisson_ratio) noexcept
 {
   return {youngs_modulus * poisson_ratio / ((1 + poisson_ratio) * (1 - 2 * poisson_ratio)), youngs_modulus / (2 * (1 + poisson_ratio))};
 }
 
 /// s a + m I.  Entry by entry: Eigen would store these six numbers and load them again as one vector, which stalls.
-// Inlined by order, like others below: of lanes they are long enough to be calls, and would pass their tensors through memory.
+// Inlined explicitly, like others below: instantiations for SimdReal are long enough to become calls, which would pass tensors through
+// memory.
 template <class E>
 [[gnu::always_inline]] inline Sym3Of<typename E::Scalar> scale_and_shift(const typename E::Scalar& s,
                                                                          const Eigen::MatrixBase<E>& expression,

@@ -1,5 +1,5 @@
 #pragma once
-// A function of time given by points: gravity ramps, prescribed velocities, tractions.
+// A function of time given by points, for ramps of gravity, prescribed velocities and tractions.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace talus {
 
-/// Piecewise linear in time, or in depth, between (time, value) points, constant before the first and after the last.  Times increase strictly.
-/// Without points it is the constant one, so a load without a table acts in full from the start.
+/// A piecewise linear function of time, or of depth, between (time, value) points; constant before the first and after the last.  Times
+/// increase strictly.  Without points the value is 1, so a load without a table acts in full from the start.
 struct Table {
   std::vector<std::array<Real, 2>> points;  ///< {time [s], factor or value}
   Real operator()(Real time) const noexcept

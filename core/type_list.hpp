@@ -1,5 +1,5 @@
 #pragma once
-// A closed list of types, and the folds over it that replace registries.
+// A fixed list of types, and loops over it.
 #include <type_traits>
 #include <variant>
 
@@ -17,7 +17,7 @@ constexpr void for_each_type(TypeList<T...>, F&& f)
   (f.template operator()<T>(), ...);
 }
 
-/// The lists one behind the other.
+/// The concatenation of lists.
 template <class... T>
 constexpr TypeList<T...> joined(TypeList<T...>)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Numbers, small vectors and small tensors: the vocabulary of every other folder.
+// Numbers, small vectors and small tensors, used in every folder.
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <array>
@@ -10,16 +10,16 @@
 namespace talus {
 
 using Real = double;
-using Index = std::int32_t;  ///< local numbers of nodes, cells, particles; ids that outlive a sort are std::int64_t
+using Index = std::int32_t;  ///< number of a node, cell or particle on this rank; ids that survive sorting are std::int64_t
 
-/// "No such cell, facet or node" inside lists; interfaces use std::optional instead.
+/// The value that means "no cell, facet or node" in lists; interfaces use std::optional instead.
 inline constexpr Index none = -1;
 
 template <int D>
 using Vec = Eigen::Matrix<Real, D, 1, Eigen::DontAlign>;
 template <int D>
 using Mat = Eigen::Matrix<Real, D, D, Eigen::DontAlign>;
-/// T is a Real, or the Lanes of core/simd.hpp: the tensors of several particles at once.
+/// Small tensors.  T is Real, or SimdReal for the tensors of several particles at once.
 template <class T>
 using Mat3Of = Eigen::Matrix<T, 3, 3, Eigen::DontAlign>;
 /// The six entries xx, yy, zz, xy, yz, xz of a symmetric 3x3 tensor.
@@ -29,7 +29,7 @@ using Vec3 = Vec<3>;
 using Mat3 = Mat3Of<Real>;
 using Sym3 = Sym3Of<Real>;
 
-/// Compressed rows: row i holds item[begin[i]] .. item[begin[i+1]-1].
+/// Lists in compressed rows: row i holds item[begin[i]] .. item[begin[i+1]-1].
 struct Csr {
   std::vector<Index> begin{0};
   std::vector<Index> item;

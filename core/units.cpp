@@ -1,4 +1,4 @@
-// Prefixes.
+// Units with SI prefixes.
 #include "core/units.hpp"
 
 namespace talus {

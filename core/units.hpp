@@ -1,5 +1,5 @@
 #pragma once
-// Units with prefixes, for people.
+// Units with SI prefixes, for display.
 #include <string>
 
 #include "core/types.hpp"

@@ -1,4 +1,4 @@
-// The only file that sees the generated header, so that a new commit recompiles nothing else.
+// The only file that includes the generated header, so that a new commit recompiles nothing else.
 #include "core/version.hpp"
 
 #include <fmt/format.h>

@@ -1,5 +1,5 @@
 #pragma once
-// What this program was built from and how: shown by `talus info`, stored in reports and checkpoints.
+// Version, commit and compiler of this program: shown by `talus info`, stored in reports and checkpoints.
 
 #include <string>
 #include <string_view>

@@ -25,7 +25,7 @@ std::size_t distance(std::string_view a, std::string_view b)
   return d[a.size()][b.size()];
 }
 
-constexpr std::size_t longest_word = 80;  // a key longer than this is not a slip of the hand
+constexpr std::size_t longest_word = 80;  // a longer key is not a typing error
 
 }  // namespace
 

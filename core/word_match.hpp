@@ -1,5 +1,5 @@
 #pragma once
-// Words for messages: the word that was probably meant, and lists in plain English.
+// Suggestions for misspelt words, and lists of words in English.
 #include <optional>
 #include <span>
 #include <string>
@@ -8,13 +8,14 @@
 
 namespace talus {
 
-/// The candidate nearest to `word` by edit distance (transpositions count one), if near enough to be a slip of the hand.
+/// The candidate nearest to `word` by edit distance (a transposition counts one), if it is near enough to be a typing error.
 std::optional<std::string> closest_match(std::string_view word, std::span<const std::string> candidates);
 
-/// "a, b or c"
+/// A list as text, "a, b or c".
 std::string or_list(std::span<const std::string> words);
 
-/// " — did you mean \"friction\"?" or, when nothing is near, "; known are a, b or c" (empty for no candidates).
+/// The end of an error message: " — did you mean \"friction\"?", or "; known are a, b or c" if no candidate is near; empty without
+/// candidates.
 std::string suggestion(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace talus

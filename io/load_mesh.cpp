@@ -60,7 +60,7 @@ MeshData<D> make_unnamed(const MeshSpec& spec, const std::filesystem::path& dire
   throw SceneErrors(spec.where, "the mesh needs one of file, geometry, regions, grid and terrain");
 }
 
-/// f(), with std::invalid_argument located.
+/// Calls f(); a std::invalid_argument becomes SceneErrors with the position.
 template <class F>
 auto located(const MeshSpec& spec, F&& f)
 {
@@ -71,7 +71,7 @@ auto located(const MeshSpec& spec, F&& f)
   }
 }
 
-/// Meshes that Talus did not make itself may hold faults that no facet shows.
+/// Whether the mesh was not made by Talus: such meshes may have errors that the facets do not show.
 bool is_foreign(const MeshSpec& spec) { return !spec.file.empty() || !spec.geometry.empty(); }
 
 template <int D>
@@ -87,7 +87,7 @@ void note_unjoined_nodes(MeshData<D>& data)
       groups.size(), groups.size() == 1 ? "" : "s", place<D>(at)));
 }
 
-/// The cell groups of a cell, in words.
+/// The cell groups of a cell, as text.
 template <int D>
 std::string groups_of(const Mesh<D>& mesh, Index cell)
 {

@@ -1,8 +1,7 @@
 #pragma once
-// What a kernel is: the weights with which a particle sees nodes.  Scatter and gather know nothing else about it.
-//
-// A kernel has a cell part (weights of one particle over the stencil of its cell) and, if it wants one, a set of node operators (sparse
-// operators over the one-ring, applied to nodal rows between scatter and gather; see node_operators.hpp).
+// Definition of a kernel: the weights between a particle and nodes.  Transfers use nothing else of it.  A kernel has a cell part (weights
+// of one particle over the stencil of its cell) and optionally a set of node operators (sparse operators over the one-ring, applied to
+// nodal rows between scatter and gather; see node_operators.hpp).
 #include <concepts>
 #include <cstddef>
 #include <string_view>
@@ -13,13 +12,13 @@
 
 namespace talus {
 
-/// Properties a kernel states; the contract tests prove each one, and show by example that what is not claimed does not hold.
+/// Properties of a kernel.  The contract tests check each claim, and show by example that properties that are not claimed do not hold.
 struct Claims {
   bool non_negative;         ///< all values >= 0
   bool linear_values;        ///< sum w_v x_v = x
   bool linear_gradients;     ///< sum x_v (x) G_v = I
-  bool continuous_values;    ///< same value from both sides of a facet
-  bool continuous_gradient;  ///< same gradient from both sides of a facet
+  bool continuous_values;    ///< equal values from both sides of a facet
+  bool continuous_gradient;  ///< equal gradients from both sides of a facet
   bool gradient_of_values;   ///< G_v = grad w_v
   bool patch_test;           ///< int G_v dx = 0 for interior v
   bool closed_walls;         ///< on a boundary facet only its own nodes have weight
@@ -32,21 +31,21 @@ struct NodeWeights {
   alignas(64) Real dw[D][N];
 };
 
-/// The weights of up to four particles of a cell in factors.  With numbers s_v and y_v of the nodes and the rest common to all nodes,
+/// The weights of up to four particles of a cell as factors.  With s_v and y_v for each node, and the rest common to all nodes,
 ///
 ///     w_v = s_v (value - slope . y_v)        G_v = s_v (H y_v - shift)
 ///
-/// H is symmetric.  Sums over a stencil then need products with s_v and s_v y_v only, and H is applied once per particle.  Lanes of
-/// packs are particles; those of particles that are not there repeat the last one.  Lives on the stack; y belongs to the open cell.
+/// H is symmetric.  Sums over a stencil then need products with s_v and s_v y_v only, and H is applied once per particle.  Lanes of packs
+/// are particles; missing ones repeat the last particle.  Lives on the stack; y belongs to the open cell.
 template <int D, int N>
 struct Weights {
   alignas(64) Real s[pack_size][N];
   const Real* y[pack_size][D];  ///< per component the numbers of all nodes, aligned like s
-  int padded_size[pack_size];   ///< whole packs of nodes that may have weight: the first ones of the stencil, or all
+  int padded_size[pack_size];   ///< number of nodes, in whole packs, that may have weight: the first ones of the stencil, or all
   Pack value, slope[D], shift[D];
   Symmetric<D, Pack> H;
 
-  /// What the factors stand for.
+  /// Computes the weights from the factors for one lane.
   void spell_out(int lane, NodeWeights<D, N>& out) const noexcept
   {
     out = {};
@@ -63,15 +62,15 @@ struct Weights {
   }
 };
 
-/// What all particles of a cell share.  `K::Cell` is this or extends it.
+/// Data shared by all particles of a cell.  `K::Cell` is this or extends it.
 template <int D, int N>
 struct StencilCell {
   Index cell;
   int size;                      ///< nodes in the stencil
   int padded_size;               ///< rounded up to whole packs; entries beyond `size` carry zero weight
-  std::span<const Index> nodes;  ///< their numbers
+  std::span<const Index> nodes;  ///< numbers of the nodes of the stencil
   Vec<D> origin;                 ///< a point of the cell [m]
-  alignas(64) Real x[D][N];      ///< coordinates of the nodes about the origin [m]; padding repeats the first node
+  alignas(64) Real x[D][N];      ///< coordinates of the nodes relative to the origin [m]; padding repeats the first node
 };
 
 template <int D>
@@ -85,21 +84,21 @@ Vec<D> centroid(const Mesh<D>& mesh, Index c) noexcept
 
 // Version 14 of the formatter does not know requires-expressions.
 // clang-format off
-/// A kernel on meshes of dimension D.  Tables are built once by the constructor; the mesh is an argument, never kept.
+/// A kernel on meshes of dimension D.  The constructor builds its tables; the mesh is passed as an argument and never stored.
 template <class K, int D>
 concept Kernel = requires(const K k, const Mesh<D>& mesh, Index c, const Pack (&x)[D], typename K::Cell& cell, Weights<D, K::max_nodes>& out) {
   { K::name } -> std::convertible_to<std::string_view>;
   { K::summary } -> std::convertible_to<std::string_view>;
-  { K::max_nodes } -> std::convertible_to<int>;  // room for one stencil, whole packs; the constructor refuses a mesh that needs more
-  K(mesh);                                       // may throw std::invalid_argument naming cell, place and number
+  { K::max_nodes } -> std::convertible_to<int>;  // room for one stencil, in whole packs; the constructor refuses a mesh that needs more
+  K(mesh);                                       // may throw std::invalid_argument with cell, position and number
   { k.claims() } noexcept -> std::same_as<Claims>;
-  { k.stencil(mesh, c) } noexcept -> std::same_as<std::span<const Index>>;  // nodes: a function of the cell only
-  { k.open(mesh, c, cell) } noexcept;                                        // fills what the particles of the cell share
-  { k.evaluate(cell, x, 4, out) } noexcept;                                  // weights of four particles at x, or fewer; s = 0 in the padding
+  { k.stencil(mesh, c) } noexcept -> std::same_as<std::span<const Index>>;  // nodes of the stencil, which depend on the cell only
+  { k.open(mesh, c, cell) } noexcept;                                        // sets the data shared by the particles of the cell
+  { k.evaluate(cell, x, 4, out) } noexcept;                                  // weights of up to four particles at x; s = 0 in the padding
   requires K::max_nodes % pack_size == 0;
 };
 
-/// What a scene may choose of a kernel: K::Options, if there is anything.
+/// The options of a kernel without keys in a scene; other kernels define K::Options.
 struct NoOptions {};
 template <class K>
 struct OptionsOf {
@@ -124,13 +123,14 @@ K make_kernel(const Mesh<D>& mesh, [[maybe_unused]] const Options<K>& options)
 template <int D>
 class NodeOperators;
 
-/// A kernel with a set of node operators: operators stand between linear shape functions and unknowns; its weights are those of linear shape functions.
+/// A kernel with node operators between linear shape functions and unknowns; its weights are those of linear shape functions.
 template <class K, int D>
 concept HasNodeOperators = requires(const K k) {
   { k.node_operators() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
 
-/// A kernel that knows grad w_v [1/m] of the weights at hand, with those up to weights.padded_size[lane] set, and may want it for the force.
+/// A kernel that can compute grad w_v [1/m] from given weights, with those up to weights.padded_size[lane] set, and may use it for the
+/// force.
 template <class K, int D>
 concept HasSlopesOfValues = requires(const K k, const typename K::Cell& cell, const Pack (&x)[D], const Weights<D, K::max_nodes>& weights,
                                      Real (&slopes)[D][K::max_nodes]) {

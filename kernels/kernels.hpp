@@ -1,5 +1,5 @@
 #pragma once
-// The list of kernels: what a scene can name.  Folds over it turn a name into a type (core/type_list.hpp).
+// The list of kernels that a scene can name.  Loops over it turn a name into a type (core/type_list.hpp).
 #include "core/type_list.hpp"
 #include "kernels/linear.hpp"
 #include "kernels/projected.hpp"
@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Kernels on meshes of dimension D, one line each.
+/// The kernels on meshes of dimension D, one per line.
 template <int D>
 using Kernels = TypeList<Linear<D>,      // linear shape functions
                          Umls<D>,        // moving least squares

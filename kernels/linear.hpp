@@ -1,5 +1,5 @@
 #pragma once
-// The linear shape functions of the mesh: what every other kernel is compared with.
+// Linear shape functions of the mesh, with which every other kernel is compared.
 #include "kernels/kernel.hpp"
 
 namespace talus {

@@ -1,20 +1,21 @@
 #pragma once
-// The set of node operators of a kernel: sparse operators over the one-ring, applied to nodal rows after the scatter and before the gather.
+// Node operators of a kernel: sparse operators over the one-ring, applied to nodal rows after the scatter and before the gather.
 #include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
 
 namespace talus {
 
-/// Node-to-node operators on the pattern of the one-ring: S_nv for values, D_nv [1/m] for gradients, n the node of a linear shape function (what
-/// particles see), v the node of the unknowns (where mass and momentum live).  Rows serve the gather, columns the scatter; both are
-/// stored, from the same numbers, so that one is the transpose of the other to the bit.  Sums run over the ring in ascending order.
+/// Node-to-node operators on the pattern of the one-ring: S_nv for values and D_nv [1/m] for gradients, where n is the node of a linear
+/// shape function (which particles use) and v a node of the unknowns (which have mass and momentum).  The gather uses rows, the scatter
+/// columns; both are stored from the same numbers, so that one is bitwise the transpose of the other.  Sums run over the ring in ascending
+/// order.
 template <int D>
 class NodeOperators {
  public:
   /// Rows of S and of D on the entries of mesh.ring_of_node().
   NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::vector<Vec<D>> gradients);
 
-  /// sum_v S_nv x_v [m]: where the weights of linear shape function n see their mass; x_n itself where S is exact for linear fields.
+  /// sum_v S_nv x_v [m], the centre of the weights of linear shape function n; equal to x_n where S is exact for linear fields.
   const Vec<D>& centre(Index n) const noexcept { return centre_[static_cast<std::size_t>(n)]; }
 
   Index n_nodes() const noexcept { return ring_.size(); }
@@ -23,13 +24,13 @@ class NodeOperators {
     return ring_.item.size() * (sizeof(Index) + 2 * sizeof(Real) + 2 * sizeof(Vec<D>)) + centre_.size() * (sizeof(Index) + sizeof(Vec<D>));
   }
 
-  /// f(v, S_nv, D_nv) over the row of n
+  /// Calls f(v, S_nv, D_nv) for the row of n.
   template <class F>
   void for_each_in_row(Index n, F&& f) const noexcept
   {
     visit(n, S_row_, D_row_, f);
   }
-  /// f(n, S_nv, D_nv) over the column of v
+  /// Calls f(n, S_nv, D_nv) for the column of v.
   template <class F>
   void for_each_in_column(Index v, F&& f) const noexcept
   {
@@ -61,11 +62,11 @@ class NodeOperators {
 template <int D>
 std::vector<Vec<D>> averaged_gradients(const Mesh<D>& mesh);
 
-/// Entry of node v in the row of n.  Rings are ascending and hold v.
+/// The index of node v in the row of n.  Rings are ascending and contain v.
 std::size_t entry_of(const Csr& ring, Index n, Index v);
 
-/// f(n, c, a, entry) for every node n, every cell c around it and every vertex a of c: `entry` is that of cell(c)[a] in the row of n.
-/// Rows in parallel.
+/// Calls f(n, c, a, entry) for every node n, every cell c around it and every vertex a of c, where `entry` is the index of cell(c)[a] in
+/// the row of n.  Rows are processed in parallel.
 template <int D, class F>
 void for_each_cell_of_ring(const Mesh<D>& mesh, F&& f)
 {
@@ -77,11 +78,11 @@ void for_each_cell_of_ring(const Mesh<D>& mesh, F&& f)
   });
 }
 
-/// V_n = int N_n dx [m^D]
+/// The lumped volumes V_n = int N_n dx [m^D].
 template <int D>
 std::vector<Real> hat_volumes(const Mesh<D>& mesh);
 
-/// out_i = f(i) for every node, in parallel.
+/// Sets out_i = f(i) for every node, in parallel.
 template <class T, class F>
 void for_each_node(std::span<T> out, F&& f)
 {

@@ -1,5 +1,6 @@
 #pragma once
-// Linear shape functions at the particles, sparse operators at the nodes: a continuous gradient with the integration constraint, at the cost of linear shape functions.
+// The kernel `projected`: linear shape functions at the particles and sparse operators at the nodes.  Its gradient is continuous and
+// satisfies the integration constraint, at about the cost of linear shape functions.
 #include "kernels/linear.hpp"
 #include "kernels/node_operators.hpp"
 #include "kernels/projected_options.hpp"
@@ -7,14 +8,15 @@
 
 namespace talus {
 
-/// With the linear shape functions N_n of the cell's vertices, S the values of largest entropy (kernels/value_stencils.hpp) and D the averaged gradient
-/// (kernels/node_operators.hpp):
+/// The kernel with the linear shape functions N_n of the cell's vertices, the values S of maximum entropy (kernels/value_stencils.hpp) and
+/// the averaged gradient D (kernels/node_operators.hpp):
 ///
 ///     w_v(x) = sum_n N_n(x) S_nv          G_v(x) = sum_n N_n(x) D_nv
 ///
-/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles see linear shape functions
-/// only: a scatter goes to the vertices of the cell, the transposed operators carry it on to the unknowns, and back.
-/// Relatives: dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys. 230].
+/// Both are continuous, sum G = 0 and sum x (x) G = I everywhere, and int G_v dx = 0 for interior v on any mesh.  Particles use linear
+/// shape functions only: a scatter adds to the vertices of the cell, the transposed operators map these sums to the unknowns, and the
+/// operators map the motion back.  A related method is the dual domain material point method [Zhang, Ma & Giguere 2011, J. Comput. Phys.
+/// 230].
 template <int D>
 class Projected {
  public:
@@ -29,7 +31,7 @@ class Projected {
   Claims claims() const noexcept
   {
     return {.non_negative = true,
-            .linear_values = true,  // up to walls that are flat
+            .linear_values = true,  // up to flat walls
             .linear_gradients = true,
             .continuous_values = true,
             .continuous_gradient = true,
@@ -45,7 +47,7 @@ class Projected {
     hats_.evaluate(cell, x, count, out);
   }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
-  /// Nodes that have no positive weights which keep linear fields, and are treated as corners, ascending.
+  /// Nodes without positive weights that are exact for linear fields, ascending; they are treated as corners.
   std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }
 
  private:

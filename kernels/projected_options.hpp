@@ -1,13 +1,13 @@
 #pragma once
-// Choices of the kernel `projected`, as a scene declares them.
+// Options of the kernel `projected` in a scene.
 #include "core/fields.hpp"
 #include "core/types.hpp"
 
 namespace talus {
 
-/// What a scene may choose of the kernel `projected`.
+/// The options of the kernel `projected`.
 struct ProjectedOptions {
-  Real alpha = 0.5;  ///< weight of neighbours beside that of the node itself [-]
+  Real alpha = 0.5;  ///< prior weight of neighbours relative to that of the node itself [-]
   static constexpr auto fields()
   {
     return std::tuple{optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own")};

@@ -1,10 +1,10 @@
 #pragma once
-// Symmetric D x D matrices in scalars: their adjugates without a detour through memory.
+// Symmetric D x D matrices as scalars in registers, and their adjugates.
 #include "core/types.hpp"
 
 namespace talus {
 
-/// Entries xx, yy, xy or xx, yy, zz, xy, yz, xz; T is a number or a pack of numbers.
+/// The entries xx, yy, xy or xx, yy, zz, xy, yz, xz; T is a number or a pack of numbers.
 template <int D, class T = Real>
 struct Symmetric {
   static constexpr int size = D * (D + 1) / 2;
@@ -21,7 +21,7 @@ struct Symmetric {
   }
 };
 
-/// A x
+/// The product A x.
 template <int D>
 Vec<D> operator*(const Symmetric<D>& A, const Vec<D>& x) noexcept
 {
@@ -34,7 +34,7 @@ Vec<D> operator*(const Symmetric<D>& A, const Vec<D>& x) noexcept
   return product;
 }
 
-/// det(A) A^-1
+/// The adjugate, det(A) A^-1.
 template <int D, class T>
 constexpr Symmetric<D, T> adjugate(const Symmetric<D, T>& s) noexcept
 {
@@ -46,7 +46,7 @@ constexpr Symmetric<D, T> adjugate(const Symmetric<D, T>& s) noexcept
   }
 }
 
-/// det(A), from A and its adjugate.
+/// The determinant of A, from A and its adjugate.
 template <int D, class T>
 constexpr T determinant(const Symmetric<D, T>& s, const Symmetric<D, T>& adjugate_of_s) noexcept
 {
@@ -56,7 +56,7 @@ constexpr T determinant(const Symmetric<D, T>& s, const Symmetric<D, T>& adjugat
   return det;
 }
 
-/// (tr A / D)^D: det A of a round A with the same trace.
+/// (tr A / D)^D, the determinant of a multiple of I with the trace of A.
 template <int D, class T>
 constexpr T round_determinant(const Symmetric<D, T>& s) noexcept
 {

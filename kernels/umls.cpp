@@ -1,4 +1,4 @@
-// Unstructured moving least squares: tables, and the two sweeps over the stencil of one particle.
+// Unstructured moving least squares: tables, and the two passes over the stencil of a particle.
 #include "kernels/umls_samples.hpp"
 
 #include <fmt/format.h>
@@ -13,12 +13,12 @@
 namespace talus {
 namespace {
 
-/// S gets this share of its trace on the diagonal: a guard against division by zero that costs linear fields no digit.
+/// This fraction of the trace of S is added to its diagonal, to avoid division by zero; it does not change results for linear fields.
 constexpr Real regularisation = 1e-14;
-/// Raised radii, tried in this order.
+/// Factors of enlarged radii, tried in this order.
 constexpr Real radius_factors[] = {1.25, 1.5};
 
-/// bits_of[mask][a] = bit a of the mask, as a number.
+/// bits_of[mask][a] is bit a of the mask, as a number.
 constexpr auto bits_of = [] {
   std::array<std::array<Real, 4>, 16> bits{};
   for (unsigned mask = 0; mask < 16; ++mask)
@@ -32,16 +32,16 @@ template <int D>
 struct Moments {
   Pack sum;                   ///< W0
   Pack first[D];              ///< W0 c
-  Symmetric<D, Pack> spread;  ///< W0^2 S, about the centroid of the weights
+  Symmetric<D, Pack> spread;  ///< W0^2 S about the centroid of the weights
 };
 
-/// Sums of W, W y and W y (x) y of one particle, four nodes a lane.
+/// Sums of W, W y and W y (x) y of one particle, four nodes per pack.
 template <int D>
 struct RawMoments {
   static constexpr int size = 1 + D + Symmetric<D>::size;
   Pack entry[size];
 };
-/// A loop of its own: in one with the square roots these sums would queue behind them.
+/// A separate loop: together with the square roots these sums would have to wait for them.
 template <int D>
 [[gnu::always_inline]] inline RawMoments<D> raw_moments(const typename Umls<D>::Cell& cell, const Real* weight) noexcept
 {
@@ -63,7 +63,7 @@ template <int D>
   return raw;
 }
 
-/// Sample weights of `count` particles into `weight`, and their moments.
+/// Computes sample weights of `count` particles in `weight`, and their moments.
 template <int D>
 [[gnu::always_inline]] inline Moments<D> moments(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int count,
                                                  Real (*weight)[Umls<D>::max_nodes]) noexcept
@@ -90,7 +90,7 @@ template <int D>
   return m;
 }
 
-/// The linear shape functions of the cell in one lane, as factors: see Linear.
+/// The linear shape functions of the cell in one lane, as factors (see Linear).
 template <int D>
 void hats_instead(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane, Weights<D, Umls<D>::max_nodes>& out) noexcept
 {
@@ -173,7 +173,7 @@ void Umls<D>::choose_radii(const Mesh<D>& mesh)
   }
 }
 
-/// S is tried at the vertices, at the middles of the edges and at the centroid.
+/// Checks S at the vertices, the midpoints of the edges and the centroid.
 template <int D>
 bool Umls<D>::poor(const Mesh<D>& mesh, Index c) const noexcept
 {
@@ -234,7 +234,7 @@ void Umls<D>::evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<
   const auto adjoint = adjugate(m.spread);
   const Pack det = determinant(m.spread, adjoint), least = unusable_roundness * round_determinant(m.spread);
 
-  // About the origin, with k = S^-1 (c - x):  G_v = W_v (S^-1 y_v - S^-1 c)  and  w_v = W_v (1/W0 + k . c - k . y_v)
+  // Relative to the origin, with k = S^-1 (c - x):  G_v = W_v (S^-1 y_v - S^-1 c)  and  w_v = W_v (1/W0 + k . c - k . y_v)
   const Pack per_det = 1 / det, share = 1 / m.sum;
   out.value = share;
   for (int j = 0; j < Symmetric<D>::size; ++j)
@@ -253,7 +253,7 @@ void Umls<D>::evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<
     out.padded_size[lane] = cell.padded_size;
     for (int d = 0; d < D; ++d)
       out.y[lane][d] = cell.x[d];
-    if (!(det[lane] > least[lane]))  // NaN too
+    if (!(det[lane] > least[lane]))  // true for NaN too
       hats_instead<D>(cell, x, lane, out);
   }
 }

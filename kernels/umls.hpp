@@ -7,16 +7,16 @@ namespace talus {
 
 /// Moving least squares with sample weights W_v(x) = eta_v(x) d(|x_v - x| / R(x)).
 ///
-/// eta_v = sum of the barycentric coordinates of those vertices of the cell that are adjacent to v (or are v): it fades a node out
-/// before the particle enters a cell that does not see it.  d is the quadratic B-spline of support 1.5 R and R(x) interpolates
-/// a radius R_v per vertex.  Values and gradients are the least-squares estimate of a linear field and of its slope at x, in the
-/// centred form: with r_v = x_v - x,
+/// eta_v is the sum of the barycentric coordinates of the vertices of the cell that are adjacent to v (or are v); with it the weight of a
+/// node vanishes before the particle enters a cell whose stencil does not contain the node.  d is the quadratic B-spline of support 1.5 R,
+/// and R(x) interpolates a radius R_v per vertex.  Values and gradients are the least-squares estimate of a linear field and of its
+/// gradient at x, in the centred form: with r_v = x_v - x,
 ///
 ///     W0 = sum W_v     c = sum W_v r_v / W0     S = sum W_v (r_v - c)(r_v - c)^T
 ///     G_v = W_v S^-1 (r_v - c)                  w_v = W_v / W0 - c . G_v
 ///
-/// R_v = h_v (mean length of the edges at v), times 1.25 or 1.5 for vertices of cells with a badly conditioned S, decided once.
-/// Where S is unusable even so, the particle takes the linear shape functions of its cell.  Linear fields are exact either way.
+/// R_v = h_v (mean length of the edges at v), times 1.25 or 1.5 for vertices of cells with a badly conditioned S, determined once.  If S is
+/// still singular, the particle uses the linear shape functions of its cell.  Linear fields are exact in either case.
 template <int D>
 class Umls {
  public:
@@ -26,7 +26,7 @@ class Umls {
   using Options = UmlsOptions;
 
   struct Cell : StencilCell<D, max_nodes> {
-    Real radius, radius_slope[D];                 ///< R at the origin, which is the centroid [m]; grad R [-]
+    Real radius, radius_slope[D];                 ///< R at the origin, the centroid of the cell [m]; grad R [-]
     alignas(64) Real slope[D][pack_size];         ///< gradients [1/m] of the barycentric coordinates of all vertices; padding 0
     alignas(64) Real adjacent[D + 1][max_nodes];  ///< 1 where the node is adjacent to the vertex, else 0; padding 0
   };
@@ -46,21 +46,21 @@ class Umls {
             .closed_walls = false};
   }
 
-  /// The vertices of the cell in their order, then the rest of the ring.
+  /// The vertices of the cell in their order, then the other nodes of the ring.
   std::span<const Index> stencil(const Mesh<D>&, Index c) const noexcept { return stencil_[c]; }
   void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept;
   void evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept;
 
   bool pairs_force_with_slopes() const noexcept { return gradient_ == UmlsGradient::exact_force; }
-  /// grad w_v [1/m] of one lane, from its weights, for their padded size.  Jumps across faces, as the gradient of eta does.
+  /// grad w_v [1/m] of one lane from its weights, for their padded size.  Discontinuous at faces, like the gradient of eta.
   void slopes_of_values(const Cell& cell, const Pack (&x)[D], int lane, const Weights<D, max_nodes>& weights,
                         Real (&slopes)[D][max_nodes]) const noexcept;
 
   Real radius(Index node) const noexcept { return radius_[static_cast<std::size_t>(node)]; }  ///< R_v [m]
 
-  /// How round S is at x: D^D det S / tr(S)^D, 1 if all directions are seen alike, 0 if a direction is not seen.
+  /// The isotropy of S at x, D^D det S / tr(S)^D: 1 if all directions have equal weight, 0 if S is singular.
   Real roundness(const Cell& cell, const Vec<D>& x) const noexcept;
-  /// Radii grow where the roundness is below the first; below the second the linear shape functions replace the estimate.
+  /// Radii are enlarged where the isotropy is below the first value; below the second linear shape functions replace the estimate.
   static constexpr Real poor_roundness = 0.02, unusable_roundness = 1e-6;
 
  private:
@@ -69,8 +69,8 @@ class Umls {
   bool poor(const Mesh<D>& mesh, Index c) const noexcept;
 
   Csr stencil_;
-  std::vector<std::uint8_t> adjacency_;  ///< per entry of stencil_: bit a set if adjacent to vertex a of the cell
-  std::vector<Real> radius_;             ///< per node [m]
+  std::vector<std::uint8_t> adjacency_;  ///< for each entry of stencil_: bit a is set if the node is adjacent to vertex a of the cell
+  std::vector<Real> radius_;             ///< radius of each node [m]
   UmlsGradient gradient_;
 };
 

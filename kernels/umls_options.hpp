@@ -1,5 +1,5 @@
 #pragma once
-// Choices of the kernel `umls`, as a scene declares them.
+// Options of the kernel `umls` in a scene.
 #include "core/fields.hpp"
 #include "core/types.hpp"
 
@@ -8,7 +8,7 @@ namespace talus {
 enum class UmlsGradient : std::uint8_t { estimate, exact_force };
 constexpr std::array<std::string_view, 2> enum_names(UmlsGradient) { return {"estimate", "exact_force"}; }
 
-/// What a scene may choose of the kernel `umls`.
+/// The options of the kernel `umls`.
 struct UmlsOptions {
   UmlsGradient gradient = UmlsGradient::estimate;
   static constexpr auto fields()

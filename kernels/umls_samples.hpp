@@ -1,14 +1,14 @@
 #pragma once
-// Sample weights of moving least squares and their slopes at one particle, four nodes a lane.
+// Sample weights of moving least squares and their gradients at one particle, four nodes per pack.
 #include "kernels/pack.hpp"
 #include "kernels/umls.hpp"
 
 namespace talus {
 
-/// A particle in its cell.
+/// The position of a particle in its cell.
 template <int D>
 struct Place {
-  Real x[D];  ///< about the origin of the cell
+  Real x[D];  ///< relative to the origin of the cell [m]
   Pack hat;   ///< barycentric coordinates, one vertex per lane
 };
 template <int D>
@@ -44,7 +44,7 @@ struct Profile {
   [[gnu::always_inline]] Pack per_radius() const noexcept { return 3 * (outer - inner); }      ///< d value / d R
 };
 
-/// Sample weights 2 R^2 W.
+/// The sample weights 2 R^2 W.
 template <int D>
 [[gnu::always_inline]] inline void sample(const typename Umls<D>::Cell& cell, const Place<D>& at, Real* weight) noexcept
 {
@@ -61,7 +61,7 @@ template <int D>
   }
 }
 
-/// grad (2 R^2 W) of the pack of nodes at i: by eta, by the distance and by the radius.
+/// The gradient of 2 R^2 W for the pack of nodes at i, by eta, distance and radius.
 template <int D>
 void sample_slope(const typename Umls<D>::Cell& cell, const Place<D>& at, Real radius, int i, Pack (&slope)[D]) noexcept
 {
@@ -78,7 +78,7 @@ void sample_slope(const typename Umls<D>::Cell& cell, const Place<D>& at, Real r
   }
   const Pack distance = square_root(r2);
   const Profile profile(distance, radius);
-  // On the node itself r is zero, and so is the slope of the profile there: any divisor will do.
+  // At the position of a node r and the slope of the profile are zero, so any divisor will do.
   const Pack per_r = profile.per_distance() / (distance > 0 ? distance : broadcast(1));
   for (int d = 0; d < D; ++d)
     slope[d] = eta_slope[d] * profile.value() + eta * (profile.per_radius() * cell.radius_slope[d] - per_r * r[d]);

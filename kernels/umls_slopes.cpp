@@ -1,13 +1,13 @@
-// The exact slopes of the values of moving least squares.
+// The exact gradients of the values of moving least squares.
 #include "kernels/umls_samples.hpp"
 
 namespace talus {
 
-/// With the linear function l_v = value - slope . y_v of the weights at hand, w_v = W_v l_v, and M the moments of P_v = (1, y_v),
+/// With the linear function l_v = value - slope . y_v of the given weights, w_v = W_v l_v, and M the moments of P_v = (1, y_v),
 ///
 ///     grad_j w_v = (grad_j W_v) l_v + W_v P_v . M^-1 (e_j - sum_u (grad_j W_u) l_u P_u).
 ///
-/// The factor 2 R^2 of the samples, which varies with x, cancels as in the values: they are the same for any multiple of W.
+/// The factor 2 R^2 of the samples, which depends on x, cancels as in the values, which do not change if all W are multiplied by a factor.
 template <int D>
 void Umls<D>::slopes_of_values(const Cell& cell, const Pack (&x)[D], int lane, const Weights<D, max_nodes>& weights,
                                Real (&slopes)[D][max_nodes]) const noexcept

@@ -1,4 +1,4 @@
-// The value stencil of a set of node operators: weights of largest entropy.
+// Value stencils of node operators: weights of maximum entropy.
 #include "kernels/value_stencils.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -10,7 +10,7 @@
 namespace talus {
 namespace {
 
-/// Places of the ring about node n in units of the node's size, and where its row begins.
+/// The positions of the ring about node n in units of the node's size, and the beginning of its row.
 template <int D>
 struct RingOf {
   RingOf(const Mesh<D>& mesh, Index n)
@@ -24,8 +24,8 @@ struct RingOf {
   std::vector<Vec<D>> r;
 };
 
-/// Directions along boundary facets: all if there are none, one along an edge, none in a corner.  Normals count as one where they differ
-/// by less than 30 degrees, as for walls.
+/// The directions along the boundary facets of a node: all if there are none, one along an edge, none in a corner.  Normals count as equal
+/// where they differ by less than 30 degrees, as for walls.
 template <int D>
 Eigen::Matrix<Real, D, Eigen::Dynamic> directions_along(const Mesh<D>& mesh, const std::vector<Facet>& facets)
 {
@@ -36,15 +36,16 @@ Eigen::Matrix<Real, D, Eigen::Dynamic> directions_along(const Mesh<D>& mesh, con
     const Vec<D> normal = mesh.area_vector(facet);
     spread += normal * normal.transpose() / normal.norm();
   }
-  const Real one_normal = 0.067;  // (1 - cos 30 degrees) / 2: second share of two equal facets at 30 degrees
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, D, D>> axes(spread / spread.trace());  // shares ascend
+  const Real one_normal = 0.067;  // (1 - cos 30 degrees) / 2: second eigenvalue of two equal facets at 30 degrees
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<Real, D, D>> axes(spread / spread.trace());  // eigenvalues ascend
   Index count = 0;
   while (count < D && axes.eigenvalues()[count] <= one_normal)
     ++count;
   return axes.eigenvectors().leftCols(count);
 }
 
-/// Whether the row of n may reach v: any neighbour if n lies inside, else those that lie on all walls of n, seen by the facets they share.
+/// Whether the row of n may contain v: any neighbour if n is an interior node, otherwise neighbours that lie on all walls of n, found by
+/// common facets.
 template <int D>
 bool reaches(const Mesh<D>& mesh, const std::vector<Facet>& of_n, const std::vector<Facet>& of_v, Eigen::Index free)
 {
@@ -57,7 +58,7 @@ bool reaches(const Mesh<D>& mesh, const std::vector<Facet>& of_n, const std::vec
   return !shared.empty() && directions_along(mesh, shared).cols() == free;
 }
 
-/// Weights a_v exp(lambda . y_v) / Z with sum of weights times y zero; empty where Newton's method does not find them.
+/// The weights a_v exp(lambda . y_v) / Z whose weighted sum of y is zero; empty if Newton's method does not find them.
 template <class Places>
 std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Places& y)
 {
@@ -79,16 +80,16 @@ std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Place
     mean /= total;
     for (Real& w : weights)
       w /= total;
-    if (mean.norm() < 1e-15)  // places are of the size of one
+    if (mean.norm() < 1e-15)  // positions are of order one
       return weights;
     Vector step = (second / total - mean * mean.transpose()).ldlt().solve(-mean);
     if (!step.allFinite())
       return {};
-    const Real longest = 1.5;  // the objective is convex, but far from a parabola where a node is not well surrounded
+    const Real longest = 1.5;  // the objective is convex, but not nearly quadratic where the neighbours of a node are one-sided
     if (step.norm() > longest)
       step *= longest / step.norm();
     else if (mean.norm() < 1e-13 && step.norm() < 1e-13)
-      return weights;  // round-off of the sums
+      return weights;  // converged to round-off
     lambda += step;
   }
   return {};
@@ -109,7 +110,7 @@ MaxentValues maxent_values(const Mesh<D>& mesh, Real alpha)
   std::vector<std::uint8_t> as_corner(static_cast<std::size_t>(mesh.n_nodes()), 0);
   parallel_for(mesh.n_nodes(), [&](Index n) {
     if (!mesh.is_whole(n))
-      return;  // another rank's
+      return;  // computed by another rank
     const RingOf<D> ring(mesh, n);
     const auto& here = facets[static_cast<std::size_t>(n)];
     const auto along = directions_along(mesh, here);

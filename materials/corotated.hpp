@@ -1,5 +1,5 @@
 #pragma once
-// Hooke's law in the corotated frame, with a volume term that resists inversion: the elasticity of many graphics codes.
+// Hooke's law in the corotated frame with a volume term that resists inversion: the elasticity of many graphics codes.
 #include <string_view>
 
 #include "materials/elasticity.hpp"
@@ -34,7 +34,8 @@ struct Corotated : Elasticity {
     return sym(kirchhoff) * T(1 / J);
   }
 
-  /// rho_0 c^2 <= 2 mu b_nn + lambda J^2: the volume term is linear along rank-one directions but for lambda (J - 1)^2 / 2.
+  /// An upper bound: rho_0 c^2 <= 2 mu b_nn + lambda J^2.  The volume term is linear along rank-one directions except for lambda (J - 1)^2
+  /// / 2.
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {

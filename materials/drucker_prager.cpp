@@ -13,37 +13,38 @@ constexpr Real never = std::numeric_limits<Real>::infinity();
 
 Real radians(Real degrees) noexcept { return degrees * (std::numbers::pi / 180); }
 
-/// Largest mean stress the cone allows.
+/// The largest mean stress of the cone [Pa].
 template <class T>
 T tip(const ConeOf<T>& cone) noexcept
 {
   return where(cone.q > 0, cone.k / cone.q, never);
 }
 
-/// A state of stress by its two measures, and how it was reached from the trial state.
+/// A stress state by its two invariants, and the plastic multiplier and opening that lead to it from the trial state.
 template <class T>
 struct Point {
   T mean, tau;            ///< Kirchhoff stress [Pa]
-  T multiplier, opening;  ///< plastic multiplier; logarithmic volume that opened
+  T multiplier, opening;  ///< plastic multiplier; increment of the opened logarithmic volume
   friend Point where(const MaskOf<T>& condition, const Point& a, const Point& b) noexcept
   {
     return {where(condition, a.mean, b.mean), where(condition, a.tau, b.tau), where(condition, a.multiplier, b.multiplier),
             where(condition, a.opening, b.opening)};
   }
 };
-/// Backward Euler from a trial state outside the yield surface.
+/// The return by backward Euler from a trial state outside the yield surface.
 template <class T>
 struct ReturnMap {
   const DruckerPrager::Constants& c;
   T plastic_strain;
   ConeOf<T> start = c.cone_at(plastic_strain);
-  T left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier until the residual cone
-  Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};        ///< of the cone by multiplier, while some is left
+  T left = sqrt3 * (c.softening_strain - plastic_strain);  ///< multiplier at which the residual cone is reached
+  Cone slope{c.slope.q / sqrt3, c.slope.k / sqrt3};        ///< change of the cone per multiplier until then
 
   ConeOf<T> cone_after(const T& multiplier) const noexcept { return c.cone_at(T(plastic_strain + multiplier * (1 / sqrt3))); }
 
-  /// Along the cone, tau falls by G and the mean stress by K q_psi per multiplier.  While the cone shrinks linearly the consistency
-  /// condition is a m^2 - b m + excess = 0, of which the smallest root counts; without one the strength drops to residual at once.
+  /// Return along the cone: tau decreases by G and the mean stress by K q_psi per multiplier.  While the cone softens linearly the
+  /// consistency condition is a m^2 - b m + excess = 0, of which the smallest root is taken; without a root the strength drops to residual
+  /// at once.
   Point<T> to_cone(const Point<T>& trial) const noexcept
   {
     using std::max, std::sqrt;
@@ -58,11 +59,11 @@ struct ReturnMap {
     return {trial.mean - c.bulk * c.q_psi * m, trial.tau - c.shear * m, m, 0};
   }
 
-  /// To the plane of the cut-off, its edge with the cone, or the tip of the cone, by opening.
+  /// Return by opening to the plane of the cut-off, its edge with the cone, or the tip of the cone.
   Point<T> to_opening(const Point<T>& trial, const T& cutoff) const noexcept
   {
     using std::max;
-    const T plane = where(cutoff < never, cutoff, 0);  // so that zero slopes do not meet infinity
+    const T plane = where(cutoff < never, cutoff, 0);  // avoids zero slope times infinity
     const T excess = trial.tau + start.q * plane - start.k;
     T m = excess / (c.shear + slope.k - slope.q * plane);
     m = where(m >= 0 && m <= left, m, (trial.tau + c.residual.q * plane - c.residual.k) / c.shear);
@@ -107,7 +108,7 @@ Cone DruckerPrager::cone_of(Real friction, Real soil_cohesion) const noexcept
     case ConeMatch::inner: return scaled(2 * sqrt3 / (3 + sine));
     case ConeMatch::plane_strain: break;
   }
-  const Real q_psi = dilation_slope();  // flow without strain out of plane fixes where on the circle the stress sits
+  const Real q_psi = dilation_slope();  // flow without strain out of plane determines the position of the stress on the circle
   return scaled(1 / (std::sqrt(1 - q_psi * q_psi / 3) + q_psi * sine / 3));
 }
 
@@ -147,20 +148,20 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
     return unpack(scale_and_shift(2 * c.shear * per_volume, shear_strain, trial.mean * per_volume));
   }
 
-  // What opened before fills first, and carries no tension while it does.
+  // Volume that was opened before closes first; the material has no tension meanwhile.
   const T opened = get(state, &State::opened_volume), plastic_strain = get(state, &State::plastic_strain);
   const auto closing = opened > 0 && trial.mean < 0;
   trial.mean = where(closing, trial.mean + c.bulk * opened, trial.mean);
   const ReturnMap<T> map{c, plastic_strain};
   const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
-  const T saved = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // no 0 / 0 beside the others
+  const T saved = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // avoids 0 / 0 in lanes without shear
   if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; any_of(changed)) {
     const Sym3Of<T> left = expm1(scale_and_shift(2 * saved, shear_strain, end.mean * (2 / (3 * c.bulk))));
     put(state, &State::elastic_left, where(changed, left, b));
     put(state, &State::plastic_strain, T(plastic_strain + end.multiplier * (1 / sqrt3)));
     const T work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
-    // Associated flow without cohesion dissipates nothing, up to rounding.
+    // Associated flow without cohesion dissipates nothing, up to round-off.
     put(state, &State::plastic_work, T(get(state, &State::plastic_work) + max(work, T(0))));
     put(state, &State::opened_volume, T(where(closing, 0, opened) + end.opening));
   } else {

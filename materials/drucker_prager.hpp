@@ -1,5 +1,5 @@
 #pragma once
-// Soil and sand: a cone in stress space on top of logarithmic elasticity, with tension cut-off, dilation and softening.
+// Soil and sand: a cone in stress space on logarithmic elasticity, with tension cut-off, dilation and softening.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace talus {
 
-/// Which cone stands for a Mohr-Coulomb soil: through its corners of triaxial compression (outer) or extension (inner), or with
-/// its strength in plane strain.
+/// The cone that approximates a Mohr-Coulomb soil: through its corners of triaxial compression (outer) or extension (inner), or with equal
+/// strength in plane strain.
 enum class ConeMatch : std::uint8_t { outer, inner, plane_strain };
 constexpr auto enum_names(ConeMatch) { return std::array<std::string_view, 3>{"outer", "inner", "plane_strain"}; }
 
-/// Yield where tau + q s = k with tau = sqrt(J2) and s = tr/3 (tension positive) of the Kirchhoff stress.
+/// A cone: yield where tau + q s = k with tau = sqrt(J2) and s = tr/3 (tension positive) of the Kirchhoff stress.
 template <class T>
 struct ConeOf {
   T q;  ///< slope [-]
@@ -23,10 +23,10 @@ struct ConeOf {
 };
 using Cone = ConeOf<Real>;
 
-/// Drucker-Prager with non-associated flow (g = tau + q_psi s) in Kirchhoff stress and logarithmic strain, return by backward Euler;
-/// isotropy makes the return act on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens where the
-/// mean stress reaches the cut-off or the tip of the cone: the opened volume is kept, and closes at zero mean stress before
-/// compression is felt again.  Formulas and numbers: docs/reference/materials.md.
+/// Drucker-Prager with non-associated flow (g = tau + q_psi s) in Kirchhoff stress and logarithmic strain, with the return by backward
+/// Euler; for isotropic elasticity the return acts on the elastic logarithmic strain itself (Simo 1992, CMAME 99, 61).  The material opens
+/// where the mean stress reaches the cut-off or the tip of the cone: the opened volume is stored and must close at zero mean stress before
+/// the material is compressed again.  Formulas and numbers: docs/reference/materials.md.
 struct DruckerPrager : ConePlastic, SoilStrength {
   static constexpr std::string_view name = "drucker_prager";
   static constexpr std::string_view summary =
@@ -46,28 +46,28 @@ struct DruckerPrager : ConePlastic, SoilStrength {
         softening_fields<Law>("largest mean stress; without it the tip of the cone",
                               "plastic_strain at which the residual strength is reached, linear before; without it nothing softens"));
   }
-  /// Rules between parameters.
+  /// Appends the violated rules between parameters.
   void check(std::vector<std::string>& problems) const;
-  /// That of the Mohr-Coulomb soil that is matched.
+  /// Divides the strength of the matched Mohr-Coulomb soil by a factor.
   void divide_strength(Real factor) noexcept;
-  /// Largest mean stress before anything softens [Pa].
+  /// The largest mean stress before softening [Pa].
   Real tip_of_strength() const noexcept;
 
-  /// Cone of a friction angle [deg] and a cohesion [Pa] under `match`, for the dilation angle of this law.
+  /// The cone for a friction angle [deg] and a cohesion [Pa] under `match`, with the dilation angle of this law.
   Cone cone_of(Real friction, Real soil_cohesion) const noexcept;
-  /// Cone after a plastic strain [-].
+  /// The cone after a plastic strain [-].
   Cone cone(Real plastic_strain) const noexcept;
   /// q_psi, the slope of the plastic potential [-].
   Real dilation_slope() const noexcept;
 
-  /// What follows from the parameters alone: trigonometry that costs more than the rest of an update.
+  /// Quantities that depend on the parameters only: their trigonometry costs more than the rest of an update.
   struct Constants {
     Real bulk, shear;       ///< Pa
-    Cone peak, residual;    ///< before and after softening
-    Cone slope;             ///< of the cone by plastic strain while it softens
-    Real softening_strain;  ///< infinite if nothing softens
+    Cone peak, residual;    ///< cones before and after softening
+    Cone slope;             ///< change of the cone per plastic strain while it softens
+    Real softening_strain;  ///< plastic strain at which softening ends; infinite without softening
     Real q_psi;             ///< slope of the plastic potential [-]
-    Real cutoff;            ///< Pa, infinite if there is only the tip of the cone
+    Real cutoff;            ///< largest mean stress [Pa]; infinite if only the tip of the cone limits it
     template <class T>
     ConeOf<T> cone_at(const T& plastic_strain) const noexcept
     {
@@ -79,7 +79,8 @@ struct DruckerPrager : ConePlastic, SoilStrength {
 
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
-  /// tau + q s - k of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is that over J.
+  /// The yield function tau + q s - k [Pa] of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is the
+  /// Kirchhoff stress over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Isotropic elastic constants, given in whichever pair the user has.
+// Isotropic elastic constants, given by any pair.
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,20 +8,20 @@
 
 namespace talus {
 
-/// All constants of an isotropic solid at small strain, [Pa] but for Poisson's ratio.
+/// All elastic constants of an isotropic solid at small strain [Pa], and Poisson's ratio [-].
 struct Moduli {
   Real youngs, poisson, bulk, shear, lambda;
-  /// lambda + 2 mu, the modulus of uniaxial strain.
+  /// lambda + 2 mu, the modulus of uniaxial strain [Pa].
   Real confined() const noexcept { return lambda + 2 * shear; }
 };
 
-/// One of the pairs E nu, K G, lambda G, E K, G nu: what elastic laws inherit.
+/// The elastic parameters that laws inherit: one of the pairs E nu, K G, lambda G, E K, G nu.
 struct Elasticity {
   std::optional<Real> youngs_modulus, poisson_ratio, bulk_modulus, shear_modulus, lame_lambda;
 
-  /// Exactly one pair, and a stable one: -1 < nu < 0.5.
+  /// Appends errors unless exactly one pair is given and it is stable: -1 < nu < 0.5.
   void check(std::vector<std::string>& problems) const;
-  /// Of a pair that passes check(); NaN otherwise.
+  /// The constants from a pair that passes check(); NaN otherwise.
   Moduli moduli() const noexcept;
 };
 
@@ -39,7 +39,7 @@ constexpr auto elastic_fields()
       constant("lame_lambda", &Law::lame_lambda, any, "Pa", "first constant of Lame; with shear_modulus")};
 }
 
-/// The usual pair: E [Pa] and nu in (-1, 0.5).
+/// The parameters with E [Pa] and nu in (-1, 0.5).
 Elasticity elasticity(Real youngs_modulus, Real poisson_ratio);
 
 }  // namespace talus

@@ -10,11 +10,11 @@
 
 namespace talus {
 
-/// Pressure from compression and energy, about the Hugoniot shock speed = c0 + s (particle speed).  With e = 1 - V/V0 and the internal
-/// energy E per initial volume
+/// Pressure from compression and internal energy, relative to the Hugoniot with shock speed = c0 + s (particle speed).  With e = 1 - V/V0
+/// and the internal energy E per initial volume
 ///     p = rho0 c0^2 e (1 - gamma e / 2) / (1 - s e)^2 + gamma E    in compression,
 ///     p = rho0 c0^2 (V0/V - 1) + gamma E                           in tension.       [Meyers 1994, ch. 5]
-/// Beyond 90 % of the pole e = 1/s the cold part goes on along its tangent.
+/// Beyond 90 % of the pole e = 1/s the cold part is continued along its tangent.
 struct MieGruneisen {
   Real c0{}, s{}, gamma{};
   static constexpr auto fields()
@@ -26,12 +26,12 @@ struct MieGruneisen {
   }
 };
 
-/// The same with its density.
+/// The curve together with its density.
 struct MieGruneisenCurve {
   Real bulk;  ///< rho0 c0^2 [Pa]
   Real s, gamma;
-  Real straight;                           ///< the compression where the straight part begins
-  Real straight_pressure, straight_slope;  ///< there [Pa]
+  Real straight;                           ///< compression at which the tangent begins
+  Real straight_pressure, straight_slope;  ///< pressure and slope there [Pa]
 
   MieGruneisenCurve(const MieGruneisen& solid, Real density) noexcept
       : bulk(density * solid.c0 * solid.c0), s(solid.s), gamma(solid.gamma), straight(0.9 / s)
@@ -41,7 +41,7 @@ struct MieGruneisenCurve {
     straight_slope = bulk * (1 + (s - gamma) * straight) / (margin * margin * margin);
   }
 
-  /// Pressure without energy [Pa] at the compression e = 1 - V/V0.
+  /// The pressure without internal energy [Pa] at the compression e = 1 - V/V0.
   template <class T = Real>
   T cold_pressure(const std::type_identity_t<T>& e) const noexcept
   {
@@ -50,7 +50,7 @@ struct MieGruneisenCurve {
         where(e > straight, straight_pressure + straight_slope * (e - straight), bulk * e * (1 - 0.5 * gamma * e) / (margin * margin));
     return where(e < 0, bulk * e / (1 - e), compressed);
   }
-  /// The compression that has a cold pressure [Pa] on the curved part; NaN in tension beyond -bulk, which no volume has.
+  /// The compression with a given cold pressure [Pa] on the curved part; NaN for tension beyond -bulk, which no volume has.
   Real compression_at(Real pressure) const noexcept
   {
     if (pressure < 0)
@@ -58,7 +58,7 @@ struct MieGruneisenCurve {
     const Real b = bulk + 2 * s * pressure, discriminant = bulk * (bulk + 2 * pressure * (2 * s - gamma));
     return 2 * pressure / (b + std::sqrt(discriminant));
   }
-  /// Upper bound of the slope of pressure by e along the isentrope through a state on the Hugoniot or below it [Pa].
+  /// An upper bound of dp/de along the isentrope [Pa] through a state on the Hugoniot or below it.
   template <class T = Real>
   T stiffness(const std::type_identity_t<T>& e) const noexcept
   {

@@ -1,5 +1,5 @@
 #pragma once
-// Elasticity in logarithmic strain: what Drucker-Prager is inside its cone.
+// Elasticity in logarithmic strain: the elastic part of Drucker-Prager.
 #include <string_view>
 
 #include "materials/elasticity.hpp"
@@ -30,8 +30,8 @@ struct Hencky : Elasticity {
     return all_of(J > 0) ? Mat3Of<T>(kirchhoff(in.F, c) * T(1 / J)) : no_answer_somewhere(*this, in, state, c);
   }
 
-  /// Along a principal axis n rho_0 c^2 = lambda + 2 mu - J stress_nn; across, from n towards m, mu r ln(r) / (r - 1) with r = b_n / b_m,
-  /// which is at most mu (1 + ln r).
+  /// The wave moduli: along a principal axis n, rho_0 c^2 = lambda + 2 mu - J stress_nn; for shear across it, from n towards m, mu r ln(r)
+  /// / (r - 1) with r = b_n / b_m, which is at most mu (1 + ln r).
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {

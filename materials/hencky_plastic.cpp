@@ -58,7 +58,7 @@ void SoilStrength::check(std::vector<std::string>& problems) const
 
 void SoilStrength::divide_shear_strength(Real factor) noexcept
 {
-  const auto angle_over = [factor](Real degrees) {  // of which the tangent is that of `degrees` over the factor
+  const auto angle_over = [factor](Real degrees) {  // the angle whose tangent is that of `degrees` divided by the factor
     constexpr Real degree = std::numbers::pi / 180;
     return factor == 1 ? degrees : std::atan(std::tan(degrees * degree) / factor) / degree;
   };

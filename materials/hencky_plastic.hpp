@@ -1,5 +1,5 @@
 #pragma once
-// What plastic laws on logarithmic elasticity share: density, the state that a given stress stands for, waves; and the strength of soils.
+// Common parts of plastic laws on logarithmic elasticity: density, initial state of a given stress, wave speeds; and the strength of soils.
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,18 +9,18 @@
 
 namespace talus {
 
-/// An isotropic law whose Kirchhoff stress is linear in the elastic logarithmic strain, which its history keeps as `elastic_left`.  The
-/// constants of the law hold the moduli `bulk` and `shear` [Pa].
+/// An isotropic law whose Kirchhoff stress is linear in the elastic logarithmic strain, stored in the history as `elastic_left`.  The
+/// constants of the law contain the moduli `bulk` and `shear` [Pa].
 struct HenckyPlastic : Elasticity {
   Real density{};  ///< kg/m^3 at rest
 
-  /// History of the elastic strain under which the Kirchhoff stress is `stress` [Pa].
+  /// Sets the elastic strain in the history for which the Kirchhoff stress is `stress` [Pa].
   template <class State>
   void prestress(const Mat3& stress, State& state) const noexcept
   {
     state.elastic_left = elastic_left_under(stress);
   }
-  /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
+  /// The modulus rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, with the compression of uniaxial strain of the same volume.
   template <class T, class Constants>
   T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
   {
@@ -33,7 +33,7 @@ struct HenckyPlastic : Elasticity {
   T wave_speed_of(const Mat3Of<T>& F, Real bulk, Real shear) const noexcept;
 };
 
-/// What soil remembers that opens under tension: the opened volume is kept, and closes before compression is felt again.
+/// The history of soil that opens under tension: the opened volume is stored, and must close before the material is compressed again.
 struct SoilState {
   Sym3 elastic_left = Sym3::Zero();
   Real plastic_strain = 0, plastic_work = 0, opened_volume = 0;
@@ -48,32 +48,33 @@ struct SoilState {
   }
 };
 
-/// Such a law that flows on a cone, tau + q s = k with tau = sqrt(J2) and s = tr/3 (tension positive) of the Kirchhoff stress.
+/// A Hencky law with flow on a cone, tau + q s = k with tau = sqrt(J2) and s = tr/3 (tension positive) of the Kirchhoff stress.
 struct ConePlastic : HenckyPlastic {
   using State = SoilState;
-  /// That of HenckyPlastic, but for the rounding of the volume strain.
+  /// As HenckyPlastic::prestress, but without rounding of the volume strain.
   void prestress(const Mat3& stress, State& state) const noexcept;
 
  protected:
-  /// tau + q s - k of the elastic strain of `state`.
+  /// The yield function tau + q s - k [Pa] of the elastic strain in `state`.
   Real cone_yield(const State& state, Real bulk, Real shear, Real q, Real k) const noexcept;
 };
 
-/// Strength of a Mohr-Coulomb soil and how it softens: angles in degrees, cohesions and cut-off in Pa.
+/// The strength of a Mohr-Coulomb soil and its softening: angles in degrees, cohesions and cut-off in Pa.
 struct SoilStrength {
   Real friction_angle{}, cohesion{}, dilation_angle = 0;
   std::optional<Real> tension_cutoff, residual_friction_angle, residual_cohesion, softening_strain;
 
   Real softened_friction_angle() const noexcept { return residual_friction_angle.value_or(friction_angle); }
   Real softened_cohesion() const noexcept { return residual_cohesion.value_or(cohesion); }
-  /// What contradicts itself, in words.
+  /// Appends the contradictions between parameters.
   void check(std::vector<std::string>& problems) const;
 
  protected:
-  /// c / F and tan(phi) / F, at the peak and after softening: on every plane c + s tan(phi) falls to its F-th part.  The tip of the
-  /// surface stays where it is, at c / tan(phi) by its normal stress.  So does the dilation, as far as friction is left to dilate with.
+  /// Divides c and tan(phi) by a factor F, at the peak and after softening: on every plane c + s tan(phi) decreases to 1/F of its value.
+  /// The tip of the surface, at the normal stress c / tan(phi), does not move.  The dilation stays as long as it does not exceed the
+  /// friction.
   void divide_shear_strength(Real factor) noexcept;
-  /// The cut-off falls like a cohesion, and ends at the tip where a factor below 1 lifts it there.
+  /// Divides the cut-off by a factor, like a cohesion; for a factor below 1 it is at most the tip.
   void divide_cutoff(Real factor, Real tip) noexcept;
 };
 

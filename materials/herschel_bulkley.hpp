@@ -1,5 +1,5 @@
 #pragma once
-// Mud, debris, fresh concrete: a fluid that flows above a yield stress, with a viscosity that depends on the rate.
+// Mud, debris flows and fresh concrete: a fluid with a yield stress and a viscosity that depends on the shear rate.
 #include <fmt/format.h>
 
 #include <limits>
@@ -13,9 +13,9 @@
 namespace talus {
 
 /// stress = -p(J) I + 2 eta dev(D),    eta = k g^(n-1) + tau_y (1 - exp(-m g)) / g,    g = sqrt(2 dev(D):dev(D)).
-/// [Herschel & Bulkley 1926, Kolloid-Z. 39, 291; Papanastasiou 1987, J. Rheol. 31, 385].  Below yield the fluid creeps with the
-/// viscosity tau_y m.  The power law keeps its viscosity below g = 1/m if n < 1, above g = highest_rate if n > 1: so the viscosity is
-/// bounded, and with it the step.  Bingham's fluid is n = 1.
+/// [Herschel & Bulkley 1926, Kolloid-Z. 39, 291; Papanastasiou 1987, J. Rheol. 31, 385].  Below yield the fluid creeps with the viscosity
+/// tau_y m.  The viscosity of the power law is constant below g = 1/m if n < 1, and above g = highest_rate if n > 1, so that the viscosity
+/// and with it the step is bounded.  n = 1 is Bingham's fluid.
 struct HerschelBulkley : WeaklyCompressible {
   static constexpr std::string_view name = "herschel_bulkley";
   static constexpr std::string_view summary =
@@ -36,7 +36,7 @@ struct HerschelBulkley : WeaklyCompressible {
             optional("highest_rate", &Law::highest_rate, positive, "1/s",
                      "shear rate above which the power law keeps its viscosity; for a flow_index above 1, and needed there")});
   }
-  /// A power law that thickens needs an end.
+  /// Appends an error if a shear-thickening law has no highest rate.
   void check(std::vector<std::string>& problems) const
   {
     if (flow_index > 1 && !highest_rate)
@@ -45,7 +45,7 @@ struct HerschelBulkley : WeaklyCompressible {
       problems.push_back(fmt::format("highest_rate needs a flow_index above 1, here {}", flow_index));
   }
 
-  /// The yield stress; what flows is as viscous as before.
+  /// Divides the yield stress by a factor; the viscosity of the flow stays.
   void divide_strength(Real factor) noexcept { yield_stress /= factor; }
 
   using State = FluidHistory;
@@ -57,7 +57,7 @@ struct HerschelBulkley : WeaklyCompressible {
     return {.slowest = flow_index < 1 ? 1 / regularisation : 0, .fastest = highest_rate.value_or(std::numeric_limits<Real>::infinity())};
   }
 
-  /// Pa s at a shear rate [1/s].
+  /// The viscosity [Pa s] at a shear rate [1/s].
   template <class T = Real>
   T viscosity(const std::type_identity_t<T>& rate, const Constants& c) const noexcept
   {
@@ -87,7 +87,8 @@ struct HerschelBulkley : WeaklyCompressible {
   {
     return sound_speed<T>(F.determinant());
   }
-  /// 4/3 of the largest viscosity over density; that of a shear-thickening fluid is counted as if rest and highest_rate met.
+  /// 4/3 of the largest viscosity over density [m^2/s]; for a shear-thickening fluid the sum of the viscosities at rest and at
+  /// highest_rate.
   Real diffusivity(const Constants& c) const noexcept
   {
     const Real power = std::pow(flow_index > 1 ? c.fastest : c.slowest, flow_index - 1);

@@ -18,13 +18,13 @@ T homologous(const JohnsonCookMetal& metal, const T& temperature, const MetalCon
   return min(max(T((temperature - metal.room_temperature) * c.range_inverse), T(0)), T(1));
 }
 
-/// Strength [Pa of Cauchy stress], or what it gains.
+/// Strength [Pa of Cauchy stress], or its slope.
 template <class T>
 struct Strength {
   T value, by_strain, by_temperature;
 };
 
-/// Strength at slow rates, fast near the state before the step.
+/// The strength at slow rates, evaluated fast near the state before the step.
 template <class T>
 struct SlowStrength {
   const JohnsonCookMetal& metal;
@@ -37,7 +37,7 @@ struct SlowStrength {
         hardening(plastic_strain, of.hardening_exponent),
         softening(homologous(of, temperature, constants), of.thermal_exponent)
   {}
-  /// The slopes are those at positive plastic strain.
+  /// The strength; its slopes are those at positive plastic strain.
   Strength<T> operator()(const T& plastic_strain, const T& temperature) const noexcept
   {
     const T heat = homologous(metal, temperature, c);
@@ -52,27 +52,27 @@ struct SlowStrength {
   }
 };
 
-/// Plastic flow of one step.
+/// Results of the plastic flow of one step.
 template <class T>
 struct PlasticFlow {
-  T strain = 0;  ///< plastic
+  T strain = 0;  ///< plastic strain of the step [-]
   T mises = 0;   ///< Cauchy stress at the end [Pa]
-  T work = 0;    ///< per initial volume [J/m^3]
+  T work = 0;    ///< plastic work per initial volume [J/m^3]
 };
 
-/// Backward Euler from a trial stress above the strength before the step.
+/// The return by backward Euler from a trial stress above the strength before the step.
 template <class T>
 struct JohnsonCookReturn {
   const JohnsonCookMetal& metal;
   const MetalConstants& c;
   const SlowStrength<T>& slow;
-  Strength<T> start;                      ///< before the step
-  T J, J_before;                          ///< at the end of the step and before
-  T mises, stiffness;                     ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
-  T plastic_strain, temperature;          ///< before the step
-  Real relative;                          ///< plastic rate over the reference, by plastic strain of the step
-  T tried = 0;                            ///< plastic strain of the step
-  ValueAndSlopeOf<T> tried_factor{1, 0};  ///< of its rate
+  Strength<T> start;                      ///< strength before the step
+  T J, J_before;                          ///< volume ratios at the end of the step and before
+  T mises, stiffness;                     ///< von Mises stress (Cauchy) of the trial state and its decrease per plastic strain [Pa]
+  T plastic_strain, temperature;          ///< values before the step
+  Real relative;                          ///< plastic rate over the reference rate, per plastic strain of the step
+  T tried = 0;                            ///< last plastic strain of the step that was tried
+  ValueAndSlopeOf<T> tried_factor{1, 0};  ///< factor of its rate
 
   ValueAndSlopeOf<T> rate_factor(const T& x) const noexcept
   {
@@ -83,10 +83,10 @@ struct JohnsonCookReturn {
       return {1, 0};
     return {where(fast, 1 + metal.rate_coefficient * log(rate), 1), where(fast, metal.rate_coefficient / above_nothing(x), 0)};
   }
-  /// Trapezoidal in the Kirchhoff stress: the strength before and after the step, at the rate of the step.
+  /// The plastic work by the trapezoidal rule in the Kirchhoff stress: strength before and after the step, at the rate of the step.
   T work(const T& x, const T& factor, const T& end) const noexcept { return 0.5 * x * (J_before * factor * start.value + J * end); }
 
-  /// Stress less strength if the plastic strain of the step is x.
+  /// Stress minus strength for the plastic strain x of the step.
   ValueAndSlopeOf<T> operator()(const T& x) noexcept
   {
     const ValueAndSlopeOf<T> factor = rate_factor(x);
@@ -101,7 +101,7 @@ struct JohnsonCookReturn {
   PlasticFlow<T> flow(const Mat3Of<T>& stress_before, const MaskOf<T>& flows) noexcept
   {
     using std::max;
-    const T going_on = max(start.value, von_mises(stress_before));  // flow that goes on hardens from there at the same rate
+    const T going_on = max(start.value, von_mises(stress_before));  // continuing flow hardens from the present stress at the same rate
     const T hardening = start.by_strain + start.by_temperature * c.heat * J * going_on;
     const T x = positive_root<T>(*this, mises / stiffness, (mises - going_on) / (stiffness + hardening), flows);
     const T factor = tried_factor.value + tried_factor.slope * (x - tried);  // exact: the last step is 1e-6 of x
@@ -110,13 +110,13 @@ struct JohnsonCookReturn {
   }
 };
 
-/// Internal energy of one step by the trapezoidal rule, which makes it linear in the pressure at the end.
+/// The internal energy of one step by the trapezoidal rule, which makes it linear in the pressure at the end.
 template <class T>
 struct EnergyStep {
-  T volume_change;  ///< by initial volume
-  T rest;           ///< energy at the end, but for the work of the pressure there [J/m^3]
+  T volume_change;  ///< change per initial volume
+  T rest;           ///< energy at the end without the work of the pressure at the end [J/m^3]
 
-  /// What shear stores is known by the Kirchhoff stress `mises`, mises^2 / (6 G); what it loses is plastic work.
+  /// The elastic shear energy is known from the Kirchhoff stress `mises`, mises^2 / (6 G); the plastic work is the dissipated part.
   EnergyStep(const IncrementOf<T>& in, const T& change, const T& energy_before, const T& mises_before, const T& mises,
              const T& plastic_work, Real shear) noexcept
       : volume_change(change)
@@ -125,7 +125,7 @@ struct EnergyStep {
     rest = energy_before + stored + plastic_work + (in.stress.trace() / 6 - in.viscous) * volume_change;
   }
   T energy(const T& pressure) const noexcept { return rest - 0.5 * pressure * volume_change; }
-  /// A step that compresses by more than 1/gamma is none; its pressure stays finite.
+  /// The pressure at the end.  A step that compresses by more than 1/gamma is not resolved; its pressure stays finite.
   T pressure(const MieGruneisenCurve& curve, const T& compression) const noexcept
   {
     using std::max;
@@ -141,7 +141,7 @@ T JohnsonCookDamage::fracture_strain(const std::type_identity_t<T>& triaxiality,
 {
   using std::exp, std::log, std::max, std::min;
   constexpr Real least = 1e-6;
-  constexpr Real largest_exponent = 100;  // as good as never; keeps zero times infinity away
+  constexpr Real largest_exponent = 100;  // practically infinite, but avoids zero times infinity
   const T by_pressure = d1 + d2 * exp(min(T(d3 * triaxiality), T(largest_exponent)));
   const T by_rate = 1 + d4 * log(max(relative_rate, T(1)));
   const T by_heat = 1 + d5 * homologous;
@@ -241,8 +241,9 @@ void JohnsonCookMetal::prestress(const Mat3& stress, Sym3& elastic_left) const n
   elastic_left = elastic_left_of(dev(stress), c.shear, volume_strain);
 }
 
-/// rho_0 c^2 = J^2 dp/de + 4 G / 3 - (Kirchhoff deviator)_nn along the direction n of compression, that deviator taken as in uniaxial
-/// strain with the same volume; it works on the energy as well, hence 1 + gamma.  Without a curve as in Drucker-Prager.
+/// The modulus rho_0 c^2 = J^2 dp/de + 4 G / 3 - (Kirchhoff deviator)_nn along the direction n of compression, with the deviator of
+/// uniaxial strain of the same volume.  The deviator changes the energy as well, hence the factor 1 + gamma.  Without an equation of state
+/// the modulus is that of Drucker-Prager.
 template <class T>
 T JohnsonCookMetal::wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
 {

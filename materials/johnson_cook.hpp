@@ -1,5 +1,5 @@
 #pragma once
-// Metal under impact: strength by plastic strain, rate and temperature, heating, failure, equation of state.
+// Metals under impact: strength depending on plastic strain, rate and temperature, heating, failure, equation of state.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,8 +12,8 @@
 
 namespace talus {
 
-/// Plastic strain at fracture: [d1 + d2 exp(d3 t)] [1 + d4 ln(rate*)] [1 + d5 T*], t the mean stress over the von Mises stress, positive
-/// in tension; never below 1e-6.       [Johnson & Cook 1985, Eng. Fract. Mech. 21, 31]
+/// The plastic strain at fracture, [d1 + d2 exp(d3 t)] [1 + d4 ln(rate*)] [1 + d5 T*], where t is the mean stress over the von Mises
+/// stress, positive in tension; at least 1e-6.  [Johnson & Cook 1985, Eng. Fract. Mech. 21, 31]
 struct JohnsonCookDamage {
   Real d1{}, d2{}, d3{}, d4{}, d5{};
   static constexpr auto fields()
@@ -35,7 +35,7 @@ struct JohnsonCookDamage {
                     const std::type_identity_t<T>& homologous) const noexcept;
 };
 
-/// What the four kinds of the law have in common: parameters and formulas.  Formulas and numbers: docs/reference/materials.md.
+/// Parameters and formulas that the four variants of the law have in common.  Formulas and numbers: docs/reference/materials.md.
 struct JohnsonCookMetal : Elasticity {
   Real density{}, yield_stress{}, hardening_coefficient{}, hardening_exponent{}, rate_coefficient{}, reference_rate = 1, thermal_exponent{};
   Real room_temperature{}, melting_temperature{}, specific_heat{}, heat_fraction = 0.9;
@@ -44,7 +44,7 @@ struct JohnsonCookMetal : Elasticity {
   std::optional<MieGruneisen> mie_gruneisen;
 
   struct Constants {
-    Real bulk, shear;    ///< Pa; the bulk modulus rules where there is no curve
+    Real bulk, shear;    ///< Pa; the bulk modulus is used where there is no equation of state
     Real heat;           ///< heat_fraction / (density specific_heat) [K m^3/J]
     Real range_inverse;  ///< 1 / (melting - room temperature) [1/K]
     Real rate_inverse;   ///< 1 / reference_rate [s]
@@ -52,35 +52,35 @@ struct JohnsonCookMetal : Elasticity {
   };
   Constants constants() const noexcept;
   void check(std::vector<std::string>& problems) const;
-  /// At every plastic strain, rate and temperature; strain at fracture and pressure stay.
+  /// Divides the strength by a factor at every plastic strain, rate and temperature; fracture strain and pressure stay.
   void divide_strength(Real factor) noexcept
   {
     yield_stress /= factor;
     hardening_coefficient /= factor;
   }
 
-  /// Strength at a plastic strain [-], plastic strain rate [1/s] and temperature [K], in Pa of Cauchy stress.
+  /// The strength [Pa of Cauchy stress] at a plastic strain [-], plastic strain rate [1/s] and temperature [K].
   Real flow_stress(Real plastic_strain, Real plastic_rate, Real temperature) const noexcept;
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept;
-  /// Of heat.
+  /// The diffusivity of heat [m^2/s].
   Real diffusivity(const Constants&) const noexcept { return conductivity ? *conductivity / (density * specific_heat) : 0; }
 
  protected:
-  /// The temperature a history says [K]: that of the parameters while it says nothing.
+  /// The temperature in a history [K]; that of the parameters if the history has none.
   template <class T>
   T started(const T& temperature) const noexcept
   {
     return where(temperature > 0, temperature, initial_temperature.value_or(room_temperature));
   }
-  /// The history of a particle, or of several.  What a kind does not keep stays zero.
+  /// The history of a particle or of several.  Values that a variant does not store stay zero.
   template <class T>
   struct Memory {
     Sym3Of<T> elastic_left;
     T plastic_strain, plastic_work, temperature, damage, energy;
     bool keeps_damage, keeps_energy;
   };
-  /// Nothing, and no change of the memory, if somewhere there is no answer.
+  /// Returns nothing, and changes no history, if the law has no solution in some lane.
   template <class T>
   std::optional<Mat3Of<T>> update(const IncrementOf<T>& in, Memory<T>& memory, const Constants& c) const noexcept;
   void prestress(const Mat3& stress, Sym3& elastic_left) const noexcept;
@@ -99,10 +99,11 @@ struct EnergyHistory {
 template <>
 struct EnergyHistory<false> {};
 
-/// Johnson & Cook's strength on logarithmic elasticity, return by backward Euler.  The Cauchy stress yields where
-///     sqrt(3 J2) = (A + B p^n) (1 + C ln(max(rate / reference_rate, 1))) (1 - T*^m),
-/// p the plastic strain, `rate` that of the step, T* = (T - T_room) / (T_melt - T_room) within [0, 1].  Plastic work heats the particle
-/// within the same solve, by the trapezoidal rule.  History is what the optional groups need: `with_damage`, `with_energy`.
+/// The strength of Johnson & Cook on logarithmic elasticity, with the return by backward Euler.  The Cauchy stress yields where
+///     sqrt(3 J2) = (A + B p^n) (1 + C ln(max(rate / reference_rate, 1))) (1 - T*^m)
+/// with the plastic strain p, the rate of the step and T* = (T - T_room) / (T_melt - T_room) within [0, 1].  Plastic work heats the
+/// particle within the same solution, by the trapezoidal rule.  The history contains what the optional groups need: `with_damage`,
+/// `with_energy`.
 template <bool with_damage, bool with_energy>
 struct JohnsonCookOf : JohnsonCookMetal {
   static constexpr std::string_view name = "johnson_cook";
@@ -139,7 +140,7 @@ struct JohnsonCookOf : JohnsonCookMetal {
   struct State : DamageHistory<with_damage>, EnergyHistory<with_energy> {
     Sym3 elastic_left = Sym3::Zero();
     Real plastic_strain = 0, plastic_work = 0;
-    Real temperature = 0;  ///< 0 until the first step: then that of the parameters
+    Real temperature = 0;  ///< 0 before the first step: then that of the parameters
     static constexpr auto fields()
     {
       return std::tuple_cat(
@@ -169,7 +170,7 @@ struct JohnsonCookOf : JohnsonCookMetal {
     }
   };
 
-  /// History of a particle at rest, with its temperature.
+  /// The history of a particle at rest, with its temperature.
   State initial_state() const noexcept
   {
     State state;
@@ -205,7 +206,8 @@ struct JohnsonCookOf : JohnsonCookMetal {
     return *stress;
   }
   void prestress(const Mat3& stress, State& state) const noexcept { JohnsonCookMetal::prestress(stress, state.elastic_left); }
-  /// sqrt(3 J2) less the strength at rates up to the reference, nothing after failure.  Above zero, by what the rate adds, in faster flow.
+  /// sqrt(3 J2) minus the strength at rates up to the reference rate [Pa]; zero after failure.  In fast flow it is positive by the effect
+  /// of the rate.
   Real yield(const Mat3& stress, const State& state) const noexcept
   {
     if constexpr (with_damage)
@@ -215,7 +217,7 @@ struct JohnsonCookOf : JohnsonCookMetal {
   }
 
   using Kinds = TypeList<JohnsonCookOf<false, false>, JohnsonCookOf<true, false>, JohnsonCookOf<false, true>, JohnsonCookOf<true, true>>;
-  /// The kind that keeps only the history that the groups ask for.
+  /// The variant that stores only the history that the optional groups need.
   auto kind() const
   {
     using Any =

@@ -1,14 +1,14 @@
 #pragma once
-// Parameters of every law for what runs over all of them: `talus bench`, contract tests, scenes of tests.  A law that is missing here does
+// Parameters of every law for tools that run over all laws: `talus bench`, contract tests, scenes of tests.  A law without an example does
 // not compile.
 #include "materials/laws.hpp"
 
 namespace talus {
 
-/// Young's modulus of every example, or the stiffness that stands for it [Pa].
+/// Young's modulus of every example, or the equivalent stiffness [Pa].
 inline constexpr Real example_stiffness = 1e7;
 
-/// A law with its required parameters alone: a block flows, if it can, under strains of a per cent.
+/// A law with its required parameters only.  A block yields, if the law can, under strains of a per cent.
 template <class L>
 L law_example() = delete;
 
@@ -133,7 +133,7 @@ inline JohnsonCook law_example()
   law.thermal_exponent = 1.05;
   law.room_temperature = 294;
   law.melting_temperature = 1400;
-  law.specific_heat = 0.02;  // heats by some kelvin per cent of plastic strain: strength is low, so is what heat takes
+  law.specific_heat = 0.02;  // heating of some kelvin per per cent of plastic strain, in spite of the low strength
   return law;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The list of laws: what a scene may name, what the contract tests run over.  A new law is one line here.
+// The list of laws that a scene may name and that the contract tests check.  A new law is one line here.
 #include "core/type_list.hpp"
 #include "materials/corotated.hpp"
 #include "materials/drucker_prager.hpp"

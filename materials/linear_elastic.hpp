@@ -39,7 +39,7 @@ struct LinearElastic : Elasticity {
     return sym(R * unrotated * R.transpose());
   }
 
-  /// The stress is its own history: it may start from any value.
+  /// Does nothing: the stress is the history of this law, so it may start from any value.
   void prestress(const Mat3&, State&) const noexcept {}
 
   template <class T>

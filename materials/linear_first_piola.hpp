@@ -1,5 +1,5 @@
 #pragma once
-// A law for one purpose: bars whose exact solution holds at any amplitude.
+// A law for verification: bars with exact solutions at any amplitude.
 #include <string_view>
 
 #include "materials/elasticity.hpp"
@@ -8,9 +8,9 @@
 
 namespace talus {
 
-/// First Piola stress linear in the displacement gradient, P = lambda tr(F - I) I + 2 mu (F - I): in uniaxial strain the wave
-/// equation in initial coordinates is then linear, P = M (F - 1), however large the strain.  For verification only: a rotation
-/// makes stress.  The Cauchy stress is P F^T / J; its skew part, which is zero for diagonal F, is dropped.
+/// First Piola stress linear in the displacement gradient, P = lambda tr(F - I) I + 2 mu (F - I).  In uniaxial strain P = M (F - 1), so the
+/// wave equation in initial coordinates is linear for any strain.  For verification only: a rotation causes stress.  The Cauchy stress is P
+/// F^T / J without its skew part, which is zero for diagonal F.
 struct LinearFirstPiola : Elasticity {
   static constexpr std::string_view name = "linear_first_piola";
   static constexpr std::string_view summary =

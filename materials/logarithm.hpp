@@ -1,7 +1,6 @@
 #pragma once
-// Logarithm and exponential of symmetric 3x3 tensors, fast near the identity, and the rotation of a polar decomposition.
-//
-// Arguments and results are kept as differences from the identity, so that strains of 1e-8 keep all their digits.
+// Logarithm and exponential of symmetric 3x3 tensors, fast near the identity, and the rotation of a polar decomposition.  Arguments and
+// results are differences from the identity, so that strains of 1e-8 keep all their digits.
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
@@ -10,9 +9,9 @@
 
 namespace talus {
 
-/// Frobenius norm of the deviator up to which the series below are used; beyond it principal axes are found.
+/// The largest Frobenius norm of the deviator for the series below; beyond it principal axes are computed.
 inline constexpr Real series_radius = 0.1;
-/// Up to here, as in most soil and metal, fewer terms do.
+/// Up to this norm, as in most soil and metal, fewer terms are enough.
 inline constexpr Real short_series_radius = 0.01;
 
 template <class E>
@@ -21,7 +20,7 @@ typename E::Scalar trace(const Eigen::MatrixBase<E>& a) noexcept
   static_assert(E::RowsAtCompileTime == 6);
   return a[0] + a[1] + a[2];
 }
-/// a:a
+/// The double contraction a:a.
 template <class E>
 typename E::Scalar squared_norm(const Eigen::MatrixBase<E>& expression) noexcept
 {
@@ -62,7 +61,7 @@ template <std::size_t terms, class T, std::size_t N>
       xy * xz + yz * (yy + zz), xz * (xx + zz) + xy * yz;
   const T J2 = 0.5 * trace(X2);
   const T J3 = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-  T a = 0, b = 0, d = 0;  // sum so far = a I + b X + d X^2
+  T a = 0, b = 0, d = 0;  // the sum so far is a I + b X + d X^2
   for (std::size_t k = terms; k-- > 0;) {
     const T b_new = a + d * J2 + c[k];
     a = d * J3;
@@ -108,7 +107,7 @@ inline Sym3 expm1_by_axes(const Sym3& E) noexcept
 {
   return in_principal_axes(E, [](Real x) { return std::expm1(x); });
 }
-/// f of the tensor in every lane.
+/// The tensor whose lanes are f of the tensor in each lane.
 template <class F>
 Sym3Of<SimdReal> tensor_in_each_lane(const Sym3Of<SimdReal>& all, F&& f) noexcept
 {
@@ -128,7 +127,7 @@ inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept;
 
 }  // namespace detail
 
-/// ln(I + B) of a symmetric B.  NaN where I + B is not positive definite.
+/// ln(I + B) for a symmetric B.  NaN where I + B is not positive definite.
 template <class Expression>
 Sym3Of<typename Expression::Scalar> log1p(const Eigen::MatrixBase<Expression>& expression) noexcept
 {
@@ -147,7 +146,7 @@ Sym3Of<typename Expression::Scalar> log1p(const Eigen::MatrixBase<Expression>& e
   return add_diagonal(detail::trace_free_series<14>(X, detail::logarithm_series), volumetric);
 }
 
-/// exp(E) - I of a symmetric E.
+/// exp(E) - I for a symmetric E.
 template <class Expression>
 Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& expression) noexcept
 {
@@ -166,7 +165,7 @@ Sym3Of<typename Expression::Scalar> expm1(const Eigen::MatrixBase<Expression>& e
 }
 
 namespace detail {
-// Where one lane is beyond the series every lane is asked alone: it may be within.
+// If one lane is beyond the radius of the series, each lane is treated separately, as others may be within.
 inline Sym3Of<SimdReal> log1p_by_axes(const Sym3Of<SimdReal>& B) noexcept
 {
   return tensor_in_each_lane(B, [](const Sym3& one) { return log1p(one); });
@@ -177,13 +176,13 @@ inline Sym3Of<SimdReal> expm1_by_axes(const Sym3Of<SimdReal>& E) noexcept
 }
 }  // namespace detail
 
-/// R of F = R U, det F > 0.  Newton's iteration with the scaling of Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160; it
-/// converges quadratically from every regular F and has no trouble with equal stretches.  NaN where F is singular.
+/// The rotation R of F = R U, det F > 0.  Newton's iteration with the scaling of Higham, SIAM J. Sci. Stat. Comput. 7 (1986) 1160; it
+/// converges quadratically from every regular F, also for equal stretches.  NaN where F is singular.
 template <class T>
 Mat3Of<T> polar_rotation(const Mat3Of<T>& F) noexcept
 {
   using std::abs, std::sqrt;
-  constexpr int enough = 30;  // condition 1e12 takes 9
+  constexpr int enough = 30;  // 9 iterations are enough for a condition number of 1e12
   constexpr Real rounding = 1e-15;
   Mat3Of<T> R = F;
   for (int i = 0; i < enough; ++i) {
@@ -199,7 +198,7 @@ Mat3Of<T> polar_rotation(const Mat3Of<T>& F) noexcept
   return R;
 }
 
-/// Upper bound of the largest eigenvalue (Gershgorin): for squares of stretches in wave speeds.
+/// An upper bound of the largest eigenvalue (Gershgorin), for squares of stretches in wave speeds.
 template <class T>
 T largest_eigenvalue_bound(const Mat3Of<T>& A) noexcept
 {

@@ -9,25 +9,25 @@ namespace talus {
 
 namespace {
 
-/// Elastic compression [-] below which the material counts as free of stress: rounding of the strain, so that shear of constant volume from
-/// rest does not depend on it.
+/// The elastic compression [-] below which the material counts as stress-free.  It is the rounding of the strain, so that shear of constant
+/// volume from rest does not depend on rounding.
 constexpr Real no_compression = 1e-14;
 
-/// Stress measures [Pa] and the plastic compaction [-] of a return that ends in them.
+/// Stress invariants [Pa] and plastic compaction [-] at the end of a return.
 struct Ending {
   Real p, q, compaction;
 };
 
-/// Backward Euler from a trial state outside the ellipse, in one unknown.  With the compaction x of the step
+/// The return by backward Euler from a trial state outside the ellipse, with one unknown.  With the compaction x of the step
 ///     p = p(compression - x),   pc = start exp(x / plastic),   q = q_trial / (1 + 6 G m / M^2),   multiplier m = x / (2 p - pc).
-/// On either side of the critical state x runs from 0 to where 2 p = pc; m grows from 0 to infinity, q falls to 0, so that the ellipse is
-/// crossed in between.
+/// On either side of the critical state x runs from 0 to where 2 p = pc; m increases from 0 to infinity and q decreases to 0, so the
+/// ellipse is crossed in between.
 struct EllipseReturn {
   const ModifiedCamClay::Constants& c;
   Real compression, q_trial, start;
   Real slope2 = c.slope * c.slope, shear_rate = 6 * c.shear / slope2;
 
-  /// q^2 / M^2 + p (p - pc) by |x|, and its slope; negative beyond the critical state.
+  /// The value of q^2 / M^2 + p (p - pc) at |x| = size, and its slope; x is negative beyond the critical state.
   ValueAndSlope excess(Real sign, Real size) const noexcept
   {
     const Real x = sign * size;
@@ -45,14 +45,14 @@ struct EllipseReturn {
 
   Ending operator()() const noexcept
   {
-    // At this compaction 2 p equals the preconsolidation at the start: at or beyond the critical state.
+    // At this compaction 2 p equals the preconsolidation before the step: at the critical state or beyond it.
     const Real end = compression - c.swelling * std::log1p(start / (2 * c.reference));
     const Real sign = end < 0 ? -1 : 1;
     Real x = 0;
     if (end != 0) {
       const ValueAndSlope first = excess(sign, 0);
       Real size = positive_root([&](Real y) { return excess(sign, y); }, std::abs(end), -first.value / first.slope);
-      // What the root finder leaves, 1e-12 of the root, is more than that of a pressure that changed by more than itself.
+      // The error of the root finder, 1e-12 of the root, is larger than a pressure that has become many orders smaller.
       const Real left = c.pressure(compression - sign * size);
       constexpr int more = 2;
       for (int i = 0; i < more && size * (left + c.reference) > c.swelling * left; ++i) {
@@ -62,7 +62,7 @@ struct EllipseReturn {
       x = sign * size;
     }
     const Real p = c.pressure(compression - x), pc = start * std::exp(x / c.plastic), h = 2 * p - pc;
-    // Near the critical state x and h are both small, so q comes from the ellipse; near its tips from the flow.
+    // Near the critical state x and h are both small, so q is computed from the ellipse; near the ends of the ellipse from the flow.
     const Real q = std::abs(h) < 0.5 * pc ? c.slope * std::sqrt(p * (pc - p)) : q_trial * (h / (h + shear_rate * x));
     return {p, std::min(q, q_trial), x};
   }
@@ -91,7 +91,7 @@ Mat3 ModifiedCamClay::update(const Increment& in, State& state, const Constants&
     return unpack(scale_and_shift(2 * c.shear / J, trial.shear_strain, -c.pressure(-trial.volume_strain) / J));
   }
   const bool was_open = state.opened_volume > 0;
-  const Real compression = -trial.volume_strain - state.opened_volume;  // what is open fills first
+  const Real compression = -trial.volume_strain - state.opened_volume;  // opened volume closes first
   state.opened_volume = std::max(-compression, Real{0});
   if (compression <= no_compression) {
     state.elastic_left = Sym3::Zero();
@@ -112,7 +112,7 @@ Mat3 ModifiedCamClay::update(const Increment& in, State& state, const Constants&
   const Real sheared = (q_trial - end.q) / (3 * c.shear);
   state.plastic_volume -= end.compaction;
   state.plastic_strain += sheared;
-  state.plastic_work += std::max(end.p * end.compaction + end.q * sheared, Real{0});  // p pc times the multiplier, up to rounding
+  state.plastic_work += std::max(end.p * end.compaction + end.q * sheared, Real{0});  // p pc times the multiplier, up to round-off
   return unpack(scale_and_shift(2 * c.shear * saved / J, trial.shear_strain, -end.p / J));
 }
 

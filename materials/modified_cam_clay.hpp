@@ -1,5 +1,5 @@
 #pragma once
-// Clay that hardens by compaction: the ellipse of Cam clay on elasticity whose pressure grows exponentially.
+// Clay that hardens by compaction: the ellipse of Cam clay on elasticity with an exponential pressure.
 #include <string>
 #include <string_view>
 
@@ -7,18 +7,18 @@
 
 namespace talus {
 
-/// Modified Cam clay (Roscoe & Burland 1968) in Kirchhoff stress and logarithmic strain, associated, return by backward Euler in the form
-/// of Borja & Tamagnini 1998 (CMAME 155, 73).  Pressure p = -tr/3 and shear stress q = sqrt(3 J2), compression positive:
+/// Modified Cam clay (Roscoe & Burland 1968) in Kirchhoff stress and logarithmic strain, associated, with the return by backward Euler in
+/// the form of Borja & Tamagnini 1998 (CMAME 155, 73).  Pressure p = -tr/3 and shear stress q = sqrt(3 J2), compression positive:
 ///     elastic     p = reference_pressure (exp(-e / swelling_index) - 1), e the elastic logarithmic volume strain; shear modulus constant
 ///     yield       q^2 / M^2 + p (p - pc) = 0
 ///     hardening   pc = preconsolidation_pressure exp(-plastic_volume / (compression_index - swelling_index)).
-/// The -1 is what differs from the usual form: it makes zero strain stress-free, and p + reference_pressure the pressure of which
-/// swelling lines are logarithmic.  The elasticity has a potential: closed cycles inside the ellipse cost nothing.
+/// The -1 differs from the usual form: with it zero strain is stress-free, and swelling lines are logarithmic in p + reference_pressure.
+/// The elasticity has a potential: closed cycles inside the ellipse do not dissipate.
 ///
-/// Cam clay bears no tension.  Where the trial pressure falls to zero the material opens: it is free of stress, the volume is kept and closes
-/// before compression is felt again, and the preconsolidation stays.  At positive pressure, however small, it dilates and softens along the
-/// dry side of the ellipse instead; the two join with an error in q of M sqrt(K de pc), de the strain of a step, K = reference_pressure /
-/// swelling_index.
+/// Cam clay bears no tension.  Where the trial pressure falls to zero the material opens: it is stress-free, the opened volume is stored
+/// and must close before the material is compressed again, and the preconsolidation stays.  At positive pressure, however small, it dilates
+/// and softens along the dry side of the ellipse instead; the two cases join with an error in q of M sqrt(K de pc), with the strain de of a
+/// step and K = reference_pressure / swelling_index.
 struct ModifiedCamClay {
   static constexpr std::string_view name = "modified_cam_clay";
   static constexpr std::string_view summary =
@@ -41,9 +41,10 @@ struct ModifiedCamClay {
         required("reference_pressure", &Law::reference_pressure, positive, "Pa",
                  "swelling_index times the bulk modulus at zero pressure, K = (p + reference_pressure) / swelling_index")};
   }
-  /// Rules between parameters.
+  /// Appends the violated rules between parameters.
   void check(std::vector<std::string>& problems) const;
-  /// tan(phi) of the friction angle in triaxial compression that M stands for, sin(phi) = 3 M / (6 + M); the preconsolidation stays.
+  /// Divides tan(phi) by a factor, where phi is the friction angle in triaxial compression that corresponds to M, sin(phi) = 3 M / (6 + M);
+  /// the preconsolidation stays.
   void divide_strength(Real factor) noexcept;
 
   struct State {
@@ -62,7 +63,7 @@ struct ModifiedCamClay {
   };
 
   struct Constants {
-    Real shear, reference, preconsolidation;  ///< Pa
+    Real shear, reference, preconsolidation;  ///< stresses [Pa]
     Real slope;                               ///< M [-]
     Real swelling, plastic;                   ///< kappa and lambda - kappa [-]
     Real pressure(Real compression) const noexcept { return reference * std::expm1(compression / swelling); }
@@ -71,14 +72,16 @@ struct ModifiedCamClay {
   Constants constants() const noexcept;
 
   Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
-  /// A stress outside the ellipse raises the preconsolidation to where it is on it; tension opens with the first step.
+  /// Sets the history for a stress.  A stress outside the ellipse raises the preconsolidation so that the stress lies on it; tension opens
+  /// the material in the first step.
   void prestress(const Mat3& stress, State& state) const noexcept;
-  /// (q^2 / M^2 + p (p - pc)) / pc of the Kirchhoff stress that belongs to the elastic strain of `state`; the Cauchy stress is that over J.
+  /// The yield function (q^2 / M^2 + p (p - pc)) / pc [Pa] of the Kirchhoff stress that belongs to the elastic strain of `state`; the
+  /// Cauchy stress is the Kirchhoff stress over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
-  /// Of material that came to F from rest by elastic strain: without the history, plastic compaction makes the bound loose, and a prestress
-  /// or dilation may make the material stiffer than told.
+  /// A bound for material that reached F from rest by elastic strain.  Without the history, plastic compaction makes the bound large, and
+  /// after a prestress or dilation the material may be stiffer than the bound.
   Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
-  /// Of the elastic strain in the history: rho_0 c^2 = K + 4/3 G - (Kirchhoff stress)_nn.
+  /// The wave speed from the elastic strain in the history: rho_0 c^2 = K + 4/3 G - (Kirchhoff stress)_nn.
   Real wave_speed(const Mat3& F, const State& state, const Constants& c) const noexcept;
 };
 

@@ -19,25 +19,25 @@ ShearStrength strength_of(Real friction, Real cohesion) noexcept
 {
   return {std::sin(in_radians(friction)), cohesion * std::cos(in_radians(friction))};
 }
-/// The mean stress of the apex.
+/// The mean stress of the apex [Pa].
 Real apex(const ShearStrength& strength) noexcept { return strength.sine > 0 ? strength.cohesive / strength.sine : infinite; }
 
-/// Twice the excess of the stress over the plane between s1 and s3.
+/// Twice the excess of the stress over the plane between s1 and s3 [Pa].
 Real excess(Real s1, Real s3, const ShearStrength& strength) noexcept
 {
   return s1 * (1 + strength.sine) - s3 * (1 - strength.sine) - 2 * strength.cohesive;
 }
 
-/// Where a return ends: principal stresses in falling order [Pa].
+/// The end of a return: principal stresses in descending order [Pa].
 struct StressReturn {
   Vec3 stress;
-  Real dilation = 0;   ///< volume of the flow on the planes [-], told only where the material opens
-  bool opens = false;  ///< the rest of the volume that the return takes away is kept open
+  Real dilation = 0;   ///< volume strain of the flow on the planes [-]; set only if the material opens
+  bool opens = false;  ///< whether the remaining volume of the return is stored as opened
 };
 
-/// Backward Euler to the surface of one strength, from principal trial stresses in falling order.  Every active plane has a multiplier;
-/// flow on the plane between s1 and s3 changes the strain by (1 + sin_psi, 0, -(1 - sin_psi)) of it, a crack by (1, 0, 0).
-/// `bulk` = 0 keeps the mean stress.
+/// The return by backward Euler to the surface of one strength, from principal trial stresses in descending order.  Every active plane has
+/// a multiplier; flow on the plane between s1 and s3 changes the strain by (1 + sin_psi, 0, -(1 - sin_psi)) times the multiplier, a crack
+/// by (1, 0, 0).  With `bulk` = 0 the mean stress is constant.
 struct Surface {
   Real bulk, shear;
   ShearStrength strength;
@@ -45,11 +45,12 @@ struct Surface {
 
   Real lambda() const noexcept { return bulk - 2 * shear / 3; }
 
-  /// Stresses across the active planes, those that are equal by their mean.
+  /// Stresses across the active planes; equal ones are represented by their mean.
   struct Pair {
-    Real s1, s3, multiplier;  ///< the sum over the planes
+    Real s1, s3, multiplier;  ///< multiplier: the sum over the planes
   };
-  /// `share1`, `share3`: of the sum of multipliers that acts on each of the stresses behind s1 and s3: one if alone, else half.
+  /// `share1`, `share3`: the fraction of the sum of multipliers that acts on each of the stresses in s1 and s3: 1 for a single stress, else
+  /// 1/2.
   Pair along(Real s1, Real s3, Real share1, Real share3) const noexcept
   {
     const Real volumetric = 2 * lambda() * sin_psi;
@@ -58,11 +59,11 @@ struct Surface {
     return {s1 - m * fall1, s3 - m * fall3, m};
   }
 
-  /// To the apex: the flow takes all shear, and as much volume as it has to.  Of the combinations of flow vectors with a given deviator
-  /// that of two neighbouring planes has the least volume, 2 sin_psi times the sum of multipliers.
+  /// The return to the apex: the flow removes all shear, and the least volume that it can.  Of the combinations of flow vectors with a
+  /// given deviator that of two neighbouring planes has the least volume, 2 sin_psi times the sum of multipliers.
   StressReturn to_apex(const Vec3& trial) const noexcept
   {
-    if (!(strength.sine > 0))  // no apex, but no shear either if there is no cohesion, up to rounding
+    if (!(strength.sine > 0))  // without cohesion there is no apex, but no shear either, up to round-off
       return {Vec3::Constant(trial.mean())};
     const Real a = (trial[0] - trial[1]) / (2 * shear * (1 + sin_psi)), b = (trial[1] - trial[2]) / (2 * shear * (1 - sin_psi));
     const Real multiplier = a > b ? b + 2 * (a - b) * (1 + sin_psi) / (3 + sin_psi) : a + 2 * (b - a) * (1 - sin_psi) / (3 - sin_psi);
@@ -75,14 +76,14 @@ struct Surface {
     const Real s2 = trial[1] - 2 * lambda() * sin_psi * plane.multiplier;
     if (plane.s1 >= s2 && s2 >= plane.s3)
       return {{plane.s1, s2, plane.s3}, 2 * sin_psi * plane.multiplier};
-    const bool upper = s2 > plane.s1;  // s1 = s2, as in triaxial compression; else s2 = s3, as in extension
+    const bool upper = s2 > plane.s1;  // true if s1 = s2, as in triaxial compression; otherwise s2 = s3, as in extension
     const Pair edge = upper ? along(0.5 * (trial[0] + trial[1]), trial[2], 0.5, 1) : along(trial[0], 0.5 * (trial[1] + trial[2]), 1, 0.5);
     if (edge.s1 >= edge.s3)
       return {{edge.s1, upper ? edge.s1 : edge.s3, edge.s3}, 2 * sin_psi * edge.multiplier};
     return to_apex(trial);
   }
 
-  /// By cracks across one, two or three directions, each as if the stress were uniaxial strain.
+  /// The return by cracks across one, two or three directions, each with the stress change of uniaxial strain.
   StressReturn to_cutoff(const Vec3& trial) const noexcept
   {
     const Real across_one = lambda() / (lambda() + 2 * shear), across_two = lambda() / (2 * (lambda() + shear));
@@ -97,7 +98,7 @@ struct Surface {
     return {Vec3::Constant(cutoff), 0, true};
   }
 
-  /// Where crack and plane are both active: s1 and s3 are given, s2 follows the flow until it meets one of them.
+  /// The return where crack and plane are both active: s1 and s3 are known, s2 follows the flow until it meets one of them.
   StressReturn to_both(const Vec3& trial) const noexcept
   {
     const Real s3 = (cutoff * (1 + strength.sine) - 2 * strength.cohesive) / (1 - strength.sine);
@@ -122,11 +123,11 @@ struct Surface {
   }
 };
 
-/// The return with a strength that falls while it goes on.
+/// The return with a strength that decreases during the step.
 struct SofteningReturn {
   const MohrCoulomb::Constants& c;
   const Vec3& trial;
-  bool closing;  ///< what is open fills, so the mean stress stays at or below zero
+  bool closing;  ///< opened volume closes, so the mean stress is at most zero
 
   StressReturn land(const ShearStrength& strength) const noexcept
   {
@@ -139,16 +140,16 @@ struct SofteningReturn {
     return saved;
   }
 
-  /// sqrt(2/3 e:e) of the plastic strain.
+  /// The equivalent plastic strain sqrt(2/3 e:e).
   Real plastic_strain(const StressReturn& end) const noexcept
   {
     const Vec3 gone = trial - end.stress;
     return (gone.array() - gone.mean()).matrix().norm() / (std::numbers::sqrt2 * square_root_of_3 * c.shear);
   }
 
-  /// The landing with the strength that it leaves, and its plastic strain: 0 = g(x) = start + plastic_strain - x by secants from the
-  /// landing at the strength before, with every fourth step a bisection.  g is nearly linear; where it has no root before the softening
-  /// ends the strength drops to residual at once.
+  /// The end of the return with the softened strength, and its plastic strain, which solves 0 = g(x) = start + plastic_strain - x.  Solved
+  /// by secants from the return with the strength before the step, with a bisection in every fourth iteration.  g is nearly linear; where
+  /// it has no root before the softening ends, the strength drops to residual at once.
   std::pair<StressReturn, Real> softened(const StressReturn& before, Real start) const noexcept
   {
     StressReturn end = land(c.residual);
@@ -161,7 +162,7 @@ struct SofteningReturn {
     };
     const Real tolerance = 1e-12 * (high - start) + 1e-16 * high;
     Real last = low, g_last = plastic_strain(before), x = high, g_x = g(x);
-    if (g_x > 0) {  // the residual surface is not inside the peak one everywhere
+    if (g_x > 0) {  // the residual surface is not everywhere inside the peak surface
       x = high = c.softening_strain;
       g_x = g(x);
     }
@@ -177,7 +178,7 @@ struct SofteningReturn {
   }
 };
 
-/// The tensor with these values along these axes.
+/// The tensor with these principal values and axes.
 Sym3 along_axes(const Mat3& axes, const Vec3& values) noexcept { return pack(axes * values.asDiagonal() * axes.transpose()); }
 
 /// cos(3 angle) of Lode's angle: 1 if the two smaller principal values are equal, -1 if the two larger are, NaN without shear.
@@ -189,8 +190,9 @@ Real lode_cosine(const ElasticTrial<Real>& trial) noexcept
   return std::clamp(4 * J3 / (size * size * size), Real{-1}, Real{1});
 }
 
-/// True if the trial state is inside by invariants alone.  The planes are outside the cone tau sqrt(1 + sine^2/3) + sine mean = cohesive,
-/// which they touch; beyond it the principal stresses decide by Lode's angle, which near the edges has half of the digits.
+/// Whether the trial state is inside the surface by its invariants alone.  The planes are outside the cone tau sqrt(1 + sine^2/3) + sine
+/// mean = cohesive, which they touch; beyond the cone the principal stresses from Lode's angle decide, which near the edges has half of the
+/// digits.
 bool surely_inside(const ElasticTrial<Real>& trial, Real mean, Real tau, const ShearStrength& strength, Real cutoff) noexcept
 {
   if (tau * std::sqrt(1 + strength.sine * strength.sine / 3) + strength.sine * mean <= strength.cohesive &&
@@ -203,7 +205,8 @@ bool surely_inside(const ElasticTrial<Real>& trial, Real mean, Real tau, const S
   return excess(s1, s3, strength) < -margin && s1 < cutoff - margin;
 }
 
-/// Principal axes of the shear strain.  The closed form is three times as fast, and exact to 1e-13 unless two values are nearly equal.
+/// The principal axes of the shear strain.  The closed form is three times as fast, and accurate to 1e-13 unless two values are nearly
+/// equal.
 Eigen::SelfAdjointEigenSolver<Mat3> principal_axes(const ElasticTrial<Real>& trial) noexcept
 {
   constexpr Real distinct = 0.99;
@@ -240,7 +243,7 @@ Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) 
   if (!(J > 0 && trial.is_finite()))
     return no_answer();
   Real mean = c.bulk * trial.volume_strain;
-  // What opened before fills first, and carries no tension while it does.
+  // Volume that was opened before closes first; the material has no tension meanwhile.
   const bool closing = !in.elastic && state.opened_volume > 0 && mean < 0;
   const ShearStrength strength = c.strength_at(state.plastic_strain);
   if (in.elastic || (!closing && surely_inside(trial, mean, c.shear * square_root_of_3 * trial.shear, strength, c.cutoff))) {
@@ -262,7 +265,7 @@ Mat3 MohrCoulomb::update(const Increment& in, State& state, const Constants& c) 
   const Real end_mean = end.stress.mean(), volume = (mean - end_mean) / c.bulk;
   const Vec3 shear = end.stress.array() - end_mean;
   const Vec3 plastic = ((start - end.stress).array() - (mean - end_mean)) / (2 * c.shear) + volume / 3;
-  state.plastic_work += std::max(end.stress.dot(plastic), Real{0});  // associated flow without cohesion dissipates nothing, up to rounding
+  state.plastic_work += std::max(end.stress.dot(plastic), Real{0});  // associated flow without cohesion dissipates nothing, up to round-off
   state.opened_volume = (closing ? 0 : state.opened_volume) + (end.opens ? std::max(volume - end.dilation, Real{0}) : 0);
   const Mat3 directions = axes.eigenvectors().rowwise().reverse();
   if (closing || end.stress != start)

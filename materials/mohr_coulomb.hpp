@@ -1,5 +1,5 @@
 #pragma once
-// Soil and rock by the angle of friction itself: the six planes of Mohr and Coulomb on top of logarithmic elasticity.
+// Soil and rock with a friction angle: the six planes of Mohr and Coulomb on logarithmic elasticity.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -8,17 +8,18 @@
 
 namespace talus {
 
-/// Yield where (s1 - s3)/2 + sine (s1 + s3)/2 = cohesive, s1 the largest and s3 the smallest principal Kirchhoff stress, tension positive.
+/// A strength: yield where (s1 - s3)/2 + sine (s1 + s3)/2 = cohesive, with the largest and smallest principal Kirchhoff stress s1 and s3,
+/// tension positive.
 struct ShearStrength {
-  Real sine;      ///< of the angle of friction [-]
+  Real sine;      ///< sine of the angle of friction [-]
   Real cohesive;  ///< cohesion times cosine of the angle of friction [Pa]
 };
 
-/// Mohr-Coulomb with non-associated flow (the same form with the angle of dilation) and a Rankine limit of tension, in Kirchhoff stress and
-/// logarithmic strain.  The return is backward Euler, exact: to a plane, an edge, a corner or the apex in principal stresses (Clausen,
-/// Damkilde & Andersen 2006, IJNME 66, 1831; de Souza Neto, Peric & Owen 2008, ch. 8); isotropy makes it act on the elastic logarithmic
-/// strain itself (Simo 1992, CMAME 99, 61).  Material that all three principal stresses pull open keeps the opened volume, which closes at
-/// zero mean stress before compression is felt again; a crack across one direction alone is not kept.
+/// Mohr-Coulomb with non-associated flow (of the same form with the angle of dilation) and a Rankine limit of tension, in Kirchhoff stress
+/// and logarithmic strain.  The return is backward Euler, exact: to a plane, an edge, a corner or the apex in principal stresses (Clausen,
+/// Damkilde & Andersen 2006, IJNME 66, 1831; de Souza Neto, Peric & Owen 2008, ch. 8); for isotropic elasticity it acts on the elastic
+/// logarithmic strain itself (Simo 1992, CMAME 99, 61).  If the material opens in all three principal directions, the opened volume is
+/// stored and must close at zero mean stress before the material is compressed again; a crack across one direction only is not stored.
 struct MohrCoulomb : HenckyPlastic, SoilStrength {
   static constexpr std::string_view name = "mohr_coulomb";
   static constexpr std::string_view summary =
@@ -36,22 +37,22 @@ struct MohrCoulomb : HenckyPlastic, SoilStrength {
             "plastic_strain at which the residual strength is reached; sin(phi) and c cos(phi) go linearly before; without it "
             "nothing softens"));
   }
-  /// Rules between parameters.
+  /// Appends the violated rules between parameters.
   void check(std::vector<std::string>& problems) const;
   void divide_strength(Real factor) noexcept;
-  /// The apex before anything softens [Pa].
+  /// The mean stress of the apex before softening [Pa].
   Real tip_of_strength() const noexcept;
 
   using State = SoilState;
 
-  /// What follows from the parameters alone.
+  /// Quantities that depend on the parameters only.
   struct Constants {
     Real bulk, shear;              ///< Pa
-    ShearStrength peak, residual;  ///< before and after softening
-    ShearStrength slope;           ///< of the strength by plastic strain while it softens
-    Real softening_strain;         ///< infinite if nothing softens
-    Real sin_psi;                  ///< sine of the angle of dilation
-    Real cutoff;                   ///< Pa, infinite if there is only the apex
+    ShearStrength peak, residual;  ///< strength before and after softening
+    ShearStrength slope;           ///< change of the strength per plastic strain while it softens
+    Real softening_strain;         ///< plastic strain at which softening ends; infinite without softening
+    Real sin_psi;                  ///< sine of the angle of dilation [-]
+    Real cutoff;                   ///< largest principal stress [Pa]; infinite if only the apex limits it
     ShearStrength strength_at(Real plastic_strain) const noexcept
     {
       return plastic_strain < softening_strain
@@ -62,8 +63,8 @@ struct MohrCoulomb : HenckyPlastic, SoilStrength {
   Constants constants() const noexcept;
 
   Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
-  /// The larger of (s1 - s3)/2 + sine (s1 + s3)/2 - cohesive and s1 - tension_cutoff, of the Kirchhoff stress that belongs to the elastic
-  /// strain of `state`; the Cauchy stress is that over J.
+  /// The yield function [Pa]: the larger of (s1 - s3)/2 + sine (s1 + s3)/2 - cohesive and s1 - tension_cutoff, for the Kirchhoff stress
+  /// that belongs to the elastic strain of `state`; the Cauchy stress is the Kirchhoff stress over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;
 };
 

@@ -34,14 +34,15 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
     return unpack(scale_and_shift(2 * c.shear / J, shear_strain, c.bulk * volume_strain / J));
   }
 
-  // What opened before fills first; what is above zero after that stays open.
+  // Volume that was opened before closes first; the remaining expansion stays open.
   const T opened = get(state, &State::opened_volume);
   const auto closing = opened > 0;
   const T strain = volume_strain + opened;
   const T p = max(T(-c.bulk * strain), T(0));
   put(state, &State::opened_volume, max(strain, T(0)));
 
-  // Plastic shear m of the step: (tau - mu_s p - G m) (m + a) = (mu_2 - mu_s) p m, a the shear of the step at which I = I_0.
+  // The plastic shear m of the step solves (tau - mu_s p - G m) (m + a) = (mu_2 - mu_s) p m, where a is the shear of the step at which I =
+  // I_0.
   T m = 0;
   const T excess = tau - static_friction * p;
   if (const auto flows = excess > 0; any_of(flows)) {

@@ -1,5 +1,5 @@
 #pragma once
-// Sand that flows: friction that grows with the rate of shear, on top of logarithmic elasticity.
+// Flowing sand: friction that increases with the shear rate, on logarithmic elasticity.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,8 +13,8 @@ namespace talus {
 ///     mu(I) = mu_s + (mu_2 - mu_s) / (1 + I_0 / I),    I = g d sqrt(rho_s / p)         [Jop, Forterre & Pouliquen 2006, Nature 441, 727]
 /// where g is the rate of plastic shear, as elasto-viscoplasticity on the elastic logarithmic strain.  Flow keeps the volume.  A step is
 /// implicit, tau_trial - G dt g = mu(I(g)) p, in closed form (Dunatunga & Kamrin 2015, J. Fluid Mech. 779, 483).  Without pressure the
-/// material opens freely; the opened volume is kept and closes before compression is felt, as in DruckerPrager.  With mu_2 = mu_s this
-/// is a Drucker-Prager cone of slope mu_s without cohesion and dilation.
+/// material opens freely; the opened volume is stored and must close before the material is compressed again, as in DruckerPrager.  With
+/// mu_2 = mu_s this is a Drucker-Prager cone of slope mu_s without cohesion and dilation.
 struct MuI : ConePlastic {
   static constexpr std::string_view name = "mu_i";
   static constexpr std::string_view summary =
@@ -32,9 +32,9 @@ struct MuI : ConePlastic {
             required("grain_diameter", &MuI::grain_diameter, positive, "m", "d"),
             required("grain_density", &MuI::grain_density, positive, "kg/m^3", "rho_s, mass density of the grains themselves")});
   }
-  /// Rules between parameters.
+  /// Appends the violated rules between parameters.
   void check(std::vector<std::string>& problems) const;
-  /// mu of every flow.
+  /// Divides mu by a factor at every inertial number.
   void divide_strength(Real factor) noexcept
   {
     static_friction /= factor;
@@ -43,16 +43,16 @@ struct MuI : ConePlastic {
 
   struct Constants {
     Real bulk, shear;  ///< Pa
-    Real rate_scale;   ///< I_0 / (d sqrt(rho_s)): times sqrt(p) it is the rate of shear at which I = I_0
+    Real rate_scale;   ///< I_0 / (d sqrt(rho_s)): multiplied by sqrt(p) it is the shear rate at which I = I_0
   };
   Constants constants() const noexcept;
 
-  /// mu of steady flow at an inertial number.
+  /// The friction coefficient mu of steady flow at an inertial number.
   Real friction(Real inertial) const noexcept;
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
-  /// tau - mu_2 p of the Kirchhoff stress that belongs to the elastic strain of `state`: how much friction there is below mu_2 p depends
-  /// on the rate of shear.
+  /// The yield function tau - mu_2 p [Pa] of the Kirchhoff stress that belongs to the elastic strain of `state`.  Below mu_2 p the friction
+  /// depends on the shear rate.
   Real yield(const Mat3& stress, const State& state) const noexcept;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// The compressible rubber of textbooks: stress from the deformation gradient alone.
+// The compressible rubber of textbooks: stress from the deformation gradient only.
 #include <string_view>
 
 #include "materials/elasticity.hpp"
@@ -36,7 +36,7 @@ struct NeoHookean : Elasticity {
     return stress;
   }
 
-  /// From the acoustic tensor: rho_0 c^2 = lambda + mu - lambda ln J + mu b_nn along n, mu b_nn across it.
+  /// The wave moduli from the acoustic tensor: rho_0 c^2 = lambda + mu - lambda ln J + mu b_nn along n, mu b_nn across it.
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const Moduli& c) const noexcept
   {

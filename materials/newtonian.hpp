@@ -1,5 +1,5 @@
 #pragma once
-// Water, oil, slurry: a weakly compressible fluid of constant viscosity.
+// Water, oil and slurry: a weakly compressible fluid of constant viscosity.
 #include <string_view>
 
 #include "materials/weakly_compressible.hpp"
@@ -7,8 +7,8 @@
 namespace talus {
 
 /// stress = -p(J) I + 2 mu dev(D) + zeta tr(D) I.        [Landau & Lifshitz, Fluid Mechanics, section 15]
-/// Without tension the mean stress never exceeds zero.  The viscous stress is that of the whole step: the step is explicit in the
-/// viscosity, which bounds it through diffusivity().
+/// Without tension the mean stress never exceeds zero.  The viscous stress is constant over a step: the method is explicit in the
+/// viscosity, which limits the step through diffusivity().
 struct Newtonian : WeaklyCompressible {
   static constexpr std::string_view name = "newtonian";
   static constexpr std::string_view summary =
@@ -23,7 +23,7 @@ struct Newtonian : WeaklyCompressible {
                             "viscosity zeta against change of volume, apart from that of shear")});
   }
   using State = FluidHistory;
-  /// The fluid itself: nothing is worth working out in advance.
+  /// Empty: the law has nothing to compute in advance.
   struct Constants {};
   Constants constants() const noexcept { return {}; }
 
@@ -49,7 +49,7 @@ struct Newtonian : WeaklyCompressible {
   {
     return sound_speed<T>(F.determinant());
   }
-  /// Of a wave of compression: (4/3 mu + zeta) / density.
+  /// The diffusivity of a compression wave, (4/3 mu + zeta) / density [m^2/s].
   Real diffusivity(const Constants&) const noexcept { return (4 * viscosity / 3 + volume_viscosity) / density; }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What laws of metals share: the elastic trial state in logarithmic strain, and the state with part of its shear.
+// Common parts of the laws of metals: the elastic trial state in logarithmic strain, and the state with a fraction of its shear.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,8 +9,8 @@
 
 namespace talus {
 
-/// The state at the end of a step as if nothing flowed.  Isotropy makes the radial return of small strain act on the elastic logarithmic
-/// strain itself, and the flow keeps the volume (Simo 1992, CMAME 99, 61).
+/// The trial state: the end of a step without plastic flow.  For isotropic laws the radial return of small strain acts on the elastic
+/// logarithmic strain itself, and the flow keeps the volume (Simo 1992, CMAME 99, 61).
 template <class T>
 struct ElasticTrial {
   Sym3Of<T> left;          ///< elastic left Cauchy-Green tensor minus identity
@@ -23,7 +23,7 @@ struct ElasticTrial {
     using std::sqrt;
     const Sym3Of<T> twice_strain = log1p(left);
     volume_strain = 0.5 * trace(twice_strain);
-    // Divided, not times a third: a product would be fused with the sum and leave shear in a pure change of volume.
+    // A division, not a product with 1/3: the compiler would fuse a product with the sum and leave shear in a pure change of volume.
     shear_strain = scale_and_shift(0.5, twice_strain, -volume_strain / 3);
     shear = sqrt(T(squared_norm(shear_strain) * (2.0 / 3)));
   }
@@ -32,24 +32,25 @@ struct ElasticTrial {
     using std::isfinite;
     return isfinite(T(volume_strain + shear));
   }
-  /// Elastic left Cauchy-Green tensor minus identity with the share `kept` of the shear strain.
+  /// The elastic left Cauchy-Green tensor minus identity, with the given fraction of the shear strain.
   Sym3Of<T> left_with(const T& saved) const noexcept { return expm1(scale_and_shift(2 * saved, shear_strain, volume_strain * (2.0 / 3))); }
 };
 
-/// Elastic left Cauchy-Green tensor minus identity that belongs to the Kirchhoff stress deviator `s` and a logarithmic volume strain.
+/// The elastic left Cauchy-Green tensor minus identity for the Kirchhoff stress deviator `s` and a logarithmic volume strain.
 inline Sym3 elastic_left_of(const Mat3& s, Real shear_modulus, Real volume_strain) noexcept
 {
   return expm1(add_diagonal(pack(s / shear_modulus), 2 * volume_strain / 3));
 }
 
-/// Volume at the end of the step over that before.
+/// The volume at the end of the step over the volume before.
 template <class T>
 T growth_of(const IncrementOf<T>& in) noexcept
 {
   return (Mat3Of<T>::Identity() + in.dt * in.L).determinant();
 }
 
-/// A divisor that may be zero where the quotient is not asked for: far below any strain, stress or share.
+/// A divisor that is positive where `a` may be zero in a lane whose quotient is not used; the bound is far below any strain, stress or
+/// fraction.
 template <class T>
 T above_nothing(const T& a) noexcept
 {
@@ -57,10 +58,10 @@ T above_nothing(const T& a) noexcept
   return max(a, T(1e-200));
 }
 
-/// Slope of hardening by a power below 1 where nothing has flown yet.
+/// The slope of power hardening with an exponent below 1 at zero plastic strain.
 inline constexpr Real infinitely_steep = std::numeric_limits<Real>::infinity();
 
-/// x^n, found fast where x is near a point at which it is known: hardening changes little within a step.
+/// x^n, computed fast near a point where it is known: hardening changes little within a step.
 template <class T>
 class PowerNear {
  public:
@@ -68,7 +69,7 @@ class PowerNear {
   T operator()(const T& x) const noexcept
   {
     using std::abs, std::max;
-    // The first terms that the binomial series leave out are below 0.001^6 and 0.02^8 for exponents below 1.
+    // The first terms that the binomial series omits are below 0.001^6 and 0.02^8 for exponents below 1.
     const T r = (x - at_) * inverse_, size = abs(r) * max(exponent_, Real{1});
     const auto same = x == at_;
     if (all_of(same))
@@ -84,7 +85,7 @@ class PowerNear {
   T power(const T& x) const noexcept
   {
     using std::pow;
-    const auto some = x > 0;  // metal that has not flown, and is not warm, is common
+    const auto some = x > 0;  // metal without plastic strain and heating is common
     return any_of(some) ? where(some, pow(x, exponent_), 0) : T(0);
   }
   /// (1 + r)^n

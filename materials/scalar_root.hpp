@@ -1,5 +1,5 @@
 #pragma once
-// Root of one equation with one unknown, found whatever the slope does: for return maps.
+// The root of one equation with one unknown for any slope of the function, for return maps.
 #include <algorithm>
 #include <cmath>
 #include <concepts>
@@ -9,26 +9,26 @@
 
 namespace talus {
 
-/// A function at a point.
+/// The value of a function and its slope at a point.
 template <class T>
 struct ValueAndSlopeOf {
   T value, slope;
 };
 using ValueAndSlope = ValueAndSlopeOf<Real>;
 
-/// The x in (0, high] where a falling function f, with f(0) > 0 >= f(high), is zero.  Newton's method from `guess`.  Where that would
-/// leave the bracket, or does not halve its own step (infinite slopes at zero do both), the bracket is halved by magnitude, so that roots
-/// of 1e-200 are found as well.  It ends with the first Newton step below 1e-6 of the root: convergence is quadratic, so what is left is
-/// of the order of 1e-12.  Of Lanes every lane is a search of its own; f is told again where one that ended did, and only those of
-/// `looking` are waited for.
+/// The zero in (0, high] of a decreasing function f, with f(0) > 0 >= f(high).  Newton's method from `guess`.  If a step would leave the
+/// bracket, or is not at most half of the previous one (both happen with infinite slopes at zero), the bracket is halved by magnitude, so
+/// that roots of 1e-200 are found as well.  It ends with the first Newton step below 1e-6 of the root: convergence is quadratic, so the
+/// remaining error is of the order of 1e-12.  With SimdReal every lane is a search of its own; f is called again for lanes that have
+/// converged, and only the lanes of `looking` have to converge.
 template <class T = Real, std::invocable<T> F>
 T positive_root(F&& f, std::type_identity_t<T> high, const std::type_identity_t<T>& guess, const MaskOf<T>& looking = T(1) > T(0)) noexcept
 {
   using std::abs, std::isfinite, std::min, std::sqrt;
   constexpr Real last_step = 1e-6;
   constexpr Real rounding = 1e-15;
-  constexpr int enough = 100;               // bisections of a bracket of one order of magnitude down to rounding take 52
-  T low = 0, down = 1e-2, step = 2 * high;  // a step may go anywhere in the bracket once, then it must halve
+  constexpr int enough = 100;               // bisections of a bracket of one order of magnitude to round-off take 52
+  T low = 0, down = 1e-2, step = 2 * high;  // the first step may go anywhere in the bracket, later ones must halve
   const auto middle = [&](const MaskOf<T>& asked) -> T {
     down = where(asked && low <= 0, down * down, down);
     return where(low > 0, sqrt(low) * sqrt(high), high * down);

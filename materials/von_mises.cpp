@@ -7,7 +7,8 @@ namespace talus {
 
 namespace {
 
-/// Strength in slow loading by plastic strain, fast near that before the step; the slope is that at positive plastic strain.
+/// The strength in slow loading at a plastic strain, computed fast near the value before the step; its slope is that at positive plastic
+/// strain.
 template <class T>
 struct Hardening {
   const VonMises& law;
@@ -34,15 +35,15 @@ struct Hardening {
   }
 };
 
-/// Backward Euler from a trial stress above the strength before the step.
+/// The return by backward Euler from a trial stress above the strength before the step.
 template <class T>
 struct VonMisesReturn {
   const VonMises& law;
   const Hardening<T>& slow;
   ValueAndSlopeOf<T> start;  ///< strength before the step [Pa]
-  T mises, stiffness;        ///< Cauchy stress of the trial state and its fall by plastic strain [Pa]
-  T plastic_strain;          ///< before the step
-  Real relative, power;      ///< plastic rate over D, by plastic strain of the step; 1/q
+  T mises, stiffness;        ///< von Mises stress (Cauchy) of the trial state and its decrease per plastic strain [Pa]
+  T plastic_strain;          ///< plastic strain before the step
+  Real relative, power;      ///< plastic rate over D, per plastic strain of the step; 1/q
 
   ValueAndSlopeOf<T> rate_factor(const T& x) const noexcept
   {
@@ -52,7 +53,7 @@ struct VonMisesReturn {
     const T gain = pow(T(relative * x), power);
     return {1 + gain, power * gain / above_nothing(x)};
   }
-  /// Stress less strength if the plastic strain of the step is x.
+  /// Stress minus strength for the plastic strain x of the step.
   ValueAndSlopeOf<T> operator()(const T& x) const noexcept
   {
     const ValueAndSlopeOf<T> end = slow(plastic_strain + x), factor = rate_factor(x);
@@ -61,12 +62,12 @@ struct VonMisesReturn {
   T plastic_increment(const Mat3Of<T>& stress_before, const MaskOf<T>& yields) const noexcept
   {
     using std::max;
-    const T going_on = max(start.value, talus::von_mises(stress_before));  // flow that goes on hardens from there at the same rate
+    const T going_on = max(start.value, talus::von_mises(stress_before));  // continuing flow hardens at the same rate
     return positive_root<T>(*this, (mises - start.value) / stiffness, (mises - going_on) / (stiffness + start.slope), yields);
   }
 };
 
-/// Cauchy stress with the share `kept` of the shear.
+/// The Cauchy stress with the given fraction of the shear strain.
 template <class T>
 Mat3Of<T> stress_with(const ElasticTrial<T>& trial, const T& J, const T& saved, const VonMises::Constants& c) noexcept
 {
@@ -108,7 +109,7 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
   const ElasticTrial<T> trial(in, get(state, &State::elastic_left));
   if (!all_of(J > 0 && trial.is_finite()))
     return no_answer_somewhere(*this, in, state, c);
-  const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // Cauchy stress by equivalent strain: J stays in the return
+  const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // change of the Cauchy stress per strain, at constant J
   const T plastic_strain = get(state, &State::plastic_strain);
   const Hardening<T> slow(*this, plastic_strain);
   const ValueAndSlopeOf<T> start = slow(plastic_strain);
@@ -122,7 +123,8 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
   const T x = where(yields, root, 0), end = mises - stiffness * x, saved = where(yields, end / above_nothing(mises), 1);
   put(state, &State::elastic_left, where(yields, trial.left_with(saved), trial.left));
   put(state, &State::plastic_strain, T(plastic_strain + x));
-  // Trapezoidal in the Kirchhoff stress, exact for linear hardening: the strength before and after the step, at the rate of the step.
+  // Plastic work by the trapezoidal rule in the Kirchhoff stress, exact for linear hardening: strength before and after the step, at the
+  // rate of the step.
   const T work = 0.5 * x * J * (map.rate_factor(x).value * start.value / growth_of(in) + end);
   put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
   return stress_with(trial, J, saved, c);

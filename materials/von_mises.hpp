@@ -1,5 +1,5 @@
 #pragma once
-// Metal and undrained clay: shear strength that hardens with plastic strain and with its rate, on logarithmic elasticity.
+// Metal and undrained clay: shear strength that hardens with plastic strain and its rate, on logarithmic elasticity.
 #include <optional>
 #include <string_view>
 
@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Hardening that saturates: Q (1 - exp(-b p)).       [Voce 1948, J. Inst. Metals 74, 537]
+/// Saturating hardening, Q (1 - exp(-b p)).  [Voce 1948, J. Inst. Metals 74, 537]
 struct VoceHardening {
   Real saturation{}, exponent{};
   static constexpr auto fields()
@@ -17,7 +17,7 @@ struct VoceHardening {
   }
 };
 
-/// Hardening K p^n.       [Ludwik 1909]
+/// Power hardening, K p^n.  [Ludwik 1909]
 struct PowerHardening {
   Real coefficient{}, exponent{};
   static constexpr auto fields()
@@ -27,7 +27,7 @@ struct PowerHardening {
   }
 };
 
-/// Factor 1 + (plastic rate / D)^(1/q).       [Cowper & Symonds 1957, Brown University TR 28]
+/// The rate factor 1 + (plastic rate / D)^(1/q).  [Cowper & Symonds 1957, Brown University TR 28]
 struct CowperSymonds {
   Real reference_rate{}, exponent{};
   static constexpr auto fields()
@@ -38,8 +38,8 @@ struct CowperSymonds {
 };
 
 /// Von Mises plasticity, associated, with the return by backward Euler.  The Cauchy stress yields where
-///     sqrt(3 J2) = (yield_stress + H p + Q (1 - exp(-b p)) + K p^n) (1 + (rate / D)^(1/q)),
-/// p the accumulated plastic strain and `rate` that of the step.  Closed form where only H is given.
+///     sqrt(3 J2) = (yield_stress + H p + Q (1 - exp(-b p)) + K p^n) (1 + (rate / D)^(1/q))
+/// with the accumulated plastic strain p and the rate of the step.  The solution is in closed form if only H is given.
 struct VonMises : HenckyPlastic {
   static constexpr std::string_view name = "von_mises";
   static constexpr bool isochoric = true;
@@ -60,7 +60,7 @@ struct VonMises : HenckyPlastic {
                    group("voce", &Law::voce, "hardening Q (1 - exp(-b p)) that saturates"), group("power", &Law::power, "hardening K p^n"),
                    group("rate", &Law::rate, "factor 1 + (rate / D)^(1/q) on the strength, of the plastic strain rate")});
   }
-  /// At every plastic strain and rate.
+  /// Divides the strength by a factor at every plastic strain and rate.
   void divide_strength(Real factor) noexcept;
 
   struct State {
@@ -77,18 +77,18 @@ struct VonMises : HenckyPlastic {
 
   struct Constants {
     Real bulk, shear;   ///< Pa
-    bool closed_form;   ///< linear hardening, no rate
+    bool closed_form;   ///< whether hardening is linear and without rate
     Real rate_inverse;  ///< 1/D [s]; 0 without a rate factor
     Real rate_power;    ///< 1/q
   };
   Constants constants() const noexcept;
 
-  /// Strength at a plastic strain [-] and a plastic strain rate [1/s], in Pa of Cauchy stress.
+  /// The strength [Pa of Cauchy stress] at a plastic strain [-] and a plastic strain rate [1/s].
   Real flow_stress(Real plastic_strain, Real plastic_rate) const noexcept;
 
   template <class T>
   Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
-  /// sqrt(3 J2) less the strength of slow loading: above zero, by what the rate adds, while a law with `rate` flows.
+  /// sqrt(3 J2) minus the strength in slow loading [Pa]; in flow with `rate` it is positive by the effect of the rate.
   Real yield(const Mat3& stress, const State& state) const noexcept;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What fluids have in common: pressure by volume, and a rate of deformation that a rotation leaves at zero.
+// Common parts of fluids: pressure from volume, and a rate of deformation that is zero for a rotation.
 #include <algorithm>
 #include <cmath>
 #include <type_traits>
@@ -9,14 +9,14 @@
 
 namespace talus {
 
-/// Pressure of a liquid that is hardly compressible: what fluids inherit.
+/// The pressure of a nearly incompressible liquid, which fluids inherit.
 ///     p = K / n (J^-n - 1)       [Cole 1948, Underwater Explosions, eq. 2.17; Monaghan 1994, J. Comput. Phys. 110, 399]
 /// K may be far below that of the liquid as long as c = sqrt(K / density) is ten times the largest velocity: then J stays within 1 %.
 struct WeaklyCompressible {
   Real density{}, bulk_modulus{}, exponent = 7;
   bool tension = false;
 
-  /// Pa at volume ratio J, negative in tension; `elastic` suspends the cut at zero.
+  /// The pressure [Pa] at the volume ratio J, negative in tension; `elastic` switches the limit at zero off.
   template <class T = Real>
   T pressure(const std::type_identity_t<T>& J, bool elastic) const noexcept
   {
@@ -24,7 +24,7 @@ struct WeaklyCompressible {
     const T p = bulk_modulus / exponent * (pow(J, -exponent) - 1);
     return tension || elastic ? p : max(p, T(0));
   }
-  /// sqrt(dp / d density), without the cut at zero.
+  /// The speed of sound sqrt(dp / d density) [m/s], without the limit at zero.
   template <class T = Real>
   T sound_speed(const std::type_identity_t<T>& J) const noexcept
   {
@@ -47,7 +47,7 @@ constexpr auto fluid_fields()
                              "true: the pressure may be negative; false: the fluid opens freely and closes before pressure is felt")};
 }
 
-/// What a fluid remembers.
+/// The history of a fluid.
 struct FluidHistory {
   Real plastic_work = 0;
   static constexpr auto fields()
@@ -56,7 +56,8 @@ struct FluidHistory {
   }
 };
 
-/// Rate of deformation of a step [1/s]: ln(f f^T) / (2 dt) with f = I + dt L, so that a finite rotation has none; sym(L) if dt = 0.
+/// The rate of deformation of a step [1/s]: ln(f f^T) / (2 dt) with f = I + dt L, so that it is zero for a finite rotation; sym(L) if dt =
+/// 0.
 template <class T>
 Sym3Of<T> rate_of_deformation(const IncrementOf<T>& in) noexcept
 {

@@ -26,7 +26,7 @@ Simplex<D> corners(std::span<const Vec<D>> nodes, const std::array<Index, D + 1>
   return s;
 }
 
-/// "nodes 1, 2 and 3 at (0, 1)", the place being the middle of the facet.
+/// The text "nodes 1, 2 and 3 at (0, 1)", with the centre of the facet.
 template <int D>
 std::string facet_name(const Renumbered<D>& mesh, Facet f)
 {
@@ -124,7 +124,7 @@ void check_overlap(const Renumbered<D>& mesh, std::span<const std::array<Index, 
   for (Index c = 0; c < static_cast<Index>(mesh.cells.size()); ++c)
     for (Index a = 0; a <= D; ++a) {
       const Index other = neighbours[c][a];
-      if (other < c)  // `none`, or seen from the other side already
+      if (other < c)  // `none`, or already checked from the other side
         continue;
       // Outward orders of a facet seen from its two sides are odd permutations of each other.
       std::array<Index, D> seen, across;

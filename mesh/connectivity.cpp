@@ -10,8 +10,8 @@ namespace talus {
 
 namespace {
 
-/// Distance along the Hilbert curve of a place on a grid of 2^bits per axis.  J. Skilling, Programming the Hilbert curve,
-/// AIP Conf. Proc. 707 (2004) 381.
+/// The distance along the Hilbert curve of a position on a grid of 2^bits per axis.  J. Skilling, Programming the Hilbert curve, AIP Conf.
+/// Proc. 707 (2004) 381.
 template <int D>
 std::uint64_t hilbert_key(std::array<std::uint32_t, D> x, int bits) noexcept
 {
@@ -53,7 +53,7 @@ std::vector<Index> hilbert_order(std::span<const Vec<D>> nodes, std::span<const 
       low = low.cwiseMin(nodes[n]);
       high = high.cwiseMax(nodes[n]);
     }
-  // One scale for all axes: a cell of a long thin domain is as compact as one of a cube.
+  // One scale for all axes, so that ranges of a long thin domain are as compact as those of a cube.
   const Real scale = ((1u << bits) - 1) / (high - low).maxCoeff();
   const Index n_cells = static_cast<Index>(cells.size());
   std::vector<std::pair<std::uint64_t, Index>> keys(cells.size());
@@ -108,7 +108,7 @@ std::vector<Index> nodes_in_use(std::span<const std::array<Index, D + 1>> cells,
 template <int D>
 FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
 {
-  // Every facet is looked at from its lowest node, beside the few others of that node.
+  // Every facet is found from its lowest node, among the few other facets of that node.
   struct Claim {
     std::array<Index, D - 1> rest;
     Facet facet;
@@ -117,7 +117,7 @@ FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, cons
   match.neighbours.resize(cells.size());
   for (auto& row : match.neighbours)
     row.fill(none);
-  // Enters the neighbours across facets whose lowest node is n; if three cells have one facet, answers them.
+  // Stores the neighbours across facets whose lowest node is n; returns a facet that belongs to three cells, if there is one.
   using Three = std::array<Facet, 3>;
   const auto match_from = [&](Index n) -> std::optional<Three> {
     static thread_local std::vector<Claim> claims;

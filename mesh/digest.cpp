@@ -19,7 +19,7 @@ void digest_bytes(std::span<const std::byte> bytes, std::uint64_t& sum)
   }
 }
 
-/// With their number before them, so that what ends here and begins there makes a difference.
+/// Adds values after their number, so that a value cannot move from one list to the next without a change of the digest.
 template <class T>
 void digest_counted(std::span<const T> items, std::uint64_t& sum)
 {
@@ -28,7 +28,7 @@ void digest_counted(std::span<const T> items, std::uint64_t& sum)
   digest_bytes(std::as_bytes(items), sum);
 }
 
-/// Groups of one kind in the order of their names; members(name) are there for each.
+/// Adds the groups of one kind in the order of their names; members(name) returns the members of each.
 template <class Members>
 void digest_sets(const std::vector<std::string>& names, Members&& members, std::uint64_t& sum)
 {

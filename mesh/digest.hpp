@@ -1,5 +1,5 @@
 #pragma once
-// Whether two meshes are the same.
+// Digests of meshes, to detect whether two meshes are equal.
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -8,13 +8,14 @@
 
 namespace talus {
 
-/// Of nodes and cells, to the last bit and in their order, and of the groups by name: other meshes have another number but once in 2^64.
+/// The digest of nodes and cells, bitwise and in order, and of the groups with their names.  Different meshes have equal digests with a
+/// probability of 2^-64.
 template <int D>
 std::uint64_t digest(const Mesh<D>& mesh);
 
-/// Of a text.
+/// The digest of a text.
 std::uint64_t digest(std::string_view text);
-/// Of numbers, to the last bit.
+/// The digest of the bits of numbers.
 std::uint64_t digest(std::span<const Real> numbers);
 
 extern template std::uint64_t digest<2>(const Mesh<2>&);

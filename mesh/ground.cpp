@@ -9,12 +9,12 @@ namespace talus {
 
 namespace {
 
-/// A side whose plan is a smaller share of it stands upright.
+/// A side is upright if its plan area is a smaller fraction of its area.
 constexpr Real upright = 1e-9;
-/// Shares of a place that lies on the rim of a side, up to round-off.
+/// The smallest barycentric coordinate of a position inside a side; negative to allow for round-off.
 constexpr Real on_the_rim = -1e-9;
 
-/// Shares of the corners of a side in a place of the plan.
+/// The barycentric coordinates of a position of the plan in a side.
 std::array<Real, 2> shares(const std::array<Vec<2>, 2>& corners, const std::array<Real, 2>& place) noexcept
 {
   const Real t = (place[0] - corners[0][0]) / (corners[1][0] - corners[0][0]);
@@ -31,7 +31,7 @@ std::array<Real, 3> shares(const std::array<Vec<3>, 3>& corners, const std::arra
   return {part[0] / whole, part[1] / whole, part[2] / whole};
 }
 
-/// Elevation of a side where it lies over a place, if it does.
+/// The elevation of a side at a position, if it contains the position.
 template <int D>
 std::optional<Real> elevation(const std::array<Vec<D>, D>& corners, const std::array<Real, 2>& place) noexcept
 {
@@ -127,7 +127,7 @@ Ground<D>::Sides::Sides(std::vector<Piece> pieces) : pieces_(std::move(pieces))
     std::array<std::size_t, 2> first{n_[0], n_[1]}, last{0, 0};
     for (const Vec<D>& corner : pieces_[i].corners)
       for (std::size_t axis = 0; axis < 2; ++axis) {
-        const Real at = plan(corner)[axis], rim = 1e-6 * width_[axis];  // a place on the rim may fall to either side
+        const Real at = plan(corner)[axis], rim = 1e-6 * width_[axis];  // a position on the boundary may be assigned to either side
         first[axis] = std::min(first[axis], bucket(axis, at - rim));
         last[axis] = std::max(last[axis], bucket(axis, at + rim));
       }

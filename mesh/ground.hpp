@@ -1,5 +1,5 @@
 #pragma once
-// The ground: the upper side of the cells of a mesh that hold something.
+// The ground: the upper side of the cells of a mesh that contain material.
 #include <functional>
 #include <vector>
 
@@ -7,25 +7,25 @@
 
 namespace talus {
 
-/// Elevation of the ground over the plan.  The last coordinate points up, the others are the plan; in 2-D the second one counts for nothing.
-/// Where nothing is held it is the lowest side of the mesh: what comes there later lies on that.
+/// The elevation of the ground over the plan.  The last coordinate points up, the others are the plan; in 2-D the second plan coordinate is
+/// ignored.  Where no cell contains material the ground is the lowest side of the mesh, on which arriving material comes to lie.
 template <int D>
 class Ground {
  public:
   using Place = std::array<Real, 2>;
 
-  /// `holds(cell)`: whether there is something in it.
+  /// `holds(cell)` returns whether the cell contains material.
   Ground(const Mesh<D>& mesh, const std::function<bool(Index)>& holds);
 
-  /// [m]; of places beside the mesh that of the nearest side.
+  /// The elevation [m]; outside of the mesh that of the nearest side.
   Real operator()(const Place& place) const;
 
-  /// A piece of the ground that nothing lies above.
+  /// A piece of the ground that is not covered by other cells.
   struct Piece {
     std::array<Vec<D>, D> corners;
-    Real area;  ///< of its plan [m^(D-1)]
+    Real area;  ///< plan area [m^(D-1)]
   };
-  /// Pieces of what is held, without the lower side of the mesh.
+  /// The pieces of the ground on cells with material, without the lower side of the mesh.
   std::vector<Piece> pieces() const;
 
   static Place plan(const Vec<D>& x) noexcept
@@ -37,12 +37,12 @@ class Ground {
   }
 
  private:
-  /// Sides that look up, or down, by where they are in the plan.
+  /// Sides that face up, or down, sorted by their position in the plan.
   class Sides {
    public:
     explicit Sides(std::vector<Piece> pieces);
     std::span<const Piece> pieces() const noexcept { return pieces_; }
-    /// f(elevation) of each side above or below a place.
+    /// Calls f(elevation) for each side above or below a position.
     template <class F>
     void at(const Place& place, F&& f) const;
     Real nearest(const Place& place) const;
@@ -51,7 +51,7 @@ class Ground {
     std::size_t bucket(std::size_t axis, Real coordinate) const noexcept;
 
     std::vector<Piece> pieces_;
-    Place low_{}, width_{1, 1};  // of the buckets' rectangle and of one bucket [m]
+    Place low_{}, width_{1, 1};  // size of the grid of buckets and of one bucket [m]
     std::array<std::size_t, 2> n_{1, 1};
     std::vector<std::vector<std::size_t>> buckets_;
   };

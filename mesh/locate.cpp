@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-constexpr int longest_walk = 32;  // steps; a search in the tree costs about as much
+constexpr int longest_walk = 32;  // most steps of a walk; a search in the tree costs about as much
 
 template <int D>
 Extent<D> tolerant_box(const Simplex<D>& s, Real tolerance)
@@ -47,7 +47,8 @@ Extent<D> facet_box(const Mesh<D>& mesh, Facet f)
 
 enum class Position : std::uint8_t { deep, within, outside };
 
-/// Where x is with respect to one cell: distances to its facets, and its box because beyond a sharp tip those are small.
+/// The position of x relative to one cell: distances to its facets, and to its bounding box, because beyond a sharp corner the former are
+/// small.
 template <int D>
 Position position(const Mesh<D>& mesh, Index c, const Vec<D>& x, Real margin) noexcept
 {
@@ -80,7 +81,7 @@ std::optional<Index> Locator<D>::operator()(const Mesh<D>& mesh, const Vec<D>& x
     const auto worst = std::min_element(lambda.begin(), lambda.end());
     if (*worst * mesh.altitude(hint) > margin_)
       return hint;
-    if (!(*worst < 0))  // near a facet, or not a number
+    if (!(*worst < 0))  // near a facet, or NaN
       break;
     hint = mesh.neighbours(hint)[worst - lambda.begin()];
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Which cell holds a point: a walk across facets from a hint, a search in a tree of boxes when the walk loses its way.
+// The cell that contains a point: a walk across facets from a hint, and a search in a tree of boxes if the walk fails.
 #include <optional>
 
 #include "core/simd.hpp"
@@ -8,13 +8,12 @@
 
 namespace talus {
 
-/// How far outside a cell a point may be and still count as inside: round-off, relative to the longest edge of the cell.
+/// The distance outside a cell, relative to its longest edge, up to which a point counts as inside: round-off.
 inline constexpr Real location_tolerance = 1e-10;
 
-/// Where a point is.  On a facet, edge or node shared by cells the lowest cell number wins, whatever the hint was.
-///
-/// In a part of a mesh (see Mesh) a point is where it is in the whole, if the cells that share a node with its cell there are held too;
-/// a point in a cell that is not held is outside.
+/// Finds cells of points.  On a facet, edge or node of several cells the lowest cell number is returned, whatever the hint.  In a part of a
+/// mesh (see Mesh) the result is that of the whole mesh if the part contains the cells that share a node with the cell of the point; a
+/// point in a cell that the part does not contain is outside.
 template <int D>
 class Locator {
  public:
@@ -24,13 +23,13 @@ class Locator {
   /// The usual case, x still inside cell `hint`, costs one barycentric map.  `hint` may be `none`.
   std::optional<Index> operator()(const Mesh<D>& mesh, const Vec<D>& x, Index hint) const noexcept;
 
-  /// One cell opened for many points: most particles are still deep inside the cell they were in.
+  /// Data of one cell for the location of many points: most particles are still well inside their cell.
   struct Probe {
     const Vec<D>& origin;
     const std::array<Vec<D>, D + 1>& slope;  ///< gradients of the barycentric coordinates [1/m]
-    Real least;                              ///< a point with all coordinates above this lies in no other cell
+    Real least;                              ///< a point whose coordinates are all above this lies in no other cell
     bool deep(const Vec<D>& x) const noexcept { return all_above_least<Real>(x); }
-    /// Of several points at once.
+    /// The test for several points at once.
     SimdReal::Mask deep_each(const Eigen::Matrix<SimdReal, D, 1, Eigen::DontAlign>& x) const noexcept
     {
       return all_above_least<SimdReal>(x);
@@ -71,7 +70,7 @@ class Locator {
  private:
   std::optional<Index> search(const Mesh<D>& mesh, const Vec<D>& x) const noexcept;
 
-  Real margin_;  // a point this deep [m] inside a cell is within the tolerance of no other cell of the whole mesh
+  Real margin_;  // a point this deep [m] inside a cell is not within the tolerance of any other cell of the whole mesh
   BoxTree<D> cells_, facets_;
 };
 

@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-/// New number of every old one: the inverse of a list of old numbers.
+/// The new number of every old number: the inverse of a list of old numbers.
 std::vector<Index> inverse(std::span<const Index> old_numbers, std::size_t count)
 {
   std::vector<Index> renumbered(count, none);
@@ -28,7 +28,7 @@ void sort_unique(std::vector<Index>& numbers)
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
-/// A set in new numbers, ascending.  Members without a new number (nodes no cell uses) are left out, but not all of them.
+/// A set in new numbers, ascending.  Members without a new number (nodes of no cell) are left out; throws if none is left.
 std::vector<Index> renumber(const std::vector<Index>& members, std::span<const Index> renumbered, std::string_view kind,
                             std::string_view name, std::string_view what)
 {
@@ -47,7 +47,7 @@ std::vector<Index> renumber(const std::vector<Index>& members, std::span<const I
 
 bool is_before(Facet a, Facet b) noexcept { return std::tie(a.cell, a.local) < std::tie(b.cell, b.local); }
 
-/// What `values` has for each of `chosen`.
+/// The entries of `values` for each of `chosen`.
 template <class T>
 std::vector<T> picked(const std::vector<T>& values, std::span<const Index> chosen)
 {
@@ -56,7 +56,7 @@ std::vector<T> picked(const std::vector<T>& values, std::span<const Index> chose
   return result;
 }
 
-/// The new numbers of those members of a set that have one.
+/// The new numbers of the members of a set that have one.
 std::vector<Index> held(const std::vector<Index>& members, std::span<const Index> renumbered)
 {
   std::vector<Index> result;
@@ -66,7 +66,7 @@ std::vector<Index> held(const std::vector<Index>& members, std::span<const Index
   return result;
 }
 
-/// The facet with these nodes, seen from the lower numbered of its cells.
+/// The facet with these nodes, as facet of the lower numbered of its cells.
 template <int D>
 std::optional<Facet> find_facet(const Mesh<D>& mesh, const std::array<Index, D>& nodes)
 {
@@ -157,7 +157,7 @@ Mesh<D>::Mesh(const Mesh& whole, std::span<const Index> cells)
   take_sets(whole, new_cell, new_node);
 }
 
-/// Cells in the given order and turned positive, nodes by first use; answers the old number of each node.
+/// Sorts cells into the given order, orients them positively and numbers nodes by first use; returns the old number of each node.
 template <int D>
 std::vector<Index> Mesh<D>::take_cells(const MeshData<D>& data, std::span<const Index> old_cells)
 {
@@ -217,7 +217,7 @@ void Mesh<D>::measure()
     Real sum = 0;
     for (const Index m : ring)
       sum += (nodes_[m] - nodes_[n]).norm();
-    node_size_[n] = sum / static_cast<Real>(ring.size() - 1);  // the ring holds n itself, and simplices have no diagonals
+    node_size_[n] = sum / static_cast<Real>(ring.size() - 1);  // the ring contains n itself, and simplices have no diagonals
   });
   largest_edge_ = -parallel_min(n_cells(), 0, [&](Index c) { return -longest_edge<D>(corners(c)); });
   low_ = high_ = nodes_[0];
@@ -259,7 +259,7 @@ void Mesh<D>::take_sets(const MeshData<D>& data, std::span<const Index> new_cell
 template <int D>
 void Mesh<D>::take_sets(const Mesh& whole, std::span<const Index> new_cell, std::span<const Index> new_node)
 {
-  for (const std::string& name : whole.node_set_names())  // with the nodes of facets and cells that are not held
+  for (const std::string& name : whole.node_set_names())  // with the nodes of facets and cells that this part does not contain
     node_sets_[name] = held(*whole.node_set(name), new_node);
   for (const auto& [name, members] : whole.cell_sets_)
     cell_sets_[name] = held(members, new_cell);

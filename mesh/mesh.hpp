@@ -1,5 +1,5 @@
 #pragma once
-// The background mesh: simplices only, immutable, with the adjacency the method needs and the named groups of gmsh.
+// The background mesh: immutable, of simplices only, with its adjacency and the named groups of gmsh.
 #include <array>
 #include <map>
 #include <optional>
@@ -13,39 +13,38 @@
 
 namespace talus {
 
-/// A facet (edge in 2-D, triangle in 3-D), seen from a cell: opposite local node `local` of `cell`.
+/// A facet (edge in 2-D, triangle in 3-D) of a cell: the one opposite local node `local` of `cell`.
 struct Facet {
   Index cell;
   Index local;
   friend bool operator==(const Facet&, const Facet&) = default;
 };
 
-/// What a reader or generator hands over: numbers in any order, groups by name.
+/// Mesh data from a reader or generator: numbers in any order, groups by name.
 template <int D>
 struct MeshData {
   std::vector<Vec<D>> nodes;                                            ///< coordinates [m]
-  std::vector<std::array<Index, D + 1>> cells;                          ///< node numbers; orientation is put right by Mesh
+  std::vector<std::array<Index, D + 1>> cells;                          ///< node numbers; Mesh corrects the orientation
   std::map<std::string, std::vector<Index>> node_sets;                  ///< points and curves (3-D): node numbers
-  std::map<std::string, std::vector<std::array<Index, D>>> facet_sets;  ///< boundary or interior facets by their nodes
+  std::map<std::string, std::vector<std::array<Index, D>>> facet_sets;  ///< boundary or interior facets, by their nodes
   std::map<std::string, std::vector<Index>> cell_sets;                  ///< cell numbers
-  std::optional<MapFrame> map = {};                                     ///< of a mesh that was made of terrain
-  std::vector<std::string> notes = {};                                  ///< what was mended while it was made: warnings of whoever uses it
+  std::optional<MapFrame> map = {};                                     ///< set for a mesh made from terrain
+  std::vector<std::string> notes = {};                                  ///< corrections made during generation, to be printed as warnings
 };
 
-/// Immutable simplex mesh.  Cells are renumbered along a space-filling curve and nodes by first use, so that neighbours in
-/// number are neighbours in space.  Degenerate or broken data throw std::invalid_argument saying which cell or node, where.
-///
-/// Nodes that no cell uses are dropped, also from the sets that name them.  Messages use the numbers of the data.
+/// An immutable simplex mesh.  Cells are renumbered along a space-filling curve and nodes by first use, so that neighbouring numbers are
+/// neighbours in space.  Degenerate or invalid data throw std::invalid_argument with cell or node and position.  Nodes of no cell are
+/// dropped, also from the sets that name them.  Messages use the numbers of the data.
 template <int D>
 class Mesh {
  public:
   using Cell = std::array<Index, D + 1>;
 
   explicit Mesh(MeshData<D> data);
-  /// Some cells of `whole` (ascending; may be none) and the nodes they use, both in the order of the whole.  What was measured there is
-  /// taken over, so that a node at the rim knows its size, and the box is that of the whole.  `neighbours`, `cells_of_node` and
-  /// `ring_of_node` know the cells held.  Where the mesh was cut is no boundary: `boundary_facets` and `on_boundary` are those of the
-  /// whole.  Every named set is there, if only with the members held; a facet inside is seen from a cell that is held.
+  /// A part of the mesh `whole`: some cells (ascending; may be empty) and their nodes, both in the order of the whole.  Sizes of nodes and
+  /// the bounding box are those of the whole.  `neighbours`, `cells_of_node` and `ring_of_node` contain the cells of the part only.
+  /// `boundary_facets` and `on_boundary` refer to the boundary of the whole, not to the cut.  Every named set exists, with its members in
+  /// the part; an interior facet is listed with a cell of the part.
   Mesh(const Mesh& whole, std::span<const Index> cells);
 
   Index n_nodes() const noexcept { return static_cast<Index>(nodes_.size()); }
@@ -58,23 +57,24 @@ class Mesh {
   const Cell& cell(Index c) const noexcept { return cells_[static_cast<std::size_t>(c)]; }
 
   Real volume(Index c) const noexcept { return volume_[static_cast<std::size_t>(c)]; }        ///< area in 2-D [m^D]
-  Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }    ///< the smallest one [m]
-  std::span<const Real> altitudes() const noexcept { return altitude_; }                      ///< of all cells
+  Real altitude(Index c) const noexcept { return altitude_[static_cast<std::size_t>(c)]; }    ///< smallest altitude [m]
+  std::span<const Real> altitudes() const noexcept { return altitude_; }                      ///< smallest altitude of each cell [m]
   Real node_size(Index n) const noexcept { return node_size_[static_cast<std::size_t>(n)]; }  ///< h_n, mean length of the edges at n [m]
-  Real largest_edge() const noexcept { return largest_edge_; }                                ///< of all cells [m]
+  Real largest_edge() const noexcept { return largest_edge_; }                                ///< longest edge of all cells [m]
   const Vec<D>& low() const noexcept { return low_; }                                         ///< corners of the bounding box [m]
   const Vec<D>& high() const noexcept { return high_; }
-  /// Where the mesh lies on a map, if it was made of terrain.
+  /// The position of the mesh on a map, if it was made from terrain.
   const std::optional<MapFrame>& map() const noexcept { return map_; }
-  /// What was mended while it was made, in words.
+  /// Descriptions of corrections made during generation.
   const std::vector<std::string>& notes() const noexcept { return notes_; }
 
-  /// Cell across the facet opposite each local node, or `none` on the boundary and where a larger mesh was cut.
+  /// The cell across the facet opposite each local node, or `none` on the boundary and where a larger mesh was cut.
   const std::array<Index, D + 1>& neighbours(Index c) const noexcept { return neighbours_[static_cast<std::size_t>(c)]; }
   const Csr& cells_of_node() const noexcept { return cells_of_node_; }  ///< ascending
-  /// False for nodes where the mesh was cut out of a larger one: cells around them are missing.
+  /// False for nodes on the cut out of a larger mesh, which lack some of their cells.
   bool is_whole(Index n) const noexcept { return cut_.empty() || cut_[static_cast<std::size_t>(n)] == 0; }
-  const Csr& ring_of_node() const noexcept { return ring_of_node_; }  ///< nodes that share a cell with it, itself included, ascending
+  /// Nodes that share a cell with each node, including itself, ascending.
+  const Csr& ring_of_node() const noexcept { return ring_of_node_; }
   std::span<const Facet> boundary_facets() const noexcept { return boundary_facets_; }
   bool on_boundary(Facet f) const noexcept;  ///< false where a larger mesh was cut
   bool on_boundary(Index n) const noexcept { return on_boundary_[static_cast<std::size_t>(n)] != 0; }
@@ -87,12 +87,12 @@ class Mesh {
   /// Gradients [1/m] of the D+1 barycentric coordinates of cell c.
   const std::array<Vec<D>, D + 1>& gradients(Index c) const noexcept { return gradients_[static_cast<std::size_t>(c)]; }
 
-  /// Nodes of a named group of any dimension (nodes of its facets or cells), ascending; nothing if there is no such group.
+  /// The nodes of a named group of any dimension (nodes of its facets or cells), ascending; nothing if there is no such group.
   std::optional<std::vector<Index>> node_set(std::string_view name) const;
-  /// Each facet once: those on the boundary first, then interior ones, seen from the lower numbered of their two cells.
+  /// The facets of a group, each once: boundary facets first, then interior ones, as facets of the lower numbered cell.
   std::optional<std::vector<Facet>> facet_set(std::string_view name) const;
   std::optional<std::vector<Index>> cell_set(std::string_view name) const;  ///< ascending
-  std::vector<std::string> node_set_names() const;                          ///< every name node_set() knows, sorted
+  std::vector<std::string> node_set_names() const;                          ///< all names that node_set() knows, sorted
   std::vector<std::string> facet_set_names() const;
   std::vector<std::string> cell_set_names() const;
 
@@ -109,7 +109,7 @@ class Mesh {
   std::vector<std::array<Vec<D>, D + 1>> gradients_;
   std::vector<std::array<Index, D + 1>> neighbours_;
   Csr cells_of_node_, ring_of_node_;
-  std::vector<std::uint8_t> cut_;  ///< of a mesh of some cells of another: by node
+  std::vector<std::uint8_t> cut_;  ///< part of a mesh: whether a node lies on the cut
   std::vector<Facet> boundary_facets_;
   std::vector<std::uint8_t> on_boundary_;
   Real largest_edge_;

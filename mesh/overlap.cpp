@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-/// Length by which the projections of two simplices on an axis overlap [m]; negative: by which they are apart.
+/// The length by which the projections of two simplices on an axis overlap [m]; if negative, the gap between them.
 template <int D>
 Real overlap_along(const Vec<D>& axis, const Simplex<D>& p, const Simplex<D>& q)
 {
@@ -30,8 +30,8 @@ Real overlap_along(const Vec<D>& axis, const Simplex<D>& p, const Simplex<D>& q)
   return std::min(p_high, q_high) - std::max(p_low, q_low);
 }
 
-/// Whether two simplices penetrate each other by more than a depth [m].  If they do not, a plane along a facet of one of them, or in 3-D along
-/// an edge of each, separates them (Gottschalk, Lin & Manocha 1996, SIGGRAPH, 171).
+/// Whether two simplices penetrate each other by more than a depth [m].  If not, they are separated by a plane along a facet of one of
+/// them, or in 3-D along an edge of each (Gottschalk, Lin & Manocha 1996, SIGGRAPH, 171).
 template <int D>
 bool penetrate(const Simplex<D>& p, const Simplex<D>& q, Real depth)
 {
@@ -48,7 +48,7 @@ bool penetrate(const Simplex<D>& p, const Simplex<D>& q, Real depth)
     for (const auto& [a, b] : edges)
       for (const auto& [c, d] : edges) {
         const Vec<3> along = (p[b] - p[a]).normalized(), across = (q[d] - q[c]).normalized(), axis = along.cross(across);
-        constexpr Real parallel = 1e-9;  // sine: such an axis is round-off
+        constexpr Real parallel = 1e-9;  // sine of the angle below which an axis is round-off
         if (axis.norm() > parallel && separates(axis))
           return false;
       }
@@ -106,7 +106,7 @@ std::vector<std::vector<Index>> unjoined_nodes(const MeshData<D>& data)
       nodes.push_back(facet[a]);
       shortest = std::min(shortest, (at(facet[a]) - at(facet[(a + 1) % D])).norm());
     }
-  // Along a direction in which hardly any two nodes of a plane side or of a grid have the same place.
+  // A direction along which nodes of a plane side or of a grid hardly ever have equal positions.
   constexpr std::array<Real, 3> direction{0.7548776662, 0.5698402910, 0.4301597090};
   const auto along = [&](Index n) {
     Real sum = 0;

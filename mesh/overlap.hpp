@@ -1,5 +1,5 @@
 #pragma once
-// Cells that cover the same place, and nodes at the same place that are not joined: faults of meshes that facets do not show.
+// Cells that overlap, and unconnected nodes at the same position: errors of meshes that the facets do not show.
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -11,20 +11,20 @@ namespace talus {
 /// Cells that overlap although they share no facet.
 struct OverlappingCells {
   Index first, second;  ///< the lowest numbered pair
-  std::int64_t pairs;   ///< how many pairs a cell at the boundary is part of
+  std::int64_t pairs;   ///< number of pairs with a cell at the boundary
 };
 
-/// Two cells overlap if they penetrate each other by more than this times the smallest altitude of the two: less is round-off of coordinates in
-/// text files.
+/// Two cells overlap if they penetrate each other by more than this times the smallest altitude of the two; less is round-off of text
+/// files.
 inline constexpr Real least_penetration = 1e-3;
 
-/// Nothing if no place is covered twice.  A place that is covered twice ends at a facet of the boundary, so only the cells there are compared
-/// with others: n^((D-1)/D) of n cells, each with those around it.
+/// The overlapping cells, or nothing.  A region that is covered twice ends at a facet of the boundary, so only the cells at the boundary
+/// are compared with others: n^((D-1)/D) of n cells, each with those around it.
 template <int D>
 std::optional<OverlappingCells> find_overlap(const Mesh<D>& mesh);
 
-/// Groups of two nodes or more of the facet set "boundary" at the same place, up to 1e-6 of the shortest edge there.  The cells at them are
-/// not joined: the mesh has a crack.  In the order of their lowest node numbers.
+/// Groups of two or more nodes of the facet set "boundary" at the same position, within 1e-6 of the shortest edge there.  The cells at them
+/// are not connected: the mesh has a crack.  In the order of their lowest node numbers.
 template <int D>
 std::vector<std::vector<Index>> unjoined_nodes(const MeshData<D>& data);
 

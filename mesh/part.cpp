@@ -12,14 +12,14 @@ namespace talus {
 
 namespace {
 
-/// Appends the cells of a block of a mesh with so many cells.
+/// Appends the cells of a block of a mesh with `n_cells` cells.
 void add_cells(Index block, Index n_cells, std::vector<Index>& cells)
 {
   for (Index c = block * block_cells; c < n_cells && c / block_cells == block; ++c)
     cells.push_back(c);
 }
 
-/// Distance of each node from the vertices of the blocks of a rank, in rings of nodes, up to `farthest`.
+/// The distance of each node from the vertices of the blocks of a rank, in rings of nodes, up to `farthest`.
 template <int D>
 std::vector<int> rings_from(const Mesh<D>& mesh, std::span<const int> rank_of_block, int rank, int farthest)
 {
@@ -44,7 +44,7 @@ std::vector<int> rings_from(const Mesh<D>& mesh, std::span<const int> rank_of_bl
   return distance;
 }
 
-/// The place of a number in an ascending list, or `none`.
+/// The index of a number in an ascending list, or `none`.
 Index place_in(std::span<const Index> list, Index number) noexcept
 {
   const auto found = std::lower_bound(list.begin(), list.end(), number);
@@ -68,7 +68,7 @@ Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, 
   if (rank_of_block.size() != static_cast<std::size_t>(n_blocks))
     throw std::invalid_argument(fmt::format("{} ranks for {} blocks of cells", rank_of_block.size(), n_blocks));
 
-  // A cell in ring k has a vertex at k-1 or nearer.
+  // A cell in ring k has a vertex at distance k-1 or less.
   const std::vector<int> distance = rings_from(whole, rank_of_block, rank, rings - 1);
   std::vector<std::uint8_t> wanted(rank_of_block.size());
   parallel_for(n_blocks, [&](Index b) {

@@ -1,5 +1,5 @@
 #pragma once
-// What one rank holds of a mesh: its own blocks of cells, and as many around them as its sums reach.
+// The part of a mesh on one rank: its own blocks of cells, and as many around them as its sums need.
 #include <limits>
 #include <span>
 #include <vector>
@@ -9,14 +9,13 @@
 
 namespace talus {
 
-/// Whose the blocks and nodes of a mesh are that one of several ranks holds a part of, and what number they have in the whole.  A rank that is
-/// alone needs none of it: all lists are empty.
+/// The owners of the blocks and nodes in the part of a rank, and their numbers in the whole mesh.  On a single rank all lists are empty.
 struct Subdomain {
   std::vector<Index> block;                ///< local block -> block of the whole mesh, ascending
   std::vector<int> rank_of_block;          ///< of each local block
   std::vector<Index> node;                 ///< local node -> node of the whole mesh, ascending
-  std::vector<int> rank_of_node;           ///< of each local node: the rank of the lowest cell that the whole mesh has around it
-  Index whole_cells = 0, whole_nodes = 0;  ///< how many the whole mesh has
+  std::vector<int> rank_of_node;           ///< rank of each local node: that of the lowest cell around the node in the whole mesh
+  Index whole_cells = 0, whole_nodes = 0;  ///< numbers of cells and nodes of the whole mesh
   int rank = 0;
   std::vector<int> rank_of_whole_block;  ///< of all blocks of the whole mesh
 
@@ -29,14 +28,13 @@ struct Subdomain {
   {
     return block[static_cast<std::size_t>(local / block_cells)] * block_cells + local % block_cells;
   }
-  Index local_cell(Index whole) const noexcept;  ///< `none` if the cell is not held
-  Index local_node(Index whole) const noexcept;  ///< `none` if the node is not held
+  Index local_cell(Index whole) const noexcept;  ///< `none` if the part does not contain the cell
+  Index local_node(Index whole) const noexcept;  ///< `none` if the part does not contain the node
 };
 
-/// Blocks are held whole and in their order, and only the last one of the whole mesh may be short.  So the local cell c lies in the
-/// local block c / block_cells, here as there, and local order of cells, blocks and nodes is that of the whole.
-///
-/// A rank without blocks of its own holds nothing: no cells, no nodes.
+/// The part of a mesh on one rank.  Blocks are complete and in order, and only the last block of the whole mesh may be short.  So the local
+/// cell c lies in the local block c / block_cells, as in the whole mesh, and the local order of cells, blocks and nodes is that of the
+/// whole.  A rank without own blocks has no cells and no nodes.
 template <int D>
 struct Part {
   Mesh<D> mesh;
@@ -48,12 +46,12 @@ struct Part {
 template <int D>
 Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, int rings);
 
-/// A node that no chain of cells held joins to an own cell.
+/// The distance of a node that no chain of cells of the part connects to an own cell.
 inline constexpr int out_of_reach = std::numeric_limits<int>::max();
 
-/// For each local node how many cells lie between it and the vertices of own cells, which have 0.  Up to the `rings` of the cut this is
-/// the distance in the whole mesh; beyond, the way may lead through cells that are not held, and the distance may be too long.  A node
-/// less than `rings` away has all its cells here.
+/// For each local node the number of cells between it and the vertices of own cells, which have 0.  Up to the `rings` of the cut this is
+/// the distance in the whole mesh; beyond, the shortest way may lead through cells outside the part, and the distance may be too long.  The
+/// part contains all cells of a node less than `rings` away.
 template <int D>
 std::vector<int> rings_from_own(const Part<D>& part);
 

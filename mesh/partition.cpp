@@ -15,21 +15,21 @@ namespace talus {
 
 namespace {
 
-/// METIS counts in 32 bits and adds all weights up.
+/// The largest total weight: METIS computes with 32-bit integers.
 constexpr std::int64_t largest_total = 1 << 30;
 
-/// Differences below this do not matter: METIS may leave so much to shorten a border, and particles move on anyway.
+/// The imbalance that is accepted: METIS may use it to shorten borders, and particles move anyway.
 constexpr Real even_enough = 1.03;
 
-/// METIS is asked if the mean load is worth as many of the heaviest block.  With fewer there is little to choose, and where METIS runs
-/// out of blocks for a rank it complains on the standard output.
+/// METIS is called if the mean load is at least that of so many blocks of the largest cost.  With fewer blocks there is little choice, and
+/// METIS prints complaints on the standard output where it has no block for a rank.
 constexpr std::int64_t enough_blocks = 4;
 
-/// Blocks, and between any two that touch the number of facets they share.
+/// The blocks as nodes of a graph, with the number of common facets between blocks as weight of edges.
 struct BlockGraph {
   std::vector<std::int64_t> cost;
   std::int64_t total = 0;
-  std::vector<idx_t> begin{0}, neighbour, facets;  // as METIS takes them: compressed rows
+  std::vector<idx_t> begin{0}, neighbour, facets;  // compressed rows in the types of METIS
   idx_t size() const { return static_cast<idx_t>(cost.size()); }
 };
 
@@ -39,7 +39,7 @@ BlockGraph graph_of(const Mesh<D>& mesh, std::span<const std::int64_t> weights)
   BlockGraph graph;
   graph.cost = costs_of_blocks(weights, mesh.n_cells());
   graph.total = std::accumulate(graph.cost.begin(), graph.cost.end(), std::int64_t{0});
-  std::vector<std::vector<std::pair<Index, idx_t>>> around(graph.cost.size());  // block, facets shared
+  std::vector<std::vector<std::pair<Index, idx_t>>> around(graph.cost.size());  // block, number of common facets
   parallel_for(graph.size(), [&](Index b) {
     static thread_local std::vector<Index> across;
     across.clear();
@@ -64,7 +64,7 @@ BlockGraph graph_of(const Mesh<D>& mesh, std::span<const std::int64_t> weights)
   return graph;
 }
 
-/// Ranges of blocks in their order, as even as whole blocks allow.
+/// Ranges of consecutive blocks with loads as equal as possible.
 std::vector<int> along_the_curve(std::span<const std::int64_t> cost_of_block, int parts)
 {
   const std::int64_t total = std::accumulate(cost_of_block.begin(), cost_of_block.end(), std::int64_t{0});
@@ -92,7 +92,7 @@ std::vector<int> by_metis(BlockGraph& graph, int parts, decltype(METIS_PartGraph
   return {rank.begin(), rank.end()};
 }
 
-/// Facets between blocks of different ranks, counted from both sides.
+/// The number of facets between blocks of different ranks, each counted from both sides.
 std::int64_t cut_of(const BlockGraph& graph, std::span<const int> rank)
 {
   std::int64_t cut = 0;

@@ -22,8 +22,8 @@ void add_orbit(Points<D>& points, std::array<Real, D + 1> lambda)
   while (std::next_permutation(lambda.begin(), lambda.end()));
 }
 
-/// Stretches a symmetric set about the centroid so that the mean of lambda_a^2 is that of the cell, 2 / ((D+1)(D+2)).  By symmetry
-/// all quadratic polynomials are then integrated exactly.
+/// Scales a symmetric set about the centroid so that the mean of lambda_a^2 is that of the cell, 2 / ((D+1)(D+2)).  By symmetry all
+/// quadratic polynomials are then integrated exactly.
 template <int D>
 Points<D> stretched(Points<D> points)
 {
@@ -72,7 +72,7 @@ std::array<Real, 3> strang_fix()
   return root;
 }
 
-/// A rule of the triangle in each of the cuts x cuts congruent triangles it falls into.
+/// The points of a rule in each of the cuts x cuts congruent triangles of a triangle.
 Points<2> subdivided(const Points<2>& rule, int cuts)
 {
   Points<2> points;
@@ -81,7 +81,7 @@ Points<2> subdivided(const Points<2>& rule, int cuts)
       for (const auto& lambda : rule) {
         const Real k = cuts - 1 - i - j;
         points.push_back({(i + lambda[0]) / cuts, (j + lambda[1]) / cuts, (k + lambda[2]) / cuts});
-        if (k > 0)  // and the triangle upside down beside it
+        if (k > 0)  // the inverted triangle beside it
           points.push_back({(i + 1 - lambda[0]) / cuts, (j + 1 - lambda[1]) / cuts, (k - lambda[2]) / cuts});
       }
   return points;
@@ -103,24 +103,24 @@ std::optional<Points<2>> triangle_points(int n)
   return std::nullopt;
 }
 
-/// 1/4 + 3t at one corner and 1/4 - t at the others.
+/// Adds the points with 1/4 + 3t at one corner and 1/4 - t at the others.
 void add_corner_orbit(Points<3>& points, Real t) { add_orbit<3>(points, {0.25 - t, 0.25 - t, 0.25 - t, 0.25 + 3 * t}); }
-/// 1/4 + u at two corners and 1/4 - u at the others.
+/// Adds the points with 1/4 + u at two corners and 1/4 - u at the others.
 void add_edge_orbit(Points<3>& points, Real u) { add_orbit<3>(points, {0.25 - u, 0.25 - u, 0.25 + u, 0.25 + u}); }
 
-/// Moments of the cell: the sum over corners of (lambda - 1/4)^2 is 0.15 in the mean, of (lambda - 1/4)^3 0.025.  A corner orbit
-/// has 12 t^2 and 24 t^3, an edge orbit 4 u^2 and 0.
+/// Points from the moments of the cell: the mean over the points of the sum over corners of (lambda - 1/4)^2 is 0.15, of (lambda - 1/4)^3
+/// 0.025.  A corner orbit has 12 t^2 and 24 t^3, an edge orbit 4 u^2 and 0.
 std::optional<Points<3>> tetrahedron_points(int n)
 {
   Points<3> points;
   switch (n) {
     case 1: points.push_back({0.25, 0.25, 0.25, 0.25}); return points;
     case 4: return stretched<3>(lattice<3>(1));
-    case 8:  // t^2 + s^2 = 0.025: every point the same 0.1 away from its nearest facets
+    case 8:  // t^2 + s^2 = 0.025: every point has the distance 0.1 from its nearest facets
       add_corner_orbit(points, 0.15);
       add_corner_orbit(points, -0.05);
       return points;
-    case 10: {  // second and third moments
+    case 10: {  // from the second and third moments
       const Real t = std::cbrt(0.025 * 10 / (24 * 4));
       add_corner_orbit(points, t);
       add_edge_orbit(points, std::sqrt((0.15 * 10 - 48 * t * t) / 24));

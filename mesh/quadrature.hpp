@@ -1,5 +1,5 @@
 #pragma once
-// Where particles start in a cell: symmetric points of equal weight, so that each takes the same share of the cell.
+// Initial positions of particles in a cell: symmetric points of equal weight, so that each has the same volume.
 #include <array>
 #include <optional>
 #include <vector>

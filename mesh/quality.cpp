@@ -24,8 +24,8 @@ Real mean_ratio(const Simplex<D>& s) noexcept
 template <int D>
 Real smallest_angle(const Simplex<D>& s) noexcept
 {
-  // Between the outward normals of two facets lies pi minus the angle of the simplex there.  The tangent form (sine from the
-  // cross product) keeps its digits for angles near zero, where the cosine loses them.
+  // The angle between the outward normals of two facets is pi minus the angle of the simplex.  The tangent form (sine from the cross
+  // product) is accurate for angles near zero, where the cosine is not.
   Real smallest = std::numeric_limits<Real>::infinity();
   for (int a = 0; a < D; ++a)
     for (int b = a + 1; b <= D; ++b) {
@@ -70,7 +70,7 @@ MeshQuality<D> quality(const Mesh<D>& mesh)
       q.longest_edge = std::max(q.longest_edge, std::sqrt(squared));
     });
     for (const Index other : mesh.neighbours(c))
-      if (other != none)  // seen from both sides, so one of the two ratios is above one
+      if (other != none)  // computed from both sides, so one of the two ratios is above one
         q.gradation = std::max(q.gradation, std::pow(volume / mesh.volume(other), 1.0 / D));
   }
   for (Index n = 0; n < mesh.n_nodes(); ++n)

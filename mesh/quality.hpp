@@ -1,5 +1,5 @@
 #pragma once
-// How good a mesh is: the numbers that decide about the time step and the error, and where the worst cell lies.
+// Measures of mesh quality: the quantities that determine time step and error, and the position of the worst cell.
 #include <string>
 
 #include "mesh/mesh.hpp"
@@ -19,21 +19,21 @@ Real smallest_angle(const Simplex<D>& s) noexcept;
 template <int D>
 struct MeshQuality {
   Index nodes, cells, boundary_facets;
-  Real volume, smallest_volume, largest_volume;  ///< area in 2-D [m^D]; of all cells, of the smallest, of the largest
+  Real volume, smallest_volume, largest_volume;  ///< area in 2-D [m^D]; of all cells, of the smallest, of the largest cell
   Real smallest_mean_ratio, average_mean_ratio;  ///< mean_ratio()
-  Real smallest_angle;                           ///< [rad], of the whole mesh
-  Real smallest_altitude, median_altitude;       ///< of the smallest altitudes of the cells [m]
+  Real smallest_angle;                           ///< of the whole mesh [rad]
+  Real smallest_altitude, median_altitude;       ///< smallest and median of the smallest altitudes of the cells [m]
   Real shortest_edge, longest_edge;              ///< [m]
   Real gradation;                                ///< largest ratio of sizes, volume^(1/D), of two cells with a common facet
-  Index largest_ring;                            ///< most nodes in the one-ring of a node, itself included
-  Index worst_cell;                              ///< lowest mean ratio; by the numbers of the mesh
-  Vec<D> worst_place;                            ///< its centroid [m]
+  Index largest_ring;                            ///< most nodes in the one-ring of a node, including itself
+  Index worst_cell;                              ///< cell with the lowest mean ratio
+  Vec<D> worst_place;                            ///< centroid of that cell [m]
 };
 
 template <int D>
 MeshQuality<D> quality(const Mesh<D>& mesh);
 
-/// A few lines for people, with units, ending in a line feed.
+/// The measures as a few lines of text with units.
 template <int D>
 std::string to_string(const MeshQuality<D>& q);
 

@@ -22,7 +22,7 @@ FacetNodes<D> ascending(FacetNodes<D> facet)
   return facet;
 }
 
-/// Sides that belong to one of the facets alone.
+/// The edges that belong to one of the facets only.
 std::vector<Edge> rim_of(const std::vector<FacetNodes<3>>& facets)
 {
   std::vector<Edge> sides;
@@ -38,7 +38,7 @@ void keep_each_once(std::vector<Edge>& edges)
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
 }
 
-/// Keeps the nodes that are used, under new numbers.
+/// Keeps the nodes that are used and renumbers them.
 template <int D>
 void keep_used_nodes(const std::vector<Vec<D>>& nodes, RigidGround& ground)
 {

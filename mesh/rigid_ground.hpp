@@ -1,5 +1,5 @@
 #pragma once
-// The ground of a mesh that was made of terrain, and where its layers end: for pictures and pages.
+// The ground of a mesh made from terrain, and the boundaries of its layers, for pictures and reports.
 #include <array>
 #include <optional>
 #include <vector>
@@ -9,16 +9,16 @@
 
 namespace talus {
 
-/// What is rigid in a mesh of terrain, and what lies on it.
+/// The rigid surfaces of a mesh made from terrain, and the outlines of its layers.
 struct RigidGround {
-  std::vector<Real> nodes;                      ///< 3 numbers a node [m]; only nodes that are used below
-  std::vector<std::array<Index, 3>> triangles;  ///< 3-D: the rigid surface below everything, and obstacles
-  std::vector<Edge> lines;                      ///< 2-D: the same
-  std::vector<Edge> layers;  ///< where layers end: in 3-D the rim of the bottom of each, in 2-D the bottoms above the rigid line
+  std::vector<Real> nodes;                      ///< 3 numbers per node [m]; only nodes that are used below
+  std::vector<std::array<Index, 3>> triangles;  ///< 3-D: the rigid surface below the layers, and obstacles
+  std::vector<Edge> lines;                      ///< 2-D: the rigid lines
+  std::vector<Edge> layers;  ///< boundaries of layers: in 3-D the rim of the bottom of each, in 2-D the bottoms above the rigid line
 };
 
-/// By the names that a mesh of terrain gives its groups (docs/guide/terrain.md): `base` and `obstacle:NAME` are rigid, `layer:NAME:bottom` is the
-/// bottom of a layer.  Nothing for a mesh without the group `terrain`, or without anything rigid.
+/// Finds them by the names of groups in a mesh made from terrain (docs/guide/terrain.md): `base` and `obstacle:NAME` are rigid,
+/// `layer:NAME:bottom` is the bottom of a layer.  Nothing for a mesh without the group `terrain` or without rigid surfaces.
 template <int D>
 std::optional<RigidGround> rigid_ground_of(const MeshData<D>& data);
 

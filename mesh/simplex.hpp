@@ -24,7 +24,7 @@ inline constexpr std::array<std::array<int, D>, D + 1> facet_locals = [] {
     return std::array<std::array<int, 3>, 4>{{{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 }();
 
-/// Normal of an edge (to its right) or of a triangle (right hand), times its length or area [m^(D-1)].
+/// The normal of an edge (to its right) or of a triangle (right-hand rule), times its length or area [m^(D-1)].
 inline Vec<2> area_vector(const std::array<Vec<2>, 2>& facet) noexcept
 {
   const Vec<2> edge = facet[1] - facet[0];
@@ -35,7 +35,7 @@ inline Vec<3> area_vector(const std::array<Vec<3>, 3>& facet) noexcept
   return 0.5 * Vec<3>(facet[1] - facet[0]).cross(Vec<3>(facet[2] - facet[0]));
 }
 
-/// D! times the signed volume [m^D].
+/// The signed volume times D! [m^D].
 template <int D>
 Real determinant(const Simplex<D>& s) noexcept
 {
@@ -46,7 +46,7 @@ Real determinant(const Simplex<D>& s) noexcept
     return a.cross(b).dot(s[3] - s[0]);
 }
 
-/// Area or volume [m^D], negative for a simplex of the wrong orientation.
+/// The area or volume [m^D], negative for a simplex of negative orientation.
 template <int D>
 Real signed_volume(const Simplex<D>& s) noexcept
 {
@@ -62,7 +62,7 @@ Vec<D> centroid(const Simplex<D>& s) noexcept
   return sum / (D + 1);
 }
 
-/// f(length squared [m^2]) for each edge.
+/// Calls f(squared length [m^2]) for each edge.
 template <int D, class F>
 void for_each_edge(const Simplex<D>& s, F&& f)
 {
@@ -79,7 +79,7 @@ Real longest_edge(const Simplex<D>& s) noexcept
   return std::sqrt(longest);
 }
 
-/// Gradients [1/m] of the barycentric coordinates: normal to the facets, pointing inwards, one over the altitude long.
+/// The gradients [1/m] of the barycentric coordinates: normal to the facets, pointing inwards, with the length 1 / altitude.
 template <int D>
 std::array<Vec<D>, D + 1> gradients(const Simplex<D>& s) noexcept
 {
@@ -102,7 +102,7 @@ std::array<Vec<D>, D + 1> gradients(const Simplex<D>& s) noexcept
   return g;
 }
 
-/// Barycentric coordinates of x from their gradients and the first corner: sum to one, all >= 0 inside.
+/// The barycentric coordinates of x from their gradients and the first corner: they sum to one and are >= 0 inside.
 template <int D>
 std::array<Real, D + 1> barycentric(const std::array<Vec<D>, D + 1>& g, const Vec<D>& first_corner, const Vec<D>& x) noexcept
 {
@@ -116,7 +116,7 @@ std::array<Real, D + 1> barycentric(const std::array<Vec<D>, D + 1>& g, const Ve
   return lambda;
 }
 
-/// The same of a simplex whose gradients nobody knows yet.
+/// The barycentric coordinates of x in a simplex without precomputed gradients.
 template <int D>
 std::array<Real, D + 1> barycentric(const Simplex<D>& s, const Vec<D>& x) noexcept
 {
@@ -142,7 +142,7 @@ std::array<Vec<D>, D> facet(const Simplex<D>& s, int local) noexcept
   return corners;
 }
 
-/// Height [m] of each corner above the opposite facet.
+/// The height [m] of each corner above the opposite facet.
 template <int D>
 std::array<Real, D + 1> altitudes(const Simplex<D>& s) noexcept
 {

@@ -8,7 +8,7 @@ namespace talus {
 
 namespace {
 
-/// Cells, ranks and rows of the particles.
+/// Updates cells, ranks and order of the particles.
 template <int D>
 void locate_particles(Model<D>& m)
 {
@@ -23,7 +23,7 @@ void locate_particles(Model<D>& m)
     update_tracked_rows(m);
 }
 
-/// Whether all ranks go on; asked before anything is changed that could not be undone.
+/// Whether all ranks continue; checked before the step makes changes that could not be undone.
 template <int D>
 bool particles_valid(Model<D>& m)
 {
@@ -35,7 +35,7 @@ bool particles_valid(Model<D>& m)
   return false;
 }
 
-/// Forces on single particles.
+/// Computes forces on single particles.
 template <int D>
 void apply_particle_loads(Model<D>& m)
 {
@@ -43,7 +43,7 @@ void apply_particle_loads(Model<D>& m)
   apply(m.problem.loads, time, m.state.stage.ramp(time), m.work.followed, m.work.order, m.state.particles, m.work.sums.on_particles);
 }
 
-/// Tractions on facets of the mesh.
+/// Adds tractions on facets of the mesh.
 template <int D>
 void apply_nodal_loads(Model<D>& m)
 {
@@ -51,7 +51,7 @@ void apply_nodal_loads(Model<D>& m)
   apply(m.problem.loads, time, m.state.stage.ramp(time), m.problem.mesh, m.problem.own, std::span(m.work.nodes.sum), m.work.sums.on_mesh);
 }
 
-/// v <- v + (lag + dt/2) (f/m + g).
+/// Integrates v <- v + (lag + dt/2) (f/m + g).
 template <int D>
 void integrate_momentum(Model<D>& m, Real dt)
 {
@@ -59,7 +59,7 @@ void integrate_momentum(Model<D>& m, Real dt)
   integrate(m.problem.loads.gravity(clock.time, m.state.stage.ramp(clock.time)), clock.lag + dt / 2, m.work.nodes);
 }
 
-/// Dashpots, then prescribed velocities, planes and friction.
+/// Applies dashpots, then prescribed velocities, planes and friction.
 template <int D>
 void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
 {
@@ -67,7 +67,7 @@ void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
   m.state.walls.apply(kick, m.work.nodes, m.work.sums.at_nodes);
 }
 
-/// Local damping in stages that seek rest, by the net acceleration as particles feel it.
+/// Applies local damping in stages that seek equilibrium, from the net acceleration that acts on particles.
 template <int D>
 void apply_local_damping(Model<D>& m)
 {
@@ -79,7 +79,7 @@ void apply_local_damping(Model<D>& m)
     damp(m.state.stage.damping, m.work.nodes);
 }
 
-/// Nodes of small mass move with the nodes around; then the motion of all nodes is known.
+/// Moves nodes of small mass with their hosts; then the motion of all nodes is known.
 template <int D>
 void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
@@ -87,7 +87,7 @@ void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
   m.transfer->send_motion(m);
 }
 
-/// Energy, impulses and balance of forces of the own nodes.
+/// Adds up energy, impulses and balance of forces of the own nodes.
 template <int D>
 void record_node_sums(Model<D>& m)
 {
@@ -101,7 +101,7 @@ void record_node_sums(Model<D>& m)
   add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
 }
 
-/// Stress of the particles of a body in a block.
+/// Updates the stress of the particles of a body in a block.
 template <int D>
 void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
 {
@@ -127,7 +127,7 @@ void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
                                    .health = work.health});
 }
 
-/// The same, unless the law must know the particles of other blocks first.
+/// Updates the stress as above, unless the law needs data of other blocks first.
 template <int D>
 void update_stress_while_cached(Model<D>& m, Index body, Index block, Real dt)
 {
@@ -135,7 +135,8 @@ void update_stress_while_cached(Model<D>& m, Index body, Index block, Real dt)
     update_stress_block(m, body, block, dt);
 }
 
-/// Whether the body averages its volume ratio with bodies before it, or else, into `bodies`, with which of those that follow.
+/// Whether the volume ratios of the body have already been averaged together with bodies before it; otherwise sets `bodies` to it and those
+/// after it with which they are averaged.
 template <int D>
 bool averages_with_earlier(const Model<D>& m, Index body, std::vector<Index>& bodies)
 {
@@ -152,7 +153,7 @@ bool averages_with_earlier(const Model<D>& m, Index body, std::vector<Index>& bo
   return false;
 }
 
-/// What concerns a body as a whole: volumes averaged before the stress, heat after it; and the extremes that particles report.
+/// Updates that need a whole body: averaged volumes before the stress, heat after it; then collects the extremes that particles report.
 template <int D>
 void update_stress_bodies(Model<D>& m, Real dt)
 {
@@ -180,7 +181,7 @@ void update_stress_bodies(Model<D>& m, Real dt)
   state.timings.gather -= most.seconds / threads();
 }
 
-/// The sums of the step, of all ranks, into the balances; the extremes that bound the next step, and what is wrong with particles.
+/// Adds the sums of the step over all ranks to the balances; sets the extremes that bound the next step, and the errors of particles.
 template <int D>
 void update_balances(Model<D>& m)
 {
@@ -208,7 +209,7 @@ void update_balances(Model<D>& m)
 
 }  // namespace
 
-// The numbers are those of docs/theory/algorithm.md.
+// The numbers are those of the rows in docs/theory/algorithm.md.
 template <int D>
 void advance(Model<D>& m, Real dt)
 {
@@ -241,7 +242,7 @@ void advance(Model<D>& m, Real dt)
                               [&m, dt](Index body, Index block) { update_stress_while_cached(m, body, block, dt); });  //  9 to 12
   update_stress_bodies(m, dt);                                                                                         // 12
   update_balances(m);
-  watch.lap(state.timings.gather);  // update_stress_bodies() tells the share of stresses apart
+  watch.lap(state.timings.gather);  // update_stress_bodies() measures the time of the stress update itself
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// What an observer sees of a run: to look at and not to touch.
+// Read-only view of a run for observers.
 #include <algorithm>
 #include <string_view>
 
@@ -11,11 +11,11 @@ template <int D>
 struct RunView {
   const Problem<D>& problem;
   const State<D>& state;
-  const CellOrder& order;  ///< of the particles of `state`
+  const CellOrder& order;  ///< order of the particles of `state`
   const Nodes<D>& nodes;
   std::string_view stage_name;
-  std::int64_t migrated;          ///< particles that came to this rank or left it so far
-  std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners for want of positive weights
+  std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
+  std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
 };
 
 template <int D>
@@ -30,20 +30,20 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
           .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own)};
 }
 
-/// Mass, momentum and energy of the particles of all ranks.  Every rank has to ask.
+/// Mass [kg], momentum [kg m/s] and energy [J] of the particles of all ranks.  Collective.
 template <int D>
 Totals<D> totals(const RunView<D>& view)
 {
   return totals(view.state.particles, view.order, *view.problem.ranks);
 }
-/// Energy dissipated by the laws so far, of all ranks [J].  Every rank has to ask.
+/// Energy dissipated by the laws so far, over all ranks [J].  Collective.
 template <int D>
 Real plastic_work(const RunView<D>& view)
 {
   return plastic_work(view.state.materials, view.order, view.state.particles, *view.problem.ranks);
 }
 
-/// Columns and history of a particle [B]; 0 where there is none.  Every rank has to ask.
+/// Memory of columns and history of a particle [B]; 0 without particles.  Collective.
 template <int D>
 Real bytes_per_particle(const RunView<D>& view)
 {

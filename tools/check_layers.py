@@ -30,7 +30,7 @@ def folders_of(root):
 
 
 FOLDERS = folders_of(ROOT)
-# What tests of a folder may include: what is below it.
+# The folders that tests of a folder may include: itself and those below it.
 TESTS_SEE = {"core": ["core"], "mesh": ["core", "mesh"], "kernels": ["core", "mesh", "kernels"], "materials": ["core", "materials"],
              "solver": ["core", "mesh", "kernels", "materials", "solver"], "io": ["core", "mesh", "kernels", "materials", "solver", "io"], "app": TOP,
              "fuzz": TOP, "tutorials": ["core", "mesh", "kernels", "materials", "solver"], "ranks": TOP, "speed": ["core", "mesh", "kernels", "materials", "solver"]}
@@ -70,7 +70,7 @@ def fits(path, patterns):
 
 
 def wrong_include(path, quote, header):
-    """Why this file may not include this header, or None."""
+    """The reason why this file may not include this header, or None."""
     parts, target = path.split("/"), header.split("/")
     if ".." in target:
         return f'"{header}" climbs out of its folder: write the path from the root of the repository'
@@ -112,13 +112,13 @@ def check_text(path, text):
 
 
 def check_length(path, text):
-    """A finding if a source file is too long to be read at one go."""
+    """A finding if a source file is too long."""
     lines = text.count("\n")
     return [f"{path}: {lines} lines, more than {MOST_LINES}: give each duty a file of its own"] if lines > MOST_LINES else []
 
 
 def written_files(root):
-    """All files of the tree that somebody has written in a language of WRITTEN_IN."""
+    """All hand-written files of the tree in a language of WRITTEN_IN."""
     for folder in sorted(f for f in root.iterdir() if f.is_dir() and f.name not in KEPT_OUT):
         yield from sorted(f for f in folder.rglob("*") if f.suffix in WRITTEN_IN and not KEPT_OUT & set(f.relative_to(root).parts))
 

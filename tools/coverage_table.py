@@ -24,7 +24,7 @@ def count(document):
 
 
 def table(counts, folders, floor):
-    """The lines of the table, and the folders that are below the floor."""
+    """The rows of the table, and the folders below the floor."""
     shown, low = ["| folder | lines | run | % |", "|---|---|---|---|"], []
     missed = []
     for folder in folders:

@@ -1,4 +1,4 @@
-"""What mutation testing changes (tools/mutate.py): one operator, sign or number of a source at a time."""
+"""The changes of mutation testing (tools/mutate.py): one operator, sign or number of a source at a time."""
 import collections
 import dataclasses
 import random
@@ -19,7 +19,7 @@ class Mutant:
 
     @property
     def key(self):
-        """What it is called from one version of the sources to the next: no number of a line."""
+        """An identifier that stays equal between versions of the sources, so without line numbers."""
         return f"{self.path}: {self.text} : {self.change}" + (f" #{self.place}" if self.place > 1 else "")
 
     @property

@@ -32,11 +32,11 @@ NEAR = 0.05    # numbers differ a little from processor to processor once soil s
 
 
 class Broken(Exception):
-    """A page says what is not so."""
+    """An error: a page does not agree with the program."""
 
 
 def same_word(said, shown):
-    """Whether two words are the same, numbers nearly."""
+    """Whether two words are equal, with a tolerance for numbers."""
     if said == shown:
         return True
     if NUMBER.sub("#", said) != NUMBER.sub("#", shown):
@@ -53,7 +53,7 @@ def same_line(said, shown):
 
 
 def check_printed(promised, printed):
-    """Raises where a promised line is not among what was printed, after the one before."""
+    """Raises Broken unless all shown lines were printed, in order."""
     rest, skip = iter(printed.splitlines()), True
     for line in filter(str.strip, promised.splitlines()):
         if line.strip() == "...":
@@ -75,7 +75,7 @@ def blocks(text):
 
 
 def run(page, talus, scratch):
-    """Does what the page says in an empty folder."""
+    """Runs the commands of a page in an empty folder."""
     shutil.rmtree(scratch, ignore_errors=True)
     scratch.mkdir(parents=True)
     environment = {**os.environ, "PATH": f"{talus.parent}:{os.environ['PATH']}", "OMP_WAIT_POLICY": "passive"}
@@ -99,7 +99,7 @@ def run(page, talus, scratch):
 
 
 def take_pictures(page, scratch):
-    """Copies what was drawn to where the page shows it from."""
+    """Copies drawn pictures to the files that the page shows."""
     for target in re.findall(r"!\[[^]]*\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
         drawn = scratch / Path(target).name
         if drawn.is_file():

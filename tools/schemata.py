@@ -99,7 +99,7 @@ def left_end(code, pairs, i):
 
 
 def right_end(code, pairs, i):
-    """Where it ends."""
+    """The position where the expression ends."""
     while i < len(code):
         c = code[i]
         if c in "([{<" and i in pairs:
@@ -118,7 +118,7 @@ def region(code, pairs, mutant):
 
 
 def one_line(text):
-    """Comments go: what follows them comes to stand on their line."""
+    """The text on one line, without comments."""
     return " ".join(re.sub(r"//[^\n]*", "", text).split("\n"))
 
 

@@ -220,9 +220,9 @@ class Tradeoff(unittest.TestCase):
     def test_advice_names_the_cheapest_and_where_it_ends(self):
         points = [{"name": name, "error": error, "processor_seconds": seconds, "peak_memory [B]": 5e7}
                   for name, error, seconds in (("a", 0.05, 1.0), ("b", 0.02, 9.0), ("c", 0.009, 4.0))]
-        self.assertEqual(tradeoff.advice(points), ["For 10 % error the cheapest is a: 1 s, 50 MB, error 5 %.",
-                                                   "For 3, 1 % error the cheapest is c: 4 s, 50 MB, error 0.9 %.",
-                                                   "0.3, 0.1 % error is not reached; the least is 0.9 % with c: 4 s, 50 MB."])
+        self.assertEqual(tradeoff.advice(points), ["Cheapest for 10 % error: a (1 s, 50 MB, error 5 %).",
+                                                   "Cheapest for 3 or 1 % error: c (4 s, 50 MB, error 0.9 %).",
+                                                   "An error of 0.3 or 0.1 % is not reached; the smallest is 0.9 % with c (4 s, 50 MB)."])
 
 
 class Documents(unittest.TestCase):

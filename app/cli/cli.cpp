@@ -21,13 +21,13 @@ namespace {
 
 constexpr int usage_error = 2;
 
-/// What all ranks do together; any other command is the root's.
+/// Whether all ranks take part in a command; other commands run on the root only.
 bool is_shared_by_ranks(const CLI::App& command)
 {
   return (command.get_name() == "run" && command.count("--dry-run") == 0) || (command.get_name() == "bench" && command.count("--mpi") > 0);
 }
 
-/// Commands and the options they fill; lives as long as the parse.
+/// The commands and their options; lives as long as the parse.
 class CommandLine {
  public:
   CommandLine() : app_("Talus: the material point method on triangles and tetrahedra", "talus")
@@ -64,7 +64,7 @@ class CommandLine {
   }
 
  private:
-  /// Before the command does its work, on each rank: on all but the root it does none, unless they share it.
+  /// To be called before a command does its work, on each rank: ranks other than the root skip it, unless it is shared.
   static void leave_to_root(CLI::App& command)
   {
     if (!is_shared_by_ranks(command) && !goes_on_as_root())
@@ -95,7 +95,7 @@ class CommandLine {
     });
   }
 
-  /// Those of a command and of the groups in it.
+  /// Adds the options of a command and of the groups in it.
   static void add_options(const CLI::App& from, std::vector<OptionWords>& options)
   {
     for (const CLI::Option* option : from.get_options()) {

@@ -3,7 +3,8 @@
 
 namespace talus {
 
-/// Does what the words say.  0, 1 (what was compared differs) or 2 with a message for words that make no sense; the errors of the commands pass through.
+/// Executes a command line.  Returns 0, 1 (compared results differ) or 2 after a message for an invalid command line; errors of the
+/// commands are thrown.
 int cli(int argc, const char* const* argv);
 
 }  // namespace talus

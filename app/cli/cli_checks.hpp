@@ -1,5 +1,5 @@
 #pragma once
-// What words and numbers on the command line may be.  CLI11's own checks let nan pass and tell their limits with 300 digits.
+// Checks of words and numbers on the command line.  CLI11's own checks accept nan and print limits with 300 digits.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -18,7 +18,7 @@ namespace talus {
 inline constexpr auto set_help = "change a value of the scene: key=value, such as time.end=2 or bodies[0].particles_per_cell=6";
 inline constexpr int most_steps = 10'000'000;
 
-/// What help shows for values, and what a shell completes (completion.hpp): files by their names, folders, some words.
+/// Kinds of values in the help, which a shell completes (completion.hpp): files by their names, folders, some words.
 inline constexpr auto scene_value = "*.yaml", folder_value = "FOLDER";
 inline std::string one_of(const std::vector<std::string>& words) { return fmt::format("{{{}}}", fmt::join(words, ",")); }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The commands of talus by what they are for, with the options that they fill; each lives as long as the parse.
+// The commands of talus in groups, with their options; each group lives as long as the parse.
 #include <CLI/CLI.hpp>
 
 #include "app/commands/bench/bench_command.hpp"
@@ -21,7 +21,7 @@
 
 namespace talus {
 
-/// new, run, check, mesh, drive: what is done with a scene.
+/// The commands for scenes: new, run, check, mesh, drive.
 class SceneCommands {
  public:
   void add_to(CLI::App& app);
@@ -41,11 +41,11 @@ class SceneCommands {
   MeshOptions mesh_;
 };
 
-/// map, render, report, watch, surface, diff: what is done with results.
+/// The commands for results: map, render, report, watch, surface, diff.
 class ResultCommands {
  public:
   void add_to(CLI::App& app);
-  /// Exit status of the command that was given, if it has one of its own.
+  /// The exit code of the command, if it has one of its own.
   int status() const noexcept { return status_; }
 
  private:
@@ -65,7 +65,7 @@ class ResultCommands {
   int status_ = 0;
 };
 
-/// sweep, fos, verify, tradeoff, bench: many runs.
+/// The commands with many runs: sweep, fos, verify, tradeoff, bench.
 class StudyCommands {
  public:
   void add_to(CLI::App& app);

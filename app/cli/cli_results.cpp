@@ -9,7 +9,7 @@ namespace {
 
 constexpr int results_differ = 1;
 
-/// Options of talus-render, whose words are handed on as they stand.
+/// Options of talus-render, whose words are passed on unchanged.
 template <class S>
 void add_words(CLI::App& command, std::vector<std::string>& words)
 {

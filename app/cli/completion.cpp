@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-/// What a value may be, taken out of the words that help shows for it.
+/// The possible values of an option, from the words in its help.
 struct ValueWords {
   std::vector<std::string> choices, patterns;
   bool folder = false, files = false;
@@ -116,7 +116,7 @@ complete -F _talus talus
                      fmt::join(names, " "), values, options, places);
 }
 
-/// In _arguments of zsh brackets and colons mean something.
+/// Text for _arguments of zsh, with escaped brackets and colons.
 std::string zsh_text(std::string_view text)
 {
   std::string out;

@@ -1,14 +1,14 @@
 #pragma once
-// What a shell completes after `talus`, out of the command line's own description.
+// Scripts for shell completion, generated from the description of the command line.
 #include <string>
 #include <vector>
 
 namespace talus {
 
-/// An option, or a word in its place.  What its value may be: "{a,b}" one of these words, "*.yaml" such files, "FOLDER" a folder.
+/// An option or a positional argument, with the kind of its value: "{a,b}" one of these words, "*.yaml" such files, "FOLDER" a folder.
 struct OptionWords {
-  std::vector<std::string> names;  ///< "--out"; of a word in its place none
-  std::string value;               ///< of a flag empty
+  std::vector<std::string> names;  ///< for example "--out"; empty for a positional argument
+  std::string value;               ///< empty for a flag
   std::string help;
 };
 struct CommandWords {
@@ -16,10 +16,10 @@ struct CommandWords {
   std::vector<OptionWords> options;
 };
 
-/// bash, zsh, fish
+/// The supported shells: bash, zsh, fish.
 std::vector<std::string> completion_shells();
 
-/// The script that a shell reads.
+/// The completion script for a shell.
 std::string completion_script(const std::string& shell, const std::vector<CommandWords>& commands);
 
 }  // namespace talus

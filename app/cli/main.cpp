@@ -1,4 +1,4 @@
-// The program, and the only place that catches everything.
+// The main function, which handles all exceptions.
 #include <fmt/format.h>
 
 #include <new>

@@ -1,4 +1,4 @@
-// talus check, and talus run --dry-run
+// The commands talus check, and talus run --dry-run.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -24,11 +24,11 @@ namespace talus {
 namespace {
 
 constexpr Real megabyte = 1e6, million = 1e6;
-/// Time of a whole run over that of as many steps at its start: particles that get faster ask for shorter steps, those that rest for less work.
-/// Of four of scenes/ it was 1.1 to 2.0, on a machine with other work.
+/// Limits of the time of a whole run relative to the same number of steps at its start: faster particles need shorter steps, particles at
+/// rest less work.  For four of scenes/ the ratio was 1.1 to 2.0, on a machine with other work.
 constexpr Real quicker_steps = 0.8, slower_steps = 2.1;
 
-/// How many steps; two numbers where stages end at rest.
+/// A number of steps; two numbers if stages may end early.
 struct StepRange {
   std::int64_t least = 0, most = 0;
   StepRange& operator+=(const StepRange& other) noexcept
@@ -42,14 +42,14 @@ struct StepRange {
 std::int64_t steps_of(Real time, Real dt) { return counted(std::ceil(time / dt)); }
 StepRange steps_of(const RestTime& time, Real dt) { return {steps_of(time.soonest, dt), steps_of(time.latest, dt)}; }
 
-/// "12" or "12 to 40", the numbers times a factor
+/// The range as text, "12" or "12 to 40", multiplied by a factor.
 std::string in_words(const StepRange& range, Real factor = 1)
 {
   const auto word = [&](std::int64_t n) { return factor == 1 ? count_in_words(n) : fmt::format("{:.3g}", static_cast<Real>(n) * factor); };
   return range.least == range.most ? word(range.least) : fmt::format("{} to {}", word(range.least), word(range.most));
 }
 
-/// A line for each stage that ends at rest: the number of its steps is not known before.
+/// A line for each stage that ends in equilibrium, whose number of steps is not known beforehand.
 std::string describe_rest(const std::vector<Stage>& stages, Real passage, Real dt)
 {
   std::string text;
@@ -65,7 +65,7 @@ std::string describe_rest(const std::vector<Stage>& stages, Real passage, Real d
 
 std::string in_megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / megabyte); }
 
-/// Files and their sizes, those that there are.
+/// The files and their sizes, without kinds that do not exist.
 std::string describe_disk_use(const FileSizes& one, const DiskUse& use)
 {
   std::string text = fmt::format("  disk: at most {} before compression:", in_megabytes(use.bytes));
@@ -80,7 +80,7 @@ std::string describe_disk_use(const FileSizes& one, const DiskUse& use)
   return text + "\n";
 }
 
-/// A line for each thing that a stage changes.
+/// A line for each change by a stage.
 template <int D>
 std::string describe_changes(const Setup<D>& setup)
 {
@@ -116,7 +116,7 @@ std::string describe_time(const std::vector<StageTrial>& trials, const std::vect
       text += fmt::format("  stage {}: about {} steps of {:.3g} ms: {}\n", trial.name, in_words(range), 1e3 * trial.usual,
                           duration_in_words(n * trial.usual));
     usual += n * trial.usual, least += static_cast<Real>(range.least) * trial.quickest * quicker_steps;
-    // A stage that seeks rest may need all of its time.
+    // A stage that seeks equilibrium may need its whole duration.
     most += static_cast<Real>(steps_of(stages[trial.stage].duration, trial.dt)) * trial.slowest * slower_steps;
     made += trial.made, steps += n;
   }
@@ -127,7 +127,7 @@ std::string describe_time(const std::vector<StageTrial>& trials, const std::vect
                     duration_in_words(preparing + least), duration_in_words(preparing + most));
 }
 
-/// Which stress the law of a body sees, where there is water.
+/// A line on the stress that the law of each body uses, if there is water.
 template <int D>
 std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Body& body)
 {
@@ -140,7 +140,7 @@ std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Bod
 
 enum class Times : std::uint8_t { left_out, measured };
 
-/// What a run would find wrong, and what it would cost.
+/// Prints the errors of a scene and the cost of its run.
 template <int D>
 void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_asked)
 {

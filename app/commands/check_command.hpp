@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// Does everything but run, writes nothing, says what a run would cost.
+/// Does everything except the run, writes nothing, and prints the cost of a run.
 void check_scene(const std::filesystem::path& scene, const std::vector<std::string>& set);
 
 }  // namespace talus

@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// Every key of a scene: Markdown, or JSON Schema; or what these words mean.  Error: nothing.
+/// Prints every key of a scene as Markdown or JSON Schema, or the entries for words.  Throws Error if a word has no entry.
 void print_manual(bool schema, const std::vector<std::string>& words);
 
 }  // namespace talus

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is known of the mesh before it is made.
+/// The requirements on a mesh before it is made.
 struct Wanted {
   MeshSpec spec;
   fs::path folder;
@@ -83,7 +83,7 @@ void show_mesh(const MeshOptions& options)
   } catch (const SceneErrors& of_solid) {
     if (std::string_view(of_solid.what()).find("has no tetrahedra") == std::string_view::npos)
       throw;
-    return show_in(plane);  // if there are no triangles either, that is what the message will be about
+    return show_in(plane);  // without triangles either, that will be the message
   }
   show(*solid, options);
 }

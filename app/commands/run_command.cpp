@@ -47,14 +47,14 @@ std::vector<std::string> names_of(const std::vector<fs::path>& files)
   return names;
 }
 
-/// How a run that does not go on in its folder treats what is there.
+/// How a run that does not continue in its folder treats existing files.
 Replacing replacing(const RunOptions& options) { return {options.force, options.resume ? std::nullopt : std::optional(options.scene)}; }
 
 /// One run in its folder, from mesh to summary.
 template <int D>
 class Run {
  public:
-  /// `from`: what to go on from, if anything.
+  /// `from`: the checkpoints to resume, or nullptr.
   Run(Scene scene, fs::path folder, bool quick, const RunOptions& options, const CheckpointList* from)
       : scene_(std::move(scene)), folder_(std::move(folder)), quick_(quick), options_(options), from_(from)
   {}
@@ -73,7 +73,7 @@ class Run {
       check_durations(*from_, stages_, options_.set);
     check_sources(setup);
     if (setup.origin && from_)
-      setup.origin->file = from_->identity().initial;  // what was read is the copy
+      setup.origin->file = from_->identity().initial;  // the copy was read
     const std::uint64_t mesh_digest = digest(mesh);
     const RunIdentity identity = identity_of(scene_, quick_, mesh_digest, setup.from_files, setup.origin ? setup.origin->file : "");
     if (from_)
@@ -113,7 +113,7 @@ class Run {
     };
     if (from_)
       audience.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
-    // Only now: what a kernel refuses, what there is no memory for, what cannot be read, costs nobody the results that are there.
+    // Only now: errors of the kernel, lack of memory and unreadable input are found before existing results are replaced.
     audience.ready = [&](const RunView<D>& view) {
       summary_.nodes_as_corners = world().sum(view.nodes_as_corners);
       check_disk_space(folder_, view, scene_.outputs, time_left(view));
@@ -135,7 +135,7 @@ class Run {
       message += way_back;
       try {
         finish(recorder, RunStatus::failed, message);
-      } catch (const EnvironmentError&) {  // a disk that is full stays full: the message that matters is the first one
+      } catch (const EnvironmentError&) {  // a full disk stays full: the first message is the relevant one
       }
       return message;
     };
@@ -164,7 +164,7 @@ class Run {
  private:
   bool strict() const noexcept { return scene_.strict || options_.strict; }
 
-  /// RunError: they are an error here.
+  /// Throws RunError if balances do not close and that is an error (strict).
   void tell_failed_accounts() const
   {
     std::fflush(stdout);
@@ -180,7 +180,7 @@ class Run {
     return view.state.stage.done && view.state.stage.number + 1 == static_cast<Index>(stages_.size());
   }
 
-  /// To the state after the last sound step, where that is not a checkpoint: the command that computes it again.
+  /// The command that computes the state after the last valid step again, if that is not a checkpoint.
   std::string way_back(const Checkpoints<D>& checkpoints, std::int64_t sound) const
   {
     if (checkpoints.last_step() == sound || resumed_after_ == sound)
@@ -190,14 +190,14 @@ class Run {
       command = fmt::format("talus run --resume {} --out {}", shell_word(*options_.resume), shell_word(folder_));
     for (const std::string& change : options_.set)
       command += " --set " + shell_word(change);
-    if (!checkpoints.last().empty())  // it knows the changes
+    if (!checkpoints.last().empty())  // the checkpoint contains the changes
       command = fmt::format("talus run --resume {}", shell_word(folder_));
     return fmt::format("; the state before it: {} --until {}", command, sound);
   }
 
   bool in_place() const { return goes_on_in_place(from_, folder_); }
 
-  /// EnvironmentError, SceneErrors: what the run comes from would be gone with the results in its folder.
+  /// Throws EnvironmentError or SceneErrors if an input of the run lies among the results that would be replaced.
   void check_sources(const Setup<D>& setup)
   {
     if (setup.origin)
@@ -216,7 +216,7 @@ class Run {
       throw SceneErrors(scene_.initial->where, refusal(*initial_));
   }
 
-  /// Of all stages [s], at most.
+  /// The longest remaining time of all stages [s].
   Real time_left(const RunView<D>& view) const
   {
     Real time = from_ ? 0 - view.state.clock.time : 0;
@@ -225,7 +225,7 @@ class Run {
     return std::max(time, 0.0);
   }
 
-  /// The folder, the mesh and the scene in it, and a summary that says "not ended".
+  /// Makes the folder with mesh and scene, and a summary with the status "not ended".
   void prepare(const RunView<D>& view)
   {
     if (from_)
@@ -274,7 +274,7 @@ class Run {
     } else {
       recorder.begin_again(view);
     }
-    for (const std::string& what : news)  // of the root alone
+    for (const std::string& what : news)  // of the root only
       say(stderr, "warning: {}\n", what);
     summary_.warnings.insert(summary_.warnings.end(), news.begin(), news.end());
     if (!options_.quiet && world().is_root())
@@ -285,7 +285,7 @@ class Run {
   LoadBalancing<D> load_balancing_of(std::uint64_t mesh_digest, std::optional<FloatingPointTraps>& traps)
   {
     const auto whole_mesh = [this, mesh_digest, &traps] {
-      traps.reset();  // whoever makes meshes is not looked at
+      traps.reset();  // traps do not apply to meshing
       Mesh<D> again = load_mesh<D>(scene_.mesh, folder_of(scene_));
       traps.emplace();
       if (digest(again) != mesh_digest)
@@ -331,7 +331,7 @@ class Run {
     summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
     if (summary.origin)
       summary.files.emplace_back(initial_file);
-    for (const char* const table : {"history.csv", "runout.csv"})  // which grow no more
+    for (const char* const table : {"history.csv", "runout.csv"})  // tables that are complete
       if (fs::exists(folder_ / table))
         note_result(folder_ / table, folder_ / table);
     write_summary(folder_ / "summary.json", summary);
@@ -342,22 +342,22 @@ class Run {
   bool quick_;
   const RunOptions& options_;
   const CheckpointList* from_;
-  std::optional<std::int64_t> resumed_after_;  // steps
+  std::optional<std::int64_t> resumed_after_;  // number of steps
   StopWatch watch_;
   Real mesh_seconds_ = 0, build_seconds_ = 0;
   std::int64_t rebalances_ = 0;
-  Real rebalancing_ = 0;                               // [s]
-  Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // of the whole
-  std::optional<Mesh<D>> whole_;                       // on the root, where ranks hold parts, until it is written
+  Real rebalancing_ = 0;                               // time of redistributions [s]
+  Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // numbers of the whole mesh
+  std::optional<Mesh<D>> whole_;                       // on the root of several ranks, until it is written
   std::vector<Stage> stages_;
-  std::vector<std::string> notes_;  // of the set-up
-  std::vector<std::string> edits_;  // of the scene of a run that goes on; on the root
-  RunSummary summary_;              // as it begins
+  std::vector<std::string> notes_;  // notes of the set-up
+  std::vector<std::string> edits_;  // edits of the scene of a resumed run; on the root
+  RunSummary summary_;              // at the beginning
   std::vector<std::string> failed_accounts_;
   ThreadChoice thread_choice_;
-  Real least_energy_ = 0;            // of a balance that is judged [J]
-  std::optional<fs::path> initial_;  // what bodies begin with
-  bool began_ = false;               // the folder is this run's
+  Real least_energy_ = 0;            // least energy of a balance that is judged [J]
+  std::optional<fs::path> initial_;  // initial state of bodies
+  bool began_ = false;               // whether the folder belongs to this run
   FolderLock lock_;
 };
 
@@ -385,7 +385,7 @@ void run_scene(const RunOptions& options)
   const fs::path folder = options.out ? *options.out : from ? *from->folder() : default_results(options.scene);
   const CheckpointList* const resumed = from ? &*from : nullptr;
   if (!goes_on_in_place(resumed, folder))
-    world().together([&] { check_replaceable(folder, replacing(options)); });  // and again when all is there: a mesh may take long
+    world().together([&] { check_replaceable(folder, replacing(options)); });  // checked again after the mesh was made, which may take long
   if (scene.dimension == 2)
     Run<2>(std::move(scene), folder, quick, options, resumed)();
   else

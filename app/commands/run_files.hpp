@@ -1,5 +1,5 @@
 #pragma once
-// What the folder of a run holds from its beginning.
+// The files that a run writes at its beginning.
 #include <filesystem>
 #include <optional>
 
@@ -9,11 +9,11 @@
 
 namespace talus {
 
-/// Whether a run goes on in the folder of the run that it comes from, if it comes from any.
+/// Whether a run continues in the results folder of the run that it resumes.
 bool goes_on_in_place(const CheckpointList* from, const std::filesystem::path& folder);
 
-/// Summary, mesh and state at the start; a mesh that is there is that of the run, or what the user has made of it.  `initial`: the file that bodies begin with,
-/// which is copied.
+/// Writes summary, mesh and initial state at the start.  An existing mesh file is kept: it is that of the run, or was changed by the user.
+/// `initial`: the file of the initial state, which is copied.
 template <int D>
 void write_first_files(const std::filesystem::path& place, const RunSummary& summary, const Mesh<D>& mesh,
                        const std::optional<std::filesystem::path>& initial);

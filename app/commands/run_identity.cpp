@@ -33,7 +33,7 @@ void compare(const RunIdentity& then, const RunIdentity& now)
   if (then.from_files != now.from_files)
     throw EnvironmentError(fmt::format(
         "a record or the water table of {} is not the one that the checkpoint was made with: its file has changed since", now.scene_file));
-  std::vector<std::string> maker, here;  // what they differ in
+  std::vector<std::string> maker, here;  // differing parts
   for (const auto& [what, part] :
        {std::pair("commit", &RunIdentity::commit), std::pair("compiler", &RunIdentity::compiler), std::pair("build", &RunIdentity::build)})
     if (then.*part != now.*part) {

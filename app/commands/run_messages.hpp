@@ -1,5 +1,5 @@
 #pragma once
-// What a run says on the terminal while it goes on.
+// Messages of a run on the terminal.
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,11 +9,12 @@
 
 namespace talus {
 
-/// What a stage has changed, as lines for the summary; warnings are added to the others.  Said by the root, the former unless it is `quiet`.
+/// The changes by a stage, as lines for the summary; warnings are added to those of the run.  The root prints them, the former unless it is
+/// `quiet`.
 std::vector<std::string> tell_changes(Real time, std::string_view stage, const StageReport& news, bool quiet,
                                       std::vector<std::string>& warnings);
 
-/// By the root.
+/// Prints a redistribution, on the root.
 void say_rebalanced(const Rebalanced& by);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-// talus verify and talus tradeoff: finds the suite, which is written in Python, and becomes it.
+// The commands talus verify and talus tradeoff: finds the suite, which is written in Python, and replaces this process by it.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Folder of the suite's scripts: where the environment says, where it is installed with PREFIX/libexec/talus/talus, or in the sources that
-/// have build/<preset>/talus.
+/// The folder of the suite's scripts: given by the environment, installed in PREFIX/libexec/talus/talus, or in the sources of
+/// build/<preset>/talus.
 fs::path suite_folder(const fs::path& self, const std::string& script)
 {
   if (const char* given = std::getenv("TALUS_SUITE"); given != nullptr && *given != '\0') {
@@ -47,7 +47,7 @@ void run_suite(const SuiteOptions& options)
 {
   const fs::path self = fs::read_symlink("/proc/self/exe");
   const std::string script = options.suite + ".py";
-  // Debian's Python, which has Debian's modules, before whatever else the path finds; -B: it leaves nothing beside installed scripts
+  // Debian's Python, which has Debian's modules, is preferred to others on the path; -B: it writes no files beside installed scripts.
   const std::string python = ::access("/usr/bin/python3", X_OK) == 0 ? "/usr/bin/python3" : "python3";
   std::vector<std::string> words{python, "-B", (suite_folder(self, script) / script).string(), "--program", self.string()};
   const auto add_number = [&](const char* option, const std::optional<int>& number) {

@@ -15,7 +15,7 @@ struct SuiteOptions {
   std::optional<int> jobs, threads;
   bool reuse = false, regression = false;
 };
-/// Replaces this process by the suite of benchmarks/, which runs this program.  EnvironmentError.
+/// Replaces this process by the suite of benchmarks/, which runs this program.  Throws EnvironmentError.
 [[noreturn]] void run_suite(const SuiteOptions& options);
 
 }  // namespace talus

@@ -14,7 +14,7 @@ Real EnergyNow::largest_term() const noexcept
 
 namespace {
 
-/// Momentum of the particles; the moduli are those of each.
+/// The momentum of the particles; the absolute values are summed over particles.
 template <int D>
 ForceAndMoment<D> momentum_of(const RunView<D>& view)
 {
@@ -60,7 +60,7 @@ void BalanceHistory<D>::see(const RunView<D>& view, RunEvent moment)
       before_.carried_away += stage_.carried_away, before_.plastic_deleted += stage_.plastic_deleted;
       transfer_before_ += stage_.transfer(kinetic_end_);
       taken_out_before_ += taken_out_;
-      // What differs between the end of the one stage and the beginning of the next has come or gone with bodies.
+      // The difference between the end of one stage and the beginning of the next is due to bodies that appeared or vanished.
       const Real came = view.state.energy.kinetic_start - (kinetic_end_ - taken_out_);
       (came > 0 ? kinetic_begin_ : before_.carried_away) += std::abs(came);
       before_.plastic_deleted += plastic_end_ - view.state.energy.plastic_start;
@@ -85,7 +85,7 @@ EnergyNow BalanceHistory<D>::energy(const RunView<D>& view) const
   now.kinetic = totals(view).kinetic;
   now.plastic = plastic_work(view) - plastic_begin_ + before_.plastic_deleted + e.plastic_deleted;
   now.strain = before_.internal + e.internal - now.plastic;
-  now.friction = 0 - before_.friction - e.friction;  // 0 - 0 is not -0
+  now.friction = 0 - before_.friction - e.friction;  // avoids -0
   now.damping = taken_out_before_ + taken_out_ - before_.damping - e.damping;
   now.carried_away = before_.carried_away + e.carried_away;
   now.gravity = before_.gravity + e.gravity;

@@ -1,21 +1,21 @@
 #pragma once
-// Energy and momentum over a whole run: the ledgers of the stages joined, so that no curve jumps where a stage begins.
+// Balances of energy and momentum over a whole run: the balances of the stages joined, so that curves are continuous where a stage begins.
 #include "solver/run_view.hpp"
 
 namespace talus {
 
-/// Energies since the start of the run [J].  Works are signed as done on the bodies; losses are positive.
+/// Energies since the start of the run [J].  Works are positive if done on the bodies; losses are positive.
 /// gravity + loads + walls = (kinetic - kinetic_start) + strain + plastic + friction + damping + carried_away + transfer + defect.
 struct EnergyNow {
-  Real kinetic_start{}, kinetic{};  ///< kinetic_start: at the start, and what bodies brought that appeared
-  Real strain{}, plastic{};         ///< of particles that are gone too
-  Real friction{}, damping{};       ///< damping: with the motion that is taken out at the end of a geostatic stage
-  Real carried_away{};              ///< kinetic energy of what left the mesh, failed, or was taken away by a stage
+  Real kinetic_start{}, kinetic{};  ///< kinetic_start: at the start, plus that of bodies that appeared
+  Real strain{}, plastic{};         ///< including particles that were removed
+  Real friction{}, damping{};       ///< damping: including the motion removed at the end of a geostatic stage
+  Real carried_away{};              ///< kinetic energy of particles that left the mesh, failed, or were removed by a stage
   Real gravity{}, loads{}, walls{};
-  Real waves{};     ///< that waves brought to the walls: no term of the balance, but what is small beside it is small
-  Real transfer{};  ///< lost between particles and nodes
-  Real defect{};    ///< what the terms above leave unexplained
-  Real size{};      ///< largest of these terms at any time up to now, and not less than what is judged: errors are measured by it
+  Real waves{};     ///< energy of incident waves: not a term of the balance, but a scale of it
+  Real transfer{};  ///< loss between particles and nodes
+  Real defect{};    ///< remainder: what the terms above do not explain
+  Real size{};      ///< largest of these terms at any time so far, at least the least energy that is judged; errors are relative to it
 
   static constexpr auto fields()
   {
@@ -39,15 +39,16 @@ struct EnergyNow {
   Real largest_term() const noexcept;
 };
 
-/// |part| of a whole; 0 of nothing.
+/// |part| relative to a whole; 0 if the whole is 0.
 inline Real share(Real part, Real whole) noexcept { return whole > 0 ? std::abs(part) / whole : 0; }
 
-/// Momentum and its moment about the origin since the start of the run [kg m/s], [kg m^2/s].
+/// Momentum [kg m/s] and angular momentum about the origin [kg m^2/s] since the start of the run.
 template <int D>
 struct MomentumNow {
-  ForceAndMoment<D> start, end, given;  ///< given: by loads, walls, damping, and taken by what left; their moduli added up
-  Vec3 forces = Vec3::Zero();           ///< moment of internal forces on the nodes, of which a body knows none [N m s]
-  Vec3 lost = Vec3::Zero();             ///< moment of momentum that particles and nodes lost between them [kg m^2/s]
+  /// given: by loads, boundary conditions and damping, minus that of removed particles; with the sum of absolute values
+  ForceAndMoment<D> start, end, given;
+  Vec3 forces = Vec3::Zero();  ///< moment of internal forces on the nodes, zero in theory [N m s]
+  Vec3 lost = Vec3::Zero();    ///< angular momentum lost between particles and nodes [kg m^2/s]
   static constexpr auto fields()
   {
     return std::tuple{saved("start", &MomentumNow::start), saved("end", &MomentumNow::end),
@@ -55,16 +56,16 @@ struct MomentumNow {
                       saved("lost", &MomentumNow::lost),   saved("most_linear_defect", &MomentumNow::most_linear_defect)};
   }
 
-  /// What cannot be explained, over all momentum there was and was given: round-off, of the precision in which particles are kept.
+  /// The unexplained momentum over the sum of all momentum at the start and given: round-off of the precision of the particles.
   Real linear_defect() const noexcept;
   Real most_linear_defect = 1e-9;
-  /// Moment of internal forces, which should be none, over all moment there was and was given.
+  /// The moment of internal forces, which should be zero, over the sum of all angular momentum at the start and given.
   Real angular_defect() const noexcept;
-  /// What particles and nodes lost between them, over the same.
+  /// The angular momentum lost between particles and nodes, relative to the same sum.
   Real angular_loss() const noexcept;
 };
 
-/// Told of every moment of a run.
+/// Records the balances at every event of a run.
 template <int D>
 class BalanceHistory {
  public:
@@ -88,9 +89,9 @@ class BalanceHistory {
   }
 
  private:
-  EnergyLedger before_;  // stages that are over, their kinetic_start and plastic_start unused
+  EnergyLedger before_;  // completed stages; kinetic_start and plastic_start are not used
   Real kinetic_begin_ = 0, plastic_begin_ = 0, transfer_before_ = 0;
-  Real kinetic_end_ = 0, plastic_end_ = 0;  // of the stage before
+  Real kinetic_end_ = 0, plastic_end_ = 0;  // of the previous stage
   Real taken_out_ = 0, taken_out_before_ = 0;
   EnergyLedger stage_;
   bool begun_ = false;

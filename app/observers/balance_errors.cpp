@@ -23,10 +23,10 @@ Real largest_term(const EnergyAudit& energy)
   return largest;
 }
 
-/// Plastic work that is small beside the largest term of the energy is not judged.
+/// The transfer loss, judged only if the plastic work is not small compared with the largest energy term.
 std::string transfer_loss(const EnergyAudit& energy)
 {
-  constexpr Real matters = 0.01;  // of the largest term
+  constexpr Real matters = 0.01;  // relative to the largest term
   const Real largest = largest_term(energy);
   const Real lost = term(energy, "transfer_loss"), plastic = term(energy, "plastic");
   if (!(plastic > matters * largest) || !(lost > most_transfer_loss * plastic))

@@ -1,5 +1,5 @@
 #pragma once
-// What the balances at the end of a run say against it.
+// Errors of a run according to its balances.
 #include <string>
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace talus {
 
-/// Energy that particles and nodes lose between them is like a part of the material's resistance; beyond this share of the plastic work
-/// the answer is one of the mesh.
+/// Largest accepted energy loss between particles and nodes, relative to the plastic work: the loss acts like a part of the material's
+/// resistance, and beyond this limit the result depends on the mesh.
 inline constexpr Real most_transfer_loss = 0.1;
-/// The same of angular momentum, of the moments of all momentum there was and was given.
+/// Largest accepted loss of angular momentum, relative to the sum of all angular momentum at the start and given.
 inline constexpr Real most_angular_loss = 0.1;
 
-/// A strain so small that the energy of bodies which nowhere exceed it is not judged: they hardly moved, and what the first and the last
-/// step leave open beside their stress is as large as all works together.
+/// The strain up to which the energy of bodies is not judged: they hardly moved, and errors of the first and the last step are as large as
+/// all works together.
 inline constexpr Real least_strain_judged = 1e-4;
-/// Its energy over that below which gains are round-off (Guards::least_energy, of a strain of 1e-6).
+/// The energy of that strain over the limit below which energy gains are round-off (RunLimits::least_energy, of a strain of 1e-6).
 inline constexpr Real least_energy_factor = (least_strain_judged / 1e-6) * (least_strain_judged / 1e-6);
 
-/// In words, one entry each: balances that do not close, and transfer losses beyond those above.  Empty if all is well.  The loss of
+/// Descriptions of balances that do not close, and of transfer losses beyond the limits above.  Empty if there are none.  The loss of
 /// energy is judged if one of the terms is more than `least_energy` [J].
 std::vector<std::string> failed_accounts(const RunSummary& summary, Real least_energy);
 

@@ -48,7 +48,7 @@ void BodyForces<D>::add_step(const RunView<D>& view, const std::vector<BodySums<
   std::size_t losers = 0;
   for (std::size_t b = 0; b < now.size(); ++b)
     losers += lost(b) ? 1 : 0;
-  const Real failed = view.state.mass.failed - failed_;  // took part in the step in which it failed, with loads that went with it
+  const Real failed = view.state.mass.failed - failed_;  // they took part in the step in which they failed, with their loads
   for (std::size_t b = 0; b < now.size(); ++b) {
     BodyImpulse<D>& impulse = impulses_[b];
     if (lost(b) && (losers > 1 || (failed > 0 && !view.state.particles.applied.empty()))) {

@@ -1,5 +1,5 @@
 #pragma once
-// What walls and other bodies do to each body, from the balance of its momentum.
+// The forces of walls and other bodies on each body, from the balance of its momentum.
 #include "solver/run_view.hpp"
 
 namespace talus {
@@ -22,33 +22,36 @@ struct BodySums {
   }
 };
 
-/// What a body was given since the start of the run, apart from gravity and the loads that its particles carry.
+/// The impulse on a body since the start of the run, without gravity and loads carried by its particles.
 template <int D>
 struct BodyImpulse {
-  Vec<D> given = Vec<D>::Zero();  ///< [N s]
-  Real unknown{};                 ///< steps that are not in it, because what left the mesh in them cannot be shared out among bodies
+  Vec<D> given = Vec<D>::Zero();  ///< impulse [N s]
+  /// Duration of steps that are not included, because particles that left the mesh cannot be assigned to bodies [s].
+  Real unknown{};
   static constexpr auto fields() { return std::tuple{saved("given", &BodyImpulse::given), saved("unknown", &BodyImpulse::unknown)}; }
 };
 
-/// Follows the momentum of every body through each step.  All bodies share one velocity at a node, so there is no contact force to look up; but
-/// what the momentum of a body gains in a step, less gravity on its mass and the loads on its particles, is what walls and other bodies gave it:
+/// Tracks the momentum of every body through each step.  All bodies share one velocity at a node, so there are no explicit contact forces.
+/// The change of the momentum of a body in a step, minus gravity on its mass and the loads on its particles, is the impulse of walls and
+/// other bodies on it:
 ///
 ///     I_b += P_b(new) - P_b(old) + (momentum of its particles that were deleted) - kick (m_b g + f_b)
 ///
 /// with the time `kick` over which forces act in the step (docs/theory/algorithm.md).
-/// The sum over all bodies is what walls gave, mesh tractions and the damping of stages included, to round-off.  Changes between steps do not
-/// count: bodies that appear, and the motion that is taken out where a stage ends at rest.  Does nothing unless it is `wanted`.
+/// The sum over all bodies is the impulse of walls, including mesh tractions and the damping of stages, to round-off.  Changes between
+/// steps are not included: bodies that appear, and the motion that is removed where a stage ends in equilibrium.  Does nothing unless it is
+/// `wanted`.
 template <int D>
 class BodyForces {
  public:
   explicit BodyForces(bool wanted) noexcept : wanted_(wanted) {}
-  /// Called at every event of a run, on every rank.
+  /// To be called at every event of a run, on every rank.
   void see(const RunView<D>& view, RunEvent moment);
 
-  /// Of each body, at the last event.
+  /// The sums of each body at the last event.
   const std::vector<BodySums<D>>& sums() const noexcept { return sums_; }
   const std::vector<BodyImpulse<D>>& impulses() const noexcept { return impulses_; }
-  /// Whether fields() that were taken over may be those of a run with so many bodies.
+  /// Whether fields() read from a checkpoint have the size for this number of bodies.
   bool fits(std::size_t bodies) const noexcept { return sums_.size() == (wanted_ ? bodies : 0) && impulses_.size() == sums_.size(); }
   static constexpr auto fields()
   {
@@ -62,8 +65,8 @@ class BodyForces {
   bool wanted_;
   std::vector<BodySums<D>> sums_;
   std::vector<BodyImpulse<D>> impulses_;
-  Vec<D> deleted_ = Vec<D>::Zero();  // momentum of all particles that were deleted so far
-  Real failed_ = 0;                  // mass of those of them that failed
+  Vec<D> deleted_ = Vec<D>::Zero();  // momentum of all particles deleted so far
+  Real failed_ = 0;                  // mass of those that failed
 };
 
 extern template class BodyForces<2>;

@@ -19,7 +19,7 @@ constexpr auto prefix = "step_", suffix = ".h5";
 
 bool is_checkpoint(const fs::path& file) { return is_numbered(file.filename().string(), prefix, suffix); }
 
-/// Numbers have the same length up to a billion steps, and longer ones are newer.
+/// Names have equal lengths up to a billion steps; longer ones are newer.
 bool is_newer(const fs::path& a, const fs::path& b)
 {
   const std::string x = a.filename().string(), y = b.filename().string();

@@ -1,5 +1,5 @@
 #pragma once
-// The files of checkpoints in the folder of a run: their names and order.
+// Names and order of the checkpoint files in a results folder.
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace talus {
 
-/// Of the checkpoint that is written after so many steps.
+/// The name of the checkpoint after `step` steps.
 std::string name_of_checkpoint(std::int64_t step);
 
-/// Those in a folder, the newest first.  EnvironmentError: it is there and cannot be read.
+/// The checkpoints in a folder, the newest first.  Throws EnvironmentError if it exists and cannot be read.
 std::vector<std::filesystem::path> checkpoints_in(const std::filesystem::path& folder);
 
 }  // namespace talus

@@ -20,19 +20,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of what is kept and how.  A change of what is kept makes it another.
+/// The version of the format; it increases with every change of the contents.
 constexpr std::int64_t written_format = 8;
 
 std::string history_of(std::size_t body) { return below("laws/history", body); }
 
-/// Of the rows of a file those of a body, where the rows from `rows.first` on are here, which `here` counts.
+/// The rows of a body among the rows of a file: `here` counts from the row `rows.first` of the file.
 Slice rows_of_body(const Body& in_file, const Body& here, const Slice& rows)
 {
   const std::int64_t first = here.size() > 0 ? rows.first + here.begin - in_file.begin : 0;
   return {first, in_file.size(), rows.piece, in_file.begin % rows.piece};
 }
 
-/// The rows of the file that are here, [first, end), as rows that count from 0.
+/// Restricts the bodies to the rows [first, end) of the file, which then count from 0.
 void take_slice(std::int64_t first, std::int64_t end, std::vector<Body>& bodies)
 {
   for (Body& body : bodies) {
@@ -55,7 +55,7 @@ void recall_laws(const ArrayReader& file, const std::vector<Body>& in_file, cons
   }
 }
 
-/// Which columns there are: set-up has decided, and no state of the same scene with particles in it has others.
+/// Checks that the columns exist that set-up has chosen; every state of the same scene with particles has the same columns.
 template <int D>
 std::vector<bool> filled_columns(const Particles<D>& particles)
 {
@@ -70,12 +70,12 @@ void must(bool holds, const char* what)
     throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
 }
 
-/// Parts of a state whose rows are written as arrays, not as fields.
+/// Parts of a state whose rows are written as arrays instead of fields.
 template <class Part>
 constexpr bool is_of_particles =
     std::is_same_v<Part, Particles<2>> || std::is_same_v<Part, Particles<3>> || std::is_same_v<Part, std::vector<Material>>;
 
-/// A list of which set-up has as many: looked at before its items, of which not all is kept, are replaced.
+/// Checks the length of a list against set-up before its items are replaced, because some members of items are not stored.
 void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
 {
   std::int64_t count = 0;
@@ -83,8 +83,9 @@ void check_count(const ArrayReader& arrays, const std::string& list, std::size_t
   must(std::cmp_equal(count, n), what);
 }
 
-/// Reads bodies, particles and histories: of the rows the slice of one of so many ranks, the bodies being those of the slice.  Bodies stand one
-/// after the other, with as many rows in each column; those that every scene needs are there.  Returns how many rows there are of all ranks.
+/// Reads bodies, particles and histories: the rows in the slice of one of several ranks, with bodies of that slice.  Checks that bodies are
+/// contiguous, that all columns have equal numbers of rows, and that the necessary columns exist.  Returns the number of rows over all
+/// ranks.
 template <int D>
 std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::vector<Body>& bodies, std::vector<Material>& materials,
                           Particles<D>& particles)
@@ -113,13 +114,14 @@ std::int64_t recall_slice(const ArrayReader& arrays, int rank, int ranks, std::v
   return end;
 }
 
-/// EnvironmentError: a state that no run of the scene has had.  Digests tell that a file is as it was written, not who wrote it.
+/// Throws EnvironmentError for a state that no run of the scene can have.  Digests show that a file is unchanged, not who wrote it.
 template <int D>
 void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::int64_t n_particles, const StateLimits& limits)
 {
   const Particles<D>& particles = state.particles;
   must(state.stage.number >= 0 && state.stage.number < limits.stages, "stages");
-  const bool known = std::find(columns.begin(), columns.end(), true) != columns.end();  // not by a rank that had no particles
+  // a rank without particles does not know the columns
+  const bool known = std::find(columns.begin(), columns.end(), true) != columns.end();
   must(!known || filled_columns(particles) == columns || particles.size() == 0, "columns");
   must(n_particles <= limits.particles, "bodies");
   const auto within = [](const auto& column, auto limit) {
@@ -128,7 +130,7 @@ void check_sizes(const State<D>& state, const std::vector<bool>& columns, std::i
   must(within(particles.cell, limits.cells) && within(particles.id, std::int64_t{limits.particles}), "particles");
 }
 
-/// Bodies have other laws in another stage.
+/// Sets the laws of bodies that change in a stage.
 void take_laws_of(const StageState& stage, std::span<const std::vector<Material>> laws, std::vector<Material>& materials)
 {
   if (laws.empty())
@@ -137,7 +139,7 @@ void take_laws_of(const StageState& stage, std::span<const std::vector<Material>
   materials = laws[static_cast<std::size_t>(stage.number)];
 }
 
-/// EnvironmentError: a state that nothing sound comes of.
+/// Throws EnvironmentError for an invalid state.
 void refuse_if_any(const std::vector<std::string>& faults)
 {
   if (!faults.empty())
@@ -170,7 +172,7 @@ void Checkpoints<D>::see(const RunView<D>& view, const Recorder<D>& recorder)
     reason = "by " + reason;
   else if (until_ && view.state.clock.step >= *until_)
     reason = "as asked";
-  // Signals and clocks on the wall differ from rank to rank.
+  // Signals and clocks differ between ranks, so the ranks agree on the largest of these.
   enum : std::int64_t { go_on, write_one, stop };
   const std::int64_t wish = !reason.empty() ? stop : view.problem.ranks->is_root() && due(view.state.clock) ? write_one : go_on;
   const std::int64_t what = view.problem.ranks->max(wish);
@@ -197,7 +199,7 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
   const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
   view.problem.ranks->together([&] {
     require_results(folder_);
-    recorder.flush();  // what the checkpoint says is written is on the disk before it
+    recorder.flush();  // files named in the checkpoint must be on the disk before it
   });
   on_slices(view, [&](const State<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
     std::vector<SharedArray> arrays;
@@ -226,7 +228,7 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
     return;
   const auto all = checkpoints_in(folder_ / checkpoint_folder);
   const auto manifest = Manifest::of(folder_);
-  std::error_code stays;  // one too many is no reason to end a run
+  std::error_code stays;  // a file that cannot be removed does not end the run
   for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
     if (!manifest || manifest->proves((fs::path(checkpoint_folder) / all[i].filename()).string()))
       fs::remove(all[i], stays);
@@ -234,7 +236,7 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
 
 namespace {
 
-/// The run whose checkpoint lies there, if it lies where a run puts it.
+/// The results folder of a checkpoint, if it lies in one.
 std::optional<fs::path> folder_of_run(const fs::path& checkpoint)
 {
   const fs::path place = fs::weakly_canonical(checkpoint).parent_path();
@@ -299,7 +301,7 @@ CheckpointList::Read CheckpointList::newest(F&& f) const
 
 namespace {
 
-/// Names the file in what check() throws, unless it is named there.
+/// Adds the name of the file to exceptions of check(), unless it is there already.
 template <class Check>
 void check_in(const fs::path& file, Check&& check)
 try {
@@ -338,7 +340,7 @@ fs::path CheckpointList::take_over(State<D>& state, Recorder<D>& recorder, const
       throw EnvironmentError("the walls, bodies or points of the checkpoint do not fit the scene");
   };
   const auto [from, reasons] = newest([&](const fs::path& file) {
-    // Each rank looks at its slice; what one of them finds wrong is wrong for all.
+    // Each rank checks its slice; an error on one rank is thrown on all.
     ranks.agree(Communicator::caught([&] { check_in(file, [&] { read_all(ArrayReader(file)); }); }));
     if (const auto twice = ranks.alone() ? std::nullopt : doubled_id(ranks, state.particles.id))
       throw EnvironmentError(fmt::format("{}: there is more than one particle {}", file.string(), *twice));

@@ -1,5 +1,5 @@
 #pragma once
-// Checkpoints: the state of a run in a file, when it is due and when somebody asks the run to stop; and the way back.
+// Checkpoints: writing the state of a run, when it is due or when the run is asked to stop, and reading it.
 #include <chrono>
 
 #include "app/observers/recorder.hpp"
@@ -8,16 +8,16 @@
 
 namespace talus {
 
-/// Which run a checkpoint belongs to.
+/// The identity of the run that a checkpoint belongs to.
 struct RunIdentity {
   std::string version, commit, compiler, build;  ///< of the program; `build`: its type and flags
   std::string scene_file;                        ///< absolute path
-  std::string scene_text;                        ///< as it was read
-  std::vector<std::string> set;                  ///< what --set changed
+  std::string scene_text;                        ///< text of the scene as it was read
+  std::vector<std::string> set;                  ///< changes by --set
   bool quick = false;
-  std::int64_t mesh = 0;        ///< its digest
+  std::int64_t mesh = 0;        ///< digest of the mesh
   std::int64_t from_files = 0;  ///< digest of records and of the water table
-  std::string initial;          ///< checkpoint of another run that it began with, if it did
+  std::string initial;          ///< initial state from another run, or empty
   static constexpr auto fields()
   {
     return std::tuple{saved("version", &RunIdentity::version),
@@ -37,18 +37,18 @@ struct RunIdentity {
 template <int D>
 class Checkpoints {
  public:
-  /// They go to folder/checkpoints.
+  /// Checkpoints are written to folder/checkpoints.
   Checkpoints(std::filesystem::path folder, const CheckpointSpec& spec, RunIdentity identity,
               std::optional<std::int64_t> until = std::nullopt);
 
-  /// Before each step: writes one if it is due.  Stopped after writing one because of a signal, or where steps are done `until` which the
-  /// run was to go.  EnvironmentError: it could not be written; older ones are left as they are.
+  /// To be called before each step: writes a checkpoint if it is due.  Throws Stopped after writing one because of a signal, or after
+  /// `until` steps; EnvironmentError if it could not be written, with older ones unchanged.
   void see(const RunView<D>& view, const Recorder<D>& recorder);
-  /// After a stage, the recorder knowing its result: writes one at the end of the run if the scene wants it.
+  /// To be called after a stage, when the recorder has its result: writes a checkpoint at the end of the run if the scene requests it.
   void see_end_of_stage(const RunView<D>& view, const Recorder<D>& recorder, Index n_stages);
-  /// Writes one now.  EnvironmentError.
+  /// Writes a checkpoint.  Throws EnvironmentError.
   void write(const RunView<D>& view, const Recorder<D>& recorder);
-  /// The last one written, empty if there is none, and the steps done then.
+  /// The last checkpoint written, empty if there is none, and its number of steps.
   const std::filesystem::path& last() const noexcept { return last_; }
   std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
 
@@ -61,17 +61,17 @@ class Checkpoints {
   RunIdentity identity_;
   std::optional<std::int64_t> until_;
   std::filesystem::path last_;
-  std::optional<Clock> at_;  // of the last one, or of the first look
+  std::optional<Clock> at_;  // time of the last one, or of the first call
   Watch::time_point when_ = Watch::now();
 };
 
-/// What a state must fit to be one of this scene.
+/// The sizes of a state of this scene.
 struct StateLimits {
-  Index cells, stages, particles;                 ///< particles: of all bodies as they are placed
-  std::span<const std::vector<Material>> laws{};  ///< of the bodies in each stage
+  Index cells, stages, particles;                 ///< particles: initial number of all bodies
+  std::span<const std::vector<Material>> laws{};  ///< laws of the bodies in each stage
 };
 
-/// The bodies of a run, read by themselves.
+/// The bodies of a run, read without the rest of its state.
 template <int D>
 struct KeptBodies {
   Particles<D> particles;
@@ -80,39 +80,39 @@ struct KeptBodies {
   Clock clock;
   StageState stage;
   EnergyLedger energy;
-  std::vector<std::vector<Material>> laws;  ///< of each stage, to be there already
+  std::vector<std::vector<Material>> laws;  ///< laws of each stage, to be set before reading
 };
 
-/// Checkpoints to go on from, the newest first.
+/// Checkpoints to resume from, the newest first.
 class CheckpointList {
  public:
-  /// A checkpoint, or the folder of a run.  EnvironmentError: there is none that can be read, or they are of another format.
+  /// From a checkpoint or a results folder.  Throws EnvironmentError if none can be read, or if they have another format.
   explicit CheckpointList(const std::filesystem::path& at);
 
   const RunIdentity& identity() const noexcept { return identity_; }
-  /// How far the run was.
+  /// Step and time of the newest checkpoint.
   const Clock& clock() const noexcept { return clock_; }
   const StageState& stage() const noexcept { return stage_; }
   std::span<const std::filesystem::path> files() const noexcept { return files_; }
-  /// Folder of the run, where they lie in one.
+  /// The results folder, if the checkpoints lie in one.
   const std::optional<std::filesystem::path>& folder() const noexcept { return folder_; }
-  /// Puts the newest state that is whole in the place of what is there, and says which file had it.  One that is damaged is named on standard
-  /// error, and the one before it is taken.  Of several ranks each takes a slice of the particles, whose cells are of the whole mesh: see
-  /// adopt_state().  EnvironmentError: none is whole and fits.
+  /// Replaces the state by the newest one that is valid, and returns the name of its file.  Damaged checkpoints are named on standard
+  /// error.  With several ranks each reads a slice of the particles, whose cells are those of the whole mesh: see adopt_state().  Throws
+  /// EnvironmentError if none is valid and fits.
   template <int D>
   std::filesystem::path take_over(State<D>& state, Recorder<D>& recorder, const StateLimits& limits) const;
-  /// Which file was read, and why newer ones were not.
+  /// The file that was read, and the reasons why newer ones were not.
   struct Read {
     std::filesystem::path file;
     std::string reasons;
   };
-  /// The bodies of the newest state that is whole.  Their number, the laws and the precision of the particles must be there already.
-  /// EnvironmentError: none is whole, or they are others.
+  /// Reads the bodies of the newest valid state.  Their number, the laws and the precision of the particles must be set before.  Throws
+  /// EnvironmentError if no state is valid, or if the bodies do not fit.
   template <int D>
   Read read(KeptBodies<D>& saved) const;
 
  private:
-  /// f(file) for the newest one for which it throws no EnvironmentError.
+  /// Calls f(file) for the newest checkpoint for which it does not throw EnvironmentError.
   template <class F>
   Read newest(F&& f) const;
 
@@ -123,8 +123,8 @@ class CheckpointList {
   StageState stage_;
 };
 
-/// Renames the checkpoints of a run's folder that are newer than the one it goes on from: they are of a way that is left now, or damaged, and
-/// would be taken for the newest of this one.  Returns their new names.
+/// Renames the checkpoints in a results folder that are newer than the one that is resumed: they are damaged or belong to a discarded
+/// continuation, and would be taken for the newest.  Returns their new names.
 std::vector<std::filesystem::path> set_aside_newer(const std::filesystem::path& folder, const std::filesystem::path& taken);
 
 extern template class Checkpoints<2>;

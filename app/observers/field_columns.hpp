@@ -6,15 +6,15 @@
 
 namespace talus {
 
-/// What particle files hold: the fields asked for, the one that pictures show, body and volume.
+/// The fields in particle files: the requested ones, the one of the pictures, body and volume.
 std::vector<std::string> particle_fields_of(const OutputSpec& outputs);
 
 /// A field of all particles in the order of `rows`.  Names: those of particle_fields() in io/output/output_fields.hpp, and every history
-/// variable of a law in the run, which is 0 for bodies whose law does not have it.  std::invalid_argument for any other name.
+/// variable of a law in the run, which is 0 for bodies whose law does not have it.  Throws std::invalid_argument for any other name.
 template <int D>
 Column particle_column(const State<D>& state, std::span<const Index> rows, std::string_view name);
 
-/// A field of all nodes.  Names: those of node_fields(); std::invalid_argument for any other.
+/// A field of all nodes.  Names: those of node_fields(); throws std::invalid_argument for any other.
 template <int D>
 Column node_column(const RunView<D>& view, std::string_view name);
 
@@ -22,7 +22,7 @@ Column node_column(const RunView<D>& view, std::string_view name);
 template <int D>
 std::vector<Index> rows_by_id(const Particles<D>& particles);
 
-/// Three numbers per particle [m].
+/// The positions, three numbers per particle [m].
 template <int D>
 std::vector<Real> positions(const Particles<D>& particles, std::span<const Index> rows);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr Real empty_entry = std::numeric_limits<Real>::quiet_NaN();
 
-/// f(row) for the particles of one body, or of all.
+/// Calls f(row) for the particles of one body, or of all.
 template <class F>
 void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& f)
 {
@@ -21,8 +21,8 @@ void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& 
         f(static_cast<std::size_t>(row));
 }
 
-/// The value that a share of the mass does not exceed, from value and mass of particles of all ranks.  NaN where there are none, and on ranks
-/// beside the root.
+/// The value that the fraction `share` of the mass does not exceed, from value and mass of particles of all ranks.  NaN if there are none,
+/// and on ranks other than the root.
 Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Communicator& ranks)
 {
   std::vector<std::pair<Real, Real>> all;
@@ -35,7 +35,7 @@ Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Communicator& 
   const Real total = std::accumulate(all.begin(), all.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
   std::size_t i = 0;
   Real mass = all[0].second;
-  const Real wanted = share * total * (1 - 1e-12);  // sums of the same masses in another order
+  const Real wanted = share * total * (1 - 1e-12);  // the sum of the masses in another order may differ by round-off
   while (mass < wanted && i + 1 < all.size())
     mass += all[++i].second;
   return all[i].first;
@@ -48,7 +48,7 @@ void put(const Vec<N>& value, std::vector<Real>& row)
   row.insert(row.end(), value.begin(), value.end());
 }
 
-/// The values of a table of io/output/history_columns.hpp, of what `owner` is now.
+/// The values of a table of io/output/history_columns.hpp for `owner`.
 template <int D, class Table, class Owner>
 void put_all(const Table& table, const Owner& owner, std::vector<Real>& row)
 {
@@ -61,27 +61,27 @@ void put_all(const Table& table, const Owner& owner, std::vector<Real>& row)
   });
 }
 
-/// What columns are made of: of the run, a wall, a point, what bodies do to a wall, a body.
+/// Data for the columns: of the run, a wall, a point, the action of bodies on a wall, a body.
 template <int D>
 struct RunNow {
   const RunView<D>& run;
   Totals<D> totals;
-  Vec<D> centre;  ///< of mass [m]; NaN of nothing
+  Vec<D> centre;  ///< centre of mass [m]; NaN without mass
   EnergyNow energy;
 };
 template <int D>
 struct ReactionNow {
-  Vec<D> reaction;  ///< [N]
+  Vec<D> reaction;  ///< reaction [N]
 };
 template <int D>
 struct PointNow {
-  Vec<D> x, u, v;  ///< [m], [m], [m/s]
-  Sym3 stress;     ///< [Pa]
+  Vec<D> x, u, v;  ///< position [m], displacement [m], velocity [m/s]
+  Sym3 stress;     ///< stress [Pa]
 };
 template <int D>
 struct WallNow {
-  Real push, shear, touched, pressure;  ///< [N], [N], [m^(D-1)], [Pa]
-  Vec<D> attack;                        ///< [m]
+  Real push, shear, touched, pressure;  ///< normal force [N], shear force [N], area in contact [m^(D-1)], pressure [Pa]
+  Vec<D> attack;                        ///< point of attack [m]
 };
 template <int D>
 struct BodyNow {
@@ -89,14 +89,16 @@ struct BodyNow {
   Vec<D> momentum, force;       ///< [kg m/s], [N]
 };
 
-/// The part of a wall with mass at its nodes: area vectors out of the mesh [m^(D-1)], their moduli and those times the places of the nodes.
+/// Sums over the part of a wall with mass at its nodes: area vectors out of the mesh [m^(D-1)], their lengths, and lengths times positions
+/// of the nodes.
 template <int D>
 struct Touched {
   Vec<D> area = Vec<D>::Zero(), place = Vec<D>::Zero();
   Real measure{};
 };
 
-/// Where the line of action of a force [N] with that moment [N m] about the origin crosses a plane through `place`; NaN if it never does.
+/// The point where the line of action of a force [N] with a given moment [N m] about the origin crosses a plane through `place`; NaN if it
+/// is parallel to the plane.
 template <int D>
 Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, const Vec<D>& place)
 {
@@ -247,7 +249,7 @@ void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& for
   state_.given[k] = now;
 }
 
-/// Its mean push since the row before, where the line of that push crosses the wall, and on how much of the wall there is mass now.
+/// The mean force on the wall since the previous row, its point of attack, and the area with mass.
 template <int D>
 void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
 {
@@ -266,10 +268,10 @@ void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Re
   view.problem.ranks->sum(sum);
   const Touched<D> touched = sum.value();
   const Real area = touched.area.norm();
-  const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // on the wall
+  const Vec<D> force = elapsed > 0 ? Vec<D>((state_.impulse[w] - wall->impulse) / elapsed) : Vec<D>(Vec<D>::Zero());  // force on the wall
   const Vec<D> nowhere = Vec<D>::Constant(empty_entry);
   if (!(area > 0) || force.norm() == 0) {
-    const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // what has just left it has pushed, in a direction that is gone
+    const Real none_or_unknown = force.norm() == 0 ? 0 : empty_entry;  // material that has just left it acted on it
     put_all<D>(wall_columns(), WallNow<D>{none_or_unknown, none_or_unknown, area, area > 0 ? 0 : empty_entry, nowhere}, row);
     return;
   }

@@ -1,5 +1,5 @@
 #pragma once
-// history.csv: balances, reactions, followed points, fronts and how far the mass has moved at each output time.
+// history.csv: balances, reactions, tracked points, fronts and displacement of the mass at each output time.
 #include "app/observers/accounts.hpp"
 #include "app/observers/body_forces.hpp"
 #include "io/output/csv.hpp"
@@ -7,32 +7,32 @@
 
 namespace talus {
 
-/// Id of the particle of `spec.body` (any, if empty) that is nearest to `spec.at`; of several equally near the lowest.  Every rank has to ask.
+/// The id of the particle of `spec.body` (any body, if empty) nearest to `spec.at`; the lowest of several equally near ones.  Collective.
 template <int D>
 std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles,
                               Communicator& ranks = one_rank());
 
-/// Coordinate [m] that a share of the mass does not pass, looking along the direction of `spec`.  NaN without particles.  Of all ranks, on the
-/// root; every rank has to ask.
+/// The coordinate [m] along the direction of `spec` that the given fraction of the mass does not exceed.  NaN without particles.  Over all
+/// ranks, on the root.  Collective.
 template <int D>
 Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks = one_rank());
 
-/// Length of displacement [m] that a share of the mass does not exceed, alike.
+/// The length of displacement [m] that the given fraction of the mass does not exceed.  Over all ranks, on the root.  Collective.
 template <int D>
 Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks = one_rank());
 
-/// The facets that a wall of the history stands on: the second wall on a group is called GROUP_2.
+/// The facets of a wall of the history; the second wall on a group is called GROUP_2.
 template <int D>
 std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std::string& wall);
 
-/// What a row owes to the rows before.
+/// The data from earlier rows that a row needs.
 template <int D>
 struct HistoryState {
   std::vector<std::int64_t> followed;  ///< id of the particle of each point
-  std::vector<Vec<D>> impulse;         ///< of each wall at the row before [N s]
-  std::vector<Vec3> angular;           ///< its moment about the origin [N m s]
-  std::vector<BodyImpulse<D>> given;   ///< to each body of the history, at the row before
-  Real time = 0;                       ///< of the row before [s]
+  std::vector<Vec<D>> impulse;         ///< impulse of each wall at the previous row [N s]
+  std::vector<Vec3> angular;           ///< moment of this impulse about the origin [N m s]
+  std::vector<BodyImpulse<D>> given;   ///< impulse on each body of the history at the previous row
+  Real time = 0;                       ///< time of the previous row [s]
   static constexpr auto fields()
   {
     return std::tuple{saved("followed", &HistoryState::followed), saved("impulse", &HistoryState::impulse),
@@ -40,24 +40,25 @@ struct HistoryState {
   }
 };
 
-/// The file is the root's; the other ranks give what it needs.  Columns: those of io/output/history_columns.hpp.  What has no particle any more has no value (NaN, an empty entry): a point whose particle was
-/// deleted, the front of an empty body, the centre of mass of nothing.
+/// Writes the history.  The root writes the file with data of all ranks.  The columns are those of io/output/history_columns.hpp.
+/// Quantities without particles are NaN, written as empty entries: a point whose particle was deleted, the front or centre of mass of an
+/// empty body.
 template <int D>
 class HistoryWriter {
  public:
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start);
-  /// Goes on in a file that is there, behind the time of `now`.
+  /// Continues an existing file after the time of `now`.
   HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& now, HistoryState<D> state);
   const HistoryState<D>& state() const noexcept { return state_; }
-  /// Points of this body follow the particle that is nearest now.
+  /// Points of this body now track the nearest particle.
   void follow_anew(const std::string& body, const RunView<D>& now);
   void append(const RunView<D>& view, const BalanceHistory<D>& accounts, const BodyForces<D>& forces);
   void flush() const { file_->flush(); }                          ///< on the root
-  Real last_time() const noexcept { return file_->last_time(); }  ///< of the last row there [s], on the root
+  Real last_time() const noexcept { return file_->last_time(); }  ///< time of the last row in the file [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const RunView<D>& start);
 
  private:
-  /// Of a body: its sums, and the mean force on it; no force where that is not known of a step.
+  /// Adds the columns of a body: its sums, and the mean force on it; no force if that is unknown for a step.
   void add_body(const RunView<D>& view, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
   void add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
   static void add_point(const RunView<D>& view, const PointSpec& point, Index at, std::vector<Real>& row);

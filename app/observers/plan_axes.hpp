@@ -1,5 +1,5 @@
 #pragma once
-// The plan that run-out is seen on: which way is up, and which cells of a grid a facet lies over or under.
+// The plan for run-out: the vertical direction, and the cells of a grid over a facet.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,17 +18,17 @@ Vec3 in_space(const Vec<D>& v)
   return x;
 }
 
-/// Which way is up, and which axes make up the plan, so that east, north and up are right-handed.
+/// The vertical direction and the axes of the plan, so that east, north and up are right-handed.
 struct PlanAxes {
-  Vec3 up;                    ///< against gravity, of unit length
-  Index vertical;             ///< the axis nearest to it
-  Real sign;                  ///< of `up` along that axis
-  std::array<Index, 2> plan;  ///< 2-D: only the first
+  Vec3 up;                    ///< unit vector against gravity
+  Index vertical;             ///< index of the axis nearest to `up`
+  Real sign;                  ///< sign of `up` along that axis
+  std::array<Index, 2> plan;  ///< 2-D: only the first one
 };
 template <int D>
 PlanAxes plan_axes(const Vec<D>& gravity);
 
-/// f(cell, elevation) for the cells whose centre a facet lies over or under.
+/// Calls f(cell, elevation) for the cells whose centre lies above or below a facet.
 template <int D, class F>
 void for_each_cell_of(const Mesh<D>& mesh, Facet facet, const PlanGrid& grid, const PlanAxes& axes, F&& f)
 {
@@ -48,7 +48,7 @@ void for_each_cell_of(const Mesh<D>& mesh, Facet facet, const PlanGrid& grid, co
   const Real area = ab[0] * ac[1] - ab[1] * ac[0];
   if (area == 0)
     return;                   // vertical
-  constexpr Real rim = 1e-9;  // of the facet: centres on an edge belong to both sides
+  constexpr Real rim = 1e-9;  // relative to the facet: centres on an edge belong to both sides
   for (Index row = D == 2 ? 0 : first(low[1], grid.south, grid.dy, grid.rows);
        row <= (D == 2 ? 0 : std::min(grid.rows - 1, first(high[1], grid.south, grid.dy, grid.rows) + 1)); ++row)
     for (Index column = first(low[0], grid.west, grid.dx, grid.columns);

@@ -18,13 +18,13 @@ constexpr std::chrono::milliseconds between_bars{200};
 constexpr std::chrono::seconds between_lines{5}, between_files{1};
 constexpr int bar_width = 30;
 
-/// Before it is written for the first time.  A file of the user stays, under another name.
+/// Renames a file of the user before the first writing.
 void make_way(const std::filesystem::path& file, const RunProgress& progress)
 try {
   set_aside_unless_proved(file);
   write_progress(file, progress);
   note_result(file, file, Proof::begins);
-} catch (const EnvironmentError&) {  // such as a full disk: who has more to write will say so
+} catch (const EnvironmentError&) {  // for example a full disk: the next write reports it
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// How far a run is: on standard error a bar on a terminal, a line every few seconds elsewhere; and in a file for `talus watch`.
+// Progress of a run: a bar on a terminal, otherwise a line every few seconds on standard error; and a file for `talus watch`.
 #include <chrono>
 #include <filesystem>
 
@@ -10,15 +10,15 @@ namespace talus {
 
 class Progress {
  public:
-  /// file: rewritten every second and gone when this is; none if empty.
+  /// file: rewritten every second and removed by the destructor; none if empty.
   Progress(bool quiet, std::filesystem::path file);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// A run that goes on has done this much already: rates and the time that is left count from here.
+  /// Sets the work done before a run was resumed: rates and the remaining time count from here.
   void resume(Real done, Real particle_steps) noexcept { now_.done_before = done, particle_steps_before_ = particle_steps; }
-  /// After each step: simulated time that is done, out of the total; the clock of the run; particle steps so far.
+  /// To be called after each step: simulated time done, total simulated time, clock of the run, particle-steps so far.
   void step(Real done, Real total, const Clock& clock, std::string_view stage, Real particle_steps);
 
  private:

@@ -11,15 +11,15 @@ namespace talus {
 
 namespace {
 
-/// Ids of all ranks, sorted: each rank has those in a range of its own.
+/// Ids of all ranks, sorted: each rank has the ids in a range.
 struct SortedIds {
   struct One {
     std::int64_t id;
-    std::size_t rank, place;  ///< who has it, which one it is of those it has sent
+    std::size_t rank, place;  ///< rank that has the particle, and index in its message
   };
   std::vector<One> here;
-  std::vector<std::vector<std::int64_t>> sent;  ///< rank, place -> row here
-  std::vector<std::size_t> received;            ///< from each rank
+  std::vector<std::vector<std::int64_t>> sent;  ///< row on this rank for each rank and index
+  std::vector<std::size_t> received;            ///< number from each rank
 };
 
 SortedIds sort_ids(Communicator& ranks, std::span<const std::int64_t> ids)
@@ -31,7 +31,7 @@ SortedIds sort_ids(Communicator& ranks, std::span<const std::int64_t> ids)
   std::vector<std::vector<std::int64_t>> out(sorted.sent.size());
   for (std::size_t row = 0; row < ids.size(); ++row) {
     const auto last = static_cast<Real>(ranks.size() - 1);
-    const auto owner = static_cast<std::size_t>(std::clamp(static_cast<Real>(ids[row]) * share, Real{0}, last));  // ascends with the id
+    const auto owner = static_cast<std::size_t>(std::clamp(static_cast<Real>(ids[row]) * share, Real{0}, last));  // monotonic in the id
     out[owner].push_back(ids[row]);
     sorted.sent[owner].push_back(static_cast<std::int64_t>(row));
   }
@@ -47,7 +47,7 @@ SortedIds sort_ids(Communicator& ranks, std::span<const std::int64_t> ids)
   return sorted;
 }
 
-/// The number that each row has among the rows of all ranks in the order of ids.
+/// The number of each row among the rows of all ranks in the order of ids.
 std::vector<std::int64_t> numbers_by_id(Communicator& ranks, std::span<const std::int64_t> ids)
 {
   const SortedIds sorted = sort_ids(ranks, ids);
@@ -66,7 +66,7 @@ std::vector<std::int64_t> numbers_by_id(Communicator& ranks, std::span<const std
   return numbers;
 }
 
-/// Gives items, `width` values each, to the ranks whose slice their number is in; what is of this rank, in the order of numbers.
+/// Sends items of `width` values to the ranks whose slice contains their number; returns those of this rank, in the order of numbers.
 template <class T>
 std::vector<T> dealt(Communicator& ranks, const Slices& slices, std::span<const Index> number, std::span<const T> values, std::size_t width)
 {

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// "never", for outputs the scene does not have.
+/// The interval of an output; infinite if the scene does not have it.
 template <class Spec>
 Real every(const std::optional<Spec>& spec)
 {
@@ -33,7 +33,7 @@ Real total(std::span<const Stage> stages)
 }
 
 struct Content {
-  Real particles{}, mass{};  ///< mass in [kg]
+  Real particles{}, mass{};  ///< mass [kg]
   Content& operator+=(const Content& other) noexcept
   {
     particles += other.particles, mass += other.mass;
@@ -56,7 +56,7 @@ BodySummary summary_of(const RunView<D>& view, std::size_t b)
   return {body.name, material.name, std::string(material.law().name()), static_cast<std::int64_t>(content.particles), content.mass};
 }
 
-/// What the ranks have done since `begin`, where `step_begin` steps were done.  Every rank has to ask.
+/// Statistics of the ranks since `begin`, when `step_begin` steps had been done.  Collective.
 template <int D>
 RanksSummary ranks_of(const RunView<D>& view, const Traffic& begin, std::int64_t step_begin)
 {
@@ -114,7 +114,7 @@ void Recorder<D>::open(const RunView<D>& view)
   name_lists();
 }
 
-/// Bodies that were not there before.
+/// Adds bodies that were not there before.
 template <int D>
 void Recorder<D>::welcome(const RunView<D>& view)
 {
@@ -129,7 +129,7 @@ void Recorder<D>::welcome(const RunView<D>& view)
     history_state_ = history_->state();
 }
 
-/// Of the files the run writes those that are there from the beginning.
+/// Adds the files that a run writes at its beginning.
 template <int D>
 void Recorder<D>::name_lists()
 {
@@ -210,7 +210,7 @@ bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, Index particles) c
     return false;
   if (!outputs_.history)
     return true;
-  const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may not be there any more
+  const auto known = [&](std::int64_t id) { return 0 <= id && id < particles; };  // it may have been deleted
   return history_state_.impulse.size() == walls && history_state_.angular.size() == walls &&
          history_state_.given.size() == outputs_.history->bodies.size() &&
          history_state_.followed.size() == outputs_.history->points.size() && std::ranges::all_of(history_state_.followed, known);
@@ -248,7 +248,7 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent moment)
                    view.state.clock, view.stage_name, view.state.timings.particle_steps);
 
   StopWatch watch;
-  if (first || moment != RunEvent::stage_begins)  // the beginning of a later stage is the end of the one before
+  if (first || moment != RunEvent::stage_begins)  // the beginning of a later stage is the end of the previous one
     write(view, moment == RunEvent::stage_done);
   write_runout(view, moment == RunEvent::stage_done);
   watch.lap(output_seconds_);
@@ -260,14 +260,14 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent moment)
   last_.watched = view.state.watched;
   if (moment != RunEvent::stage_done)
     return;
-  done_before_ += view.state.clock.time - stage_start_;  // a stage that seeks rest may end before its time
+  done_before_ += view.state.clock.time - stage_start_;  // a stage that seeks equilibrium may end early
   last_.mass_there = totals(view).mass;
   last_.energy = accounts_.energy(view);
   last_.momentum = accounts_.momentum(view);
   ranks_ = ranks_of(view, traffic_begin_, step_begin_);
 }
 
-/// Of what the guards see and let pass, the first time.
+/// Prints a warning the first time that a limit is exceeded without stopping the run.
 template <int D>
 void Recorder<D>::warn(const RunView<D>& view) const
 {
@@ -352,7 +352,7 @@ void Recorder<D>::write_runout(const RunView<D>& view, bool last)
       name(file);
 }
 
-/// A file that may have been written before.
+/// Adds a file to the list, unless it is there already.
 template <int D>
 void Recorder<D>::name(const std::string& file)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Watches a run: files at their times, accounts, progress, and what the summary needs when the run is over or has failed.
+// Observer of a run that writes files at their times, balances and progress, and collects the data for the summary.
 #include <filesystem>
 
 #include "app/observers/body_forces.hpp"
@@ -13,13 +13,13 @@
 
 namespace talus {
 
-/// State of the run when it was last seen sound.
+/// The last valid state of the run.
 template <int D>
 struct LastSeen {
   Clock clock;
   Timings timings;
   MassLedger<D> mass;
-  Real mass_there{};  ///< of the particles [kg]
+  Real mass_there{};  ///< mass of the particles [kg]
   LimitMonitor watched;
   EnergyNow energy;
   MomentumNow<D> momentum;
@@ -31,11 +31,11 @@ struct LastSeen {
   }
 };
 
-/// What a run that goes on in a folder of its own has left in the folder that it comes from.
+/// The output of an earlier run whose continuation has its own folder.
 struct FilesOfEarlierRun {
-  std::int64_t files = 0;  ///< the first ones of all
+  std::int64_t files = 0;  ///< number of files, from the first one
   int particle_files = 0, mesh_files = 0;
-  Real time = -1;  ///< rows of the history up to then [s]
+  Real time = -1;  ///< time of the last row of the history [s]
   static constexpr auto fields()
   {
     return std::tuple{saved("files", &FilesOfEarlierRun::files), saved("particle_files", &FilesOfEarlierRun::particle_files),
@@ -46,32 +46,32 @@ struct FilesOfEarlierRun {
 template <int D>
 class Recorder {
  public:
-  /// `outputs` and the stages must outlive the recorder.  `made_by` is told in each file for ParaView.
+  /// `outputs` and the stages must outlive the recorder.  `made_by` is written into each file for ParaView.
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
   void watch(const RunView<D>& view, RunEvent moment);
-  /// Goes on with the files of a run whose state has been taken over, this recorder's fields() as well: what they hold beyond the time of
-  /// the view is dropped.  Says in words what should be there and is not, on the root.
+  /// Continues the files of a run whose state, including fields() of this recorder, has been read: entries after the time of the view are
+  /// dropped.  Returns descriptions of missing files, on the root.
   std::vector<std::string> resume(const RunView<D>& view);
-  /// Whether fields() that were taken over may be those of a run with so many walls and bodies, and particles at the start.
+  /// Whether fields() read from a checkpoint have the sizes for this number of walls, bodies, and initial particles.
   bool fits(std::size_t walls, std::size_t bodies, Index particles) const;
-  /// Goes on from such a state with files of its own, in another folder.
+  /// Continues from such a state with new files in another folder.
   void begin_again(const RunView<D>& view);
-  /// What has been written is on the disk when it returns.
+  /// Returns when everything written is on the disk.
   void flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
-  /// What a stage has changed before it begins, a line for each.
+  /// Records the changes by a stage before it begins, one line each.
   void changed(const std::vector<std::string>& lines) { changes_.insert(changes_.end(), lines.begin(), lines.end()); }
 
   const LastSeen<D>& last_seen() const noexcept { return last_; }
   std::span<const StageResult> stages() const noexcept { return stages_; }
   const std::vector<std::string>& changes() const noexcept { return changes_; }
-  /// Written to the folder, relative to it.
+  /// The files written to the folder, relative to it.
   std::span<const std::string> files() const noexcept { return std::span(files_).subspan(static_cast<std::size_t>(elsewhere_.files)); }
   std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
   Real output_seconds() const noexcept { return output_seconds_; }
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
-  const RanksSummary& ranks() const noexcept { return ranks_; }  ///< as of the end of the last stage
+  const RanksSummary& ranks() const noexcept { return ranks_; }  ///< at the end of the last stage
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
   const Runout<D>& runout() const noexcept { return runout_; }
   static constexpr auto fields()
@@ -125,20 +125,20 @@ class Recorder {
   Progress progress_;
   Schedule particle_times_, mesh_times_, history_times_;
   std::optional<HistoryWriter<D>> history_;
-  HistoryState<D> history_state_;  // of history_, as of its last row
+  HistoryState<D> history_state_;  // state of history_ at its last row
   PvdSeries particle_series_, mesh_series_;
   int particle_files_ = 0, mesh_files_ = 0;
-  Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // of the last ones written
+  Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // times of the last files or rows [s]
   Real stage_start_ = 0, done_before_ = 0;
   RanksSummary ranks_;
-  Traffic traffic_begin_;  // when the first step was begun
+  Traffic traffic_begin_;  // at the beginning of the first step
   std::int64_t step_begin_ = 0;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
   std::vector<std::string> changes_;
   std::vector<std::string> files_;
   FilesOfEarlierRun elsewhere_;
-  std::string last_output_;  // relative as well
+  std::string last_output_;  // relative to the folder
   std::vector<BodySummary> bodies_;
   Runout<D> runout_;
   Real output_seconds_ = 0, bytes_per_particle_ = 0;

@@ -18,10 +18,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Whether somebody else has it.
+/// Whether another process has the lock.
 bool is_taken(int handle, int kind) { return ::flock(handle, kind | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
-/// Of a folder.
+/// Opens a folder; returns its descriptor.
 int opened(const fs::path& folder) { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
 
 }  // namespace
@@ -29,7 +29,7 @@ int opened(const fs::path& folder) { return ::open(folder.c_str(), O_RDONLY | O_
 FolderLock::FolderLock(const fs::path& folder) : handle_(opened(folder))
 {
   bool taken = handle_ >= 0 && is_taken(handle_, LOCK_EX);
-  for (int again = 0; taken && again < 10; ++again) {  // who only looks whether a run is at work has it for a moment
+  for (int again = 0; taken && again < 10; ++again) {  // a process that checks for a run holds the lock for a moment
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     taken = is_taken(handle_, LOCK_EX);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// The folder of a run: whose it is, and what is known of it.  How it is made and refilled: new_results.hpp.
+// The results folder of a run: its lock and its contents.  For making and replacing it see new_results.hpp.
 #include <filesystem>
 #include <utility>
 
@@ -7,12 +7,12 @@
 
 namespace talus {
 
-/// Keeps other runs out of a folder while it lives: they would take each other's results away.  Where the file system knows no such locks
-/// there is none.
+/// Keeps other runs out of a folder while it exists, as they would remove each other's results.  Without effect on file systems that do not
+/// support locks.
 class FolderLock {
  public:
   FolderLock() = default;
-  /// EnvironmentError: another run has the folder.
+  /// Throws EnvironmentError if another run has locked the folder.
   explicit FolderLock(const std::filesystem::path& folder);
   ~FolderLock();
   FolderLock(FolderLock&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
@@ -23,26 +23,26 @@ class FolderLock {
   }
 
  private:
-  int handle_ = -1;  // of the folder itself: no file is left behind
+  int handle_ = -1;  // descriptor of the folder itself: no lock file is needed
 };
 
-/// Whether a run has the folder now.  False where the file system knows no locks.
+/// Whether a run has locked the folder.  False if the file system does not support locks.
 bool run_is_at_work(const std::filesystem::path& folder);
 
-/// True if `source` lies in `folder` or below.
+/// Whether `source` lies in `folder` or below.
 bool lies_in(const std::filesystem::path& source, const std::filesystem::path& folder);
 
-/// Error: no run has left its results there.
+/// Throws Error if the folder does not contain the results of a run.
 void require_run(const std::filesystem::path& folder);
 
-/// EnvironmentError: a run's folder is not there any more, or another has taken its place.  Without asking, its files would be made anew, each
-/// alone in an empty folder, and its history go on in a file that nobody finds.
+/// Throws EnvironmentError if the folder of a run has been removed or replaced.  Otherwise the remaining files would be written to a new,
+/// incomplete folder, and the history to a file without a name.
 void require_results(const std::filesystem::path& folder);
 
-/// Removes what a run that was killed had not finished writing.  Files of the user stay.
+/// Removes the temporary files of a killed run.  Files of the user stay.
 void remove_leftovers(const std::filesystem::path& folder);
 
-/// runs/<name>: name of the scene's folder, or of the file if that is not called scene.yaml.
+/// The default folder runs/<name>, with the name of the scene's folder, or of the file if that is not called scene.yaml.
 std::filesystem::path default_results(const std::filesystem::path& scene);
 
 }  // namespace talus

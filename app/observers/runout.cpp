@@ -27,7 +27,7 @@ struct NodeSizes {
   Real size{}, count{};
 };
 
-/// Mean size of the cells of the whole mesh [m].
+/// The mean size of the cells of the whole mesh [m].
 template <int D>
 Real mean_size(const RunView<D>& view)
 {
@@ -68,7 +68,7 @@ Runout<D>::Runout(fs::path folder, const std::optional<RunoutSpec>& spec)
       frame_times_(spec ? spec->frames_every.value_or(never) : never)
 {}
 
-/// What follows from the mesh and the spec.
+/// Settings that depend on the mesh.
 template <int D>
 void Runout<D>::lay_out(const RunView<D>& view)
 {
@@ -80,7 +80,7 @@ void Runout<D>::lay_out(const RunView<D>& view)
   const auto fit = [&](Index axis, Real& begin, Real& d, Index& n) {
     const Real extent = view.problem.mesh.high()[axis] - view.problem.mesh.low()[axis];
     begin = view.problem.mesh.low()[axis];
-    constexpr Real most = std::numeric_limits<Index>::max();  // for which there is no memory
+    constexpr Real most = std::numeric_limits<Index>::max();  // more cells do not fit into memory
     n = static_cast<Index>(std::clamp(std::ceil(extent / cell - round_off), Real{1}, most));
     d = extent / n;
   };
@@ -93,7 +93,7 @@ void Runout<D>::lay_out(const RunView<D>& view)
   threshold_ = spec_->threshold.value_or(threshold_of_cell * cell);
 }
 
-/// What the ranks have found in each cell, as pick(a, b) of what two of them have; NaN is nothing.  On the root.
+/// Combines the values of all ranks in each cell by pick(a, b); NaN means no value.  On the root.
 template <int D>
 template <class Pick>
 std::vector<Real> Runout<D>::joined(Communicator& ranks, const std::vector<Real>& here, Pick&& pick) const
@@ -113,7 +113,7 @@ std::vector<Real> Runout<D>::joined(Communicator& ranks, const std::vector<Real>
   return all;
 }
 
-/// How high particles reach over each cell, whether they have moved or not.
+/// The highest position of particles over each cell, moved or not.
 template <int D>
 std::vector<Real> Runout<D>::tops(const RunView<D>& view) const
 {
@@ -154,7 +154,7 @@ void Runout<D>::begin(const RunView<D>& view)
     for (std::size_t c = 0; c < ground_.size(); ++c)
       ground_[c] = std::isnan(terrain[c]) ? ground_[c] : terrain[c];
   surface_max_ = surface_;
-  const std::size_t n = base_.size();  // none but on the root
+  const std::size_t n = base_.size();  // empty except on the root
   for (auto* map : {&thickness_, &thickness_max_, &speed_max_, &intensity_max_, &source_, &erosion_})
     map->assign(n, 0);
   arrival_.assign(n, no_value);
@@ -231,7 +231,7 @@ void Runout<D>::count_on_cells(const std::vector<MovedParticle<D>>& moved, Real 
   now_.mean = over(lying, now_.area);
 }
 
-/// On average it would come less far than a cell of the maps in as much time as has passed since looks began: what the maps show changes no more.
+/// Whether the mass would on average move less than a cell of the maps in the time since sampling began, so that the maps no longer change.
 template <int D>
 bool Runout<D>::at_rest() const
 {
@@ -284,7 +284,7 @@ fs::path Runout<D>::frame_file(int n) const
   return folder_ / map_folder / fmt::format("thickness_{:04}.tif", n);
 }
 
-/// As the files have them: without a value where nothing has moved.
+/// The maps as written to files, without values where nothing has moved.
 template <int D>
 std::vector<NamedMap> Runout<D>::maps() const
 {
@@ -332,7 +332,7 @@ std::vector<std::string> Runout<D>::write_maps(const RunView<D>& view)
   return files;
 }
 
-/// With the number of the frame that was written at a look.
+/// The time with the number of the frame that was written.
 template <int D>
 std::vector<CsvColumn> Runout<D>::columns_of_file() const
 {

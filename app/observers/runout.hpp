@@ -1,5 +1,5 @@
 #pragma once
-// Run-out: what has moved, seen on cells over the plan while the run goes; runout.csv, maps and sections.
+// Run-out: moved particles on cells over the plan during the run; runout.csv, maps and sections.
 #include <filesystem>
 
 #include "app/observers/moved_particles.hpp"
@@ -9,28 +9,28 @@
 
 namespace talus {
 
-/// Told of what has moved so far.  Particles of all ranks that have moved are brought together at each look and added up in the order of their
-/// ids, so that the same bits come of any number of ranks; maps, numbers and files are the root's.
+/// Observes the moved particles.  Those of all ranks are collected at each sample and summed in the order of their ids, so that results are
+/// bitwise identical for any number of ranks.  The root has maps, numbers and files.
 template <int D>
 class Runout {
  public:
-  /// `spec` must outlive it; without one nothing is asked of anybody.
+  /// `spec` must outlive it; without a spec nothing is done.
   Runout(std::filesystem::path folder, const std::optional<RunoutSpec>& spec);
 
-  /// From the beginning of the first stage that is not geostatic on.  Every rank has to ask, here and below.
+  /// Begins with the first stage that is not geostatic.  This and the functions below are collective.
   void begin(const RunView<D>& view);
   bool has_begun() const noexcept { return begun_; }
-  /// A look, if one is due or it is the last of a stage, and a frame where these are wanted.  Returns the files of frames that it wrote.
+  /// Takes a sample if one is due or it is the last of a stage, and writes a frame if requested.  Returns the files of frames.
   std::vector<std::string> see(const RunView<D>& view, bool last);
-  /// The maps and sections as of the last look; their files, relative to the folder.
+  /// Writes the maps and sections at the last sample; returns their files, relative to the folder.
   std::vector<std::string> write_maps(const RunView<D>& view);
 
-  /// Goes on with the files of a run whose state has been taken over.
+  /// Continues the files of a run whose state has been read.
   void go_on(const RunView<D>& view);
-  /// On the root: frames that are later than the state are removed; whether runout.csv has all that had been written.
+  /// On the root: removes frames that are later than the state; returns whether runout.csv is complete.
   bool drop_later() const;
   void flush() const;
-  /// For the summary; none before the first look.
+  /// Numbers for the summary; empty before the first sample.
   std::vector<NamedValue> numbers() const;
 
   static constexpr auto fields()
@@ -75,17 +75,17 @@ class Runout {
   std::filesystem::path folder_;
   const std::optional<RunoutSpec>& spec_;
   RunoutPlan plan_;
-  Real moved_ = 0, threshold_ = 0;  // of the spec, or what goes without saying [m]
+  Real moved_ = 0, threshold_ = 0;  // from the spec, or the defaults [m]
   std::optional<HistoryFile> file_;
 
   bool begun_ = false;
-  Real start_ = 0;  // when it began [s]
+  Real start_ = 0;  // time of the beginning [s]
   Schedule times_, frame_times_;
   int frames_ = 0;
-  Real time_ = -1;  // of the last look [s]
+  Real time_ = -1;  // time of the last sample [s]
   RunoutNumbers now_;
-  Real fastest_ = 0, thickest_ = 0;  // so far [m/s], [m]
-  Real still_since_ = 0;             // since when it has been at rest, infinite while it is not [s]
+  Real fastest_ = 0, thickest_ = 0;  // largest values so far [m/s], [m]
+  Real still_since_ = 0;             // time since which the mass has been at rest, infinite while it moves [s]
   std::vector<Real> ground_, base_, surface_, surface_max_, thickness_, thickness_max_, speed_max_, intensity_max_, arrival_, source_,
       erosion_;
 };

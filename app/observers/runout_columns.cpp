@@ -6,7 +6,7 @@ namespace talus {
 
 namespace {
 
-/// Each is called with RunoutNumbers.  A vector is a place: on the plan, and how high.
+/// The columns; each function is called with RunoutNumbers.  A vector is a position: two coordinates in the plan, and the elevation.
 constexpr auto columns_of_runout()
 {
   using enum QuantityKind;

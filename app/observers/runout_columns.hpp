@@ -1,5 +1,5 @@
 #pragma once
-// Columns of runout.csv, and the plan that places are given on.
+// Columns of runout.csv, and the plan for positions.
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,38 +11,38 @@
 
 namespace talus {
 
-/// The cells of the maps of a run, of which there is one row in 2-D.
+/// The cells of the maps of a run; one row in 2-D.
 struct RunoutPlan {
   int dimension = 3;
   PlanAxes axes;
   PlanGrid grid;
-  std::optional<MapFrame> map;  ///< of the mesh
+  std::optional<MapFrame> map;  ///< position of the mesh on a map
 
   std::array<Real, 2> on_plan(const Vec3& x) const { return {x[axes.plan[0]], dimension == 3 ? x[axes.plan[1]] : 0}; }
   Real elevation(const Vec3& x) const { return axes.sign * x[axes.vertical]; }
-  /// As files give a place of the plan: in the coordinates of the map, if there is one.
+  /// A position of the plan as written to files: in map coordinates, if there is a map.
   std::array<Real, 2> on_map(const std::array<Real, 2>& place) const
   {
     return map ? map->to_map(place[0], dimension == 3 ? place[1] : 0) : place;
   }
-  /// What these coordinates are called: east and north, or letters of axes.
+  /// The names of these coordinates: east and north, or letters of axes.
   std::vector<std::string> axis_names() const;
 };
 
-/// Of all that has moved, at a look.  NaN where nothing has.
+/// Sums over all moved mass at a sample.  NaN if nothing has moved.
 struct RunoutNumbers {
-  Real volume = 0;      ///< of what has moved [m^D]
-  Real area = 0;        ///< where it is thicker than the threshold [m^(D-1)]
-  Real mean = 0;        ///< its thickness there [m]
-  Real thickest = 0;    ///< [m]
-  Real fastest = 0;     ///< of a particle [m/s]
-  Real mean_speed = 0;  ///< of the mass that has moved [m/s]
-  Real bulk = 0;        ///< speed that `mass_share` of the mass that has moved does not exceed [m/s]
-  Real kinetic = 0;     ///< [J]
+  Real volume = 0;      ///< volume [m^D]
+  Real area = 0;        ///< area where it is thicker than the threshold [m^(D-1)]
+  Real mean = 0;        ///< mean thickness there [m]
+  Real thickest = 0;    ///< largest thickness [m]
+  Real fastest = 0;     ///< largest speed of a particle [m/s]
+  Real mean_speed = 0;  ///< mean speed of the mass [m/s]
+  Real bulk = 0;        ///< speed that `mass_share` of the mass does not exceed [m/s]
+  Real kinetic = 0;     ///< kinetic energy [J]
   Vec3 front = Vec3::Zero();
   Real height = 0, length = 0;                ///< from the crown to the front [m]
-  Vec3 centre = Vec3::Zero();                 ///< of mass
-  Real centre_height = 0, centre_length = 0;  ///< from where it was at the start [m]
+  Vec3 centre = Vec3::Zero();                 ///< centre of mass
+  Real centre_height = 0, centre_length = 0;  ///< displacement of the centre of mass since the start, vertical and horizontal [m]
   Real entrained = 0;                         ///< volume of eroded bodies in it [m^D]
   static constexpr auto fields()
   {
@@ -65,12 +65,12 @@ struct RunoutNumbers {
   }
 };
 
-/// With `entrained`, if bodies are eroded.
+/// The columns; with `entrained` if bodies are eroded.
 std::vector<CsvColumn> runout_columns(const RunoutPlan& plan, bool erodes);
-/// One number a column.
+/// The values of a row, one per column.
 std::vector<Real> runout_row(Real time, const RunoutNumbers& now, const RunoutPlan& plan, bool erodes);
 
-/// A sum over another that may be nothing; then NaN.
+/// A sum over a positive whole; NaN if the whole is not positive.
 inline Real over(Real sum, Real whole) { return std::isgreater(whole, 0) ? sum / whole : std::numeric_limits<Real>::quiet_NaN(); }
 
 }  // namespace talus

@@ -16,12 +16,12 @@ ReachRule reach_rule(const std::optional<RunoutSpec>& spec, Real cell)
 
 namespace {
 
-constexpr Real rounding = 1e-6;  // of single precision, with room for a few operations
+constexpr Real rounding = 1e-6;  // round-off of single precision, with a margin for a few operations
 
-/// Number of the first item, in that order, beyond which no more than 1 - mass_share of the mass lies.
+/// The index of the first item in the given order beyond which at most 1 - mass_share of the mass lies.
 std::size_t first_within(std::span<const std::pair<Real, std::size_t>> order, std::span<const Real> mass, Real mass_share)
 {
-  // What may lie beyond, with room for the rounding of masses.
+  // The mass that may lie beyond, with a margin for round-off of masses.
   const Real beyond = (1 - mass_share) * std::accumulate(mass.begin(), mass.end(), Real{0}) * (1 + rounding);
   std::size_t i = 0;
   for (Real sum = mass[order[0].second]; sum <= beyond && i + 1 < order.size(); sum += mass[order[i].second])
@@ -29,7 +29,7 @@ std::size_t first_within(std::span<const std::pair<Real, std::size_t>> order, st
   return order[i].second;
 }
 
-/// Of places whose value is that far below the largest at most, the first with the largest of a second value, by the same measure.
+/// Among positions whose value is largest within round-off, the first one whose second value is largest in the same sense.
 template <class First, class Second>
 std::size_t largest_of_equals(std::size_t n, Real equal, First&& first, Second&& second)
 {
@@ -46,7 +46,7 @@ std::size_t largest_of_equals(std::size_t n, Real equal, First&& first, Second&&
   return found;
 }
 
-/// Differences between places that may come of rounding [m].
+/// The differences of positions that may be due to round-off [m].
 Real rounding_of(std::span<const Vec3> then, std::span<const Vec3> now)
 {
   Vec3 low = then.front(), high = low;

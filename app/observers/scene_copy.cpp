@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Nothing where there is no such file.
+/// The text of a file; nothing if it does not exist.
 std::optional<std::string> text_of(const fs::path& file)
 {
   if (std::error_code unknown; !fs::is_regular_file(file, unknown))
@@ -32,7 +32,7 @@ std::string with_changes(const std::string& text, const std::vector<std::string>
     for (const char c : change) {
       all += c;
       if (c == '\n' || c == '\r')
-        all += "#   ";  // a line of its own, and a comment too
+        all += "#   ";  // a new line, which must be a comment too
     }
     all += "'\n";
   }

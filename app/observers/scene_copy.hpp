@@ -1,5 +1,5 @@
 #pragma once
-// The scene that a run leaves in its folder, and what has become of it when the run goes on.
+// The copy of the scene in a results folder, and checks of it when a run is resumed.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,14 +11,14 @@ namespace talus {
 
 inline constexpr auto scene_copy_file = "scene.yaml";
 
-/// A scene as it was read, and what --set changed of it, in comments at its end.
+/// The text of a scene, with the changes by --set as comments at its end.
 std::string with_changes(const std::string& text, const std::vector<std::string>& changes);
 
-/// Brings the scene in the folder of a run that goes on up to date.  One that was edited stays as it is.
+/// Updates the scene in the folder of a resumed run.  An edited copy is not changed.
 void update_scene_copy(const std::filesystem::path& folder, const Scene& scene);
 
-/// Warnings: a run goes on with the scene that it began with, which its checkpoint holds as `text` with `changes`.  What has been edited since, in
-/// the file it was read from or in the copy in its folder, is not taken.
+/// Warnings about edits.  A run is resumed with the scene in its checkpoint, `text` with `changes`; later edits of the original file or of
+/// the copy in its folder are ignored.
 std::vector<std::string> find_edits(const std::filesystem::path& scene_file, const std::optional<std::filesystem::path>& folder,
                                     const std::string& text, const std::vector<std::string>& changes);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Times at which something is done again and again.
+// Repeated times, for outputs.
 #include <cmath>
 #include <tuple>
 
@@ -7,11 +7,11 @@
 
 namespace talus {
 
-/// 0, every, 2 every, ...; never, if `every` is infinite.
+/// The times 0, every, 2 every, ...; never, if `every` is infinite.
 class Schedule {
  public:
   explicit Schedule(Real every) : every_(every) {}
-  /// True once for each of these times that has come.
+  /// True once for each of these times that has been reached.
   bool due(Real time)
   {
     constexpr Real round_off = 1e-9;

@@ -45,7 +45,7 @@ class Inspection {
       : particles_(particles), bodies_(bodies), faults_(faults)
   {}
 
-  /// Each has a number of its own.
+  /// Checks that ids are unique.
   void ids()
   {
     std::vector<std::int64_t> ids(particles_.id);
@@ -56,7 +56,7 @@ class Inspection {
       faults_.push_back(fmt::format("there is more than one particle {}", *twice));
   }
 
-  /// Of the particles from row `begin` on.
+  /// Checks the particles from row `begin` on.
   template <class Rows>
   void finite(std::string_view name, Index begin, Index n, const Rows& rows)
   {
@@ -75,7 +75,7 @@ class Inspection {
       add(begin + bad, fmt::format("{} is not finite", variable.key));
   }
 
-  /// What value(row) is of each particle.
+  /// Checks value(row) of each particle.
   template <class F>
   void positive(std::string_view name, std::string_view unit, F&& value)
   {
@@ -141,7 +141,7 @@ void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies
     for (const HistoryVariable& variable : materials[b].law().variables())
       inspection.finite(variable, bodies[b].begin, materials[b]);
   if (faults.size() > before)
-    return;  // what is not finite cannot be compared
+    return;  // values that are not finite cannot be compared
   constexpr std::string_view volume_unit = D == 2 ? " m^2" : " m^3";
   inspection.positive("mass", " kg", [&](std::size_t p) { return particles.mass[p]; });
   inspection.positive("volume0", volume_unit, [&](std::size_t p) { return particles.volume0[p]; });

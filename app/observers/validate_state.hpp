@@ -1,5 +1,5 @@
 #pragma once
-// Whether a state that a file holds is one that a run can go on from: what its numbers are, not how many.
+// Checks whether a state read from a file is valid for a run: the values, not their number.
 #include <string>
 #include <vector>
 
@@ -8,12 +8,12 @@
 
 namespace talus {
 
-/// Adds to `faults`, in words, what no sound run has.
+/// Adds the impossible values of a clock to `faults`, in words.
 void find_invalid(const Clock& clock, std::vector<std::string>& faults);
 void find_invalid(const StageState& stage, const Clock& now, std::vector<std::string>& faults);
-/// Errors are measured by the largest of these.
+/// Adds the invalid terms of a balance; errors are relative to the largest of them.
 void find_invalid(const EnergyLedger& energy, std::vector<std::string>& faults);
-/// Of each fault the first particle.  Bodies, histories and the rows of columns fit together.
+/// Adds the first particle with each kind of fault.  Bodies, histories and rows of columns must be consistent.
 template <int D>
 void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<Material>& materials,
                   std::vector<std::string>& faults);

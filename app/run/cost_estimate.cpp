@@ -9,14 +9,14 @@ namespace talus {
 
 namespace {
 
-/// The first steps of a stage are left out: they sort particles and touch memory for the first time.
+/// Number of steps at the beginning of a stage that are not measured: they sort particles and touch memory for the first time.
 constexpr std::int64_t trial_warm_up = 3;
-/// Particle-steps of a trial, some seconds on a core; and how many steps that is at least and at most.
+/// Particle-steps of a trial, which take some seconds on a core, and limits of its number of steps.
 constexpr std::int64_t trial_particle_steps = 2'000'000, fewest_trial_steps = 8, most_trial_steps = 200;
 
 struct Timed {
-  std::vector<Real> seconds;  // of steps behind the warm-up
-  Real time = 0;              // simulated in these [s]
+  std::vector<Real> seconds;  // durations of steps after the warm-up [s]
+  Real time = 0;              // simulated time of these steps [s]
 };
 
 StageTrial trial_of(const Stage& stage, std::size_t number, Timed timed)
@@ -39,7 +39,7 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
   const Real dt = first_step(mesh, setup);
   for (Stage& stage : setup.stages) {
     stage.duration = std::min(stage.duration, static_cast<Real>(wanted) * dt);
-    stage.residual.reset();  // at rest or not: all steps are made
+    stage.residual.reset();  // all steps are made, in equilibrium or not
   }
   std::vector<Timed> timed(whole.size());
   StopWatch watch;

@@ -1,20 +1,20 @@
 #pragma once
-// How long a run would take, from a few steps of it.
+// Estimate of the duration of a run from a few of its steps.
 #include "app/run/simulate.hpp"
 
 namespace talus {
 
-/// Some steps of a stage, made from the state at the start of the run.
+/// A few steps of a stage, from the state at the start of the run.
 struct StageTrial {
   std::string name;
-  std::size_t stage;              ///< its number
-  Real dt;                        ///< their mean length [s]
-  Real quickest, usual, slowest;  ///< the median of their wall times and the quartiles around it [s]
-  std::int64_t made;              ///< steps made
+  std::size_t stage;              ///< number of the stage
+  Real dt;                        ///< mean length of the steps [s]
+  Real quickest, usual, slowest;  ///< median and quartiles of their wall times [s]
+  std::int64_t made;              ///< number of steps
 };
 
-/// The first steps of each stage, in memory, one stage after the other; nothing is written.  A stage is left where a step fails: then those
-/// before it count, and RunError passes through if there were none.
+/// Computes the first steps of each stage, in memory, stage after stage, without output.  A stage ends where a step fails: the steps before
+/// count, and RunError is thrown if there are none.
 template <int D>
 std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> setup);
 

@@ -14,11 +14,11 @@ namespace talus {
 
 namespace {
 
-/// Bytes of an item in a VTK file besides its fields: a position, an id, a cell of one corner.
+/// Bytes per item in a VTK file besides its fields: a position, an id, a cell of one corner.
 constexpr Real place_bytes = 3 * sizeof(double), id_bytes = sizeof(std::int64_t), vertex_bytes = 2 * sizeof(int);
-/// Names and units of columns; accounts, the scene.  Measured with few particles.
+/// Bytes of names and units of columns, balances, and the scene, measured with few particles.
 constexpr Real vtk_header = 3e3, checkpoint_header = 7e4;
-constexpr Real history_number = 20;  // characters
+constexpr Real history_number = 20;  // characters per number
 
 template <class ColumnOf>
 Real bytes_of_fields(const std::vector<std::string>& names, ColumnOf&& column_of)
@@ -29,7 +29,7 @@ Real bytes_of_fields(const std::vector<std::string>& names, ColumnOf&& column_of
   return static_cast<Real>(bytes);
 }
 
-/// How often something is written, at the beginning and at the end as well.
+/// The number of outputs, including those at the beginning and the end.
 std::int64_t times(Real time, Real every) { return counted_sum(counted(time / every), 2); }
 
 std::string megabytes(Real bytes) { return fmt::format("{:.3g} MB", bytes / 1e6); }
@@ -50,7 +50,7 @@ FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs)
   }
   if (outputs.mesh) {
     const Real fields = bytes_of_fields(outputs.mesh->fields_wanted, [&](const auto& name) { return node_column(view, name); });
-    const Real corners = (D + 2) * sizeof(int) + 1;  // with where they end, and the kind of the cell
+    const Real corners = (D + 2) * sizeof(int) + 1;  // with the end of each cell, and its type
     sizes.mesh = vtk_header + n_nodes * (place_bytes + fields) + n_cells * corners;
   }
   if (outputs.history)
@@ -75,7 +75,7 @@ DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time)
 
 namespace {
 
-/// Bytes; where the system does not say how many, the largest number there is.
+/// The free space in bytes; the largest number if the system does not report it.
 Real free_space(std::filesystem::path folder)
 {
   std::error_code unknown;
@@ -104,7 +104,7 @@ template <int D>
 void check_disk_space(const std::filesystem::path& folder, const RunView<D>& view, const OutputSpec& outputs, Real time_left)
 {
   const FileSizes one = file_sizes(view, outputs);
-  const bool begins = view.state.clock.step == 0;  // then it takes the place of the results that are there, whose room counts as free
+  const bool begins = view.state.clock.step == 0;  // a new run replaces the existing results, whose space counts as free
   view.problem.ranks->together([&] { compare_with_free_space(folder, one, outputs, time_left, begins); });
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Whether the disk has room for what a run will write, asked before anything is computed.
+// A check that the disk has room for the output of a run, before the first step.
 #include <filesystem>
 
 #include "io/scene/scene_output.hpp"
@@ -7,23 +7,23 @@
 
 namespace talus {
 
-/// Bytes of the files of a run as if nothing were compressed; 0 for what it does not write.
+/// The sizes of the files of a run in bytes, without compression; 0 for files that it does not write.
 struct FileSizes {
   Real particles{}, mesh{}, history_row{}, checkpoint{};
 };
 template <int D>
 FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs);
 
-/// What a run writes in `time` [s], besides its mesh and its summary: how often each kind, and bytes of all of it as if nothing were
-/// compressed.
+/// The output of a run in `time` [s], without its mesh and summary: the number of files of each kind, and bytes of all of them without
+/// compression.
 struct DiskUse {
   std::int64_t particle_files{}, mesh_files{}, history_rows{}, checkpoints{};
   Real bytes{};
 };
 DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time);
 
-/// EnvironmentError: the disk of `folder` has no room for a checkpoint and one file of each kind.  A warning on standard error: it has none
-/// for all that will be written in `time_left` [s].
+/// Throws EnvironmentError if the disk of `folder` has no room for a checkpoint and one file of each kind.  Prints a warning on standard
+/// error if it has no room for all output in `time_left` [s].
 template <int D>
 void check_disk_space(const std::filesystem::path& folder, const RunView<D>& view, const OutputSpec& outputs, Real time_left);
 

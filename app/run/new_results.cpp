@@ -23,10 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto scene_file = "scene.yaml", summary_file = "summary.json";
-/// In which runs write files; pictures are drawn by others.
+/// Folders in which runs write files; pictures are written by other commands.
 constexpr std::array<const char*, 3> folders_of_runs{checkpoint_folder, map_folder, section_folder};
 
-/// Nothing, or what a run that was killed had not put in its place.
+/// Whether a folder is empty, apart from temporary files of a killed run.
 bool holds_nothing(const fs::path& folder)
 {
   for (const auto& entry : fs::directory_iterator(folder))
@@ -35,7 +35,7 @@ bool holds_nothing(const fs::path& folder)
   return true;
 }
 
-/// EnvironmentError: the folder lies in one of another run's.
+/// Throws EnvironmentError if the folder lies in the results folder of another run.
 void check_place(const fs::path& folder)
 {
   for (fs::path inner = fs::weakly_canonical(folder); inner != inner.parent_path(); inner = inner.parent_path())
@@ -45,7 +45,7 @@ void check_place(const fs::path& folder)
                                            folder.string(), inner.string()));
 }
 
-/// The newest checkpoint of a run that has not come to its end.
+/// The newest checkpoint of a run that has not ended normally.
 std::optional<fs::path> could_go_on(const fs::path& folder)
 {
   std::error_code not_there;
@@ -69,7 +69,7 @@ bool is_scene_of(const fs::path& folder, const Replacing& how)
   return how.scene && fs::equivalent(*how.scene, folder / scene_file, not_there);
 }
 
-/// Names that runs write, relative to the folder, which are borne by something that the list does not prove to be a file of a run.
+/// Names of results, relative to the folder, under which there are files that the list does not prove to be files of a run.
 std::vector<std::string> foreign_files(const fs::path& folder, const Manifest& manifest, bool keeps_scene)
 {
   std::vector<std::string> foreign;
@@ -90,7 +90,7 @@ std::vector<std::string> foreign_files(const fs::path& folder, const Manifest& m
   return foreign;
 }
 
-/// Everything that check_replaceable() asks, of a folder that is there.
+/// All checks of check_replaceable() for an existing folder.
 void examine(const fs::path& folder, const Replacing& how)
 {
   if (::access(folder.c_str(), W_OK | X_OK) != 0)
@@ -124,7 +124,7 @@ void examine(const fs::path& folder, const Replacing& how)
   }
 }
 
-/// f(); what the file system refuses is an EnvironmentError: `what`, which file, why.
+/// Calls f(); errors of the file system become EnvironmentError with `what`, file and reason.
 template <class F>
 auto naming(const std::string& what, F&& f)
 try {
@@ -190,10 +190,10 @@ void NewResults::leave_as_it_was() const noexcept
   try {
     std::error_code stays;
     fs::remove_all(staging_, stays);
-    fs::remove(folder_ / own_folder, stays);  // unless there is a list in it
+    fs::remove(folder_ / own_folder, stays);  // unless it contains a list
     if (made_)
       fs::remove(folder_, stays);
-  } catch (const std::bad_alloc&) {  // the first error is the one to report; the next run removes what is left
+  } catch (const std::bad_alloc&) {  // the first error is reported; the next run removes the rest
   }
 }
 
@@ -208,13 +208,13 @@ FolderLock NewResults::commit()
       gone.push_back(name);
   const std::string saved = keeps_scene_ && old && old->proves(scene_file) ? old->lines_of(scene_file) : "";
   naming("the results in " + folder_.string() + " cannot be replaced", [&] {
-    // The list is always that of more than is there: a run that is killed here leaves no file that nobody knows.
+    // The list always contains all files: a run that is killed here leaves no unlisted file.
     replace_manifest(folder_, (old ? old->text() : "") + fresh.text());
     const auto put = [&](const std::string& name) {
       set_aside_unless_proved(folder_ / name);
       fs::rename(staging_ / name, folder_ / name);
     };
-    put(summary_file);  // from here on it is the folder of the new run, which has not ended
+    put(summary_file);  // from here on the folder belongs to the new run, which has not ended
     for (const std::string& name : names)
       if (name != summary_file)
         put(name);

@@ -1,5 +1,5 @@
 #pragma once
-// The folder that a new run fills: examined before anything is computed, laid out beside what is there, and put in its place by renaming.
+// The results folder of a new run: checked before the first step, prepared beside existing results, and put in place by renaming.
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -9,34 +9,35 @@
 
 namespace talus {
 
-/// How a new run may treat a folder that is there.
+/// How a new run may treat an existing folder.
 struct Replacing {
-  bool force = false;                                         ///< a run that could go on as well
-  std::optional<std::filesystem::path> scene = std::nullopt;  ///< file of the scene that is run: it stays where it is the folder's own
+  bool force = false;                                         ///< whether it may replace a run that could be resumed
+  std::optional<std::filesystem::path> scene = std::nullopt;  ///< file of the scene; it is not replaced if it is the one in the folder
 };
 
-/// EnvironmentError: the folder cannot take the results of a new run.  It cannot be written, another run is at work in it, it holds something
-/// else than results, a run in it could go on, or files in it that no run wrote, or that were changed since, would be replaced.
+/// Throws EnvironmentError if the folder cannot take the results of a new run: it cannot be written, another run is at work in it, it
+/// contains other files than results, a run in it could be resumed, or files would be replaced that no run wrote or that were changed
+/// since.
 void check_replaceable(const std::filesystem::path& folder, const Replacing& how);
 
-/// Bytes of the files in a folder that a new run replaces or removes.
+/// The bytes of the files in a folder that a new run replaces or removes.
 std::uintmax_t bytes_replaced(const std::filesystem::path& folder);
 
-/// The first files of a new run.  Until commit() what was in the folder is as it was.  Whatever kills the program, and whenever: files that no
-/// run wrote stay, the others are known as those of runs.
+/// The first files of a new run.  Until commit() the contents of the folder are unchanged.  If the program is killed at any time, files of
+/// the user stay, and all others are in the list.
 class NewResults {
  public:
-  /// Makes the folder, or locks it and asks check_replaceable() once more.
+  /// Makes the folder, or locks it and calls check_replaceable() again.
   NewResults(std::filesystem::path folder, Replacing how);
   ~NewResults();
   NewResults(const NewResults&) = delete;
   NewResults& operator=(const NewResults&) = delete;
 
-  /// Where to write the first files.
+  /// The folder for the first files.
   const std::filesystem::path& staging() const noexcept { return staging_; }
-  /// Whether the scene of the folder is that which is run: then it is not written.
+  /// Whether the scene of the run is the one in the folder, which is then not written.
   bool keeps_scene() const noexcept { return keeps_scene_; }
-  /// Puts them into the folder and removes what other files an earlier run left there.
+  /// Moves the files into the folder and removes other files of an earlier run.
   [[nodiscard]] FolderLock commit();
 
  private:
@@ -47,7 +48,7 @@ class NewResults {
   FolderLock lock_;
 };
 
-/// Takes the files that a run has in its folder for those that it wrote, where a version of Talus that kept no list of them did so.
+/// Adds the results in a folder to its list, for runs by a version of Talus without lists.
 void adopt_results(const std::filesystem::path& folder);
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// The kernel's name becomes a type here, once: builds the model and runs its stages.
+// Turns the name of the kernel into a type, once: builds the model and runs its stages.
 #include <functional>
 
 #include "app/run/disk_space.hpp"
@@ -9,43 +9,43 @@
 
 namespace talus {
 
-/// Who watches a run.
+/// The callbacks of a run.
 template <int D>
 struct RunCallbacks {
   std::function<void(const RunView<D>&, RunEvent)> watch;
   std::function<void(const RunView<D>&, const StageResult&)> stage_done;
-  /// If set: puts the state of an earlier run in the place of that at the start.
+  /// If set: replaces the initial state by that of an earlier run.
   std::function<void(State<D>&)> take_over = {};
-  /// Told what a stage has changed, before it begins.
+  /// Called with the changes by a stage, before it begins.
   std::function<void(const RunView<D>&, const Stage&, const StageReport&)> changed = [](const RunView<D>&, const Stage&,
                                                                                         const StageReport&) {};
-  /// Told when all is there that the run needs, before anything is done.
+  /// Called when everything that the run needs exists, before the first step.
   std::function<void(const RunView<D>&)> ready = [](const RunView<D>&) {};
 };
 
-/// Ranks have shared the run out anew.
+/// A redistribution of the work among ranks.
 struct Rebalanced {
-  Clock clock;             ///< at the time
-  Real before{}, after{};  ///< work of the busiest rank over the mean
-  Real seconds{};          ///< that it took
+  Clock clock;             ///< time of the redistribution
+  Real before{}, after{};  ///< imbalance: work of the busiest rank over the mean
+  Real seconds{};          ///< duration [s]
 };
 
-/// How several ranks go on sharing a run, whose results do not depend on it.
+/// How the work is redistributed among ranks during a run; results do not depend on it.
 template <int D>
 struct LoadBalancing {
-  std::optional<std::int64_t> every = 0;                    ///< shares move after so many steps; 0: never; nothing: when it pays
-  std::function<Mesh<D>()> whole_mesh = {};                 ///< the same as at the start; what it throws leaves the shares as they are
-  Real mesh_seconds = 0;                                    ///< that this takes, about
-  std::function<void(const Rebalanced&)> moved = {};        ///< told of each time
-  std::function<void(const std::string& why)> stayed = {};  ///< told that they cannot move, and will not any more
+  std::optional<std::int64_t> every = 0;                    ///< number of steps between redistributions; 0: never; nothing: when it pays
+  std::function<Mesh<D>()> whole_mesh = {};                 ///< returns the same mesh as at the start; if it throws, the distribution stays
+  Real mesh_seconds = 0;                                    ///< approximate time that this takes [s]
+  std::function<void(const Rebalanced&)> moved = {};        ///< called after each redistribution
+  std::function<void(const std::string& why)> stayed = {};  ///< called if redistribution is impossible, and will not be tried again
 };
 
-/// What a model costs before it has made a step.
+/// The cost of a model before its first step.
 struct Estimate {
-  Real dt;  ///< first step [s]
+  Real dt;  ///< length of the first step [s]
   std::int64_t particle_bytes, mesh_bytes, node_bytes;
-  std::int64_t nodes_as_corners;          ///< by the kernel, see Frame
-  std::vector<SharedNodes> shared_nodes;  ///< of the bodies that are there at the start
+  std::int64_t nodes_as_corners;          ///< of the kernel, see RunView
+  std::vector<SharedNodes> shared_nodes;  ///< of the bodies that are present at the start
   FileSizes files;                        ///< on the disk
 };
 
@@ -58,15 +58,16 @@ Real total_duration(const Setup<D>& setup)
   return total;
 }
 
-/// First step that the particles of this rank allow [s]; no kernel is asked.
+/// The length of the first step [s] that the particles of this rank allow, independent of the kernel.
 template <int D>
 Real first_step(const Mesh<D>& mesh, const Setup<D>& setup);
 
-/// Runs all stages, or those that are left.  SceneErrors: the kernel refuses the mesh.  RunError: a stage failed; the state before is what the audience saw.
+/// Runs all stages, or the remaining ones.  Throws SceneErrors if the kernel refuses the mesh, RunError if a stage failed; the callbacks
+/// have received the state before.
 template <int D>
 void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves = {});
 
-/// Builds the model and lets it go.
+/// Builds the model and destroys it.
 template <int D>
 Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup);
 

@@ -15,7 +15,7 @@ namespace talus {
 
 namespace {
 
-/// A stage's own balance [J].
+/// The energy balance of one stage [J].
 EnergyNow balance_of(const StageResult& stage)
 {
   const EnergyLedger& e = stage.energy;
@@ -24,7 +24,7 @@ EnergyNow balance_of(const StageResult& stage)
   now.kinetic = stage.kinetic_end;
   now.plastic = stage.plastic_end - e.plastic_start + e.plastic_deleted;
   now.strain = e.internal - now.plastic;
-  now.friction = 0 - e.friction;  // not -0
+  now.friction = 0 - e.friction;  // avoids -0
   now.damping = 0 - e.damping;
   now.carried_away = e.carried_away;
   now.gravity = e.gravity;
@@ -61,7 +61,7 @@ std::vector<NamedValue> named(const MeshQuality<D>& q)
           {"gradation", q.gradation, ""}};
 }
 
-/// What the method keeps to round-off, and what only as well as the time step and the mesh allow.
+/// Criteria for balances that the method satisfies to round-off, and for those that depend on time step and mesh.
 constexpr Real exactly = 1e-9, roughly = 5e-2;
 
 Closure closure_of(const EnergyNow& e) { return {share(e.defect, e.largest_term()), roughly, "largest term"}; }
@@ -99,7 +99,7 @@ EnergyAudit audit(const Recorder<D>& recorder)
   return audit;
 }
 
-/// What people ask first of a slide; nothing where nothing has moved.
+/// The main results of a slide; empty if nothing has moved.
 std::string run_out_lines(const std::vector<NamedValue>& runout)
 {
   const auto value = [&](std::string_view name) {
@@ -127,7 +127,7 @@ std::vector<Real> numbers(const Vector& v)
 {
   return {v.begin(), v.end()};
 }
-/// In 2-D only one component is not zero for good.
+/// In 2-D only one component can differ from zero.
 template <int D>
 std::vector<Real> turning(const Vec3& v)
 {

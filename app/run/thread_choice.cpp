@@ -34,7 +34,7 @@ void ThreadChoice::begin_trial()
 
 void ThreadChoice::end_trial()
 {
-  constexpr Real worth_it = 0.9;  // what differs less may be chance
+  constexpr Real worth_it = 0.9;  // smaller differences may be random
   const auto median = [](std::vector<Real>& seconds) {
     const auto middle = seconds.begin() + static_cast<std::ptrdiff_t>(seconds.size() / 2);
     std::nth_element(seconds.begin(), middle, seconds.end());
@@ -50,13 +50,13 @@ void ThreadChoice::end_trial()
 
 void ThreadChoice::took(Real seconds)
 {
-  constexpr std::int64_t between_trials = 200;  // with three turns of each, a trial costs some hundredths of the time
+  constexpr std::int64_t between_trials = 200;  // with three steps of each, a trial costs some per cent of the time
   constexpr std::size_t turns = 3;
   if (trying_) {
     took_[turn_ % tried_.size()].push_back(seconds);
     if (++turn_ == turns * tried_.size())
       end_trial();
-  } else if (++since_ == between_trials || (turn_ == 0 && since_ == turns)) {  // the first steps grow arrays
+  } else if (++since_ == between_trials || (turn_ == 0 && since_ == turns)) {  // the first steps allocate arrays
     begin_trial();
   }
 }
@@ -67,7 +67,7 @@ ThreadChoice fit_threads(std::optional<int> asked, const Scene& scene, Index par
   const int most = threads();
   if (!named)
     set_threads(threads_that_pay(particles / world().size(), most));
-  // Of more particles than these all threads pay whatever else the machine does, of fewer than those one.
+  // With more particles all threads pay whatever else the machine does; with fewer, one.
   const Index sure = 20 * particles_of_a_thread * most, hopeless = particles_of_a_thread / 10;
   if (named || !world().alone() || particles > sure || particles < hopeless)
     return {};
@@ -81,7 +81,7 @@ void let_waiting_threads_sleep_soon(char** arguments) noexcept
   std::error_code unknown;
   const std::filesystem::path self =
       std::filesystem::read_symlink("/proc/self/exe", unknown);            // by its name, which lists of processes show
-  const bool by_the_loader = self.filename().string().starts_with("ld-");  // called by name: it would be what is begun again
+  const bool by_the_loader = self.filename().string().starts_with("ld-");  // run by the loader, which would be restarted
   if (!unknown && !by_the_loader && ::setenv("GOMP_SPINCOUNT", "1000", 1) == 0)
     ::execv(self.c_str(), arguments);
 }

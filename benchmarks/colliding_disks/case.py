@@ -122,5 +122,5 @@ def evaluate(lab):
         sizes = sorted(chosen, reverse=True)
         lab.convergence(CASE, f"how early the collision is [s], {kernel}", sizes, [early(chosen[size], curves, data)[0] for size in sizes], expected=1)
     lab.figure(CASE, "verification_disks", lambda figure: draw(figure, runs, curves, data), size=(12, 3.2),
-               caption="Energies and velocity of the colliding disks. Without a contact law bodies feel each other when their nodes do, about a cell early.")
+               caption="Energies and velocity of the colliding disks. Without a contact law bodies interact as soon as they share nodes, about one cell early.")
     return results

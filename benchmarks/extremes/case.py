@@ -233,17 +233,17 @@ def others(full):
             "time": {"cfl": 0.4, "max_step": 0.003}, "outputs.history.every": 0.03,
             "stages": [{"type": "geostatic", "duration": 10, "residual": 1.0e-3}, {"type": "run", "duration": steps * 0.003}]}
     plan = [(f"kinetic energy after {steps:g} steps at rest over that at their beginning, {name}", FLAT, {**rest, **method},
-             livelier, 1.0, "what is at rest stays at rest") for name, method in methods.items()]
+             livelier, 1.0, "a body at rest stays at rest") for name, method in methods.items()]
     plan += [(f"kinetic over potential energy of a heap after {steps:g} steps, {name}", HEAP,
-              {"stages[1].duration": steps * 2.5e-3, **method}, unrest, 1e-8, "a heap flatter than its friction stays at rest")
+              {"stages[1].duration": steps * 2.5e-3, **method}, unrest, 1e-8, "a heap with a slope below its angle of friction stays at rest")
              for name, method in methods.items()]
     plan += [(f"stress in the upper layer of a column, the lower stiffer by {stiff:g}, denser by {dense:g}, {kernel}", LAYERS,
               {"materials[1].youngs_modulus": 1e7 * stiff, "materials[1].density": 2e3 * dense, **KERNELS[kernel]}, layer_error, 0.05,
               "density times gravity times depth") for stiff, dense in ((1, 1), (1e6, 1e3)) for kernel in KERNELS]
     return [*plan, ("one particle: error of the velocity of fall", FLAT, {**gravity, **body([1.1, 3.1], [1.3, 3.5], [0, 0], 1), "time.end": 0.5},
-                    free_fall, 1e-12, "a particle alone falls freely"),
+                    free_fall, 1e-12, "a single particle falls freely"),
             ("escape: mass that is missing", FLAT, {**body([1, 1], [3, 3], [5, 0]), "on_exit": "delete"}, mass_drift, 1e-12,
-             "mass stays or is accounted for")]
+             "mass is conserved, removed particles included")]
 
 
 # Results.
@@ -264,9 +264,9 @@ def bounded_or_refused(name, run):
 
 
 def refused(run, name, status, words, instead):
-    """The exit status of a run that must not start, or not go on; a number that is none where the reason is not in the words."""
+    """The exit status of a run that must be refused, or must fail; nan if the message does not contain the expected text."""
     code, said = run.ending
-    told = f"expected in the words: {words}; said: {said.splitlines()[0] if said else 'nothing'}"
+    told = f"expected text: {words or 'any error'}; printed: {said.splitlines()[0] if said else 'nothing'}"
     return tools.Result(CASE, f"exit status, {name}", "-", float(code) if words in said else float("nan"), "near", 0.0, float(status), told,
                         run if code < 2 else instead)
 
@@ -297,11 +297,11 @@ def evaluate(lab):
     further = [(start(name, scene, settings), name, *rest) for name, scene, settings, *rest in others(full)]
     wrong = [(start(name, scene, settings), name, *rest) for name, scene, settings, *rest in refusals(lab)]
 
-    results = [bounded(f"energy gained, {name}", tools.ended(run, gained), 0.01, "a body alone gains no energy", run) for name, run in free]
-    results += [bounded(f"uniform motion disturbed, {name}", tools.ended(run, strayed), 1e-12, "nothing acts", run) for name, run in uniform]
+    results = [bounded(f"energy gained, {name}", tools.ended(run, gained), 0.01, "a free body gains no energy", run) for name, run in free]
+    results += [bounded(f"uniform motion disturbed, {name}", tools.ended(run, strayed), 1e-12, "no force acts", run) for name, run in uniform]
     results += [bounded_or_refused(name, run) for name, run in thrown]
     results += [bounded(f"motion of a light block changed by a heavy one that it never meets, {kernel}", parted(heavy, alike), 1e-6,
-                        "they do not meet", heavy) for kernel, heavy, alike in pairs]
+                        "the bodies do not collide", heavy) for kernel, heavy, alike in pairs]
     results += [bounded(name, tools.ended(run, measure), bound, why, run) for run, name, measure, bound, why in further]
     results += [refused(run, name, status, words, free[0][1]) for run, name, status, words in wrong]
     shown = ("plain", "cells with angles of 0.1 degrees", "cells in turn wide and narrow by 4", "nodes moved by 0.49 of the spacing",
@@ -319,7 +319,7 @@ def of_all(free, alone, others_too):
     near, distant = free["cells of 1 mm"], free["cells of 1 mm, coordinates of 1e6 m"]
     shift = np.max(np.abs(near.history["kinetic"] - distant.history["kinetic"])) / inner(near.history) if distant.ending[0] == 0 else np.nan
     return [bounded("largest change of mass of all runs", max(mass_drift(run) for run in every), 1e-12, "mass is carried by particles", plain),
-            bounded("largest change of momentum in free flight", max(momentum_drift(run) for run in alone), 1e-10, "nothing acts", plain),
+            bounded("largest change of momentum in free flight", max(momentum_drift(run) for run in alone), 1e-10, "no force acts", plain),
             bounded("histories with a number that is not finite", float(sum(not finite(run.history) for run in every)), 0.0, "never NaN", plain),
             bounded("kinetic energy at 1e6 m from the origin less that at the origin, cells of 1 mm", float(shift), 1e-3,
-                    "places are rounded to 1e-7 of a cell there, some hundred times", distant)]
+                    "positions are rounded to 1e-7 of a cell there, some hundred times", distant)]

@@ -138,7 +138,7 @@ def evaluate(lab):
         found, curves[key] = judge(lab, key, runs, data)
         results += found
     lab.figure(CASE, "verification_manufactured", lambda figure: draw(figure, curves, data), size=(9.6, 3.2),
-               caption="Error of manufactured solutions beside published ones: MPM with hats, with moving least squares (iMPM), finite elements.")
+               caption="Error of manufactured solutions beside published ones: MPM with linear shape functions, MPM with moving least squares (iMPM), finite elements.")
     return results
 
 

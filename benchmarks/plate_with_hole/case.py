@@ -84,5 +84,5 @@ def evaluate(lab):
             lab.convergence(CASE, f"relative error at A, {kernel}", list(found), [abs(at_a / data["A"] - 1) for at_a, _, _ in found.values()])
             lab.convergence(CASE, f"scatter about the smooth field, {kernel}", list(found), [scatter for _, _, scatter in found.values()])
     lab.figure(CASE, "verification_hole", lambda figure: draw(figure, {kernel: run for (kernel, parts), run in runs.items() if parts == JUDGED}, data), size=(7.6, 3.2),
-               caption="Strip with a hole: stress along the pull around the hole, and over the section through its side, cells of R/8.")
+               caption="Strip with a hole: stress in the direction of the load around the hole, and over the section through its side, cells of R/8.")
     return [result for (kernel, parts), run in runs.items() for result in judge(kernel, parts, run, data)]

@@ -1,4 +1,4 @@
-// What all ranks do together.
+// Collective calls of the communicator.
 #include <algorithm>
 #include <bit>
 #include <cassert>
@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-/// Integers in the order of the doubles, NaN before all.  Without NaN it is its own inverse.
+/// Maps doubles to integers of the same order, NaN before all.  Without NaN the map is its own inverse.
 std::int64_t ordered(Real x)
 {
   if (std::isnan(x))
@@ -74,7 +74,7 @@ void Communicator::sum_in_use(Digits& digits)
   digits.of_sum_.resize(n, {each, 0});
   const auto words_of = [&](std::size_t i) { return std::span(words_).subspan(i * ExactSum::words, ExactSum::words); };
 
-  // First how many ranks have something beyond the digits that were in use up to now.
+  // First count the ranks that have digits outside the range that was in use up to now.
   std::vector<std::int64_t>& packed = digits.packed_;
   packed.assign(1, 0);
   const auto is_zero = [](std::int64_t word) { return word == 0; };
@@ -99,7 +99,7 @@ void Communicator::sum_in_use(Digits& digits)
     return;
   }
 
-  // Some have: all words, and from now on the digits that any rank has used, and one more at either end.
+  // Some ranks have: send all words, and from now on the digits that any rank has used, and one more at either end.
   std::vector<std::int64_t> ends;
   for (std::size_t i = 0; i < n; ++i) {
     const auto words = words_of(i);

@@ -1,4 +1,4 @@
-// Beginning and end of the ranks of a run.
+// Start and end of the MPI ranks.
 #include "core/parallel/communicator.hpp"
 
 #include <fmt/format.h>
@@ -17,7 +17,7 @@ namespace talus {
 
 namespace {
 
-/// What launchers tell each rank: Open MPI, MPICH, PMIx.
+/// Environment variables that launchers set for each rank: Open MPI, MPICH, PMIx.
 constexpr std::array launch_variables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "PMI_RANK", "PMIX_RANK"};
 
 bool in_environment(const char* variable)
@@ -26,7 +26,7 @@ bool in_environment(const char* variable)
   return value != nullptr && *value != '\0';
 }
 
-/// How many ranks the launcher says that it has started.
+/// The number of ranks that the launcher says it has started.
 std::optional<int> launched()
 {
   for (const char* const variable : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"})
@@ -136,7 +136,7 @@ int Ranks::end(int code, const char* message) noexcept
   if (!std::exchange(running_, false))
     return code;
   MPI_Request all_here = MPI_REQUEST_NULL;
-  MPI_Ibarrier(MPI_COMM_WORLD, &all_here);  // not among the collectives that others may be waiting in
+  MPI_Ibarrier(MPI_COMM_WORLD, &all_here);  // not one of the collectives that other ranks may be waiting in
   if (code == 0) {
     for (int done = 0; MPI_Test(&all_here, &done, MPI_STATUS_IGNORE) == MPI_SUCCESS && done == 0;)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -1,6 +1,6 @@
 #pragma once
-// The ranks of a run, and all that passes between them: the only code that talks to MPI.  What comes out is the same bits for any number of
-// ranks as long as sums are exact ones or of integers.
+// Communication between the ranks of a run; the only code that calls MPI.  Exact sums and sums of integers are bitwise identical for any
+// number of ranks.
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -15,34 +15,34 @@
 
 namespace talus {
 
-/// Whether a launcher (mpirun, srun with PMI or PMIx) has started this process as one of several, to go by the environment.
+/// Whether the environment says that a launcher (mpirun, srun with PMI or PMIx) has started this process as one of several.
 bool launched_as_ranks();
 
-/// Takes what says so out of the environment, for programs that this process starts: they are no ranks of its job.
+/// Removes the variables of the launcher from the environment, so that programs started by this process do not take themselves for ranks.
 void forget_launch() noexcept;
 
-/// How many ranks the launcher has started on this machine, by the environment; 1 where it does not say.
+/// The number of ranks on this machine according to the environment of the launcher; 1 if unknown.
 int ranks_on_this_machine();
 
-/// What this rank has sent so far.
+/// The amount of data that this rank has sent so far.
 struct Traffic {
-  std::int64_t messages = 0, bytes = 0;      ///< to single ranks
-  std::int64_t calls = 0, bytes_to_all = 0;  ///< sums, minima and broadcasts, and what it gave into them
-  std::int64_t bytes_gathered = 0;           ///< for gather() and all_to_all(), at set-up and for files
+  std::int64_t messages = 0, bytes = 0;      ///< messages to single ranks
+  std::int64_t calls = 0, bytes_to_all = 0;  ///< sums, minima and broadcasts, and the bytes that this rank contributed
+  std::int64_t bytes_gathered = 0;           ///< bytes of gather() and all_to_all(), used for set-up and files
 };
 
-/// Which digits of sums are in use that are asked for again and again: most of an ExactSum's are not, and need not be sent.  The same on all
-/// ranks, and never fewer than before.
+/// The range of digits in use of exact sums that are repeated every step.  Only these digits are sent, as most digits of an ExactSum are
+/// zero.  All ranks have the same range, which never shrinks.
 class Digits {
   friend class Communicator;
   struct Range {
-    std::int64_t lowest, behind;  ///< words of an ExactSum; none are if the second is not the larger
+    std::int64_t lowest, behind;  ///< words of an ExactSum, [lowest, behind); empty unless behind is larger
   };
   std::vector<Range> of_sum_;
   std::vector<std::int64_t> packed_;
 };
 
-/// ExactSums, and spans of them, as words.
+/// The number of words of an ExactSums or a span of them.
 template <class T>
 std::size_t words_in(const ExactSums<T>&) noexcept
 {
@@ -76,25 +76,25 @@ void read_words(std::span<ExactSums<T>> sums, std::span<const std::int64_t> from
     sums[i].read(from.subspan(i * ExactSums<T>::words, ExactSums<T>::words));
 }
 
-/// Bytes for or from a rank.  What is sent is not changed.
+/// Bytes to send to a rank or to receive from it.  Sent bytes are not changed.
 struct Message {
   int rank;
   std::span<std::byte> bytes;
-  bool at_most = false;  ///< to be received: less may come
+  bool at_most = false;  ///< of a received message: it may be shorter
 };
 
-/// Messages on their way, see Exchange::start.  Kept from step to step it allocates once only.
+/// Messages in transit, see Communicator::start.  An object that is reused in every step allocates memory once only.
 class PendingMessages {
  public:
   PendingMessages() noexcept;
   PendingMessages(PendingMessages&&) noexcept;
   PendingMessages& operator=(PendingMessages&&) noexcept;
-  /// Without wait(), as on the way of an exception, it gives the messages some seconds; what has not come then is called off, and the run
-  /// can only end: see Ranks::end.
+  /// Without wait(), for example after an exception, the destructor waits some seconds for the messages and then cancels them; the run can
+  /// then only end, see Ranks::end.
   ~PendingMessages();
 
-  /// Returns when all has been received and what was sent may be overwritten.  Throws EnvironmentError, also where a message has another
-  /// length than its parcel.  Nothing to wait for is nothing done.
+  /// Returns when all messages have been received and the sent bytes may be overwritten.  Throws EnvironmentError, also if a message has
+  /// another length than expected.  Does nothing if no messages are in transit.
   void wait();
 
  private:
@@ -103,11 +103,9 @@ class PendingMessages {
   std::unique_ptr<Requests> requests_;
 };
 
-/// The ranks of a run as one of them sees them.  Made by default it is one rank alone, for which every call is the identity and MPI
-/// does not exist.
-///
-/// Collectives are those calls that every rank has to make, in the same order: all but start() and neighbours(), which concern the ranks
-/// they name, and abort().  They are for the main thread.  Where MPI fails they throw EnvironmentError, which names MPI's own function.
+/// The ranks of a run as seen from one of them.  A default-constructed communicator has one rank, without MPI: every call is then the
+/// identity.  Collective calls must be made by every rank, in the same order; all calls are collective except start(), neighbours() and
+/// abort().  Only the main thread may call.  Failures of MPI are EnvironmentErrors that name the MPI function.
 class Communicator {
  public:
   Communicator() noexcept;
@@ -121,66 +119,71 @@ class Communicator {
   bool is_root() const noexcept { return rank_ == 0; }
   const Traffic& traffic() const noexcept { return traffic_; }
 
-  /// In place, on all ranks: sums entry by entry.
+  /// Adds the numbers of all ranks, entry by entry, in place; all ranks receive the result.
   void sum(std::span<std::int64_t> numbers);
   std::int64_t sum(std::int64_t number)
   {
     sum(std::span(&number, 1));
     return number;
   }
-  /// Every rank's sums become those of all ranks, in one message for all of them: ExactSums, or spans of as many as every rank has.
+  /// Adds the sums of all ranks, in one message; all ranks receive the result.  Arguments are ExactSums, or spans of equal length on all
+  /// ranks.
   template <class... Sums>
   requires requires(const Sums&... sums) { (words_in(sums) + ...); }
   void sum(Sums&&... sums) { sum_words(nullptr, sums...); }
-  /// The same for sums that are asked for again and again.
+  /// As sum() above, for sums that are repeated: sends only the digits in use.
   template <class... Sums>
   void sum(Digits& digits, Sums&&... sums)
   {
     sum_words(&digits, sums...);
   }
 
-  /// Of all ranks, on all ranks.  NaN on one of them is NaN on all, and -0 is less than 0: the bits do not depend on the order.
+  /// The minimum over all ranks, on all ranks.  NaN on one rank gives NaN on all, and -0 is less than 0, so the result does not depend on
+  /// the order of ranks.
   Real min(Real number);
   Real max(Real number) { return -min(-number); }
   std::int64_t min(std::int64_t number);
   std::int64_t max(std::int64_t number) { return ~min(~number); }
-  /// The same for several at once, in place; and of a word.
+  /// The minima over all ranks of several numbers and of one integer, in place.
   void least(std::span<Real> numbers, std::int64_t& word);
 
-  /// What the rank `from` has, of whatever length, to all.
+  /// Copies the bytes of the rank `from`, of any length, to all ranks.
   void broadcast(std::vector<std::byte>& bytes, int from);
   void broadcast(std::string& text, int from);
-  /// The text of the lowest rank that has one, on all ranks.
+  /// The text of the lowest rank with a text that is not empty, on all ranks.
   std::string first(std::string text);
-  /// On the root what each rank has given, rank by rank; elsewhere nothing.
+  /// The bytes of each rank in the order of ranks, on the root; nothing on other ranks.
   std::vector<std::vector<std::byte>> gather(std::span<const std::byte> bytes);
-  /// Gives out[r] to rank r and returns what each rank has given to this one, both of size().  For set-up: every rank asks every other.
+  /// Sends out[r] to rank r and returns what each rank has sent to this one; both have size() entries.  Meant for set-up, because every
+  /// rank sends to every other.
   std::vector<std::vector<std::byte>> all_to_all(const std::vector<std::vector<std::byte>>& out);
   void barrier();
 
-  /// Posts messages of lengths that both sides know; an empty parcel is no message at all.  Both sides list the parcels between them in the
-  /// same order.  The bytes must stay until talk.wait().  Messages of different tags, in [0, tags), do not mix, and those of one tag arrive
-  /// in the order they were sent, so that the messages of one kind of every step may have the same.  A rank alone copies out[i] to in[i].
+  /// Starts to send and receive messages whose lengths both sides know; an empty message is not sent.  Both sides list the messages between
+  /// them in the same order.  The bytes must stay valid until wait().  Messages with different tags, in [0, tags), do not mix, and those of
+  /// one tag arrive in the order in which they were sent, so each kind of message can use one tag in all steps.  On one rank alone out[i]
+  /// is copied to in[i].
   void start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk);
   static constexpr int tags = 1000;
 
-  /// Sends out[i] to ranks[i] and returns what these ranks have sent here, in the order of `ranks`: for lengths that the receiver does not
-  /// know.  Concerns those ranks only, each of which has to list this one as well.  A tag of its own, as above.
+  /// Sends out[i] to ranks[i] and returns the messages from these ranks, in the order of `ranks`, for lengths that the receiver does not
+  /// know.  Each of these ranks must list this one as well.  The call has a tag of its own.
   std::vector<std::vector<std::byte>> neighbours(std::span<const int> ranks, const std::vector<std::vector<std::byte>>& out, int tag);
 
-  /// A longer message goes in pieces of so many bytes, as MPI counts them in int.  The same on all ranks; smaller in tests only.
+  /// Sets the largest size [bytes] of one MPI message; longer messages are split, because MPI counts bytes in int.  Must be equal on all
+  /// ranks; tests make it smaller.
   void cut_messages(std::size_t bytes) noexcept { piece_ = bytes; }
 
-  /// If any rank has an error, every rank throws that of the lowest: the same message, and of the same type if it is of core/error.hpp or
-  /// std::bad_alloc; any other is std::runtime_error on the other ranks.
+  /// If any rank has an error, every rank throws the error of the lowest such rank: the same message, and the same type if it is one of
+  /// core/error.hpp or std::bad_alloc; other types become std::runtime_error on other ranks.
   void agree(const std::exception_ptr& error);
-  /// f() on the root alone, for files; what it throws is thrown on every rank, as in agree().
+  /// Calls f() on the root only, for work on files; an exception of it is thrown on every rank, as in agree().
   template <class F>
   void together(F&& f)
   {
     agree(is_root() ? caught(f) : nullptr);
   }
-  /// What f() throws, for agree(): exchange.agree(Exchange::caught([&] { ... })).
+  /// Calls f() and returns its exception, for agree(): comm.agree(Communicator::caught([&] { ... })).
   template <class F>
   static std::exception_ptr caught(F&& f) noexcept
   {
@@ -192,8 +195,8 @@ class Communicator {
     }
   }
 
-  /// Ends all ranks at once with this exit code, wherever they are.  What C streams hold is written, nothing else is cleaned up.  Of a
-  /// rank that is alone it ends the process in the same way, by std::_Exit.
+  /// Ends all ranks at once with this exit code.  Buffered output of C streams is written, nothing else is cleaned up.  A single rank ends
+  /// in the same way, by std::_Exit.
   [[noreturn]] void abort(int code) const noexcept;
 
  private:
@@ -226,14 +229,14 @@ class Communicator {
   void count(int tag, int bytes) noexcept;
   void post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk);
 
-  std::unique_ptr<Group> group_;  ///< MPI's; of a rank alone there may be none
+  std::unique_ptr<Group> group_;  ///< MPI's communicator; may be null on a single rank
   int rank_ = 0, size_ = 1;
-  std::size_t piece_ = std::size_t{1} << 30;  ///< [bytes]
+  std::size_t piece_ = std::size_t{1} << 30;  ///< largest size of one MPI message [bytes]
   Traffic traffic_;
   std::vector<std::int64_t> words_;
 };
 
-/// Bytes as rows of T, which is numbers in a row.
+/// Bytes viewed as rows of T, a plain struct of numbers.
 template <class T>
 std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& letters)
 {
@@ -245,14 +248,14 @@ std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& l
   }
   return rows;
 }
-/// On the root the rows of each rank, rank by rank; elsewhere nothing.  Every rank has to ask.
+/// The rows of each rank in the order of ranks, on the root; nothing on other ranks.  Collective.
 template <class T>
 std::vector<std::vector<T>> gather_rows(Communicator& ranks, std::span<const T> rows)
 {
   return rows_of<T>(ranks.gather(std::as_bytes(rows)));
 }
 
-/// Gives out[r] to rank r and returns what each rank has given.  The same.
+/// Sends out[r] to rank r and returns the rows that each rank has sent to this one.  Collective.
 template <class T>
 std::vector<std::vector<T>> exchange_rows(Communicator& ranks, const std::vector<std::vector<T>>& out)
 {
@@ -264,7 +267,7 @@ std::vector<std::vector<T>> exchange_rows(Communicator& ranks, const std::vector
   return rows_of<T>(ranks.all_to_all(letters));
 }
 
-/// The number of each rank, on all ranks.  The same.
+/// The numbers of all ranks in the order of ranks, on all ranks.  Collective.
 inline std::vector<std::int64_t> of_all_ranks(Communicator& ranks, std::int64_t number)
 {
   std::vector<std::int64_t> numbers(static_cast<std::size_t>(ranks.size()), 0);
@@ -273,16 +276,16 @@ inline std::vector<std::int64_t> of_all_ranks(Communicator& ranks, std::int64_t 
   return numbers;
 }
 
-/// For whoever is alone, however many ranks there are.
+/// A communicator with this rank only, for work that does not involve the others.
 Communicator& one_rank();
-/// The exchange of this process: one rank alone, unless Ranks has found others.
+/// The communicator of this process: one rank, unless Ranks has found others.
 Communicator& world();
-/// For what ranks do not share: true on the root, which is alone in the world from here on, false on the others, for which nothing is left but
-/// to end.  Every rank has to call it.
+/// Leaves work that cannot be parallel to the root: returns true on the root, whose world() has one rank from then on, and false on the
+/// others, which must end.  Collective.
 bool goes_on_as_root();
 
-/// Made once, first thing in main(): if the process was launched as one of several ranks world() becomes theirs until end().  Throws
-/// EnvironmentError if MPI cannot start, or finds another number of ranks than the launcher has started.
+/// To be made once, at the beginning of main().  If the process was launched as one of several ranks, world() is their communicator until
+/// end().  Throws EnvironmentError if MPI cannot start, or if it finds another number of ranks than the launcher has started.
 class Ranks {
  public:
   Ranks();
@@ -290,11 +293,10 @@ class Ranks {
   Ranks& operator=(const Ranks&) = delete;
   ~Ranks();
 
-  /// Last thing in main(), when all has been printed: `return ranks.end(code)`.  A code of 0 waits for the other ranks, however long, and keeps
-  /// no core busy meanwhile.  With any other code they have some seconds to end as well, as they do when all throw alike; one that does not,
-  /// because it waits for this rank, would wait for ever, so then the job is aborted with that code.  Without ranks it returns the code, that
-  /// is all.
-  /// `message` goes to standard error: of the root, and of a rank that ends by itself.
+  /// To be called at the end of main(): `return ranks.end(code)`.  With the code 0 it waits for the other ranks without using a core.  With
+  /// any other code it gives the other ranks some seconds to end, as they do when all throw the same error; if one does not, the job is
+  /// aborted with that code.  Without ranks it returns the code.  `message` is printed to standard error by the root, and by a rank that
+  /// ends alone.
   int end(int code, const char* message = nullptr) noexcept;
 
  private:

@@ -8,13 +8,13 @@ namespace talus {
 
 namespace {
 
-/// Passes carries on from digit `low` to `high`, and beyond while there is something to pass on: all digits but the highest, which
-/// it returns, come to be in [0, 2^32).  The highest has the sign of the whole, and below 2^31 in size it stays.
+/// Passes carries from digit `low` to `high`, and beyond while carries remain.  Afterwards all digits but the highest are in [0, 2^32).
+/// The highest, whose index is returned, has the sign of the sum and a size below 2^31.
 int pass_carries(std::int64_t* digit, int low, int high) noexcept
 {
   const auto settled = [](std::int64_t d) { return d == static_cast<std::int32_t>(d); };
   for (int k = low; k < high || (k < ExactSum::digits - 1 && !settled(digit[k])); ++k) {
-    digit[k + 1] += digit[k] >> 32;  // rounds down, so what stays is positive
+    digit[k + 1] += digit[k] >> 32;  // rounds down, so the remainder is positive
     digit[k] &= 0xffffffff;
     high = std::max(high, k + 1);
   }
@@ -78,8 +78,8 @@ Real ExactSum::value() const noexcept
   if (digit[static_cast<std::size_t>(top)] == 0)
     return 0;
 
-  // The leading 63 bits, of which the last tells also whether anything follows: what a conversion needs to round rightly.  Sums below the
-  // normal numbers have no more than 52 bits, so that nothing is rounded twice.
+  // The leading 63 bits, the last of which also tells whether any lower bit is set: this is what correct rounding needs.  Sums below the
+  // normal numbers have no more than 52 bits, so nothing is rounded twice.
   const auto at = [&, first_used = lowest](int k) {
     return k < first_used ? 0 : static_cast<std::uint64_t>(digit[static_cast<std::size_t>(k)]);
   };

@@ -1,5 +1,6 @@
 #pragma once
-// Sums without rounding errors until their value is asked for: the order of the summands, and who added them, leaves no trace in the bits.
+// Sums without rounding errors: the result is bitwise independent of the order of the summands and of their distribution among threads and
+// ranks.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -12,12 +13,12 @@
 
 namespace talus {
 
-/// A sum of doubles as one long integer, in units of the smallest double 2^-1074: digits of 32 bits in words of 64.  A double goes into two
-/// neighbouring words, as their digit or as more than that; carries are passed on once in a thousand summands.
+/// A sum of doubles as one long integer in units of the smallest double, 2^-1074, with digits of 32 bits in words of 64 bits.  Each double
+/// is added to two neighbouring words; carries are passed on once in a thousand summands.
 class ExactSum {
  public:
-  static constexpr int digits = 68;  ///< 66 hold the largest double, two more hold what 2^60 of them come to
-  /// As sent to other ranks: the digits, then how many summands were NaN, +inf and -inf.
+  static constexpr int digits = 68;  ///< 66 digits hold the largest double, two more hold 2^60 such summands
+  /// The number of words sent to other ranks: the digits, then the numbers of summands that were NaN, +inf and -inf.
   static constexpr std::size_t words = digits + 3;
 
   void add(Real x) noexcept
@@ -41,15 +42,15 @@ class ExactSum {
   }
   void add(const ExactSum& other) noexcept;
 
-  /// The sum, rounded once: to nearest, ties to even.  A sum of zero is +0, whatever the signs of its zeros; beyond the largest double it
-  /// is infinite.  With summands that were not finite it is what IEEE arithmetic makes of them.
+  /// The sum, rounded once to nearest, ties to even.  A sum of zeros is +0, whatever their signs; a sum beyond the largest double is
+  /// infinite.  Summands that are not finite give what IEEE arithmetic makes of them.
   Real value() const noexcept;
-  /// Back to zero.  Costs, as value() does, what the digits in use cost.
+  /// Sets the sum to zero.  The cost of this and of value() is proportional to the number of digits in use.
   void clear() noexcept;
 
-  /// `words` of them.  Added up word by word as integers, those of as many as 2^20 sums are the words of the sum of all.
+  /// Writes `words` words.  Words of up to 2^20 sums may be added as integers; the result is the words of the sum of all.
   void write(std::span<std::int64_t> to) const noexcept;
-  /// Adds what such words hold: written ones, or up to 2^20 written ones added up.
+  /// Adds written words, or up to 2^20 written words that were added up.
   void add(std::span<const std::int64_t> from) noexcept;
   void read(std::span<const std::int64_t> from) noexcept
   {
@@ -60,7 +61,7 @@ class ExactSum {
  private:
   static constexpr int heaviest = 1024;
   struct Range {
-    int lowest, highest;  ///< of the digits in use; none are if lowest is the larger
+    int lowest, highest;  ///< range of digits in use; empty if lowest is the larger
   };
   Range range() const noexcept;
   void use(int digit) noexcept { used_ |= std::uint64_t{1} << std::min(digit, 63); }
@@ -73,14 +74,14 @@ class ExactSum {
   int weight_ = 0;                            ///< no word is larger than weight_ 2^52
 };
 
-/// Adds x[i] to sums[i]; the values; and so on: what all ExactSums share, compiled once.
+/// Adds x[i] to sums[i].  This and the functions below are what all ExactSums share, compiled once.
 void add_each(std::span<const Real> x, std::span<ExactSum> sums) noexcept;
 void values_of(std::span<const ExactSum> sums, std::span<Real> x) noexcept;
 void clear_each(std::span<ExactSum> sums) noexcept;
 void write_each(std::span<const ExactSum> sums, std::span<std::int64_t> to) noexcept;
 void add_written(std::span<const std::int64_t> from, std::span<ExactSum> sums) noexcept;
 
-/// Exact sums of every entry of T: a Real, a Vec, or a plain struct of such, which in memory is so many doubles in a row.
+/// An exact sum of every entry of T, which is a Real, a Vec or a plain struct of Reals.
 template <class T>
 class ExactSums {
   static_assert(sizeof(T) % sizeof(Real) == 0 && alignof(T) == alignof(Real), "made of doubles only");
@@ -110,7 +111,7 @@ class ExactSums {
   }
   void clear() noexcept { clear_each(sum_); }
 
-  /// As ExactSum's, entry after entry: `words` words in all.
+  /// As ExactSum::write, entry after entry: `words` words in total.
   void write(std::span<std::int64_t> to) const noexcept { write_each(sum_, to); }
   void add(std::span<const std::int64_t> from) noexcept { add_written(from, sum_); }
   void read(std::span<const std::int64_t> from) noexcept

@@ -20,7 +20,7 @@ PendingMessages::~PendingMessages()
 {
   if (!requests_ || requests_->request.empty())
     return;
-  // Others may be reading what was sent, and its bytes are about to go: a wait, but not for what never comes.
+  // Other ranks may still read the sent bytes, which are about to be freed: wait for them, but not for ever.
   std::vector<MPI_Request>& request = requests_->request;
   if (within_patience([&](int& done) { return MPI_Testall(static_cast<int>(request.size()), request.data(), &done, MPI_STATUSES_IGNORE); }))
     return;
@@ -88,7 +88,7 @@ void Communicator::post(std::span<const Message> out, std::span<const Message> i
   if (!talk.requests_)
     talk.requests_ = std::make_unique<PendingMessages::Requests>();
   PendingMessages::Requests& requests = *talk.requests_;
-  assert(requests.request.empty());  // or it has not been waited for
+  assert(requests.request.empty());  // or it was not followed by wait()
   requests.expected.clear();
   requests.torn = &group_->torn;
   const auto in_pieces = [this](std::span<std::byte> bytes, auto&& f) {
@@ -125,7 +125,7 @@ std::vector<std::vector<std::byte>> Communicator::neighbours(std::span<const int
       throw EnvironmentError("a rank that is alone has no neighbour but itself");
     return out;
   }
-  // A message of a full piece says that another follows, be it empty.
+  // A message of exactly one full piece is followed by another one, which may be empty.
   PendingMessages talk;
   talk.requests_ = std::make_unique<PendingMessages::Requests>();
   talk.requests_->torn = &group_->torn;

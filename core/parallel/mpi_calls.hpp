@@ -1,5 +1,5 @@
 #pragma once
-// What only the sources of the communicator see: MPI, its errors as exceptions, and what a communicator and its messages hold of it.
+// Declarations for the sources of the communicator: MPI, its errors as exceptions, and the contents of a communicator and of its messages.
 #define OMPI_SKIP_MPICXX 1  // NOLINT(readability-identifier-naming): MPI's name for leaving out its old C++ classes
 #include <mpi.h>
 
@@ -23,7 +23,7 @@ struct Communicator::Group {
   ~Group() { MPI_Comm_free(&comm); }
 
   MPI_Comm comm = MPI_COMM_NULL;
-  bool torn = false;  ///< messages were called off: MPI_Finalize might wait for them
+  bool torn = false;  ///< messages were cancelled, so MPI_Finalize might wait for them
 };
 
 struct PendingMessages::Requests {
@@ -31,19 +31,19 @@ struct PendingMessages::Requests {
     int rank, bytes;
     bool at_most;
   };
-  std::vector<MPI_Request> request;  ///< of receipts, then of what is sent
-  std::vector<Expected> expected;    ///< of each receipt
+  std::vector<MPI_Request> request;  ///< receives, then sends
+  std::vector<Expected> expected;    ///< expected length of each receive
   std::vector<MPI_Status> status;
   bool* torn = nullptr;
 };
 
-/// Tags of the messages that collectives are made of.
+/// Tags of the messages of collective calls.
 inline constexpr int gather_tag = Communicator::tags, all_to_all_tag = Communicator::tags + 1;
 
-/// EnvironmentError, with the name of the call, if it failed.
+/// Throws EnvironmentError with the name of the call if the result is an error.
 void check_mpi(int result, const char* call);
 
-/// Whether what test(done) asks MPI about gets done in the time in which ranks that fail alike, one sooner than the other, come to it.
+/// Tests repeatedly whether test(done) succeeds, for as long as ranks that fail for the same reason may be apart in time.
 template <class F>
 bool within_patience(F&& test)
 {

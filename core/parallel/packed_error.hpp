@@ -1,5 +1,5 @@
 #pragma once
-// An error as text, and back: one rank throws what another has caught.
+// Conversion of an error to bytes and back: one rank throws an error that another one has caught.
 #include <exception>
 #include <string>
 #include <string_view>

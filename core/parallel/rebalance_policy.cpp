@@ -7,7 +7,7 @@ namespace talus {
 namespace {
 
 constexpr std::int64_t first_interval = 50, longest_interval = 3200;  // steps
-/// What is left of the imbalance must be less than this share of it: shares are by counts, which tell times only so well.
+/// The new imbalance must be less than this fraction of the present one: particle counts predict times only roughly.
 constexpr Real good_enough = 0.95;
 
 }  // namespace

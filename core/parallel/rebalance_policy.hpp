@@ -1,5 +1,5 @@
 #pragma once
-// When it pays to share the work of a run out anew among its ranks.
+// Decision when to redistribute the work of a run among its ranks.
 #include <cstdint>
 #include <optional>
 
@@ -7,35 +7,36 @@
 
 namespace talus {
 
-/// The rule of one who hires skis and might buy them: shares move when their unevenness has cost, since they were made, what moving them
-/// costs.  So both together are never more than twice what the best would have been that knew the future.  All ranks ask and tell alike, in
-/// seconds that they have agreed on, and so come to the same answers.
+/// The rule of the ski-rental problem: the work is redistributed when the accumulated cost of imbalance since the last redistribution
+/// equals the cost of a redistribution.  The total is never more than twice that of the best schedule with knowledge of the future.  All
+/// ranks call with times [s] that they have agreed on, and so decide alike.
 class RebalancePolicy {
  public:
-  /// `every`: move after so many steps whatever it costs; 0: never; without a number: when it pays.  `step`: steps done when the shares were
-  /// made; `cost`: what that took [s].
+  /// `every`: redistribute after so many steps whatever it costs; 0: never; nothing: when it pays.  `step`: number of steps at the last
+  /// distribution; `cost`: its time [s].
   RebalancePolicy(std::optional<std::int64_t> every, std::int64_t step, Real cost) noexcept;
 
-  /// Whether it is time to look at the shares, `step` steps being done.
+  /// Whether to check the distribution after `step` steps.
   bool looks(std::int64_t step) const noexcept;
-  /// Whether nothing more is asked then.
+  /// Whether a check always leads to a redistribution.
   bool always_moves() const noexcept { return every_.has_value(); }
-  /// Steps since the last look took `seconds` [s] each, the busiest rank having `imbalance` times the mean of the work.  True if enough has been
-  /// lost by that for a move, should there be better shares.
+  /// Records that steps since the last check took `seconds` [s] each and that the busiest rank had `imbalance` times the mean work.  True
+  /// if the accumulated loss is worth a redistribution, provided that a better one exists.
   bool has_lost_enough(std::int64_t step, Real seconds, Real imbalance) noexcept;
-  /// Whether better shares are good enough: an imbalance of `then` for one of `now`.  If not, it takes longer until the next look.
+  /// Whether a new distribution with imbalance `then` is better enough than the present one with `now`.  If not, the next check comes
+  /// later.
   bool gains(Real now, Real then) noexcept;
-  /// Shares have moved, which took so long [s].
+  /// Records a redistribution after `step` steps, which took `cost` seconds.
   void moved(std::int64_t step, Real cost) noexcept;
-  /// They never will again.
+  /// Disables further redistributions.
   void abort_run() noexcept { every_ = 0; }
 
  private:
   std::optional<std::int64_t> every_;
   Real cost_;
-  std::int64_t moved_, looked_;  // steps done then
-  std::int64_t interval_;        // steps between two looks
-  Real lost_ = 0;                // since shares moved, or since there were none better [s]
+  std::int64_t moved_, looked_;  // numbers of steps at the last redistribution and the last check
+  std::int64_t interval_;        // steps between two checks
+  Real lost_ = 0;                // loss since the last redistribution, or since no better one was found [s]
 };
 
 }  // namespace talus

@@ -1,31 +1,32 @@
 #pragma once
-// The rows of a file, shared out among the ranks that write or read it: in their order, in pieces that are the same for any number of ranks.
+// The rows of a file, divided among the ranks that write or read it, in order and in pieces that are equal for any number of ranks.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 
 namespace talus {
 
-/// Files are packed and checked by so many rows, so this is part of what they are; runs with fewer rows are written by the root alone.
+/// Rows per piece.  Files are compressed and checked piece by piece, so this number is part of the file format.  Runs with fewer rows are
+/// written by the root alone.
 inline constexpr std::int64_t rows_of_a_piece = 32768;
 
-/// What one of them has of all rows: those from `first` on, as many as it has.
+/// The rows of one rank: a contiguous range of all rows.
 struct Slice {
   std::int64_t first = 0, of_all = 0;
   std::int64_t piece = rows_of_a_piece;
-  std::int64_t lead = 0;  ///< rows that the first piece lacks
+  std::int64_t lead = 0;  ///< rows missing at the beginning of the first piece
 
   std::int64_t pieces() const noexcept { return of_all == 0 ? 0 : (lead + of_all + piece - 1) / piece; }
   std::int64_t piece_of(std::int64_t row) const noexcept { return (lead + row) / piece; }
   std::int64_t begin_of(std::int64_t number) const noexcept { return std::clamp(number * piece - lead, std::int64_t{0}, of_all); }
-  /// Whether so many rows from `first` on are whole pieces.
+  /// Whether `count` rows from `first` on are whole pieces.
   bool is_whole(std::int64_t count) const noexcept
   {
     return count == 0 || (first == begin_of(piece_of(first)) && first + count == begin_of(piece_of(first + count - 1) + 1));
   }
 };
 
-/// Whose the rows are.  Every rank has as many pieces as any other, or one less.
+/// The distribution of rows among ranks.  The numbers of pieces of any two ranks differ by at most one.
 struct Slices {
   std::int64_t rows = 0;
   int ranks = 1;

@@ -1,5 +1,5 @@
 #pragma once
-// The only threading code.  Sums go over fixed blocks in fixed order, so the bits do not depend on the number of threads.
+// All use of threads.  Sums run over fixed blocks in a fixed order, so results are bitwise independent of the number of threads.
 #include <omp.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace talus {
 inline void set_threads(int n) { omp_set_num_threads(n); }
 inline int threads() { return omp_get_max_threads(); }
 
-/// f(i) for i in [0, n), statically shared out.  f must not throw and must not write what another i reads.
+/// Calls f(i) for i in [0, n), divided statically among threads.  f must not throw and must not write data that another i reads.
 template <class F>
 void parallel_for(Index n, F&& f)
 {
@@ -22,7 +22,7 @@ void parallel_for(Index n, F&& f)
     f(i);
 }
 
-/// The same for items of very unequal cost.
+/// Calls f(i) for i in [0, n) of very unequal cost, divided dynamically among threads.
 template <class F>
 void parallel_for_uneven(Index n, F&& f)
 {
@@ -34,15 +34,15 @@ void parallel_for_uneven(Index n, F&& f)
 /// Items per block of a deterministic reduction.
 inline constexpr Index sum_block = 4096;
 
-/// Sum of f(i) over [0, n): every block of 4096 in order, then the blocks in order.  T needs T{} = 0 and +=.
-/// Its buffer is kept, so a repeated sum of the same length allocates nothing.  Not to be nested.
+/// The sum of f(i) over [0, n): within blocks of 4096 in order, then over the blocks in order.  T needs T{} = 0 and +=.  The buffer is
+/// kept, so repeated sums of the same length allocate nothing.  Calls must not be nested.
 template <class T, class F>
 T parallel_sum(Index n, F&& f)
 {
   const Index blocks = (n + sum_block - 1) / sum_block;
   static thread_local std::vector<T> buffer;
   buffer.assign(static_cast<std::size_t>(blocks), T{});
-  std::vector<T>& partial = buffer;  // a name that the threads below share
+  std::vector<T>& partial = buffer;  // a name that the threads below can share
   parallel_for(blocks, [&](Index b) {
     T sum{};
     const Index last = std::min(n, (b + 1) * sum_block);
@@ -56,7 +56,7 @@ T parallel_sum(Index n, F&& f)
   return total;
 }
 
-/// Smallest f(i) over [0, n), or `start` if that is smaller.
+/// The smallest f(i) over [0, n), or `start` if that is smaller.
 template <class F>
 Real parallel_min(Index n, Real start, F&& f)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Digests of arrays: what a file says of its values, so that none that changed is ever taken for one that was written.
+// Digests of arrays, by which a reader detects every change of a value since it was written.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -19,15 +19,15 @@ struct Extents {
   std::uint64_t columns = 1;
 };
 
-/// Of all that says what values mean: it goes into the digest of each piece of them.
+/// The digest of everything that defines the meaning of values; it enters the digest of each piece of them.
 std::uint64_t digest_of(const std::string& path, const std::string& type, const Extents& shape, const std::string& unit);
 
 /// The pieces of an array and their digests.
 struct Pieces {
-  Slice all;  // from row 0 on
+  Slice all;  // all rows, from row 0 on
   std::vector<std::uint64_t> digests;
 
-  /// As they are kept; of one piece, or none, there is no more to say.
+  /// The words to be stored: the digest of each piece; if there are several pieces, preceded by their size and lead.
   std::vector<std::uint64_t> words() const
   {
     std::vector<std::uint64_t> saved;
@@ -39,10 +39,10 @@ struct Pieces {
   std::uint64_t digest(std::uint64_t meaning) const { return digest_of(std::as_bytes(std::span<const std::uint64_t>(words())), meaning); }
 };
 
-/// Copies rows of an array from the one of that number on, as many as there is room for.
+/// Copies rows of an array, from row number `from` on, as many as fit.
 void pack(const SharedArray& array, std::size_t from, std::size_t row_bytes, std::span<std::byte> to);
 
-/// Of the pieces of an array that are here.
+/// The digests of the pieces of an array on this rank.
 std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t number_bytes, std::uint64_t meaning);
 
 }  // namespace talus

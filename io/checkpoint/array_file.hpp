@@ -1,5 +1,5 @@
 #pragma once
-// Arrays and words by path ("particles/position") in one file: what is written is read back as the same bits or not at all.
+// Arrays and texts by path ("particles/position") in one file; what is read back is bitwise what was written, or an error.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -35,37 +35,39 @@ constexpr NumberKind number_kind()
   }
 }
 
-/// An array that ranks write together: the rows of this one, as they lie in memory.
+/// An array that ranks write together: the rows of this rank, as they lie in memory.
 struct SharedArray {
   std::string path;
   NumberKind kind;
   int columns;
   std::string unit;
-  const std::byte* first;    ///< of `columns` numbers there, and at every `stride` bytes from there
-  std::size_t rows, stride;  ///< how many rows are here
-  Slice slice;               ///< which they are: whole pieces
+  const std::byte* first;    ///< first of the rows, each of `columns` numbers, at a distance of `stride` bytes
+  std::size_t rows, stride;  ///< number of rows on this rank; bytes from row to row
+  Slice slice;               ///< the position of these rows in the array: whole pieces
 };
 
-/// A file while it is being written, HDF5 inside.  Other programs read it as such; every array and every text also carries a digest
-/// that ArrayReader checks, of pieces of rows (core/parallel/slices.hpp) and of all of them.  The same calls make the same bytes.  Here and below: paths are names between single slashes, anything
-/// else is std::invalid_argument; one thread at a time in the whole process, the library behind is not made for more.
+/// Writes a file in the format HDF5, which other programs can read.  Every array and every text also has a digest that ArrayReader checks,
+/// for pieces of rows (core/parallel/slices.hpp) and for all of them.  Equal calls write equal bytes.  Here and below, paths are names
+/// between single slashes; anything else is std::invalid_argument.  Only one thread of the process may use these classes at a time, because
+/// the HDF5 library is not thread-safe.
 class ArrayWriter {
  public:
-  /// Starts a new file, replacing an old one.  EnvironmentError names the file.  It is no write_whole(): call it inside of one.
+  /// Starts a new file, replacing an existing one.  Throws EnvironmentError with the name of the file.  To replace a file atomically, call
+  /// it inside write_whole().
   explicit ArrayWriter(const std::filesystem::path& file);
-  /// Closes silently: call close() where the file matters.
+  /// Closes the file and ignores errors: call close() where the file matters.
   ~ArrayWriter();
   ArrayWriter(const ArrayWriter&) = delete;
   ArrayWriter& operator=(const ArrayWriter&) = delete;
 
-  /// values: row by row, `columns` to a row.  T: double, float, std::int32_t, std::int64_t, std::uint8_t.  Empty arrays are arrays.
-  /// unit: for readers, such as "m/s"; empty for a pure number.  EnvironmentError if the disk is full; std::invalid_argument if the
-  /// path is taken or the values are no whole rows.
+  /// Writes values row by row, `columns` in each row.  T: double, float, std::int32_t, std::int64_t, std::uint8_t.  An array may be empty.
+  /// `unit` is for readers, such as "m/s"; empty for a pure number.  Throws EnvironmentError if the disk is full, std::invalid_argument if
+  /// the path exists or the values are not whole rows.
   template <class T>
   void write(const std::string& path, std::span<const T> values, int columns = 1, const std::string& unit = "");
-  /// A text of any bytes.
+  /// Writes a text of any bytes.
   void write(const std::string& path, std::string_view text);
-  /// The file is whole when this returns, EnvironmentError otherwise.  Nothing can be written afterwards.
+  /// Completes the file; throws EnvironmentError if that fails.  Nothing can be written afterwards.
   void close();
 
  private:
@@ -75,35 +77,36 @@ class ArrayWriter {
   std::unique_ptr<Opened> opened_;
 };
 
-/// Writes a file by all ranks together, as in write_together(): rest(writer) on the root, and the rows of each rank at their places.  The same
-/// bytes for any number of ranks that share out the same rows, whatever the stride.
+/// Writes a file by all ranks together, as write_together(): rest(writer) on the root, and the rows of each rank at their positions.  The
+/// bytes do not depend on the number of ranks or on the stride.
 void write_arrays(Communicator& ranks, const std::filesystem::path& file, std::span<const SharedArray> shared,
                   const std::function<void(ArrayWriter&)>& rest);
 
-/// A file that ArrayWriter wrote.  Whatever is damaged, missing or of another kind than asked for is an EnvironmentError that names the
-/// file and the path; a wrong value is never returned.
+/// Reads a file written by ArrayWriter.  Anything damaged, missing or of another type than requested is an EnvironmentError that names file
+/// and path; a wrong value is never returned.
 class ArrayReader {
  public:
-  /// EnvironmentError: not there, not such a file, cut short, damaged.  Arrays are checked as they are read.
+  /// Opens a file.  Throws EnvironmentError if it is missing, of another kind, truncated or damaged.  Arrays are checked when they are
+  /// read.
   explicit ArrayReader(const std::filesystem::path& file);
   ~ArrayReader();
   ArrayReader(const ArrayReader&) = delete;
   ArrayReader& operator=(const ArrayReader&) = delete;
 
-  /// An array, a text or a group.
+  /// Whether there is an array, a text or a group at a path.
   bool has(const std::string& path) const;
-  /// What is directly in a group, sorted; "" is the whole file.
+  /// The names of the members of a group, sorted; "" is the whole file.
   std::vector<std::string> names(const std::string& group) const;
-  /// The values, row by row.  An array of another type or another number of columns is an error.
+  /// The values of an array, row by row.  Another type or another number of columns is an error.
   template <class T>
   std::vector<T> read(const std::string& path, int columns = 1) const;
-  /// The same to a place that has as many rows.  After an error its values are unspecified.
+  /// Reads an array into memory for as many rows.  After an error the values there are unspecified.
   template <class T>
   void read_into(const std::string& path, std::span<T> to, int columns = 1) const;
-  /// As many rows as there is room for, from `first` on: what is checked is read, hence up to a piece more at both ends.
+  /// Reads rows from `first` on, as many as fit.  Whole pieces are read and checked, so up to one more piece is read at both ends.
   template <class T>
   void read_rows(const std::string& path, std::size_t first, std::span<T> to, int columns = 1) const;
-  /// The rows of an array of any type.
+  /// The number of rows of an array of any type.
   std::size_t rows(const std::string& path) const;
   /// The unit of an array, empty for a pure number.
   std::string unit(const std::string& path) const;

@@ -26,7 +26,7 @@ struct ArrayReader::Opened {
   std::uintmax_t bytes;
   Handle file;
 
-  /// What the link of that path leads to, nothing if there is no link.
+  /// The kind of object at a path; nothing if there is no link.
   H5O_type_t kind(const std::string& path) const
   {
     auto steps = groups_around(path);
@@ -43,7 +43,7 @@ struct ArrayReader::Opened {
     return info.type;
   }
 
-  /// An array or a text.
+  /// Opens an array or a text.
   Handle open(const std::string& path) const
   {
     const H5O_type_t found = kind(path);
@@ -65,7 +65,8 @@ struct ArrayReader::Opened {
     return type;
   }
 
-  /// Nothing is compressed, so an array bigger than its file is not there: checked before anything is allocated.
+  /// The extents of an array.  Nothing is compressed, so an array larger than its file is an error; this is checked before memory is
+  /// allocated.
   Extents shape_of(const Handle& array, std::size_t value_bytes, const std::string& path) const
   {
     const Handle space(H5Dget_space(array.id()), H5Sclose);
@@ -100,7 +101,7 @@ struct ArrayReader::Opened {
     return unit;
   }
 
-  /// The words of an attribute; none if it is not there.
+  /// The words of an attribute; empty if it does not exist.
   std::vector<std::uint64_t> words_of(const Handle& array, const char* attribute_name, const std::string& path) const
   {
     const htri_t exists = H5Aexists(array.id(), attribute_name);
@@ -119,7 +120,7 @@ struct ArrayReader::Opened {
 
   [[noreturn]] void refuse_values(const std::string& path) const { refuse(name, path, "is damaged (the values do not fit their digest)"); }
 
-  /// Reads what has been opened and checked so far: the rows from `first` on, and the rest of their pieces to check them.
+  /// Reads an open and checked array: the rows from `first` on, and the remaining rows of their pieces to check the digests.
   void get(const Handle& array, hid_t type, const Extents& shape, std::size_t first, std::span<std::byte> to, const std::string& path) const
   {
     const std::uint64_t meaning = digest_of(path, type_word(type), shape, unit_of(array, path));
@@ -139,12 +140,12 @@ struct ArrayReader::Opened {
     if (shape.rows == 0 && pieces.digest(meaning) != digest[0])
       refuse_values(path);
     const std::size_t row_bytes = shape.columns * H5Tget_size(type);
-    const std::size_t last = first + to.size() / row_bytes;  // one behind
+    const std::size_t last = first + to.size() / row_bytes;  // one after the last
     for (std::size_t row = first; row < last;) {
       const std::int64_t number = pieces.all.piece_of(static_cast<std::int64_t>(row));
       const auto begin = static_cast<std::size_t>(pieces.all.begin_of(number)),
                  end = static_cast<std::size_t>(pieces.all.begin_of(number + 1));
-      std::vector<std::byte> room;  // for a piece of which not all is wanted
+      std::vector<std::byte> room;  // buffer for a piece that is wanted only in part
       std::span<std::byte> piece = to.subspan((row - first) * row_bytes, (std::min(end, last) - row) * row_bytes);
       const std::span<std::byte> wanted = piece;
       if (begin < row || end > last) {
@@ -206,7 +207,7 @@ ArrayReader::ArrayReader(const fs::path& file)
   if (failed)
     throw EnvironmentError(fmt::format("cannot read {}: {}", file.string(), failed.message()));
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access.id(), false, true);  // some cluster file systems have no locks
+  H5Pset_file_locking(access.id(), false, true);  // some cluster file systems do not support locks
   Handle opened(H5Fopen(file.c_str(), H5F_ACC_RDONLY, access.id()), H5Fclose);
   if (!opened.is_open())
     refuse_damaged(file, "");
@@ -229,7 +230,7 @@ std::vector<std::string> ArrayReader::names(const std::string& group) const
     try {
       static_cast<std::vector<std::string>*>(to)->emplace_back(name);
       return 0;
-    } catch (...) {  // not through C
+    } catch (...) {  // exceptions must not pass through C
       return -1;
     }
   };

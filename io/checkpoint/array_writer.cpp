@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The bytes of the rows here to their places in an array that begins at `place`.
+/// Writes the rows of this rank at their positions in an array that begins at the byte `place`.
 void put_rows(const SharedArray& array, std::size_t row_bytes, std::uint64_t place, const PutBytes& put, std::span<std::byte> room)
 {
   place += static_cast<std::uint64_t>(array.slice.first) * row_bytes;
@@ -52,11 +52,11 @@ bool write_attribute(const Handle& array, const char* name, const std::vector<st
   return write_attribute(array, name, H5T_NATIVE_UINT64, Handle(H5Screate_simple(1, &n, nullptr), H5Sclose), words.data());
 }
 
-/// How arrays lie in the file: in one piece, whose place is known at once, whoever writes it.
+/// The layout of arrays in the file: contiguous, so that the position is known to all ranks.
 Handle array_layout()
 {
   Handle layout(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(layout.id(), false);  // the same values, the same bytes
+  H5Pset_obj_track_times(layout.id(), false);  // no times, so that equal values give equal bytes
   H5Pset_layout(layout.id(), H5D_CONTIGUOUS);
   H5Pset_alloc_time(layout.id(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(layout.id(), H5D_FILL_TIME_NEVER);
@@ -73,7 +73,7 @@ struct ArrayWriter::Opened {
       refuse_write("");
   }
   fs::path name;
-  Disk disk;  // before what is closed into it
+  Disk disk;  // constructed before, so destroyed after the objects that write to it
   Handle driver;
   Handle file;
 
@@ -87,8 +87,8 @@ struct ArrayWriter::Opened {
   hid_t create()
   {
     const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose), access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    H5Pset_obj_track_times(creation.id(), false);                             // the same values, the same bytes
-    H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);  // the formats whose metadata carry checksums
+    H5Pset_obj_track_times(creation.id(), false);                             // no times, so that equal values give equal bytes
+    H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);  // the formats whose metadata have checksums
     Disk* const below = &disk;
     H5Pset_driver(access.id(), driver.id(), &below);
     return H5Fcreate(name.c_str(), H5F_ACC_TRUNC, creation.id(), access.id());
@@ -112,7 +112,7 @@ struct ArrayWriter::Opened {
         refuse_write(group);
   }
 
-  /// An array without its values.
+  /// Makes an array without values.
   Handle make(const std::string& path, hid_t type, const Extents& shape, const std::string& unit, const Pieces& pieces) const
   {
     if (!file.is_open())
@@ -142,7 +142,7 @@ struct ArrayWriter::Opened {
       refuse_write(path);
   }
 
-  /// Makes an array whose values are written by others.  Where they are to come in the file.
+  /// Makes an array whose values other ranks write.  Returns its position in the file.
   std::uint64_t reserve(const SharedArray& array, const Extents& shape, const Pieces& pieces) const
   {
     Handle made = make(array.path, type_id(array.kind), shape, array.unit, pieces);
@@ -184,15 +184,15 @@ void ArrayWriter::close()
 void write_arrays(Communicator& ranks, const fs::path& file, std::span<const SharedArray> shared,
                   const std::function<void(ArrayWriter&)>& rest)
 {
-  const LibraryCall at_work("HDF5", "writing", file.native());  // it is asked about types for the digests too
-  // Digests first: the root lays out the file with them, and then everyone knows where its rows go.
+  const LibraryCall at_work("HDF5", "writing", file.native());  // the types for the digests are HDF5 objects too
+  // Digests are sent first: the root writes the metadata with them, and then all ranks know the positions of their rows.
   const auto shape_of = [](const SharedArray& array) {
     return Extents{static_cast<hsize_t>(array.slice.of_all), static_cast<hsize_t>(array.columns)};
   };
   const auto number_bytes = [](const SharedArray& array) { return H5Tget_size(type_id(array.kind)); };
   constexpr std::size_t room_bytes = std::size_t{1} << 20;
   std::vector<std::byte> room(room_bytes);
-  std::vector<std::uint64_t> mine;  // of each array their number, then the digests
+  std::vector<std::uint64_t> mine;  // for each array the number of digests, then the digests
   for (const SharedArray& array : shared) {
     const auto digests =
         digests_of(array, number_bytes(array), digest_of(array.path, type_word(type_id(array.kind)), shape_of(array), array.unit));
@@ -204,7 +204,7 @@ void write_arrays(Communicator& ranks, const fs::path& file, std::span<const Sha
   const auto lay_out = [&](const fs::path& temporary) {
     ArrayWriter writer(temporary);
     rest(writer);
-    std::vector<std::size_t> read(of_rank.size(), 0);  // of each rank
+    std::vector<std::size_t> read(of_rank.size(), 0);  // number read from each rank
     for (const SharedArray& array : shared) {
       Pieces pieces{array.slice, {}};
       for (std::size_t r = 0; r < of_rank.size(); ++r) {
@@ -220,7 +220,7 @@ void write_arrays(Communicator& ranks, const fs::path& file, std::span<const Sha
   };
   write_together(ranks, file, lay_out, [&](const PutBytes& put) {
     places.resize(shared.size(), 0);
-    std::vector<std::int64_t> told(places.begin(), places.end());  // 0 but on the root
+    std::vector<std::int64_t> told(places.begin(), places.end());  // 0 on ranks other than the root
     ranks.sum(told);
     for (std::size_t i = 0; i < shared.size(); ++i)
       put_rows(shared[i], static_cast<std::size_t>(shared[i].columns) * number_bytes(shared[i]), static_cast<std::uint64_t>(told[i]), put,

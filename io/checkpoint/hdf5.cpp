@@ -1,4 +1,4 @@
-// What writing and reading by HDF5 have in common.
+// Functions that writing and reading with HDF5 have in common.
 #include "io/checkpoint/hdf5.hpp"
 
 #include <fmt/format.h>

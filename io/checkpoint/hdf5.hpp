@@ -1,5 +1,6 @@
 #pragma once
-// What writing and reading by HDF5 have in common.  For io/array_*.cpp: others see io/checkpoint/array_file.hpp.
+// Functions that writing and reading with HDF5 have in common.  For io/checkpoint/array_*.cpp only; others use
+// io/checkpoint/array_file.hpp.
 #include <hdf5.h>
 
 #include <cstdint>
@@ -13,12 +14,12 @@
 
 namespace talus::hdf5 {
 
-// Attributes of an array.
+// Names of the attributes of an array.
 inline constexpr auto digest_name = "digest";
 inline constexpr auto pieces_name = "pieces";
 inline constexpr auto unit_name = "unit";
 
-/// What HDF5 has opened, closed at its end.
+/// The owner of an HDF5 object, which it closes.
 class Handle {
  public:
   using Close = herr_t (*)(hid_t);
@@ -33,7 +34,7 @@ class Handle {
   Handle& operator=(const Handle&) = delete;
   bool is_open() const noexcept { return id_ >= 0; }
   hid_t id() const noexcept { return id_; }
-  /// Errors of what is written as late as this.
+  /// Closes the object.  False if that fails: HDF5 may write as late as here.
   bool close() noexcept { return close_(std::exchange(id_, H5I_INVALID_HID)) >= 0; }
 
  private:
@@ -41,18 +42,18 @@ class Handle {
   Close close_;
 };
 
-/// HDF5 prints no errors from now on: they are thrown.
+/// Stops HDF5 from printing errors; they are thrown instead.
 void keep_quiet() noexcept;
 
-/// What went wrong, from the innermost of HDF5's messages.
+/// The innermost error message of HDF5.
 std::string last_words();
 
-/// EnvironmentError: file, path, what is the matter with it.
+/// Throws EnvironmentError with file, path and reason.
 [[noreturn]] void refuse(const std::filesystem::path& file, const std::string& path, const std::string& what);
-/// The same, in the words of HDF5.
+/// Throws EnvironmentError with file, path and the error message of HDF5.
 [[noreturn]] void refuse_damaged(const std::filesystem::path& file, const std::string& path);
 
-/// The groups around a path, outermost first: "a", "a/b" of "a/b/c".  std::invalid_argument: it is no path.
+/// The groups that contain a path, outermost first: "a", "a/b" for "a/b/c".  Throws std::invalid_argument if it is not a valid path.
 std::vector<std::string> groups_around(const std::string& path);
 
 template <class T>
@@ -72,9 +73,9 @@ hid_t type_id()
   }
 }
 hid_t type_id(NumberKind kind);
-/// "double", "text", ...
+/// The name of a type in messages: "double", "text", ...
 std::string type_word(hid_t type);
-/// Of so many bytes.
+/// The type of a text with `size` bytes.
 Handle text_type(std::size_t size);
 
 }  // namespace talus::hdf5

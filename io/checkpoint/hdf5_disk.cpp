@@ -54,7 +54,7 @@ void Disk::get(haddr_t at, std::span<std::byte> to) noexcept
       at += static_cast<haddr_t>(got);
     }
   }
-  std::fill(to.begin(), to.end(), std::byte{});  // behind the end there are zeros
+  std::fill(to.begin(), to.end(), std::byte{});  // bytes after the end are zero
 }
 
 H5FD_class_t Disk::driver() noexcept

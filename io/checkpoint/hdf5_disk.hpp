@@ -1,5 +1,5 @@
 #pragma once
-// Where HDF5 writes to: a file of which the first error is kept.
+// The file driver of HDF5 for writing, which keeps the first error.
 #include <hdf5.h>
 
 #include <cerrno>
@@ -9,8 +9,8 @@
 
 namespace talus::hdf5 {
 
-/// The file below HDF5 while it is written.  HDF5 cannot close a file that cannot be written: it keeps the descriptor, hence the space on a
-/// full disk, and crashes at the end of the process.  So it is told that all is well, and the first error is kept for the caller.
+/// The file that HDF5 writes to.  HDF5 cannot close a file after a failed write: it keeps the descriptor, and so the space on a full disk,
+/// and crashes at the end of the process.  So this driver reports success to HDF5 and keeps the first error for the caller.
 class Disk {
  public:
   explicit Disk(const std::filesystem::path& file);
@@ -20,7 +20,7 @@ class Disk {
   /// errno of the first call that failed, or 0.
   int failure() const noexcept { return failure_; }
   void close() noexcept;
-  /// For H5FDregister; its driver's property is a Disk*.
+  /// The class to register by H5FDregister; the driver's property is a Disk*.
   static H5FD_class_t driver() noexcept;
 
  private:
@@ -39,7 +39,7 @@ class Disk {
 
   int number_;
   int failure_ = 0;
-  haddr_t used_ = 0;  ///< bytes that HDF5 has given away
+  haddr_t used_ = 0;  ///< bytes allocated by HDF5
   haddr_t size_ = 0;  ///< bytes written
   Record record_{};
 };

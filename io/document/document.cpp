@@ -19,7 +19,7 @@ constexpr std::size_t longest_shown_line = 200;
 
 bool continues_character(char c) { return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U; }
 
-/// Columns of the messages count characters, so that the caret stands under the right one.
+/// The number of characters.  Columns of messages count characters, so that the caret is below the right one.
 int count_characters(std::string_view text)
 {
   return static_cast<int>(std::count_if(text.begin(), text.end(), [](char c) { return !continues_character(c); }));
@@ -53,7 +53,7 @@ std::string::const_iterator first_control(const std::string& text)
 std::string shown_line(std::string_view line)
 {
   std::string shown(line.size() <= longest_shown_line ? line : "");
-  std::replace(shown.begin(), shown.end(), '\t', ' ');  // or the caret would stand elsewhere
+  std::replace(shown.begin(), shown.end(), '\t', ' ');  // a tab would shift the caret
   return shown;
 }
 
@@ -96,7 +96,7 @@ SceneError problem_at(const Place& place, std::string path, std::string message)
 
 namespace {
 
-/// In double quotes, which can hold any character.
+/// The text in double quotes, in which any character can be written.
 std::string quoted_text(std::string_view text)
 {
   std::string out = "\"";
@@ -108,7 +108,7 @@ std::string quoted_text(std::string_view text)
   return out + '"';
 }
 
-/// `inside` brackets some more characters mean something.
+/// The value on one line.  `inside` brackets more characters have a meaning and need quotes.
 std::string one_line_of(const Node& value, bool inside)
 {
   std::vector<std::string> items;
@@ -145,13 +145,13 @@ void Problems::throw_if_any() const
 
 namespace {
 
-/// One step of a path: a key of a mapping or the number of a list's entry.
+/// One step of a path: a key of a mapping or the index of a list entry.
 struct Step {
   std::string_view key;
   std::optional<std::size_t> number;
 };
 
-/// "a.b[2].c" in its steps, or nothing if it is no such path.
+/// The steps of a path such as "a.b[2].c"; nothing if it is not a valid path.
 std::optional<std::vector<Step>> steps_of(std::string_view path)
 {
   std::vector<Step> steps;
@@ -181,7 +181,7 @@ std::optional<std::vector<Step>> steps_of(std::string_view path)
   return expects_key ? std::nullopt : std::optional(std::move(steps));
 }
 
-/// `in`: the value that the step leads into, and `node` the one to which it leads.
+/// The path extended by a step; `in` is the value that contains the step, `node` the value that it leads to.
 std::string extended(const std::string& path, const Step& step, const Node& in, const Node& node)
 {
   return step.number ? path_to(path, *step.number, node) : path_to(path, in.word_for(step.key));

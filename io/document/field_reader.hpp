@@ -1,5 +1,5 @@
 #pragma once
-// Fills structs from a document by their field lists: the same few lines for every block, law and shape.
+// Fills structs from a document by their field lists: one implementation for all blocks, laws and shapes.
 #include <concepts>
 #include <functional>
 #include <string>
@@ -24,8 +24,8 @@ concept HasWhere = requires(T& object)
   object.where = SourceLocation{};
 };
 
-/// One mapping while it is read.  A key that nobody asked for is an error; rules between keys are checked at the end, and only
-/// if the keys themselves are right, so that one mistake makes one message.
+/// One mapping while it is read.  A key that is not in the field list is an error.  Rules between keys are checked at the end, and only if
+/// the keys themselves are correct, so that one mistake gives one message.
 class Mapping {
  public:
   Mapping(const Node& node, std::string path, Problems& problems)
@@ -33,15 +33,15 @@ class Mapping {
   {}
 
   SourceLocation where() const { return to_where(node_.place, path_); }
-  /// With the word for the key that stands there.
+  /// The path of a key, with the name that is used in the file.
   std::string path_of(std::string_view key) const { return path_to(path_, node_.word_for(key)); }
   void complain(std::string message) { problems_.add(node_.place, path_, std::move(message)); }
 
-  /// The value of a key, or nothing; the key is known from now on.
+  /// The value of a key, or nullptr; the key counts as known from now on.
   const Node* find(std::string_view key);
-  /// The same, with a complaint if it is missing.
+  /// The value of a key; a missing key is recorded as an error.
   const Node* find_required(std::string_view key, std::string_view unit);
-  /// The keys of this mapping cannot be known: the key that says so is wrong.
+  /// Disables the check for unknown keys, because the key that determines the valid ones is wrong.
   void accept_any_key() { any_key_ = true; }
   void check_later(std::function<void(std::vector<std::string>&)> check) { checks_.push_back(std::move(check)); }
   void close();
@@ -56,12 +56,12 @@ class Mapping {
   std::vector<std::function<void(std::vector<std::string>&)>> checks_;
 };
 
-/// Reads values by their type.  Nothing throws: problems are collected, and what is wrong keeps its default.
+/// Reads values by their type.  Nothing is thrown: errors are collected, and a wrong value keeps its default.
 class FieldReader {
  public:
   explicit FieldReader(Problems& problems) : problems_(problems) {}
 
-  /// A mapping: every field of T::fields(), then T::check if there is one.
+  /// Reads a mapping: every field of T::fields(), then T::check if it exists.
   template <HasFields T>
   void read(const Node& node, const std::string& path, const Asked&, T& object)
   {
@@ -72,7 +72,7 @@ class FieldReader {
     mapping.close();
   }
 
-  /// A mapping whose key `type` chooses the struct.
+  /// Reads a mapping whose key `type` chooses the struct.
   template <HasFields... T>
   void read(const Node& node, const std::string& path, const Asked&, std::variant<T...>& object)
   {
@@ -114,10 +114,10 @@ class FieldReader {
 
   void read(const Node& node, const std::string& path, const Asked& asked, Table& table);
 
-  /// Whatever stands there.
+  /// Copies the value, whatever it is.
   void read(const Node& node, const std::string& path, const Asked& asked, Node& value);
 
-  /// Number, whole number, switch, text, word of an enum.
+  /// Reads a number, integer, bool, text or word of an enum.
   template <class T>
   requires requires(const Node& node, T& value) { read_scalar(node, Asked{}, value); }
   void read(const Node& node, const std::string& path, const Asked& asked, T& value)
@@ -139,7 +139,7 @@ class FieldReader {
       mapping.check_later([&object](std::vector<std::string>& problems) { object.check(problems); });
   }
 
-  /// A field may be that of a base: it tells which.
+  /// The struct that declares a field, which may be a base of the law.
   template <class T, class Value>
   void read_field(Mapping& mapping, const Parameter<T, Value>& field, std::type_identity_t<T>& object)
   {
@@ -179,7 +179,7 @@ class FieldReader {
       read(*node, mapping.path_of(key), asked, value);
   }
 
-  /// The struct that `key` names, and its fields out of the same mapping.
+  /// Reads the struct that `key` names, and its fields from the same mapping.
   template <HasFields... T>
   void read_alternative(Mapping& mapping, std::string_view key, std::variant<T...>& object)
   {
@@ -198,7 +198,7 @@ class FieldReader {
       problems_.add(mapping.find(key)->place, mapping.path_of(key), unknown_word(key, chosen, {std::string(T::name)...}));
   }
 
-  /// True if the value is of that kind; otherwise complains, unless somebody did before.
+  /// Whether the value is of that kind; otherwise records an error, unless there is one already.
   bool is(Node::Kind kind, const Node& node, const std::string& path, std::string_view expected);
   static std::string count_message(std::size_t wanted, std::size_t found);
   static std::string unknown_word(std::string_view key, const std::string& word, const std::vector<std::string>& known);

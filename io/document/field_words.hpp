@@ -1,5 +1,5 @@
 #pragma once
-// What the reference and the schema tell of a field besides what its list says.
+// Descriptions of a field for the reference and the schema beyond its field list.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,7 +19,7 @@ concept IsList = requires(const T& list)
 }
 &&!std::same_as<T, std::string>;
 
-/// The default of an optional key.  A number out of its range and an empty text stand for "not given".
+/// The default of an optional key.  A number out of its range and an empty text mean "not given".
 template <class T>
 std::string default_of(const T& value, const Range& range)
 {

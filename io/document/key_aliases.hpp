@@ -1,19 +1,18 @@
 #pragma once
-// Keys that have a second word, in every mapping that has them.
+// Keys with a second name, in every mapping that has them.
 #include <array>
 #include <string_view>
 
 namespace talus {
 
-/// The other word for a key; empty where there is none.  Readers of YAML 1.1 (PyYAML, Ruby's) take the key `on` for the switch true, and programs
-/// that read a scene with them and write it again leave `true` there: `where` comes through as it is.
+/// The other name of a key; empty if it has none.  Readers of YAML 1.1 (PyYAML, Ruby's) read the key `on` as the boolean true, and programs
+/// that read and rewrite a scene with them write `true`; `where` is not changed.
 constexpr std::string_view other_word_for(std::string_view key) noexcept { return key == "on" ? "where" : key == "where" ? "on" : ""; }
 
-/// Whether such a reader has made this of the key `on`.
+/// Whether such a program has turned the key `on` into this.
 constexpr bool was_on(std::string_view key) noexcept { return key == "true" || key == "True"; }
 
-/// Says what to use instead of a choice that Talus had and has no longer: the path of a key ("projected.values") or a kernel.  Empty for
-/// any other choice.
+/// Advice for a choice that Talus has removed: the path of a key ("projected.values") or a kernel.  Empty for any other choice.
 constexpr std::string_view removed_choice(std::string_view choice) noexcept
 {
   if (choice == "projected.values")
@@ -23,12 +22,12 @@ constexpr std::string_view removed_choice(std::string_view choice) noexcept
   return "";
 }
 
-/// What is to be said of a key that no mapping has, because it belongs to something that Talus does not compute; empty of any other key.
+/// Advice for an unknown key that belongs to a process that Talus does not compute; empty for any other key.
 constexpr std::string_view not_computed(std::string_view key) noexcept
 {
   constexpr std::array<std::string_view, 11> flow{"permeab",  "hydraulic",     "seepage",     "darcy",         "consolidation", "biot",
                                                   "porosity", "fluid_density", "water_bulk_", "storage_coeff", "infiltration"};
-  const auto has = [&](std::string_view word) {  // at the beginning of a word: preconsolidation is a property of a skeleton
+  const auto has = [&](std::string_view word) {  // only at the beginning of a word: preconsolidation is a property of a skeleton
     const std::size_t at = key.find(word);
     return at != key.npos && (at == 0 || key[at - 1] == '_');
   };

@@ -18,13 +18,13 @@ std::string in_unit(std::string_view unit) { return unit == "-" ? "" : fmt::form
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// The number's text without a plus sign, which from_chars does not know.
+/// The number's text without a plus sign, which from_chars does not accept.
 std::string_view without_plus(std::string_view text)
 {
   return text.starts_with('+') && text.size() > 1 && text[1] != '-' && text[1] != '+' ? text.substr(1) : text;
 }
 
-/// Why a text is not a number, as far as a reason can be seen in it.
+/// The reason why a text is not a number, if one can be found.
 std::string not_a_number(std::string_view text, std::string_view kind, std::string_view unit)
 {
   Real number = 0;
@@ -39,14 +39,14 @@ std::string not_a_number(std::string_view text, std::string_view kind, std::stri
   return fmt::format("{} is not a {}{}", in_quotes(text), kind, hint);
 }
 
-/// A leading zero means octal to some readers and decimal to others.
+/// Whether a number has a leading zero: some readers take it as octal, others as decimal.
 bool looks_octal(std::string_view text)
 {
   const std::size_t sign = text.starts_with('-') || text.starts_with('+') ? 1 : 0;
   return text.size() > sign + 1 && text[sign] == '0' && is_digit(text[sign + 1]);
 }
 
-/// ".nan", "-.inf" and what other formats call these.
+/// Whether the text is ".nan", "-.inf" or a similar word of other formats.
 bool names_no_finite_number(std::string_view text)
 {
   std::string word;

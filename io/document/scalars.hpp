@@ -1,5 +1,5 @@
 #pragma once
-// From the text of a scalar to a number, a switch or a word: strict, and with a reason when it is refused.
+// Strict conversion of the text of a scalar to a number, bool or word, with a reason for each refusal.
 #include <algorithm>
 #include <optional>
 #include <string>
@@ -11,16 +11,16 @@
 
 namespace talus {
 
-/// What is wrong with a value, in words; nothing if it is right.
+/// The error of a value, in words; nothing if it is correct.
 using Complaint = std::optional<std::string>;
 
-/// What a field list asks of a value, besides its type.
+/// The requirements of a field list on a value, besides its type.
 struct Asked {
   Range range = any;
   std::string_view unit = "-";
 };
 
-/// What the value is called in messages: "a number".
+/// The name of a type in messages: "a number".
 constexpr std::string_view scalar_name(Real) { return "a number"; }
 constexpr std::string_view scalar_name(Index) { return "a whole number"; }
 constexpr std::string_view scalar_name(bool) { return "true or false"; }
@@ -29,10 +29,10 @@ template <class Enum>
 requires std::is_enum_v<Enum>
 constexpr std::string_view scalar_name(Enum) { return "a word"; }
 
-/// Decimal, finite, no leading zeros, no quotes, inside the range.  `value` is written only when nothing is wrong.
+/// A number: decimal, finite, no leading zeros, no quotes, inside the range.  `value` is written only if there is no error.
 Complaint read_scalar(const Node& node, const Asked& asked, Real& value);
 Complaint read_scalar(const Node& node, const Asked& asked, Index& value);
-/// true or false, spelt like that.
+/// true or false, in this spelling.
 Complaint read_scalar(const Node& node, const Asked& asked, bool& value);
 /// Any text that is not empty.
 Complaint read_scalar(const Node& node, const Asked& asked, std::string& value);

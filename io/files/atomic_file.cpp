@@ -1,4 +1,4 @@
-// POSIX calls behind write_whole: a stream cannot be told to reach the disk.
+// POSIX calls of write_whole: C++ streams cannot flush to the disk.
 #include "io/files/atomic_file.hpp"
 
 #include <fcntl.h>
@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 void sync(const fs::path& path, int flags, const fs::path& file)
 {
   const FileDescriptor opened(path, flags);
-  // Some network file systems know no fsync of a folder and answer EINVAL; the rename has happened all the same.
+  // Some network file systems do not support fsync of a folder and return EINVAL; the rename is done nevertheless.
   if (!opened.is_open() || (::fsync(opened.number()) != 0 && errno != EINVAL))
     fail(file, "write", errno);
 }
@@ -36,7 +36,7 @@ void sync(const fs::path& path, int flags, const fs::path& file)
 fs::path temporary_of(const fs::path& file) { return file.string() + ".tmp"; }
 fs::path folder_of_file(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : fs::path("."); }
 
-/// Removes the temporary unless it has become the file.
+/// Removes the temporary file unless it has been renamed.
 class Temporary {
  public:
   explicit Temporary(const fs::path& file) : path_(temporary_of(file)) {}
@@ -56,7 +56,7 @@ class Temporary {
   bool kept_ = false;
 };
 
-/// If it is missing.
+/// Makes the folder if it does not exist.
 void make_folder_of(const fs::path& file)
 {
   const fs::path folder = folder_of_file(file);
@@ -66,18 +66,18 @@ void make_folder_of(const fs::path& file)
     fail(folder, "make the folder", failed.value());
 }
 
-/// What is on the disk already becomes the file.
+/// Renames a file that is already on the disk to its final name.
 void put_in_place(Temporary& temporary, const fs::path& file)
 {
   set_aside_unless_proved(file);
-  note_result(file, temporary.path());  // before it is there: a run that is killed leaves no file that is not in the list
+  note_result(file, temporary.path());  // before the rename: a killed run leaves no file that is not in the list
   if (::rename(temporary.path().c_str(), file.c_str()) != 0)
     fail(file, "write", errno);
   temporary.keep();
   sync(folder_of_file(file), O_RDONLY | O_DIRECTORY, file);
 }
 
-/// The part of a rank in a file that all write.
+/// The part of one rank in a file that all ranks write.
 class Shared {
  public:
   Shared(const fs::path& path, const fs::path& file) : file_(file), opened_(path, O_WRONLY)
@@ -97,7 +97,7 @@ class Shared {
       }
     }
   }
-  /// What this rank has written is on the disk when it returns.
+  /// Returns when the bytes of this rank are on the disk.
   void finish() const
   {
     if (failure_ != 0)
@@ -148,13 +148,13 @@ try {
   write_text(temporary.path(), text, file);
   if (::rename(temporary.path().c_str(), file.c_str()) == 0)
     temporary.keep();
-} catch (const EnvironmentError&) {  // such as a full disk: who has more to write will say so
+} catch (const EnvironmentError&) {  // for example a full disk: the next write reports it
 }
 
 void write_together(Communicator& ranks, const fs::path& file, const std::function<void(const fs::path&)>& begin,
                     const std::function<void(const PutBytes&)>& write)
 {
-  std::optional<Temporary> temporary;  // of the root
+  std::optional<Temporary> temporary;  // on the root only
   ranks.together([&] {
     make_folder_of(file);
     temporary.emplace(file);

@@ -1,5 +1,5 @@
 #pragma once
-// Files that are there as a whole or not at all: written beside their place, flushed to the disk, then renamed.
+// Atomic writing of files: written to a temporary file, flushed to the disk, then renamed.
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -13,31 +13,32 @@ namespace talus {
 
 class Communicator;
 
-/// Calls write(temporary) with a path in the folder of `file`, then fsync, rename to `file`, fsync of the folder.  The folder is
-/// made if it is missing.  On any failure the temporary is removed and an older `file` is left as it was; EnvironmentError names
-/// `file`.  What `write` throws passes through.
+/// Calls write(temporary) with a path in the folder of `file`, then fsync, rename to `file`, fsync of the folder.  A missing folder is
+/// made.  After a failure the temporary file is removed and an existing `file` is unchanged; EnvironmentError names `file`.  Exceptions of
+/// `write` are passed on.
 void write_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& temporary)>& write);
 
-/// The same for a text.
+/// Writes a text in this way.
 void write_whole(const std::filesystem::path& file, std::string_view text);
 
-/// A text of the moment: whole for whoever reads it, but nobody waits for the disk.  Where that fails nothing has happened.
+/// Writes a text that is short-lived: readers see a complete file, but the disk is not flushed.  If it fails, nothing is changed and
+/// nothing is thrown.
 void write_for_now(const std::filesystem::path& file, std::string_view text);
 
-/// Writes bytes to their place in a file.  It throws nothing but keeps the first error: other ranks are waiting.
+/// Writes bytes at a position of a file.  It throws nothing but keeps the first error, because other ranks are waiting.
 using PutBytes = std::function<void(std::uint64_t at, std::span<const std::byte> bytes)>;
 
-/// As write_whole(), by all ranks: begin(temporary) on the root, which may write some of it or nothing, then write(put) on all of them, each
-/// its bytes.  What goes wrong on one every rank throws, but for what `write` itself throws.
+/// As write_whole(), by all ranks: begin(temporary) on the root, which may write some of the file, then write(put) on all ranks, each its
+/// bytes.  An error on one rank is thrown on all, except for exceptions of `write` itself.
 void write_together(Communicator& ranks, const std::filesystem::path& file,
                     const std::function<void(const std::filesystem::path& temporary)>& begin,
                     const std::function<void(const PutBytes& put)>& write);
 
-/// Why no bytes come out of a file, such as "is a folder"; nothing for an ordinary file.  A pipe would keep its reader waiting, a device
-/// has no end.
+/// The reason why a path is not an ordinary file, such as "is a folder"; nothing for an ordinary file.  A pipe would block its reader, a
+/// device has no end.
 std::optional<std::string> not_ordinary(const std::filesystem::path& file);
 
-/// All bytes of an ordinary file; EnvironmentError names the file if it cannot be read.
+/// All bytes of an ordinary file; throws EnvironmentError with its name if it cannot be read.
 std::string read_whole(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -9,21 +9,23 @@
 
 namespace talus {
 
-/// Changes with every word: each step is one to one, so a change inside one word is always noticed, any other but once in 2^64.
+/// Adds a word to a digest.  Each step is one-to-one, so a change within one word is always detected; other changes are missed with a
+/// probability of 2^-64.
 inline std::uint64_t digest_step(std::uint64_t h, std::uint64_t word) noexcept { return std::rotl((h ^ word) * 0x9e3779b97f4a7c15U, 29); }
 
-// HDF5 has checksums of chunks only, which take words 0 and 65535 for the same, and with them a lost page (zeros) for entries of -1, and do not
-// know which array they stand in.  This digest does.  Eight lanes: as fast as memory.  Files are read by it: it must not change.
+// HDF5 has checksums of chunks only, which are equal for words 0 and 65535, and so for a lost page (zeros) and entries of -1, and do not
+// depend on the array.  This digest has neither weakness.  Eight lanes make it as fast as memory.  It is part of file formats and must not
+// change.
 class Digest {
  public:
   static constexpr std::size_t lanes = 8, block = lanes * sizeof(std::uint64_t);
-  /// Of so many bytes.
+  /// Starts a digest for a number of bytes.
   Digest(std::uint64_t seed, std::size_t bytes) noexcept : h_(digest_step(seed, bytes))
   {
     for (std::size_t k = 0; k < lanes; ++k)
       lane_[k] = digest_step(seed, k);
   }
-  /// All but the last time whole blocks.
+  /// Adds bytes; every call but the last needs whole blocks.
   void add(std::span<const std::byte> bytes) noexcept
   {
     std::size_t done = 0;

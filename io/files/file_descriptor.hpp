@@ -1,5 +1,5 @@
 #pragma once
-// A file opened by its POSIX number, which a stream does not give.
+// A file opened by POSIX calls, with its descriptor, which a stream does not provide.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -7,10 +7,10 @@
 
 namespace talus {
 
-/// Closes the file at its end.  A file that is made has the rights 0666, less those that the user's mask takes away.
+/// Closes the file in its destructor.  A new file has the mode 0666 without the bits of the user's mask.
 class FileDescriptor {
  public:
-  /// flags: of open(2); O_CLOEXEC is among them.  Where it fails is_open() is false and errno says why.
+  /// flags: of open(2); O_CLOEXEC is added.  If it fails, is_open() is false and errno has the reason.
   FileDescriptor(const std::filesystem::path& path, int flags) : number_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
   ~FileDescriptor()
   {

@@ -1,4 +1,5 @@
-// A text of one line a file: what it proves, digest, bytes, time of modification [ns], name.  Lines are only appended, each by one write.
+// The list is a text with one line per file: proof, digest, bytes, time of modification [ns], name.  Lines are only appended, each by one
+// write.
 #include "io/files/manifest.hpp"
 
 #include <fcntl.h>
@@ -28,10 +29,10 @@ fs::path list_in(const fs::path& folder) { return folder / own_folder / "files.t
 
 struct Looks {
   std::uint64_t bytes;
-  std::int64_t modified;  // [ns]
+  std::int64_t modified;  // time of modification [ns]
 };
 
-/// Of an ordinary file, and not of what a link leads to.
+/// Size and time of an ordinary file; symbolic links are not followed.
 std::optional<Looks> looks_of(const fs::path& file)
 {
   struct ::stat found {};
@@ -40,7 +41,7 @@ std::optional<Looks> looks_of(const fs::path& file)
   return Looks{static_cast<std::uint64_t>(found.st_size), std::int64_t{found.st_mtim.tv_sec} * 1'000'000'000 + found.st_mtim.tv_nsec};
 }
 
-/// Bytes from `at` on; false if there are not as many.
+/// Reads bytes from `at` on; false if there are not as many.
 bool read_at(const FileDescriptor& file, std::uint64_t at, std::span<std::byte> bytes)
 {
   while (!bytes.empty()) {
@@ -55,8 +56,8 @@ bool read_at(const FileDescriptor& file, std::uint64_t at, std::span<std::byte> 
   return true;
 }
 
-/// Of the first bytes of a file.  Of a large one 1024 pieces are read, spread evenly and its two ends among them: a checkpoint of many gigabytes
-/// is not read back as a whole when it has just been written.
+/// The digest of the first bytes of a file.  For a large file 1024 evenly spread pieces are read, including both ends, so that a checkpoint
+/// of many gigabytes is not read back as a whole.
 std::optional<std::uint64_t> digest_of_file(const fs::path& file, std::uint64_t bytes)
 {
   constexpr std::uint64_t piece = 65536, most_pieces = 1024;
@@ -78,17 +79,17 @@ std::optional<std::uint64_t> digest_of_file(const fs::path& file, std::uint64_t 
   return digest.value();
 }
 
-/// Whether all from byte `at` on may stand in a row of a table of numbers.
+/// Whether the bytes from `at` on contain only characters of a table of numbers.
 bool only_numbers(const fs::path& file, std::uint64_t at)
 {
   const std::string text = read_whole(file);
   return text.size() >= at && text.find_first_not_of("0123456789+-.,einfa\n", at) == text.npos;
 }
 
-/// As much of progress.json as is always the same, its first key.
+/// The length of the constant beginning of progress.json, its first key.
 constexpr std::uint64_t bytes_of_beginning = 12;
 
-/// A folder of results, and the name of a file relative to it.
+/// A results folder, and the name of a file relative to it.
 struct PlaceInFolder {
   fs::path folder;
   std::string name;
@@ -109,7 +110,7 @@ std::optional<PlaceInFolder> place_of(const fs::path& file)
   return std::nullopt;
 }
 
-/// The next word of a line; nothing if it is no number.
+/// The next word of a line as a number; nothing if it is not one.
 template <class T>
 std::optional<T> number(std::string_view& line, int base = 10)
 {
@@ -132,7 +133,7 @@ void append_line(const fs::path& list, const std::string& line, const fs::path& 
   const FileDescriptor opened(list, O_RDWR | O_APPEND);
   if (!opened.is_open())
     fail();
-  // A line that was cut short, on a full disk, must not take this one with it.
+  // Starts a new line if the last one was truncated, for example by a full disk.
   const off_t end = ::lseek(opened.number(), 0, SEEK_END);
   char last = '\n';
   const bool cut_short = end > 0 && ::pread(opened.number(), &last, 1, end - 1) == 1 && last != '\n';
@@ -160,7 +161,7 @@ std::optional<Manifest> Manifest::of(const fs::path& folder)
   for (std::size_t begin = 0, end = text.find('\n'); end != text.npos; begin = end + 1, end = text.find('\n', begin)) {
     std::string_view line = std::string_view(text).substr(begin, end - begin);
     if (line.size() < 2 || std::string_view("wbg").find(line[0]) == std::string_view::npos || line[1] != ' ')
-      continue;  // cut short, or of another hand: it proves nothing
+      continue;  // truncated or written by someone else: not a proof
     const auto proof = static_cast<Proof>(line[0]);
     line.remove_prefix(2);
     const auto digest = number<std::uint64_t>(line, 16);

@@ -1,17 +1,17 @@
 #pragma once
-// The maps that a run with outputs.runout leaves: what they are called, and what they hold.
+// The maps that a run with outputs.runout writes: their names and contents.
 #include <array>
 #include <string_view>
 
 namespace talus {
 
 struct MapKind {
-  std::string_view name;   ///< of the file, without its ending, and of the column of a section
-  std::string_view title;  ///< for people
+  std::string_view name;   ///< name of the file without its ending, and of the column of a section
+  std::string_view title;  ///< title in pictures
   std::string_view unit;
 };
 
-/// Those of the ground are surfaces to draw on; the others have a value only where something has moved.
+/// All kinds of maps.  Maps of the ground are surfaces to draw on; the others have a value only where material has moved.
 inline constexpr std::array map_kinds{
     MapKind{"ground", "ground before", "m"},        MapKind{"base", "base", "m"},
     MapKind{"surface", "surface after", "m"},       MapKind{"surface_max", "highest surface", "m"},

@@ -8,7 +8,7 @@ namespace talus {
 
 namespace {
 
-/// What a Mesh and the MeshData it is made of hold of each cell [B]: its nodes three times, its neighbours, volume, altitude, gradients.
+/// The memory of each cell in a Mesh and its MeshData [B]: its nodes three times, neighbours, volume, altitude, gradients.
 template <int D>
 constexpr Real bytes_of_cell = 4 * (D + 1) * sizeof(Index) + (2 + D * (D + 1)) * sizeof(Real);
 

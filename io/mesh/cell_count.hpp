@@ -1,15 +1,15 @@
 #pragma once
-// How many cells a mesh may have, asked before they are made.
+// Limits on the number of cells, checked before a mesh is made.
 #include <string>
 
 #include "io/scene/scene.hpp"
 
 namespace talus {
 
-/// Meshes with more cells than this are taken for a slip of the pen: 10^8 tetrahedra need about 100 GB.
+/// Larger meshes are taken for a typing error: 10^8 tetrahedra need about 100 GB.
 inline constexpr Real most_cells = 1e8;
 
-/// Throws SceneErrors if so many cells, which `key` asks for, are more than that or than the memory there is holds.
+/// Throws SceneErrors if the number of cells, which follows from `key`, exceeds this limit or the memory of the machine.
 template <int D>
 void check_cells(Real cells, const std::string& key, const MeshSpec& spec);
 

@@ -1,4 +1,4 @@
-// What libtalus_gmsh.so shows.
+// The functions that libtalus_gmsh.so exports.
 #include "io/mesh/gmsh_plugin.hpp"
 
 extern "C" {

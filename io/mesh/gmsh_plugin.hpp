@@ -1,11 +1,11 @@
 #pragma once
-// The way to gmsh, which is a part of its own (libtalus_gmsh.so): it brings a hundred libraries, and to load them takes longer than many a
-// command. It is opened where a mesh is to be made by gmsh.
+// Access to gmsh, which is in a plugin (libtalus_gmsh.so), because it loads a hundred libraries and that takes longer than many a command.
+// The plugin is opened when gmsh has to make a mesh.
 #include "io/mesh/gmsh_regions.hpp"
 
 namespace talus {
 
-/// The functions of gmsh_regions.hpp, as the part hands them out.
+/// The functions of gmsh_regions.hpp, as exported by the plugin.
 template <int D>
 struct GmshFunctions {
   MeshData<D> (*mesh_geometry)(const MeshSpec&, const std::filesystem::path&);
@@ -17,9 +17,9 @@ struct GmshPart {
   MeshData<2> (*mesh_plan)(const std::vector<Polygon>&, const std::function<Real(const Vec<2>&)>&, Real, const SourceLocation&);
 };
 
-/// EnvironmentError: the part is not where it belongs, beside the program or its libraries, or cannot be loaded.
+/// The plugin.  Throws EnvironmentError if it is not beside the program or its libraries, or cannot be loaded.
 const GmshPart& gmsh();
-/// Its functions for one dimension.
+/// The functions for one dimension.
 template <int D>
 const GmshFunctions<D>& gmsh();
 

@@ -35,7 +35,7 @@ class MshReader {
   }
 
  private:
-  /// f(), its complaints located at what was read last.
+  /// Calls f(); errors get the position that was read last.
   template <class F>
   auto located(F&& f)
   {
@@ -105,7 +105,7 @@ class MshReader {
     }
   }
 
-  /// Geometric entities of 4.1: only their physical groups matter.
+  /// Reads the geometric entities of format 4.1, of which only physical groups are used.
   void read_entities()
   {
     if (have_entities_)
@@ -130,7 +130,7 @@ class MshReader {
       source_.real("the bounding box of an entity");
     const std::int64_t n = source_.count("the number of groups of an entity", 2, 4);
     for (std::int64_t i = 0; i < n; ++i)
-      entity->second.push_back(std::abs(source_.integer("the tag of a group")));  // the sign is an orientation
+      entity->second.push_back(std::abs(source_.integer("the tag of a group")));  // the sign is the orientation
     if (dimension == 0)
       return;
     const std::int64_t bounding = source_.count("the number of bounding entities", 2, 4);
@@ -170,7 +170,7 @@ class MshReader {
     return {x, y, z};
   }
 
-  /// What opens $Nodes and $Elements in 4.1: blocks, items in all, range of their tags.
+  /// The beginning of $Nodes and $Elements in 4.1: numbers of blocks and items, range of tags.
   struct Contents {
     std::int64_t blocks, items, low, high;
   };
@@ -244,7 +244,7 @@ class MshReader {
       source_.end_line("the number of elements");
     source_.check_count(n, "the number of elements", 8, 8);
     for (std::int64_t seen = 0; seen < n;) {
-      // In text every element carries type and number of tags, in binary a block of them does.
+      // In text every element has type and number of tags, in binary a block of elements does.
       std::int64_t tag = 0, in_block = 1;
       if (!source_.binary())
         tag = source_.integer("the tag of an element");
@@ -266,7 +266,7 @@ class MshReader {
 
   void read_element_2(std::int64_t tag, int dimension, std::int64_t n_tags)
   {
-    std::int64_t group = 0;  // the first tag; zero is no group
+    std::int64_t group = 0;  // the first tag; zero means no group
     for (std::int64_t i = 0; i < n_tags; ++i) {
       const std::int64_t value = source_.integer("a tag of an element");
       if (i == 0)
@@ -316,9 +316,9 @@ class MshReader {
 
   MshSource source_;
   MshAssembler<D> assembler_;
-  int version_ = 0;  ///< 2 or 4
+  int version_ = 0;  ///< version of the format, 2 or 4
   bool have_entities_ = false, nodes_read_ = false, elements_read_ = false;
-  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> groups_of_;  ///< entity (dimension, tag) -> groups
+  std::map<std::pair<int, std::int64_t>, std::vector<std::int64_t>> groups_of_;  ///< groups of each entity (dimension, tag)
 };
 
 }  // namespace

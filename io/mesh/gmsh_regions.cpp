@@ -15,7 +15,7 @@ namespace talus {
 
 namespace {
 
-/// Adds one shape to the OpenCASCADE model and answers its entities of dimension D; complaints name the region.
+/// Adds one shape to the OpenCASCADE model and returns its entities of dimension D; messages name the region.
 template <int D>
 class ShapeMaker {
  public:
@@ -138,8 +138,8 @@ class ShapeMaker {
   }
   static gmsh::vectorpair one(int tag) { return {{D, tag}}; }
 
-  /// A round solid turned about an axis of its own, so that its seam does not lie in the plane of another region's face: gmsh 4.8
-  /// cannot mesh a seam that was cut away.
+  /// A round solid, rotated about its axis so that its seam does not lie in the plane of a face of another region: gmsh 4.8 cannot mesh a
+  /// seam that was cut away.
   static gmsh::vectorpair turned(int tag, const Vec3& centre, const Vec3& axis)
   {
     gmsh::model::occ::rotate({{3, tag}}, centre[0], centre[1], centre[2], axis[0], axis[1], axis[2], 0.7);
@@ -164,7 +164,7 @@ class ShapeMaker {
     return D == 2 ? 0 : polygon.extrude[0];
   }
 
-  /// OpenCASCADE makes nonsense of polygons that cross themselves, in silence.
+  /// The corners of a polygon; throws if it intersects itself, which OpenCASCADE does not detect.
   std::vector<Vec<2>> checked_corners(const std::vector<std::vector<Real>>& ring) const
   {
     std::vector<Vec<2>> corners;
@@ -180,7 +180,7 @@ class ShapeMaker {
       const Vec<2> a = corners[(i + 1) % n] - corners[i], b = corners[p] - corners[i];
       return a[0] * b[1] - a[1] * b[0];
     };
-    const auto apart = [&](std::size_t i, std::size_t j) {  // sides in one line have no sides to tell
+    const auto apart = [&](std::size_t i, std::size_t j) {  // collinear sides do not separate anything
       const Vec<2>&a = corners[i], &b = corners[(i + 1) % n], &p = corners[j], &q = corners[(j + 1) % n];
       return (a.cwiseMax(b).array() < p.cwiseMin(q).array()).any() || (p.cwiseMax(q).array() < a.cwiseMin(b).array()).any();
     };
@@ -197,23 +197,23 @@ class ShapeMaker {
   const RegionSpec& region_;
 };
 
-/// Solids with the name they give to their cells.
+/// Solids with the name of their cell group.
 struct Named {
   std::string name;
   gmsh::vectorpair solids;
 };
 
-/// Cuts solids along each other so that they share faces, and makes physical groups of them.  Returns the name of a solid of which
-/// nothing is left, or an empty one.
+/// Cuts solids along each other so that they share faces, and makes physical groups of them.  Returns the name of a solid of which nothing
+/// is left, or an empty text.
 std::string share_faces(int dimension, const std::vector<Named>& parts)
 {
   gmsh::vectorpair all, unused;
-  std::vector<std::size_t> part_of;  // of every solid
+  std::vector<std::size_t> part_of;  // entry for each solid
   for (std::size_t p = 0; p < parts.size(); ++p) {
     all.insert(all.end(), parts[p].solids.begin(), parts[p].solids.end());
     part_of.resize(all.size(), p);
   }
-  std::vector<gmsh::vectorpair> pieces;  // of every solid
+  std::vector<gmsh::vectorpair> pieces;  // entry for each solid
   if (all.size() > 1)
     gmsh::model::occ::fragment({all.front()}, {all.begin() + 1, all.end()}, unused, pieces);
   else
@@ -224,7 +224,7 @@ std::string share_faces(int dimension, const std::vector<Named>& parts)
   std::vector<std::vector<int>> tags(parts.size());
   for (std::size_t i = 0; i < all.size(); ++i)
     for (const auto& [piece_dimension, tag] : pieces[i])
-      if (piece_dimension == dimension && taken.insert(tag).second)  // a piece belongs to the first solid that has it
+      if (piece_dimension == dimension && taken.insert(tag).second)  // a piece belongs to the first solid that contains it
         tags[part_of[i]].push_back(tag);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     if (tags[p].empty())
@@ -234,7 +234,7 @@ std::string share_faces(int dimension, const std::vector<Named>& parts)
   return {};
 }
 
-/// The solids of an imported file by their names, "Shapes/Part/soil" being "soil".
+/// The solids of an imported file by their names; "Shapes/Part/soil" is "soil".
 std::vector<Named> imported_solids(int dimension)
 {
   gmsh::vectorpair solids;
@@ -244,7 +244,7 @@ std::vector<Named> imported_solids(int dimension)
     std::string name;
     gmsh::model::getEntityName(solids[i].first, solids[i].second, name);
     name = name.substr(name.rfind('/') + 1);
-    if (name.empty() || name.starts_with("Open CASCADE"))  // what OpenCASCADE writes for want of a name
+    if (name.empty() || name.starts_with("Open CASCADE"))  // the default name of OpenCASCADE
       name = fmt::format("part_{}", i + 1);
     by_name[name].name = name;
     by_name[name].solids.push_back(solids[i]);

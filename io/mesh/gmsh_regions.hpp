@@ -1,5 +1,5 @@
 #pragma once
-// What gmsh is asked to mesh: a geometry file, or the inline solids of a scene.
+// Meshing by gmsh: of a geometry file, or of the inline solids of a scene.
 #include <filesystem>
 #include <functional>
 #include <vector>
@@ -9,15 +9,15 @@
 
 namespace talus {
 
-/// A .geo (run), .step, .stp, .brep or .iges (imported in metres); sizes and groups as make_mesh() says.
+/// Meshes a .geo (executed), .step, .stp, .brep or .iges (imported in metres); sizes and groups as in make_mesh().
 template <int D>
 MeshData<D> mesh_geometry(const MeshSpec& spec, const std::filesystem::path& file);
 
-/// The regions as cell groups.  Where two overlap the later one gives way; regions that touch share their faces.
+/// Meshes the regions as cell groups.  An overlap belongs to the earlier region; regions that touch share their faces.
 template <int D>
 MeshData<D> mesh_regions(const MeshSpec& spec);
 
-/// Triangles of edge length size(place), no more than `largest`, in the polygons, with edges along the sides of all of them.
+/// Triangles with edges of length size(place), at most `largest`, in the polygons, with edges along the sides of all of them.
 MeshData<2> mesh_plan(const std::vector<Polygon>& polygons, const std::function<Real(const Vec<2>&)>& size, Real largest,
                       const SourceLocation& where);
 

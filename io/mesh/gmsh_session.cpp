@@ -14,21 +14,21 @@
 namespace talus {
 
 namespace {
-constexpr int delaunay = 1, hxt = 10;  // numbers of Mesh.Algorithm3D
+constexpr int delaunay = 1, hxt = 10;  // values of Mesh.Algorithm3D
 }  // namespace
 
 GmshSession::GmshSession(SourceLocation asked_by) : asked_by_(std::move(asked_by)), threads_(threads())
 {
   try {
-    gmsh::initialize(0, nullptr, false);  // no configuration files: they would change the mesh behind the scene's back
+    gmsh::initialize(0, nullptr, false);  // without configuration files, which would change the mesh of a scene
     gmsh::option::setNumber("General.Terminal", 0);
     gmsh::logger::start();
-    // An error thrown inside the threads of the mesher would end the program: they are collected, and looked for after meshing.
+    // An exception in the threads of the mesher would end the program: errors are collected, and checked after meshing.
     gmsh::option::setNumber("General.AbortOnError", 0);
     gmsh::option::setNumber("General.NumThreads", 1);
     gmsh::option::setNumber("Mesh.RandomSeed", 1);
     gmsh::option::setNumber("Mesh.Algorithm", 6);  // Frontal-Delaunay
-    // HXT is several times faster, but in 4.8 it keeps its random state between meshes and orders volumes by their addresses: no two
+    // HXT is several times faster, but in 4.8 it keeps its random state between meshes and orders volumes by their addresses, so no two
     // meshes are equal.
     gmsh::option::setNumber("Mesh.Algorithm3D", delaunay);
     gmsh::option::setString("Geometry.OCCTargetUnit", "M");
@@ -81,7 +81,7 @@ void GmshSession::set_sizes(const MeshSpec& spec, bool points_count)
   }
   Vec3 low, high;
   gmsh::model::getBoundingBox(-1, -1, low[0], low[1], low[2], high[0], high[1], high[2]);
-  constexpr Real cells_of_cube = D == 2 ? 2.3 : 7;  // so many triangles fill a square, tetrahedra a cube of their edge length
+  constexpr Real cells_of_cube = D == 2 ? 2.3 : 7;  // number of triangles in a square, or tetrahedra in a cube, of their edge length
   Real cells = cells_of_cube;
   for (int d = 0; d < D; ++d)
     cells *= (high[d] - low[d]) / *spec.size;
@@ -108,7 +108,7 @@ void GmshSession::set_sizes(const MeshSpec& spec, bool points_count)
     }
     set("VIn", size);
     set("VOut", std::max(size, *spec.size));
-    set("Thickness", 3 * std::max(0.0, *spec.size - size));  // neighbouring edges differ by a third at most
+    set("Thickness", 3 * std::max(0.0, *spec.size - size));  // neighbouring edges differ by at most a third
     fields.push_back(field);
   }
   if (fields.empty())

@@ -12,7 +12,7 @@ namespace talus {
 
 namespace {
 
-/// The sections of a file, in text or in bytes.
+/// Writes the sections of a file, in text or binary form.
 class MshSink {
  public:
   explicit MshSink(MshKind kind) : binary_(kind == MshKind::binary) {}
@@ -51,8 +51,8 @@ class MshSink {
   bool binary_;
 };
 
-/// Nodes of the elements of one dimension, one element after the other, by the groups they are in: in 4.1 groups consist of
-/// entities, and entities of elements.
+/// Nodes of the elements of one dimension, element after element, by the combination of groups: in 4.1 groups consist of entities, and
+/// entities of elements.
 using ByGroups = std::map<std::vector<std::int32_t>, std::vector<Index>>;
 
 template <int D>
@@ -168,7 +168,7 @@ class MshWriter {
     return x;
   }
 
-  /// A point has a place, any other entity a bounding box.
+  /// Writes the position of a point, or the bounding box of any other entity.
   void write_bounds(int dimension, const std::vector<Index>& nodes)
   {
     Vec3 low = place_of(nodes[0]), high = low;
@@ -241,8 +241,8 @@ class MshWriter {
 
   const Mesh<D>& mesh_;
   MshSink sink_;
-  std::vector<std::pair<int, std::string>> names_;  ///< dimension and name of the groups, which are numbered from 1 through all dimensions
-  std::array<ByGroups, 4> elements_;                ///< by dimension
+  std::vector<std::pair<int, std::string>> names_;  ///< dimension and name of the groups, which are numbered from 1 over all dimensions
+  std::array<ByGroups, 4> elements_;                ///< entry for each dimension
 };
 
 }  // namespace

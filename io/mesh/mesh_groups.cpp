@@ -28,7 +28,8 @@ FacetNodes<D> nodes_of(const MeshData<D>& data, Index cell, int local)
   return nodes;
 }
 
-/// f(nodes of the facet, its cell in the group, its number there) for every facet between a cell in the group and one that is not, or nothing.
+/// Calls f(nodes of the facet, its cell in the group, its local number) for every facet between a cell in the group and one outside, or no
+/// cell.
 template <int D, class F>
 void for_each_outer_facet(const MeshData<D>& data, const FacetMatch<D>& match, std::span<const std::uint8_t> in_group, F&& f)
 {
@@ -91,7 +92,8 @@ std::vector<std::uint8_t> marks_of(const MeshData<D>& data, const std::string& c
   return marks;
 }
 
-/// Which facets of a set face a direction.  Facets of an outline have one normal, out of it; of any other facet inside the mesh either side counts.
+/// Finds which facets of a set face a direction.  Facets of an outline have one outward normal; for other facets inside the mesh both sides
+/// count.
 template <int D>
 class FacingFacets {
  public:
@@ -132,13 +134,13 @@ class FacingFacets {
   std::map<FacetNodes<D>, Vec<D>> outwards_;
 };
 
-/// Distance in the x-y plane from a place to a side.
+/// The distance in the x-y plane of a position from a side.
 Real distance_to(const Vec<2>& x, const std::vector<Real>& a, const std::vector<Real>& b)
 {
   return (closest_point({Vec<2>(a[0], a[1]), Vec<2>(b[0], b[1])}, x) - x).norm();
 }
 
-/// Chooses from the outline of a region what lies on the sides of the shapes that it is put together from.
+/// Selects the facets of a region's outline that lie on the sides of its shapes.
 template <int D>
 class SidesOfRegion {
  public:
@@ -225,10 +227,10 @@ void add_automatic_groups(MeshData<D>& data)
 {
   const FacetMatch<D> match = match_of(data);
   if (match.crowded)
-    return;  // no mesh at all, as its constructor will say
+    return;  // not a valid mesh, as its constructor will report
   const auto boundary = boundary_of(data, match);
   const auto [low, high] = bounds_of(data);
-  // Meshers and text files leave round-off in coordinates; cells a million times smaller than the mesh cannot be run.
+  // Meshers and text files leave round-off in coordinates; a mesh with cells a million times smaller than itself cannot be run.
   const Real slack = 1e-6 * (high - low).norm();
   for (int axis = 0; axis < D; ++axis)
     for (const bool upper : {false, true}) {
@@ -265,7 +267,7 @@ template <int D>
 void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
 {
   if (!data.facet_sets.contains("boundary"))
-    return;  // no mesh at all, as its constructor will say
+    return;  // not a valid mesh, as its constructor will report
   for (const GroupSpec& group : groups) {
     const auto [all_low, all_high] = bounds_of(data);
     const Vec<D> low = group.within ? vector_of<D>(group.within->low, "within.low", group) : all_low;

@@ -1,5 +1,5 @@
 #pragma once
-// Names for parts of a mesh that no mesher gave: sides of the bounding box, the hull, outlines of cell groups, facets in boxes.
+// Automatic groups of a mesh: sides of the bounding box, the boundary, outlines of cell groups, facets in boxes.
 #include <span>
 
 #include "io/scene/scene.hpp"
@@ -7,20 +7,20 @@
 
 namespace talus {
 
-/// Adds facet sets: `x_min` ... `z_max`, the boundary facets on the sides of the bounding box (none where the boundary only touches
-/// it); `boundary`, all of them; `<group>:boundary` for every cell group, the facets between it and the rest or the outside.
-/// A group that exists already is left as it is.
+/// Adds facet sets: `x_min` ... `z_max`, the boundary facets on the sides of the bounding box (none where the boundary only touches it);
+/// `boundary`, all boundary facets; `<group>:boundary` for every cell group, the facets between it and other cells or the outside.  An
+/// existing group is not changed.
 template <int D>
 void add_automatic_groups(MeshData<D>& data);
 
-/// Adds the sides of regions that have names: `<region>:<side>` for each named side of a polygon, `<region>:hole_<i>` for its holes, counted from
-/// 1, and `<region>:inner` for the inside of a ring, chosen from the outline of the region.  Throws SceneErrors for a named side on which no facet
-/// of the region lies, and for names the mesh has already.  Call it after add_automatic_groups().
+/// Adds the named sides of regions: `<region>:<side>` for each named side of a polygon, `<region>:hole_<i>` for its holes, counted from 1,
+/// and `<region>:inner` for the inside of a ring, selected from the outline of the region.  Throws SceneErrors for a named side without
+/// facets of the region, and for existing names.  To be called after add_automatic_groups().
 template <int D>
 void add_side_groups(MeshData<D>& data, std::span<const RegionSpec> regions);
 
-/// Adds the facet sets of the scene, in order, chosen from sets that exist: call it after add_automatic_groups().  Throws SceneErrors
-/// for a box that is none, where no facet lies in the box or faces the direction, for a name the mesh has already, and for a set to choose from that it has not.
+/// Adds the facet sets of the scene, in order, selected from existing sets.  To be called after add_automatic_groups().  Throws SceneErrors
+/// for an invalid box, if no facet lies in the box or faces the direction, for existing names, and for a missing set to select from.
 template <int D>
 void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups);
 

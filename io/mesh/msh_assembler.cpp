@@ -130,12 +130,12 @@ void MshAssembler<D>::check_cell(std::int64_t tag, const Cell& cell) const
   if constexpr (D == 2) {
     const Real plane = nodes_[cells_.empty() ? cell[0] : cells_[0][0]][2];
     for (const Index n : cell)
-      if (!(std::abs(nodes_[n][2] - plane) <= 1e-9 * extent_))  // round-off of a plane that was turned
+      if (!(std::abs(nodes_[n][2] - plane) <= 1e-9 * extent_))  // round-off of a rotated plane
         refuse("the mesh is not in a plane of constant z: z = {} at node {}, {} elsewhere; a scene of dimension 2 lies in x and y",
                nodes_[n][2], node_tags_[n], plane);
   }
   const Real longest = longest_edge<D>(corners);
-  if (!(std::abs(signed_volume<D>(corners)) > flat_cell * std::pow(longest, D)))  // false for what overflows, too
+  if (!(std::abs(signed_volume<D>(corners)) > flat_cell * std::pow(longest, D)))  // false for overflow too
     refuse("element {} at {} has no volume", tag, place<D>(centre.template head<D>()));
 }
 
@@ -241,7 +241,7 @@ MeshData<D> MshAssembler<D>::finish(bool repeats)
       n = node_number[n];
 
   std::vector<std::uint8_t> in_group(cell_number.size(), 0);
-  std::vector<Index> repeated;  // cells that are there more than once for no reason
+  std::vector<Index> repeated;  // cells that are repeated without a reason
   for (const auto& [key, cells] : cells_of_) {
     auto& set = data.cell_sets[name_of(key)];
     for (const Index c : cells) {

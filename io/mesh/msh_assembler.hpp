@@ -1,5 +1,5 @@
 #pragma once
-// From the nodes, elements and group names of gmsh to MeshData, whoever reads them out of a file or of gmsh itself.
+// Converts nodes, elements and group names of gmsh to MeshData, for readers of files and of gmsh itself.
 #include <cstdint>
 #include <map>
 #include <span>
@@ -11,22 +11,21 @@
 
 namespace talus {
 
-/// Dimension of a first-order simplex of gmsh: 0 for type 15 (point), 1, 2, 3 for types 1, 2, 4 (edge, triangle, tetrahedron).
-/// Throws std::invalid_argument with advice for every other type, and for simplices of more than `highest` dimensions.
+/// The dimension of a first-order simplex of gmsh: 0 for type 15 (point), 1, 2, 3 for types 1, 2, 4 (edge, triangle, tetrahedron).  Throws
+/// std::invalid_argument with advice for every other type, and for simplices of more than `highest` dimensions.
 int dimension_of_element(std::int64_t type, int highest);
 
-/// Fed node by node, then element by element.  Whatever is wrong is thrown as std::invalid_argument, without a place: the caller
-/// knows where it is reading.
+/// Receives nodes, then elements, one by one.  Errors are std::invalid_argument without a position, which the caller knows.
 template <int D>
 class MshAssembler {
  public:
   void name_group(int dimension, std::int64_t tag, std::string name);
   void add_node(std::int64_t tag, const Vec3& x);
-  /// No more nodes: from here on elements may name them.
+  /// Ends the nodes; elements that use them may follow.
   void close_nodes();
-  /// `groups` are the tags of its physical groups (none is fine), `node_tags` dimension + 1 nodes.
+  /// Adds an element with the tags of its physical groups (may be empty) and dimension + 1 nodes.
   void add_element(std::int64_t tag, int dimension, std::span<const std::int64_t> groups, std::span<const std::int64_t> node_tags);
-  /// Nodes that no cell uses are dropped; groups without elements are left out; groups without a name are called
+  /// Returns the mesh.  Nodes of no cell are dropped; groups without elements are left out; groups without a name are called
   /// physical_<dimension>_<tag>.  `repeats`: a cell in several groups was written several times (format 2.2), and becomes one.  A cell that
   /// was written several times in one group, or in none, is noted.
   MeshData<D> finish(bool repeats);
@@ -43,7 +42,7 @@ class MshAssembler {
   std::map<Key, std::string> names_;
   std::vector<Vec3> nodes_;
   std::vector<std::int64_t> node_tags_;
-  std::vector<std::pair<std::int64_t, Index>> by_tag_;  ///< sorted; empty if the tags are consecutive
+  std::vector<std::pair<std::int64_t, Index>> by_tag_;  ///< sorted by tag; empty if the tags are consecutive
   Real extent_ = 0;                                     ///< longest side of the bounding box in x and y [m]
   std::vector<std::int64_t> element_tags_;
   std::vector<Cell> cells_;

@@ -102,7 +102,7 @@ std::optional<std::string> MshSource::next_section()
   if (!binary_) {
     at_ = std::min(bytes_.find_first_not_of(" \t\r", at_), bytes_.size());
   }
-  if (at_ < bytes_.size() && bytes_[at_] == '\n')  // in a binary file exactly this byte and no other blank
+  if (at_ < bytes_.size() && bytes_[at_] == '\n')  // in a binary file exactly this byte and no other white space
     ++at_;
   return std::string(token.substr(1));
 }
@@ -141,7 +141,7 @@ Real MshSource::text_real(std::string_view what)
     token.remove_prefix(1);
   Real value{};
   const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-  // A number too small for a double is out of range, too; it is as good as zero.
+  // A number too small for a double gives out of range too; it is taken as zero.
   if (error == std::errc::result_out_of_range && token.find("e-") != std::string_view::npos)
     return 0;
   if (error != std::errc{} || end != token.data() + token.size())
@@ -226,7 +226,7 @@ void MshSource::check_count(std::int64_t count, std::string_view what, std::int6
   if (count > std::numeric_limits<Index>::max())
     fail(fmt::format("{} is {}, more than can be numbered", what, count));
   const auto left = static_cast<std::int64_t>(bytes_.size() - at_);
-  // The last item of a text needs no blank behind it.
+  // The last item of a text needs no white space after it.
   if (count * (binary_ ? bytes_in_binary : bytes_in_text) > left + 1)
     fail(fmt::format("{} is {}, but only {} bytes are left in the file", what, count, left));
 }

@@ -1,4 +1,4 @@
-// BenchReport as JSON, both ways.
+// BenchReport to JSON and back.
 #include "io/output/bench_json.hpp"
 
 #include <fmt/format.h>

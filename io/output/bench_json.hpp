@@ -1,5 +1,5 @@
 #pragma once
-// What `talus bench` measured, and its file.
+// The results of `talus bench`, and their file.
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -10,34 +10,34 @@
 
 namespace talus {
 
-/// A number that was measured several times.
+/// The statistics of a repeated measurement.
 struct Measured {
   Real median{}, least{}, most{};
 };
 
-/// What runs: words of a scene, and the block it runs on.
+/// A case: words of a scene, and the block that it runs on.
 struct BenchSetting {
   std::string kernel, transfer, law;
   int dimension{}, per_cell{}, threads{};
   std::string precision = "double";
-  std::string option = {};  ///< what the block has besides, such as "f_bar"; empty for nothing
+  std::string option = {};  ///< additional feature of the block, such as "f_bar"; empty for none
   bool operator==(const BenchSetting&) const = default;
 };
 
 struct BenchPhase {
   std::string name;
-  Real ns{};  ///< per particle-step, median
+  Real ns{};  ///< median wall time per particle-step [ns]
 };
 
 struct BenchResult {
   BenchSetting setting;
-  std::int64_t particles{}, steps{};  ///< steps of one repeat
-  Measured ns;                        ///< wall time per particle-step
+  std::int64_t particles{}, steps{};  ///< number of particles; steps of one repeat
+  Measured ns;                        ///< wall time per particle-step [ns]
   Measured cpu;                       ///< processor time of all threads per particle-step [ns]
   std::vector<BenchPhase> phases;
-  std::vector<Real> repeats;  ///< wall time per particle-step of each, in order [ns]
-  Real bytes_held{};          ///< columns and history of a particle [B]
-  Real bytes_moved{};         ///< per particle-step, the least that memory has to bring and take [B]
+  std::vector<Real> repeats;  ///< wall time per particle-step of each repeat, in order [ns]
+  Real bytes_held{};          ///< memory of columns and history of a particle [B]
+  Real bytes_moved{};         ///< least memory traffic per particle-step [B]
   /// Million particle-steps per second and core.
   Real rate() const noexcept { return 1e3 / (ns.median * setting.threads); }
 };
@@ -49,10 +49,10 @@ struct BenchReport {
   std::vector<BenchResult> results;
 };
 
-/// Writes the file as a whole or not at all; EnvironmentError naming it.
+/// Writes the file atomically; throws EnvironmentError with its name.
 void write_bench(const std::filesystem::path& file, const BenchReport& report);
 
-/// Reads such a file.  SceneErrors: it is not there, or it is something else.
+/// Reads such a file.  Throws SceneErrors if it is missing or of another kind.
 BenchReport read_bench(const std::filesystem::path& file);
 
 }  // namespace talus

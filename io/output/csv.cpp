@@ -1,4 +1,4 @@
-// Comma-separated histories, written row by row and read back whole.
+// Comma-separated tables, written row by row and read back as a whole.
 #include "io/output/csv.hpp"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ std::string row(std::span<const Real> values)
   for (std::size_t c = 0; c < values.size(); ++c) {
     line += c == 0 ? "" : ",";
     if (!std::isnan(values[c]))
-      fmt::format_to(std::back_inserter(line), "{}", values[c]);  // {}: the shortest text with the same bits
+      fmt::format_to(std::back_inserter(line), "{}", values[c]);  // {}: the shortest text that gives bitwise the same number
   }
   return line + '\n';
 }
@@ -59,10 +59,9 @@ std::vector<std::string> split(std::string_view line)
   return cells;
 }
 
-/// Spreadsheets run a cell that begins with =, +, - or @ as a formula, and a text may be a name out of a scene of somebody else: csv_cell() puts an
-/// apostrophe before such a text, if it is no number, and one more before one that begins with apostrophes and goes on like that, so that
-/// read_history() can take it off again.
-/// Whether a spreadsheet would take the text, behind the apostrophes that csv_cell() puts before it, for a formula.
+/// Whether a spreadsheet would run a text, after its leading apostrophes, as a formula: it begins with =, +, - or @ and is not a number.
+/// Texts may be names from the scene of another person.  csv_cell() puts an apostrophe before such a text, and one more before a text with
+/// leading apostrophes, so that read_history() can remove it.
 bool looks_like_formula(std::string_view text)
 {
   text.remove_prefix(std::min(text.find_first_not_of('\''), text.size()));
@@ -162,7 +161,7 @@ void HistoryFile::append(std::span<const Real> values)
 
 void HistoryFile::flush() const
 {
-  if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL)  // of what is no file
+  if (::fsync(::fileno(file_.get())) != 0 && errno != EINVAL)  // EINVAL: not an ordinary file
     throw EnvironmentError(fmt::format("cannot write {}: {}", path_.string(), std::strerror(errno)));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Histories: a .csv whose header line names every column with its unit, one row per output time.
+// Histories as .csv: a header line with name and unit of every column, one row per output time.
 #include <cstdio>
 #include <filesystem>
 #include <limits>
@@ -16,31 +16,32 @@ namespace talus {
 
 struct CsvColumn {
   std::string name;
-  std::string unit = {};  ///< empty: a pure number
+  std::string unit = {};  ///< empty for a pure number
   friend bool operator==(const CsvColumn&, const CsvColumn&) = default;
 };
 
-/// A text as one cell: quoted as RFC 4180 says, line ends become blanks.  A text that a spreadsheet would run gets an apostrophe (csv.cpp).
+/// A text as one cell: quoted according to RFC 4180, with line ends as blanks.  A text that a spreadsheet would run as a formula gets an
+/// apostrophe (csv.cpp).
 std::string csv_cell(std::string text);
-/// "name [unit]"
+/// The heading "name [unit]".
 std::string csv_heading(const CsvColumn& column);
 
-/// A history while it is being written.  The first column is the time [s], and times increase.
-/// Every row reaches the file before append() returns; numbers read back as the same bits.  NaN is an empty entry, which spreadsheets and
-/// readers of tables know as "no value".  Disk errors are EnvironmentError.
+/// A history while it is being written.  The first column is the time [s], and times increase.  Every row reaches the file before append()
+/// returns; numbers are bitwise the same when read back.  NaN is written as an empty entry, which spreadsheets read as "no value".  Disk
+/// errors are EnvironmentError.
 class HistoryFile {
  public:
-  /// Starts a new file, replacing an old one.
+  /// Starts a new file, replacing an existing one.
   HistoryFile(std::filesystem::path file, std::vector<CsvColumn> columns);
-  /// Goes on with a file of the same columns behind its last row with time <= `time` [s]; a row cut short by a kill is dropped.
-  /// EnvironmentError if the columns differ.  Without a file there it starts one.
+  /// Continues a file of the same columns after its last row with time <= `time` [s]; a truncated row is dropped.  Throws EnvironmentError
+  /// if the columns differ.  Starts a new file if there is none.
   static HistoryFile resume(std::filesystem::path file, std::vector<CsvColumn> columns, Real time);
 
-  /// values: one per column.
+  /// Appends a row with one value per column.
   void append(std::span<const Real> values);
-  /// Rows are on the disk when it returns.
+  /// Returns when the rows are on the disk.
   void flush() const;
-  Real last_time() const noexcept { return last_time_; }  ///< of the last row [s]; -infinity if there is none
+  Real last_time() const noexcept { return last_time_; }  ///< time of the last row [s]; -infinity without rows
   const std::filesystem::path& path() const noexcept { return path_; }
   std::span<const CsvColumn> columns() const noexcept { return columns_; }
 
@@ -63,12 +64,12 @@ struct HistoryTable {
   std::vector<std::vector<Real>> values;
   /// The column of that name, or nothing.
   std::optional<std::span<const Real>> operator[](std::string_view name) const&;
-  std::optional<std::span<const Real>> operator[](std::string_view name) && = delete;  // the values would be gone
+  std::optional<std::span<const Real>> operator[](std::string_view name) && = delete;  // the span would outlive the values
   std::size_t rows() const noexcept { return values.empty() ? 0 : values.front().size(); }
 };
 
-/// Reads what HistoryFile writes; an empty entry is NaN.  A last line without its line end (a run was killed) is left out; anything else
-/// that is no row of numbers is an EnvironmentError with file and line.
+/// Reads what HistoryFile writes; an empty entry is NaN.  A last line without line end (of a killed run) is left out; anything else that is
+/// not a row of numbers is an EnvironmentError with file and line.
 HistoryTable read_history(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -56,7 +56,7 @@ try {
   return digests;
 } catch (const FosJson::exception&) {
   return {};
-} catch (const EnvironmentError&) {  // there is none yet
+} catch (const EnvironmentError&) {  // the file does not exist yet
   return {};
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// fos.json: the factor of safety of a scene, how it was judged, and the trials.
+// fos.json: the factor of safety of a scene, the criteria, and the trials.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,14 +12,14 @@ namespace talus {
 struct FosTrialRecord {
   Real factor{};
   std::string verdict, message;
-  std::optional<Real> moved, growth, liveliness, duration;  ///< m, -, -, s; nothing where the run broke off
+  std::optional<Real> moved, growth, liveliness, duration;  ///< [m, -, -, s]; nothing if the run ended early
   bool by_growth_alone{};
   std::string folder, command, scene_digest;
 };
 
 struct FosRecord {
   std::string scene, commit;
-  std::optional<Real> factor, low, high;  ///< nothing while the search goes on
+  std::optional<Real> factor, low, high;  ///< nothing while the search continues
   std::vector<Real> out_of_order;
   Real width{}, growth_limit{}, liveliness_limit{};
   Real settlement{}, height{};  ///< m
@@ -27,10 +27,10 @@ struct FosRecord {
   std::vector<FosTrialRecord> trials;
 };
 
-/// Writes the file as a whole.  EnvironmentError.
+/// Writes the file atomically.  Throws EnvironmentError.
 void write_fos(const std::filesystem::path& file, const FosRecord& record);
 
-/// Scene digests of the trials whose run broke off, of a file that is there; what cannot be read has none.
+/// The scene digests of the trials in an existing file whose run ended early; empty if it cannot be read.
 std::vector<std::string> broken_off(const std::filesystem::path& file);
 
 }  // namespace talus

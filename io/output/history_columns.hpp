@@ -1,12 +1,12 @@
 #pragma once
-// Columns of history.csv: one row of a table each.  A column is called with what app/observers/history.cpp knows of what the column belongs to
+// Columns of history.csv, as rows of tables.  The function of a column is called with what app/observers/history.cpp knows of its subject
 // at the time of a row (RunNow, PointNow, ...).
 #include "io/output/csv.hpp"
 #include "io/output/quantity.hpp"
 
 namespace talus {
 
-/// Of every history.  Works are those done on the bodies since the start of the run; losses are positive.
+/// Columns of every history.  Works are those done on the bodies since the start of the run; losses are positive.
 constexpr auto run_columns()
 {
   using enum QuantityKind;
@@ -37,7 +37,7 @@ constexpr auto run_columns()
                        [](const auto& now) { return now.run.state.residual; })};
 }
 
-/// Of each wall.
+/// Columns of each wall: its reaction.
 constexpr auto reaction_columns()
 {
   using enum QuantityKind;
@@ -60,7 +60,7 @@ constexpr auto front_columns()
   return std::tuple{quantity<number>("{}", "m", "coordinate that the share of the mass does not pass", [](const auto& at) { return at; })};
 }
 
-/// Of what bodies do to a wall.
+/// Columns of the action of bodies on a wall.
 constexpr auto wall_columns()
 {
   using enum QuantityKind;
@@ -93,7 +93,7 @@ constexpr auto body_columns()
                        [](const auto& body) { return body.force; })};
 }
 
-/// The columns that a quantity fills, by the name of what it belongs to: one for each of its components.
+/// The columns of a quantity with the name of its subject inserted: one for each of its components.
 std::vector<CsvColumn> csv_columns(std::string_view pattern, std::string_view unit, QuantityKind kind, std::string_view owner,
                                    int dimension);
 

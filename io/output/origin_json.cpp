@@ -11,7 +11,7 @@ namespace talus {
 
 namespace {
 
-/// The text behind a key; a number as it stands.
+/// The text of a key; a number as it is written.
 std::string told(const nlohmann::json& json, const char* key)
 {
   const auto found = json.find(key);

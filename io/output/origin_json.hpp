@@ -1,15 +1,15 @@
 #pragma once
-// Where the results of a run come from: what its summary.json says of program, method and machine.
+// The origin of the results of a run: program, method and machine, from its summary.json.
 #include <filesystem>
 #include <string>
 
 namespace talus {
 
 struct RunOrigin {
-  std::string status, version, commit, compiler, build, kernel, transfer, precision, threads;  ///< "unknown" where the file does not say
+  std::string status, version, commit, compiler, build, kernel, transfer, precision, threads;  ///< "unknown" if not in the file
 };
 
-/// EnvironmentError naming the file: it cannot be read, or is no summary of a run.
+/// Throws EnvironmentError with the name of the file if it cannot be read or is not a summary of a run.
 RunOrigin read_origin(const std::filesystem::path& summary);
 
 }  // namespace talus

@@ -1,11 +1,12 @@
 #pragma once
-// Fields of particles and nodes that a run can write: one row each.
+// Fields of particles and nodes that a run can write, one row each.
 #include "core/tensor.hpp"
 #include "io/output/quantity.hpp"
 
 namespace talus {
 
-/// Fields of outputs.particles, besides the history variables of laws.  Each is called with a State and a row of its particles.
+/// Fields of outputs.particles, besides the history variables of laws.  The function of each is called with a State and a row of its
+/// particles.
 constexpr auto particle_fields()
 {
   using enum QuantityKind;
@@ -42,7 +43,7 @@ constexpr auto particle_fields()
                        [](const auto& state, auto p) { return embed(state.particles.L[p]); })};
 }
 
-/// Fields of outputs.mesh, as the last step left them.  Each is called with a RunView and a row of its nodes.
+/// Fields of outputs.mesh, with the values of the last step.  The function of each is called with a RunView and a row of its nodes.
 constexpr auto node_fields()
 {
   using enum QuantityKind;
@@ -50,7 +51,7 @@ constexpr auto node_fields()
                     quantity<vector>("velocity", "m/s", "velocity", [](const auto& run, auto n) { return run.nodes.motion[n].v; }),
                     quantity<vector>("force", "N", "internal force and loads other than gravity",
                                      [](const auto& run, auto n) { return run.nodes.sum[n].force; }),
-                    // What changed the node's momentum besides forces and gravity; nodes under a wall are not damped.
+                    // The change of momentum not due to forces and gravity; nodes with a boundary condition are not damped.
                     quantity<vector>("reaction", "N", "force of all walls on the node", [](const auto& run, auto n) {
                       const auto& sum = run.nodes.sum[n];
                       auto force = sum.force;

@@ -11,7 +11,7 @@ namespace {
 
 using ProgressJson = nlohmann::ordered_json;
 
-/// f(key, number) for all numbers.
+/// Calls f(key, number) for all numbers.
 template <class Progress, class F>
 void for_each_number(Progress& p, F&& f)
 {
@@ -30,7 +30,7 @@ void for_each_number(Progress& p, F&& f)
 std::optional<Real> RunProgress::left() const noexcept
 {
   const Real here = done - done_before;
-  constexpr Real most = 1e12;  // s
+  constexpr Real most = 1e12;  // largest valid time [s]
   return here > 0 ? std::optional(std::min(elapsed * std::max(total - done, 0.0) / here, most)) : std::nullopt;
 }
 
@@ -50,7 +50,7 @@ try {
   progress.stage = json.at("stage").get<std::string>();
   bool fit = true;
   for_each_number(progress, [&](const char* key, auto& number) {
-    constexpr Real most = 1e15;  // what no run comes to
+    constexpr Real most = 1e15;  // largest valid count
     const Real value = json.at(key).get<Real>();
     fit = fit && value >= 0 && value < most;
     if (fit)
@@ -59,7 +59,7 @@ try {
   return fit ? std::optional(progress) : std::nullopt;
 } catch (const ProgressJson::exception&) {
   return std::nullopt;
-} catch (const EnvironmentError&) {  // it has gone between the question and the answer
+} catch (const EnvironmentError&) {  // the file was removed in the meantime
   return std::nullopt;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// progress.json: how far a run is, for whoever follows it.
+// progress.json: the progress of a run, for programs that follow it.
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
@@ -12,22 +12,22 @@ namespace talus {
 
 struct RunProgress {
   Real done = 0, total = 0;  ///< simulated time of all stages [s]
-  Real done_before = 0;      ///< of it, before this process went on with the run
-  Real time = 0, dt = 0;     ///< clock of the run, last step [s]
+  Real done_before = 0;      ///< part of `done` before this process resumed the run [s]
+  Real time = 0, dt = 0;     ///< time of the run, length of the last step [s]
   std::int64_t step = 0;
   std::string stage;
-  Real elapsed = 0;  ///< of this process [s]
+  Real elapsed = 0;  ///< wall-clock time of this process [s]
   Real particle_steps_per_second = 0;
 
   Real share() const noexcept { return total > 0 ? std::min(done / total, 1.0) : 0; }
-  /// Seconds until the end at the speed so far; nothing as long as nothing is done.
+  /// The seconds until the end at the mean speed so far; nothing before the first progress.
   std::optional<Real> left() const noexcept;
 };
 
-/// Rewrites the file as a whole, without waiting for the disk; where that fails it stays as it was.
+/// Rewrites the file atomically, without a flush to the disk; if that fails the file is unchanged.
 void write_progress(const std::filesystem::path& file, const RunProgress& progress);
 
-/// Nothing if there is no such file, or it is none.
+/// Nothing if the file does not exist or is not valid.
 std::optional<RunProgress> read_progress(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -9,10 +9,10 @@
 
 namespace talus {
 
-/// A moment is a scalar in 2-D, about the third axis, and a vector in 3-D.
+/// The kind of a quantity.  A moment is a scalar in 2-D, about the third axis, and a vector in 3-D.
 enum class QuantityKind : std::uint8_t { number, vector, moment, symmetric, tensor };
 
-/// Numbers per item in files of fields, where vectors of two dimensions have a third component of zero.
+/// Numbers per item in files of fields, where vectors in 2-D have a third component of zero.
 constexpr int components_of(QuantityKind kind)
 {
   using enum QuantityKind;
@@ -23,15 +23,15 @@ constexpr int components_of(QuantityKind kind)
 template <class Value>
 inline constexpr int components_of_history = components_of(std::is_same_v<Value, Sym3> ? QuantityKind::symmetric : QuantityKind::number);
 
-/// Manual, JSON schema, checks of scenes and writers are all made of these rows.  `value` is called with what the program knows of a run and
-/// returns a number, a vector, a Sym3 or a Mat3, as the kind says.  It is a generic lambda, because the types that it is called with belong to
-/// folders above this one.
+/// A quantity.  Manual, JSON schema, checks of scenes and writers are generated from these rows.  `value` is called with data of a run and
+/// returns a number, a vector, a Sym3 or a Mat3, according to the kind.  It is a generic lambda, because the types of its arguments belong
+/// to folders above this one.
 template <QuantityKind kind_, class Value>
 struct Quantity {
   static constexpr QuantityKind kind = kind_;
-  std::string_view name;     ///< of a history column: `{}` stands for the name of the point, wall or body
-  std::string_view unit;     ///< SI; "-" for a pure number; m^D and m^(D-1) depend on the dimension
-  std::string_view meaning;  ///< for the manual
+  std::string_view name;     ///< in names of history columns `{}` stands for the name of the point, wall or body
+  std::string_view unit;     ///< SI unit; "-" for a pure number; m^D and m^(D-1) depend on the dimension
+  std::string_view meaning;  ///< description for the manual
   Value value;
 };
 
@@ -41,7 +41,7 @@ constexpr auto quantity(std::string_view name, std::string_view unit, std::strin
   return Quantity<kind, Value>{name, unit, meaning, value};
 }
 
-/// f(row) for each row of a table of quantities.
+/// Calls f(row) for each row of a table of quantities.
 template <class Table, class F>
 constexpr void for_each_quantity(const Table& table, F&& f)
 {
@@ -62,7 +62,7 @@ using ValueOf = std::conditional_t<kind == QuantityKind::number, Real,
                                                       std::conditional_t<kind == QuantityKind::moment, Vec3,
                                                                          std::conditional_t<kind == QuantityKind::symmetric, Sym3, Mat3>>>>;
 
-/// The value in D dimensions.  A row whose lambda returns something else than its kind says does not compile.
+/// The value in D dimensions.  A row whose lambda returns another type than its kind does not compile.
 template <int D, QuantityKind kind, class Value, class... Of>
 ValueOf<D, kind> value_of(const Quantity<kind, Value>& row, const Of&... of)
 {
@@ -74,7 +74,7 @@ ValueOf<D, kind> value_of(const Quantity<kind, Value>& row, const Of&... of)
   }
 }
 
-/// The unit in so many dimensions, in which the thickness of a plane is one; empty for a pure number.
+/// The unit in a dimension, where a plane has unit thickness; empty for a pure number.
 std::string unit_in(int dimension, std::string_view unit);
 
 }  // namespace talus

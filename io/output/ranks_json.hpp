@@ -1,5 +1,5 @@
 #pragma once
-// What `talus bench --mpi` measured, and its file.
+// The results of `talus bench --mpi`, and their file.
 #include <string>
 #include <vector>
 
@@ -9,17 +9,17 @@ namespace talus {
 
 struct RanksReport {
   std::string version, commit, compiler, build, processor;
-  int cores{};  ///< of the machine of the root
+  int cores{};  ///< cores of the root's machine
   BenchSetting setting;
-  std::int64_t particles{}, cells{}, nodes{};  ///< of the whole
-  int steps{};                                 ///< of a repeat
-  Measured seconds;                            ///< of a step on the slowest rank, over the repeats
-  /// Of each rank: what it owns, holds, sends in a step; seconds of a step by phase in the repeat whose time is the median.
+  std::int64_t particles{}, cells{}, nodes{};  ///< numbers of the whole model
+  int steps{};                                 ///< steps of a repeat
+  Measured seconds;                            ///< time of a step on the slowest rank, over the repeats [s]
+  /// Columns for each rank: what it owns, holds and sends in a step; seconds of a step by phase in the repeat with the median time.
   std::vector<std::string> columns;
   std::vector<std::vector<Real>> ranks;
 };
 
-/// Writes the file as a whole or not at all; EnvironmentError naming it.
+/// Writes the file atomically; throws EnvironmentError with its name.
 void write_ranks(const std::filesystem::path& file, const RanksReport& report);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-// RunSummary as JSON.  Keys keep this order, so two summaries can be compared line by line.
+// RunSummary as JSON.  The order of keys is fixed, so that two summaries can be compared line by line.
 #include "io/output/run_summary.hpp"
 
 #include <fmt/format.h>
@@ -89,7 +89,7 @@ Json cost(const RunSummary& s)
           {"peak_memory [B]", s.peak_memory_bytes}};
 }
 
-/// `object` with how well its balance closes.
+/// `object` with the relative error of its balance.
 Json closed(Json object, const Closure& closure)
 {
   object["closure"] = closure.relative;
@@ -176,7 +176,7 @@ std::string to_json(const RunSummary& s)
   json["warnings"] = s.warnings;
   json["files"] = s.files;
   json["scene"] = {{"file", s.scene_file}, {"digest", s.scene_digest}, {"text", s.scene_text}, {"set", s.overrides}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';  // replace: a scene may hold bytes that are not UTF-8
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';  // replace: a scene may contain bytes that are not UTF-8
 }
 
 void write_summary(const std::filesystem::path& file, const RunSummary& summary) { write_whole(file, to_json(summary)); }

@@ -14,9 +14,9 @@ namespace {
 
 using SummaryJson = nlohmann::ordered_json;
 
-constexpr int most_levels = 32;  // values within values: what is read of a file goes as deep as its values are nested
+constexpr int most_levels = 32;  // most nested levels: the reader is recursive
 
-/// The text behind a key, if there is one.
+/// The text of a key, or an empty text.
 std::string text_behind(const SummaryJson& json, const char* key)
 {
   const auto found = json.find(key);
@@ -29,21 +29,21 @@ std::vector<std::string> texts_behind(const SummaryJson& json, const char* key)
   return found != json.end() ? found->get<std::vector<std::string>>() : std::vector<std::string>();
 }
 
-/// Zero where there is no number.
+/// The number of a key, or zero.
 Real number_behind(const SummaryJson& object, const char* key)
 {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<Real>() : 0;
 }
 
-/// Zero where there is none.
+/// The integer of a key, or zero.
 std::int64_t count_behind(const SummaryJson& json, const char* key)
 {
   const auto found = json.find(key);
   return found != json.end() && found->is_number_integer() ? found->get<std::int64_t>() : 0;
 }
 
-/// "kinetic [J]" -> "kinetic", "J"
+/// Splits "kinetic [J]" into "kinetic" and "J".
 std::pair<std::string, std::string> name_and_unit(const std::string& key)
 {
   const auto open = key.rfind(" [");
@@ -52,7 +52,7 @@ std::pair<std::string, std::string> name_and_unit(const std::string& key)
   return {key.substr(0, open), key.substr(open + 2, key.size() - open - 3)};
 }
 
-/// All numbers below; null is one that was not finite.
+/// Adds all numbers below a value; null is a number that was not finite.
 void add_numbers(const SummaryJson& json, const std::string& path, const std::string& unit, std::vector<NamedValue>& numbers)
 {
   if (json.is_object()) {

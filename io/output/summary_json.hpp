@@ -1,5 +1,5 @@
 #pragma once
-// summary.json read back: how a run ended, what it was made from, and its numbers by name.
+// Reads summary.json: status and origin of a run, and its numbers by name.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,19 +9,19 @@
 namespace talus {
 
 struct SummaryBack {
-  std::string status, message, commit, scene_digest, mesh_digest;  ///< empty where the file does not say
+  std::string status, message, commit, scene_digest, mesh_digest;  ///< empty if not in the file
   std::string title, scene_file;
-  std::vector<std::string> overrides, warnings;  ///< what --set changed of the scene; what the run warned of
-  std::vector<BodySummary> bodies;               ///< without their masses
-  std::string text;                              ///< of the file
-  bool quick = false;                            ///< ended as a quick run
-  std::vector<NamedValue> numbers;               ///< by the path of their keys without units, such as "balances.energy.terms.plastic"
+  std::vector<std::string> overrides, warnings;  ///< changes of the scene by --set; warnings of the run
+  std::vector<BodySummary> bodies;               ///< without masses
+  std::string text;                              ///< text of the file
+  bool quick = false;                            ///< whether it was a quick run
+  std::vector<NamedValue> numbers;               ///< with the path of their keys without units, such as "balances.energy.terms.plastic"
 };
 
-/// EnvironmentError naming the file: it cannot be read, or is no summary of a run.
+/// Throws EnvironmentError with the name of the file if it cannot be read or is not a summary of a run.
 SummaryBack read_summary(const std::filesystem::path& file);
 
-/// The number of that name; or the only one whose path ends in it, such as "energy.closure" or "plastic".
+/// The number of that name, or the only one whose path ends with it, such as "energy.closure" or "plastic".
 const NamedValue* find_number(const std::vector<NamedValue>& numbers, std::string_view name);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-// Files are written here as VTK's own writers lay them out, so that several ranks can write one together.
+// Files have the layout of VTK's own writers; they are written here so that several ranks can write one together.
 #include "io/output/vtk.hpp"
 
 #include <fmt/format.h>
@@ -23,18 +23,18 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view id_name = "id", origin_name = "MadeBy";
 
-/// What stands in front of an array in the appended data of a file with header_type="UInt64" and a compressor.
+/// The header of an array in the appended data of a file with header_type="UInt64" and a compressor.
 struct BlockHeader {
-  std::uint64_t blocks, size, last_size;  ///< number of blocks, bytes of each when unpacked, bytes of the last if it is not whole
+  std::uint64_t blocks, size, last_size;  ///< number of blocks, uncompressed bytes of each, bytes of the last one if it is shorter
 };
 
-/// An array of which every rank has some rows, or the root all of the bytes.
+/// An array of which every rank has some rows, or the root all bytes.
 struct PartOfArray {
   std::span<const std::byte> bytes;
-  std::uint64_t first, of_all;  ///< where they begin, how many all ranks have [bytes]
+  std::uint64_t first, of_all;  ///< position of the first byte of this rank, bytes of all ranks
 };
 
-/// The blocks of this rank, packed, one after the other.
+/// The compressed blocks of this rank, one after the other.
 struct PackedBlocks {
   std::vector<std::uint64_t> sizes;
   std::vector<std::byte> bytes;
@@ -42,7 +42,7 @@ struct PackedBlocks {
 
 PackedBlocks pack_blocks(std::span<const std::byte> bytes, std::uint64_t block_bytes)
 {
-  vtkNew<vtkLZ4DataCompressor> compressor;  // it keeps nothing from block to block
+  vtkNew<vtkLZ4DataCompressor> compressor;  // it keeps no state between blocks
   const std::size_t room = compressor->GetMaximumCompressionSpace(block_bytes);
   const std::size_t n = (bytes.size() + block_bytes - 1) / block_bytes;
   PackedBlocks blocks{std::vector<std::uint64_t>(n), std::vector<std::byte>(n * room)};
@@ -61,7 +61,7 @@ PackedBlocks pack_blocks(std::span<const std::byte> bytes, std::uint64_t block_b
   return blocks;
 }
 
-/// Puts an array at its place: its header, the sizes of all blocks when packed, the blocks.  Returns where it ends.
+/// Writes an array at its position: header, compressed sizes of all blocks, the blocks.  Returns the end of the array.
 std::uint64_t put_array(Communicator& ranks, const PutBytes& put, std::uint64_t at, const PartOfArray& array, std::uint64_t block_bytes)
 {
   const PackedBlocks mine = pack_blocks(array.bytes, block_bytes);
@@ -105,8 +105,8 @@ constexpr std::string_view vtk_type()
   }
 }
 
-/// A VTK file in XML as all ranks write it: lines of text and, named in them, arrays that follow behind them in blocks, packed with LZ4.
-/// Every rank says the same, of arrays its slice.
+/// A VTK file in XML as written by all ranks: lines of text, followed by the arrays that they name, in blocks compressed with LZ4.  Every
+/// rank makes the same calls, with its slice of each array.
 class XmlFile {
  public:
   explicit XmlFile(Communicator& ranks, std::string_view kind, std::int64_t block_bytes)
@@ -120,7 +120,7 @@ class XmlFile {
 
   void line(std::size_t indent, std::string_view text) { head_ += std::string(indent, ' ') + std::string(text) + '\n'; }
 
-  /// Of which `slice` tells the rows here.  `values` have to stay until the file is written.
+  /// Adds an array of which `slice` describes the rows here.  `values` must stay valid until the file is written.
   template <class T>
   void array(std::string_view name, std::span<const T> values, int components, const Slice& slice, const std::string& unit = {})
   {
@@ -146,11 +146,11 @@ class XmlFile {
     array(name, std::span<const T>(values), components, slice, unit);
   }
 
-  /// When and by whom.  Both have to stay as well.
+  /// Adds the time and the program.  Both must stay valid too.
   void origin(const Real& time, const std::string& made_by)
   {
     line(4, "<FieldData>");
-    of_root("<DataArray type=\"Float64\" Name=\"TimeValue\"", std::as_bytes(std::span(&time, 1)));  // the name ParaView looks for
+    of_root("<DataArray type=\"Float64\" Name=\"TimeValue\"", std::as_bytes(std::span(&time, 1)));  // the name that ParaView looks for
     if (!made_by.empty())
       of_root(fmt::format("<Array type=\"String\" Name=\"{}\"", origin_name),
               std::as_bytes(std::span(made_by.c_str(), made_by.size() + 1)));
@@ -190,7 +190,7 @@ class XmlFile {
  private:
   void add(std::string_view words, const PartOfArray& part)
   {
-    constexpr std::size_t room = 21;  // for the digits of any number, and a quote
+    constexpr std::size_t room = 21;  // for the digits of any number, and a quotation mark
     head_ += fmt::format("        {} format=\"appended\" offset=\"", words);
     arrays_.emplace_back(head_.size(), part);
     head_ += std::string(room, ' ');
@@ -205,7 +205,7 @@ class XmlFile {
   std::string_view kind_;
   std::uint64_t block_bytes_;
   std::string head_;
-  std::vector<std::pair<std::size_t, PartOfArray>> arrays_;  // with the place of their offset in the head
+  std::vector<std::pair<std::size_t, PartOfArray>> arrays_;  // each with the position of its offset in the header
 };
 
 void check_columns(std::span<const Column> columns, std::size_t items, const fs::path& file)
@@ -223,7 +223,8 @@ void check_slice(const Slice& slice, std::size_t items, const fs::path& file)
                                             slice.first, slice.piece));
 }
 
-/// from, from + step, ..., as many as there are items here: Index as VTK has its numbers of points in these files.
+/// The numbers from, from + step, ..., as many as there are items on this rank.  Index is the type of VTK for numbers of points in these
+/// files.
 std::vector<Index> numbers_from(std::int64_t from, std::size_t count, Index step = 1)
 {
   std::vector<Index> all(count);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// While this lives, VTK prints nothing.
+/// Suppresses all output of VTK while it exists.
 class SilentVtk {
  public:
   SilentVtk() : window_(vtkOutputWindow::GetInstance()), log_(vtkLogger::GetCurrentVerbosityCutoff())
@@ -45,11 +45,11 @@ class SilentVtk {
 };
 
 constexpr std::string_view data_section = "AppendedData";
-constexpr std::uint64_t largest_block = 0x7E000000;  // of LZ4, unpacked [bytes]
-constexpr std::uint64_t most_from_one = 255;         // bytes that a byte of LZ4 can stand for
+constexpr std::uint64_t largest_block = 0x7E000000;  // largest uncompressed block of LZ4 [bytes]
+constexpr std::uint64_t most_from_one = 255;         // most uncompressed bytes per byte of LZ4
 constexpr int most_components = 100;                 // Talus writes 1, 3, 6 and 9
 
-/// Bytes of a number; zero for a type that Talus does not write.
+/// The size of a number [bytes]; zero for a type that Talus does not write.
 std::size_t size_of(std::string_view type)
 {
   return type == "Float64" || type == "Int64" ? 8 : type == "Float32" || type == "Int32" ? 4 : type == "UInt8" ? 1 : 0;
@@ -100,7 +100,7 @@ void VtkLayout::fail(const std::string& why) const
   throw EnvironmentError(fmt::format("cannot read {}: it is damaged: {}", file_.string(), why));
 }
 
-/// What stands before the numbers.  Errors here are without the name of the file.
+/// Reads the XML header.  Errors do not contain the name of the file.
 void VtkLayout::read_head(std::string_view kind)
 {
   const std::string_view all = bytes_;
@@ -171,7 +171,7 @@ void VtkLayout::read_head(std::string_view kind)
     throw EnvironmentError(fmt::format("it has no <Piece> of <{}>", kind));
 }
 
-/// The blocks that begin there, if they lie in the file and none of them claims to unpack to more than LZ4 can hold in its bytes.
+/// The blocks that begin at a position, if they lie in the file and none of them claims a larger uncompressed size than LZ4 can reach.
 VtkBlocks VtkLayout::blocks_at(std::size_t at) const
 {
   const auto refuse = [](std::string_view what) { throw EnvironmentError(std::string(what)); };
@@ -200,7 +200,7 @@ VtkBlocks VtkLayout::blocks_at(std::size_t at) const
   return blocks;
 }
 
-/// Errors here are without the name of the file.
+/// Compares the sizes of arrays.  Errors do not contain the name of the file.
 void VtkLayout::check_sizes() const
 {
   std::uint64_t together = 0;

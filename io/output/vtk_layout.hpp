@@ -1,6 +1,6 @@
 #pragma once
-// What write_particles() and write_mesh() have written, taken apart without VTK's parsers, which check little of what they read: every count, size and
-// place in the head is compared with the bytes that are there before anything is allocated or unpacked.
+// Reads files of write_particles() and write_mesh() without VTK's parsers, which check little: every count, size and position in the header
+// is compared with the bytes of the file before memory is allocated or data are uncompressed.
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -12,11 +12,11 @@
 
 namespace talus {
 
-/// Packed blocks of an array in the file.
+/// Compressed blocks of an array in the file.
 struct VtkBlocks {
-  std::size_t sizes = 0, bytes = 0;  ///< where their packed sizes are (8 bytes each), where the first begins
+  std::size_t sizes = 0, bytes = 0;  ///< position of their compressed sizes (8 bytes each), position of the first block
   std::uint64_t count = 0, size = 0,
-                last_size = 0;  ///< number of blocks, bytes of each when unpacked, of the last if it is not whole (or 0)
+                last_size = 0;  ///< number of blocks, uncompressed bytes of each, bytes of the last one if it is shorter (or 0)
   std::uint64_t unpacked() const noexcept { return count == 0 ? 0 : (count - 1) * size + (last_size == 0 ? size : last_size); }
 };
 
@@ -27,25 +27,25 @@ struct VtkArray {
   VtkBlocks blocks;
 };
 
-/// One file, in memory.
+/// One file in memory.
 class VtkLayout {
  public:
-  /// `kind`: "PolyData" or "UnstructuredGrid".  EnvironmentError naming the file: it is not there, it is damaged, or it is not written by Talus.
-  /// All that the head says of lengths is right afterwards; what is packed in the blocks has not been looked at.
+  /// `kind`: "PolyData" or "UnstructuredGrid".  Throws EnvironmentError with the name of the file if it is missing, damaged, or not written
+  /// by Talus.  Afterwards all lengths in the header are valid; the contents of the blocks have not been checked.
   VtkLayout(const std::filesystem::path& file, std::string_view kind);
 
   std::size_t n_points() const noexcept { return n_points_; }
-  std::size_t n_cells() const noexcept { return n_cells_; }  ///< of a mesh
+  std::size_t n_cells() const noexcept { return n_cells_; }  ///< number of cells of a mesh
   std::span<const VtkArray> arrays() const noexcept { return arrays_; }
-  /// Nothing: there is none of that name in that section.
+  /// The array of that name in that section, or nullptr.
   const VtkArray* find(std::string_view section, std::string_view name) const noexcept;
 
-  /// The numbers of an array, its single precision and whole numbers widened.  EnvironmentError: its blocks are damaged.
+  /// The numbers of an array, with single precision and integers converted to double.  Throws EnvironmentError if its blocks are damaged.
   std::vector<Real> numbers(const VtkArray& array) const;
-  /// Of the type Int64 or Int32.  EnvironmentError: of another one, or damaged.
+  /// The numbers of an array of the type Int64 or Int32.  Throws EnvironmentError for another type or damaged blocks.
   std::vector<std::int64_t> whole_numbers(const VtkArray& array) const;
   std::string text(const VtkArray& array) const;
-  /// EnvironmentError: cannot read the file, it is damaged, for this reason.
+  /// Throws EnvironmentError: the file cannot be read or is damaged, with the reason.
   [[noreturn]] void fail(const std::string& why) const;
 
  private:

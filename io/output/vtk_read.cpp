@@ -1,4 +1,4 @@
-// Files of particles, meshes and their lists back into plain arrays.
+// Reads files of particles, meshes and their lists.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,9 +20,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view particles_kind = "PolyData", mesh_kind = "UnstructuredGrid";
 constexpr std::string_view ids_field = "id", origin_field = "MadeBy", point_data = "PointData", cell_data = "CellData";
-constexpr std::int64_t triangle = 5, tetrahedron = 10;  // as VTK numbers the types of cells
+constexpr std::int64_t triangle = 5, tetrahedron = 10;  // VTK's types of cells
 
-/// All fields of a section but the ids; those of points begin with the "position".
+/// All fields of a section except the ids; those of points begin with the "position".
 std::vector<StoredField> stored_fields(const VtkLayout& file, std::string_view section)
 {
   std::vector<StoredField> fields;

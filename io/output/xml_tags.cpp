@@ -15,7 +15,7 @@ constexpr std::string_view xml_blanks = " \t\r\n";
 
 [[noreturn]] void no_tag(std::size_t at, std::string_view what) { throw EnvironmentError(fmt::format("{} at byte {}", what, at)); }
 
-/// The five entities that XML itself defines; anything else stays as it is.
+/// The text with the five entities of XML resolved; other entities stay as they are.
 std::string without_entities(std::string_view text)
 {
   static constexpr std::array<std::pair<std::string_view, char>, 5> entities{

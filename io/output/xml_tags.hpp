@@ -1,5 +1,5 @@
 #pragma once
-// The tags of an XML text one after the other: as much of XML as the lists and the heads of result files have.
+// The tags of an XML text in sequence: the part of XML that lists and headers of result files use.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -13,23 +13,23 @@ struct XmlTag {
   enum class Kind : std::uint8_t { opens, closes, is_empty };  ///< <a>, </a>, <a/>
   Kind kind = Kind::opens;
   std::string_view name;
-  std::vector<std::pair<std::string_view, std::string>> attributes;  ///< values with their entities resolved
-  std::size_t end = 0;                                               ///< position behind the tag
+  std::vector<std::pair<std::string_view, std::string>> attributes;  ///< values with resolved entities
+  std::size_t end = 0;                                               ///< position after the tag
 
-  /// The value of an attribute, or nothing.
+  /// The value of an attribute, or nullptr.
   const std::string* find(std::string_view attribute) const noexcept;
 };
 
-/// Reads a text from its beginning to its end and keeps nothing of it.  Declarations (<?xml ... ?>) and comments are passed over.  A document
-/// type, which could define entities of its own, is not XML of result files and refused.
+/// Reads a text from beginning to end and stores nothing of it.  Declarations (<?xml ... ?>) and comments are skipped.  A document type,
+/// which could define entities, does not occur in result files and is refused.
 class XmlTags {
  public:
-  /// `text` has to stay.
+  /// `text` must stay valid.
   explicit XmlTags(std::string_view text) : text_(text) {}
 
-  /// The next tag; nothing at the end of the text.  EnvironmentError, without the name of a file: what stands there is no tag.
+  /// The next tag; nothing at the end of the text.  Throws EnvironmentError, without the name of a file, if the text is not a tag.
   std::optional<XmlTag> next();
-  /// The text from here to the next tag, without blanks around it, its entities resolved.
+  /// The text up to the next tag, without blanks around it, with resolved entities.
   std::string text() const;
 
  private:

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view template_place = "<!--TALUS-RUN-->";
 
-/// What a text may not contain inside a script of HTML stands in JSON under its number.
+/// JSON text with escapes for characters that must not appear inside a script of HTML.
 std::string inside_script(const std::string& json)
 {
   std::string text;
@@ -33,7 +33,7 @@ BlockId Page::add(PageBlock block)
 
 std::size_t Page::block_bytes() const
 {
-  constexpr std::size_t frame = 75;  // of the element around it
+  constexpr std::size_t frame = 75;  // bytes of the surrounding element
   std::size_t bytes = 0;
   for (const PageBlock& block : blocks)
     bytes += block.base64.size() + frame;

@@ -1,4 +1,4 @@
-// The only file that knows zlib.
+// The only file that uses zlib.
 #include "io/page/page_block.hpp"
 
 #include <zlib.h>
@@ -13,7 +13,7 @@ namespace talus {
 
 namespace {
 
-constexpr int effort = 6;  // of zlib, 1 to 9: 9 takes three times as long for 1 % less
+constexpr int effort = 6;  // compression level of zlib: 9 takes three times as long for 1 % less
 
 std::string base64_of(std::span<const unsigned char> bytes)
 {
@@ -34,7 +34,7 @@ std::vector<unsigned char> deflated(std::span<const unsigned char> bytes)
   uLongf size = compressBound(bytes.size());
   std::vector<unsigned char> packed(size);
   if (compress2(packed.data(), &size, bytes.data(), bytes.size(), effort) != Z_OK)
-    throw std::bad_alloc();  // the only way it can fail
+    throw std::bad_alloc();  // the only possible error
   packed.resize(size);
   return packed;
 }
@@ -69,7 +69,7 @@ PageBlock block_of(std::string_view type, std::span<const T> values, bool delta)
   return block;
 }
 
-/// Which takes less, tried on a part from the middle.
+/// Whether differences take fewer bytes, tested on a part from the middle.
 bool differences_are_shorter(std::span<const std::uint16_t> values)
 {
   constexpr std::size_t tried = 1U << 15U;
@@ -107,7 +107,7 @@ std::vector<std::uint16_t> quantised(std::span<const Real> values, Real low, Rea
   const Real scale = high > low ? most / (high - low) : 0;
   std::vector<std::uint16_t> numbers(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Real number = (values[i] - low) * scale;  // no finite one where the range is none
+    const Real number = (values[i] - low) * scale;  // not finite if the range is empty
     numbers[i] = std::isfinite(number) ? static_cast<std::uint16_t>(std::lround(std::clamp(number, 0.0, most))) : no_value;
   }
   return numbers;

@@ -1,4 +1,4 @@
-// A page's data as the page's script reads them.
+// The data of the report in the format that its script reads.
 #include <nlohmann/json.hpp>
 
 #include "io/page/page.hpp"
@@ -13,7 +13,7 @@ constexpr int page_format = 1;
 
 PageJson components_of(const Vec3& v) { return {v[0], v[1], v[2]}; }
 
-/// Writes the parts of a page; blocks are told by their number.
+/// Writes the parts of a page; blocks are referred to by their number.
 class PageWriter {
  public:
   explicit PageWriter(const Page& page) : page_(page) {}

@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the names of the groups, which stand at the beginning of the file, have that of the ground.
+/// Whether the names of the groups, at the beginning of the file, contain that of the ground.
 bool names_terrain(const fs::path& file)
 {
   std::ifstream text(file, std::ios::binary);
-  constexpr int most_lines = 10'000;  // more groups has no mesh of terrain; a file of nothing but numbers ends the search, too
+  constexpr int most_lines = 10'000;  // a mesh of terrain has fewer groups; the limit also ends the search in a file of numbers only
   std::string line;
   for (int i = 0; i < most_lines && std::getline(text, line) && !line.starts_with("$EndPhysicalNames"); ++i)
     if (line.ends_with(" \"terrain\""))

@@ -1,5 +1,5 @@
 #pragma once
-// The ground in the mesh file of a run's folder.
+// Reads the ground from the mesh file of a results folder.
 #include <filesystem>
 #include <optional>
 
@@ -7,8 +7,8 @@
 
 namespace talus {
 
-/// Of mesh.msh in the folder of a run of that dimension.  Nothing where there is no such file or its mesh is not one of terrain, which is seen
-/// without reading all of it.  EnvironmentError naming the file if it cannot be read.
+/// The ground in mesh.msh of the results of a run in this dimension.  Nothing if the file does not exist or its mesh was not made from
+/// terrain, which is determined without reading all of it.  Throws EnvironmentError with the name of the file if it cannot be read.
 std::optional<RigidGround> read_ground(const std::filesystem::path& folder, int dimension);
 
 }  // namespace talus

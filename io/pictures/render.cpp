@@ -1,4 +1,4 @@
-// Which frames, which colours, where the camera stands: the same for all pictures of one call, so they can be compared.
+// Choice of frames, colours and camera: equal for all pictures of one call, so that they can be compared.
 #include "io/pictures/render.hpp"
 
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int default_width = 1280, lowest = 420, highest = 960;  // pixels
+constexpr int default_width = 1280, lowest = 420, highest = 960;  // in pixels
 
 std::string file_name(const std::string& label, std::size_t frame)
 {
@@ -37,7 +37,7 @@ fs::path picture_path(const Settings& settings, std::size_t frame, const std::st
   return out.extension() == ".png" ? out : out / file_name(label, frame);
 }
 
-/// What reads the field that is shown.
+/// The function that reads the field to be shown.
 auto cloud_reader(const Settings& settings)
 {
   return [&settings](const fs::path& file) { return read_cloud(file, settings.field); };
@@ -58,7 +58,7 @@ std::array<Real, 2> range_of(const Settings& settings, FrameSeries& frames, cons
 
 std::vector<Vec3> corners_of(const std::array<Real, 4>& window) { return {{window[0], window[1], 0}, {window[2], window[3], 0}}; }
 
-/// Size and camera; `shape` is everything to be seen.
+/// Sets size and camera so that all points of `shape` are visible.
 void place_camera(const Settings& settings, const std::vector<Vec3>& shape, Picture& picture)
 {
   const bool flat = picture.dimension == 2;
@@ -74,7 +74,7 @@ void place_camera(const Settings& settings, const std::vector<Vec3>& shape, Pict
     picture.camera.centre[static_cast<Index>(d)] = settings.look_at[d];
 }
 
-/// Without the particles beyond the plane.
+/// The cloud without the particles beyond the plane.
 Cloud clipped(Cloud cloud, const Plane& plane)
 {
   std::size_t saved = 0;
@@ -98,7 +98,7 @@ std::string words_of(const Plane& plane)
   return fmt::format("cut by ({:g}, {:g}, {:g}) x = {:g} m", plane.normal[0], plane.normal[1], plane.normal[2], plane.offset);
 }
 
-/// Lines of the mesh, none where its file is damaged: a picture of the particles says more than none.
+/// The lines of the mesh; none if its file is damaged, as a picture of the particles is still useful.
 Lines mesh_lines(const fs::path& folder, MeshLines which)
 try {
   return read_mesh_lines(folder, which);
@@ -107,7 +107,7 @@ try {
   return {};
 }
 
-/// The same of the ground.
+/// The ground; none if its file is damaged.
 std::optional<RigidGround> ground_in(const fs::path& folder, int dimension)
 try {
   return read_ground(folder, dimension);
@@ -137,7 +137,8 @@ Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& f
     picture.clip = settings.clip;
   }
   const bool asked = std::find(settings.given.begin(), settings.given.end(), "--mesh") != settings.given.end();
-  picture.mesh_lines = picture.ground && facts.dimension == 3 && !asked ? MeshLines::none : settings.mesh;  // else that of the air above
+  // otherwise the lines of the air above the ground
+  picture.mesh_lines = picture.ground && facts.dimension == 3 && !asked ? MeshLines::none : settings.mesh;
   picture.mesh = mesh_lines(settings.folder, picture.mesh_lines);
   if (picture.ground && !picture.ground->layers.empty())
     picture.notes.emplace_back("brown: where layers end at the start");

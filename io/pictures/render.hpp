@@ -7,8 +7,8 @@
 
 namespace talus::render {
 
-/// Draws and calls `written` with every picture once it is on the disk.  Needs a display: EnvironmentError without DISPLAY, since
-/// VTK would abort.  Error if the run does not have what is asked for; EnvironmentError if files cannot be read or written.
+/// Draws pictures and calls `written` with every picture that is on the disk.  Needs a display: throws EnvironmentError without DISPLAY,
+/// because VTK would abort.  Throws Error if the run does not have a requested item, EnvironmentError if files cannot be read or written.
 void make_pictures(const Settings& settings, const std::function<void(const std::filesystem::path&)>& written);
 
 }  // namespace talus::render

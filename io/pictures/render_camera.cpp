@@ -1,4 +1,4 @@
-// Where the camera stands so that what is to be seen fills the panel.
+// Camera positions for which the visible points fill the panel.
 #include "io/pictures/render_camera.hpp"
 
 #include <Eigen/Geometry>
@@ -13,11 +13,11 @@ namespace talus::render {
 
 namespace {
 
-constexpr Real margin = 0.03;       // of the panel, on each side
-constexpr Real panel_right = 0.85;  // of the picture's width
-constexpr Real view_angle = 25;     // degrees, over the height of the panel
+constexpr Real margin = 0.03;       // fraction of the panel, on each side
+constexpr Real panel_right = 0.85;  // fraction of the picture's width
+constexpr Real view_angle = 25;     // vertical angle of view [degrees]
 constexpr Real degree = std::numbers::pi / 180;
-constexpr Real above = 2.6, below = 2.4;  // letters: title, length scale
+constexpr Real above = 2.6, below = 2.4;  // title and length scale, in letter heights
 
 struct Axes {
   Vec3 right, up, towards;
@@ -30,7 +30,7 @@ Axes axes_of(const Vec3& towards, const Vec3& up)
   return {right, t.cross(right), t};
 }
 
-/// Coordinates of the points along right, up, towards.
+/// The coordinates of the points along the directions right, up, and towards the camera.
 std::vector<Vec3> seen(const std::vector<Vec3>& points, const Axes& axes)
 {
   std::vector<Vec3> out;
@@ -40,7 +40,7 @@ std::vector<Vec3> seen(const std::vector<Vec3>& points, const Axes& axes)
   return out;
 }
 
-/// Distance from which all points fit, the camera looking at (centre[0], centre[1]) along the third axis.
+/// The distance at which all points are visible, with the camera looking at (centre[0], centre[1]) along the third axis.
 Real distance_for(const std::vector<Vec3>& points, const Vec3& centre, Real slope_x, Real slope_y)
 {
   Real distance = 0;
@@ -122,7 +122,7 @@ Camera fit_camera(const std::vector<Vec3>& points, const Viewpoint& from, bool p
   camera.distance = 4 * std::max(half.norm(), camera.half_height);
   if (perspective && half.norm() > 0) {
     const Real slope_y = camera.slope * room;
-    for (int i = 0; i < 5; ++i) {  // converges by a factor of about ten each time
+    for (int i = 0; i < 5; ++i) {  // converges by a factor of about ten in each iteration
       camera.distance = distance_for(projected, centre, slope_y * aspect, slope_y);
       balance(projected, centre, camera.distance);
     }

@@ -1,4 +1,4 @@
-// Particles, outline, colour bar and words with VTK.
+// Draws particles, outline, colour bar and texts with VTK.
 #include "io/pictures/render_canvas.hpp"
 #include <Eigen/Geometry>
 
@@ -37,9 +37,9 @@ namespace fs = std::filesystem;
 
 constexpr Colour grey{178, 178, 178}, edge_grey{140, 140, 140};
 constexpr auto radius_name = "radius";
-constexpr Real shadow = 0.45;        // brightness taken from a surface that turns its back on the light
-constexpr Real gloss = 0.14;         // white added to a surface that faces it: without it the dark end of the colours shows no shape
-constexpr Real shading_reach = 3.0;  // radii of particles over which the surface normal is averaged
+constexpr Real shadow = 0.45;        // brightness of a surface that faces away from the light
+constexpr Real gloss = 0.14;         // white added to a surface that faces the light, so that dark colours show the shape too
+constexpr Real shading_reach = 3.0;  // radius, in radii of particles, over which the surface normal is averaged
 
 vtkSmartPointer<vtkPolyData> coloured(const Picture& picture, const Cloud& cloud)
 {
@@ -51,7 +51,7 @@ vtkSmartPointer<vtkPolyData> coloured(const Picture& picture, const Cloud& cloud
   const Vec3 light = light_of(picture.camera);
   const auto lit = picture.dimension == 3 ? facing(cloud, light, shading_reach * picture.radius) : std::vector<Real>{};
   for (std::size_t p = 0; p < cloud.x.size(); ++p) {
-    // Relative to the centre: single precision on the graphics side would show steps at map coordinates.
+    // Relative to the centre, because the single precision of the graphics would show steps at map coordinates.
     const Vec3 x = cloud.x[p] - picture.camera.centre;
     points->SetPoint(static_cast<vtkIdType>(p), x.data());
     const Colour plain = picture.scale.colour(cloud.value[p]);
@@ -80,7 +80,7 @@ void add_particles(vtkRenderer* renderer, const Picture& picture, const Cloud& c
   mapper->SetScaleFactor(1);
   mapper->SetScaleArray(radius_name);
   mapper->EmissiveOff();
-  mapper->SetTriangleScale(1);  // the disc fills the triangle: no fragments are spent outside
+  mapper->SetTriangleScale(1);  // the disc fills the triangle, so no fragments are wasted
   mapper->SetSplatShaderCode(
       "//VTK::Color::Impl\n"
       "if (dot(offsetVCVSOutput.xy, offsetVCVSOutput.xy) > 1.0) discard;\n");
@@ -90,8 +90,8 @@ void add_particles(vtkRenderer* renderer, const Picture& picture, const Cloud& c
   renderer->AddActor(actor);
 }
 
-/// Both fill the panel, so that nothing passes behind the words, and look through the same camera, which sees from the nearest to the farthest
-/// thing of either.
+/// Sets both renderers to the panel, so that nothing is drawn behind the texts, with the same camera, whose clipping range contains the
+/// objects of both.
 void aim(vtkRenderer* scene, vtkRenderer* over, const Camera& camera, const Panel& panel)
 {
   for (vtkRenderer* renderer : {scene, over})
@@ -150,7 +150,7 @@ void draw(const Picture& picture, const Cloud& cloud, const fs::path& png)
   const Panel panel = panel_of(picture.size);
   vtkNew<vtkRenderWindow> window;
   prepare(window, picture.size);
-  vtkNew<vtkRenderer> paper, scene, over, front;  // white beside the panel; what is solid; lines over it; words
+  vtkNew<vtkRenderer> paper, scene, over, front;  // white beside the panel; solid objects; lines over them; texts
   window->SetNumberOfLayers(3);
   int layer = 0;
   for (vtkRenderer* renderer : {paper.Get(), scene.Get(), over.Get(), front.Get()}) {

@@ -1,5 +1,5 @@
 #pragma once
-// One picture: particles in their colours, lines of the mesh, a colour bar, and words, drawn off screen and saved as PNG.
+// One picture: coloured particles, lines of the mesh, colour bar and texts, drawn off screen and saved as PNG.
 #include <array>
 #include <filesystem>
 #include <string>
@@ -16,31 +16,32 @@ class vtkRenderer;
 namespace talus::render {
 
 struct Picture {
-  std::array<int, 2> size;  ///< pixels
+  std::array<int, 2> size;  ///< in pixels
   Camera camera;
   int dimension{};
-  Real radius{};  ///< m, of a particle as drawn
-  Spread spread;  ///< of the particles in 2-D
+  Real radius{};  ///< radius of a drawn particle [m]
+  Spread spread;  ///< spacing of the particles in 2-D
   Scale scale;
-  Lines mesh;                         ///< behind the particles, or around them
-  MeshLines mesh_lines{};             ///< what those are: edges lie over the particles in 2-D
-  Lines start;                        ///< over the particles
-  std::optional<RigidGround> ground;  ///< of a mesh of terrain
-  Vec3 upwards = Vec3::UnitZ();       ///< of the ground
-  std::optional<Plane> clip;          ///< by which particles were cut, and the ground is
+  Lines mesh;                         ///< lines behind the particles, or around them
+  MeshLines mesh_lines{};             ///< kind of these lines: edges are drawn over the particles in 2-D
+  Lines start;                        ///< outline drawn over the particles
+  std::optional<RigidGround> ground;  ///< the ground of a mesh made from terrain
+  Vec3 upwards = Vec3::UnitZ();       ///< vertical axis
+  std::optional<Plane> clip;          ///< plane by which particles and ground are cut
   std::string title;
-  std::vector<std::string> notes;  ///< what else must be known, such as where it was cut
-  Real time{};                     ///< s
+  std::vector<std::string> notes;  ///< further information, such as the cut
+  Real time{};                     ///< time of the frame [s]
 };
 
 struct Pen {
   Colour colour;
-  float width;   ///< pixels of the picture
-  Real opacity;  ///< one hides what is behind
+  float width;   ///< width of lines in pixels of the picture
+  Real opacity;  ///< 1 is opaque
 };
 void add_lines(vtkRenderer* renderer, const Picture& picture, const Lines& lines, const Pen& pen);
 
-/// Draws and writes.  Needs a display (X11); the caller has looked for one.  EnvironmentError if the file cannot be written.
+/// Draws and writes the picture.  Needs a display (X11), which the caller has checked.  Throws EnvironmentError if the file cannot be
+/// written.
 void draw(const Picture& picture, const Cloud& cloud, const std::filesystem::path& png);
 
 }  // namespace talus::render

@@ -1,4 +1,4 @@
-// Charts by VTK, from the table as it is on the disk.
+// Charts by VTK, from a table in a file.
 #include "io/pictures/render_chart.hpp"
 
 #include <fmt/format.h>
@@ -33,16 +33,16 @@ namespace talus::render {
 
 namespace {
 
-constexpr std::array<int, 2> size{960, 600};  // pixels
-constexpr int letter = 15 * oversampling;     // pixels
-constexpr float mark = 9;                     // pixels
-constexpr Real headroom = 0.05;               // of the span of y, above and below
+constexpr std::array<int, 2> size{960, 600};  // in pixels
+constexpr int letter = 15 * oversampling;     // in pixels
+constexpr float mark = 9;                     // in pixels
+constexpr Real headroom = 0.05;               // fraction of the range of y, above and below
 
-/// Colours of Okabe and Ito (2008), told apart with any kind of colour blindness.
+/// Colours of Okabe and Ito (2008), distinguishable with any kind of colour blindness.
 constexpr std::array<Colour, 7> palette{
     {{0, 114, 178}, {213, 94, 0}, {0, 158, 115}, {204, 121, 167}, {230, 159, 0}, {86, 180, 233}, {90, 90, 90}}};
 
-/// "axial_strain [-]" to its name and unit.
+/// Splits "axial_strain [-]" into name and unit.
 std::pair<std::string, std::string> split(const std::string& column)
 {
   const auto bracket = column.find(" [");
@@ -96,7 +96,7 @@ void letter_axis(vtkAxis* axis, const std::string& title)
   axis->GetPen()->SetWidth(oversampling);
 }
 
-/// Fixes an axis from `low` to `high` with a share of it on either side, and marks round numbers.
+/// Sets the range of an axis from `low` to `high` with a relative margin on either side, and round tick marks.
 void show_span(vtkAxis* axis, Real low, Real high, Real margin)
 {
   low -= margin * (high - low);
@@ -112,7 +112,7 @@ void show_span(vtkAxis* axis, Real low, Real high, Real margin)
   axis->SetCustomTickPositions(places, words);
 }
 
-/// Marks the powers of ten of an axis that shows logarithms from `low` to `high`, with a share of it on either side.
+/// Sets the range of a logarithmic axis from `low` to `high` with a relative margin on either side, and ticks at powers of ten.
 void show_decades(vtkAxis* axis, Real low, Real high, Real margin)
 {
   axis->SetBehavior(vtkAxis::FIXED);
@@ -126,7 +126,7 @@ void show_decades(vtkAxis* axis, Real low, Real high, Real margin)
   axis->SetCustomTickPositions(places, words);
 }
 
-/// Levels at one height share a line and a name.
+/// Merges levels of equal height, which share a line and a label.
 std::vector<Chart::Level> merged(const std::vector<Chart::Level>& levels)
 {
   std::vector<Chart::Level> lines;
@@ -148,7 +148,7 @@ std::vector<Real> values_of(vtkDataArray* column, Real factor = 1)
   return values;
 }
 
-/// To the base of ten.  What is not above zero lies a decade below what is.
+/// The logarithms to base ten.  Values that are not positive lie a decade below the smallest positive one.
 std::vector<Real> logarithms(const std::vector<Real>& values)
 {
   Real least = 1;
@@ -160,7 +160,7 @@ std::vector<Real> logarithms(const std::vector<Real>& values)
   return logs;
 }
 
-/// From the lowest to the highest x of rows and upright lines.
+/// The range of x of rows and vertical lines.
 std::pair<Real, Real> reach_along(const Chart& chart, const std::vector<Real>& x)
 {
   if (x.empty())
@@ -189,7 +189,7 @@ void letter_chart(vtkChartXY* plot, const std::string& title)
 {
   plot->SetTitle(title);
   plot->GetTitleProperties()->SetFontSize(letter);
-  plot->SetHiddenAxisBorder(2 * letter);  // on the right half of the last number, above the title: both stand outside the frame
+  plot->SetHiddenAxisBorder(2 * letter);  // for half of the last number, and above the title: both lie outside the frame
   plot->SetShowLegend(true);
   plot->GetLegend()->SetLabelSize(letter);
   plot->GetLegend()->SetHorizontalAlignment(vtkChartLegend::RIGHT);
@@ -233,7 +233,7 @@ void draw(const Chart& chart)
   letter_axis(plot->GetAxis(vtkAxis::BOTTOM), fmt::format("{} [{}]", x_name, x_unit));
   letter_axis(plot->GetAxis(vtkAxis::LEFT), fmt::format("{} [{}]", y_name, unit.name));
   const auto [first, last] = reach_along(chart, x);
-  show_span(plot->GetAxis(vtkAxis::BOTTOM), first, last, chart.marks ? headroom : 0);  // marks are wider than the points they stand for
+  show_span(plot->GetAxis(vtkAxis::BOTTOM), first, last, chart.marks ? headroom : 0);  // marks are wider than their points
   if (chart.log)
     show_decades(plot->GetAxis(vtkAxis::LEFT), low, high, headroom);
   else

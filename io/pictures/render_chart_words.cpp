@@ -1,4 +1,4 @@
-// Words of the command line to a chart.
+// Parses words of the command line to a chart.
 #include "io/pictures/render_chart.hpp"
 #include "io/pictures/settings/option_parser.hpp"
 
@@ -6,7 +6,7 @@ namespace talus::render {
 
 namespace {
 
-/// An option that may stand there several times, with a name and `numbers` numbers: take(name, numbers).
+/// Parses an option that may be repeated, with a name and `numbers` numbers; calls take(name, numbers).
 template <class Take>
 void add_lines(CLI::App& app, const std::string& option, int numbers, Take take)
 {

@@ -1,4 +1,4 @@
-// Geometry of a cloud of points: how large it is, and which way its surface looks.
+// Geometry of a cloud of points: bounding box, and directions of its surface.
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -9,9 +9,9 @@ namespace talus::render {
 
 namespace {
 
-constexpr Real surface_share = 0.12;  // offset of the centre of mass over the reach from which a particle counts as surface
+constexpr Real surface_share = 0.12;  // offset of the centre of mass over the reach above which a particle counts as a surface particle
 
-/// Particles in cubes as wide as the reach, so neighbours are in the 27 cubes around.
+/// Particles sorted into cubes as wide as the reach, so that neighbours are in the 27 cubes around.
 class Cubes {
  public:
   Cubes(const std::vector<Vec3>& x, const Vec3& low, Real width) : low_(low), width_(width)
@@ -40,7 +40,7 @@ class Cubes {
     const Vec3 scaled = (x - low_) / width_;
     return {static_cast<std::int64_t>(scaled[0]) + 1, static_cast<std::int64_t>(scaled[1]) + 1, static_cast<std::int64_t>(scaled[2]) + 1};
   }
-  static std::int64_t key(const Place& p) { return p[0] | (p[1] << 21) | (p[2] << 42); }  // two million cubes an axis
+  static std::int64_t key(const Place& p) { return p[0] | (p[1] << 21) | (p[2] << 42); }  // two million cubes along each axis
 
   Vec3 low_;
   Real width_;

@@ -10,7 +10,7 @@ namespace talus::render {
 namespace {
 
 constexpr Colour no_value{190, 190, 190};
-constexpr Real widest_log = 1e6;  // over the smallest value shown: below that logarithms show round-off
+constexpr Real widest_log = 1e6;  // largest ratio to the smallest shown value: below it logarithms show round-off
 
 constexpr std::size_t n_points = 17;
 using Points = std::array<std::uint32_t, n_points>;
@@ -58,7 +58,7 @@ Real Scale::share(Real value) const
 {
   const auto [low, high] = range;
   if (log && !(value > 0))
-    return std::numeric_limits<Real>::quiet_NaN();  // it has no logarithm
+    return std::numeric_limits<Real>::quiet_NaN();  // zero has no logarithm
   return log ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
 }
 
@@ -82,7 +82,7 @@ std::array<Real, 2> Extent::range(bool balanced) const
     return high > low * (1 + 1e-6) ? std::array{std::max(low, high / widest_log), high} : std::array{low / 2, high * 2};
   if (balanced && low < 0 && high > 0)
     return {-largest, largest};
-  if (high - low > 1e-6 * largest)  // single precision in the files carries seven digits
+  if (high - low > 1e-6 * largest)  // single precision in the files has seven digits
     return {low, high};
   return largest > 0 ? std::array{low - 0.5 * largest, high + 0.5 * largest} : std::array{0.0, 1.0};
 }

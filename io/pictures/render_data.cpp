@@ -1,4 +1,4 @@
-// Result files back into plain arrays.
+// Reads result files into arrays.
 #include "io/pictures/render_data.hpp"
 
 #include <fmt/format.h>
@@ -76,7 +76,7 @@ std::vector<Real> values_of(const StoredField& field, const ViewedField& viewed)
   return values;
 }
 
-/// Of mesh.vtu, or of the first file of mesh.pvd, if there is one.
+/// The file mesh.vtu, or the first file of mesh.pvd, if it exists.
 std::optional<fs::path> mesh_file(const fs::path& folder)
 {
   if (fs::exists(folder / "mesh.vtu"))

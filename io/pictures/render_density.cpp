@@ -1,4 +1,4 @@
-// Densities on a regular grid, levels by VTK's flying edges (Schroeder, Maynard, Geveci, LDAV 2015).
+// Densities on a regular grid, with iso-surfaces by VTK's flying edges (Schroeder, Maynard, Geveci, LDAV 2015).
 #include "io/pictures/render_density.hpp"
 
 #include <fmt/format.h>
@@ -30,12 +30,12 @@ namespace talus::render {
 namespace {
 
 constexpr Real reach_over_width = 3;  // with two, clustered points of a triangle leave holes between the clusters
-constexpr Real most_points = 1e8;     // four bytes each, or eight with values, and as many again for the search
+constexpr Real most_points = 1e8;     // points of four bytes, or eight with values, and as many again for the search
 constexpr auto value_name = "value";
 
 Real width_of(Real volume, int dimension) { return dimension == 2 ? std::sqrt(volume) : std::cbrt(volume); }
 
-/// Wendland's C2 kernel (Adv. Comput. Math. 4, 1995) of r over the reach, times reach^D.
+/// Wendland's C2 kernel (Adv. Comput. Math. 4, 1995) at the distance r relative to the reach, times reach^D.
 Real kernel(Real r, int dimension)
 {
   if (r >= 1)
@@ -45,7 +45,7 @@ Real kernel(Real r, int dimension)
 }
 
 struct Grid {
-  Vec3 low;  ///< m
+  Vec3 low;  ///< low corner [m]
   Real spacing;
   std::array<Index, 3> counts;
   std::size_t size() const
@@ -54,7 +54,7 @@ struct Grid {
   }
 };
 
-/// A grid around all that the particles reach.
+/// A grid around everything that the particles reach.
 Grid grid_of(const Matter& matter, int dimension, Real spacing)
 {
   const Bounds bounds = bounds_of(matter.x).value();
@@ -77,7 +77,8 @@ Grid grid_of(const Matter& matter, int dimension, Real spacing)
   return grid;
 }
 
-/// f(point of the grid, weight) for all that particle p reaches; the weights times the cells' volumes add up to the particle's volume.
+/// Calls f(grid point, weight) for all points within reach of particle p; the sum of weights times the cells' volumes is the particle's
+/// volume.
 template <class F>
 void spread(const Matter& matter, std::size_t p, int dimension, const Grid& grid, F&& f)
 {
@@ -106,7 +107,7 @@ void spread(const Matter& matter, std::size_t p, int dimension, const Grid& grid
       }
 }
 
-/// Density, and with values their mean beside it, on the points of the grid.
+/// The density, and with values their mean, at the points of the grid.
 vtkSmartPointer<vtkImageData> densities(const Matter& matter, int dimension, const Grid& grid)
 {
   auto image = vtkSmartPointer<vtkImageData>::New();
@@ -139,7 +140,8 @@ vtkSmartPointer<vtkImageData> densities(const Matter& matter, int dimension, con
   return image;
 }
 
-/// To double precision and to its place: near the origin single precision is enough, at map coordinates it shows steps.
+/// Converts points to double precision and moves them to their position: single precision is sufficient near the origin, but shows steps at
+/// map coordinates.
 void put_in_place(vtkPolyData* surface, const Vec3& low)
 {
   vtkNew<vtkPoints> placed;
@@ -205,7 +207,7 @@ Real enclosed(vtkPolyData* surface, int dimension)
   if (surface->GetNumberOfPoints() == 0)
     return 0;
   Vec3 origin;
-  surface->GetPoint(0, origin.data());  // near the surface: no digits are lost at map coordinates
+  surface->GetPoint(0, origin.data());  // near the surface, so that no digits are lost at map coordinates
   vtkNew<vtkIdList> corners;
   std::array<Vec3, 3> x;
   for (cells->InitTraversal(); cells->GetNextCell(corners) != 0;) {

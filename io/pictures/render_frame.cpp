@@ -21,7 +21,7 @@ void add_frame(Sheet& sheet, const Place& place, const Shown& shown, const std::
     sheet.line({{x, place.bottom}, {x, place.bottom - tip}}, ink);
     const Real room = 0.6 * sheet.letter() * (static_cast<Real>(text.size()) + 1);
     if (x - last < room)
-      continue;  // numbers would run into each other
+      continue;  // numbers would overlap
     sheet.text(text, x, place.bottom - 3.2 * tip, Side::centre);
     last = x;
   }

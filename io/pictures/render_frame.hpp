@@ -1,5 +1,5 @@
 #pragma once
-// A frame with round numbers around maps and sections.
+// A frame with ticks around maps and sections.
 #include <array>
 #include <string>
 
@@ -8,19 +8,19 @@
 
 namespace talus::render {
 
-/// What a panel shows: coordinates of its low and high corner.
+/// The range of a panel: coordinates of its low and high corner.
 struct Shown {
   std::array<Real, 2> low, high;
 };
 
-/// Where the panel stands on the sheet [pixels].
+/// The position of the panel on the sheet [pixels].
 struct Place {
   Real left, bottom, right, top;
   Real width() const noexcept { return right - left; }
   Real height() const noexcept { return top - bottom; }
 };
 
-/// Lines around a panel, ticks at round values below and on the left with their numbers, and the names of the axes.
+/// Draws lines around a panel, ticks with numbers at round values below and on the left, and the names of the axes.
 void add_frame(Sheet& sheet, const Place& place, const Shown& shown, const std::array<std::string, 2>& axes);
 
 }  // namespace talus::render

@@ -22,11 +22,11 @@ namespace talus::render {
 
 namespace {
 
-constexpr Real darkest = 0.4;          // brightness of ground that turns its back on the light
-constexpr Colour rock{236, 231, 222};  // of ground that faces it
+constexpr Real darkest = 0.4;          // brightness of ground that faces away from the light
+constexpr Colour rock{236, 231, 222};  // colour of ground that faces the light
 constexpr Colour contour_colour{150, 138, 122}, rigid_colour{110, 96, 80};
-constexpr Real sharp_edge = 40;           // degrees: facets that meet under more are shaded apart, as the walls of obstacles
-constexpr Real contours_of_picture = 16;  // about so many over the height of the ground
+constexpr Real sharp_edge = 40;           // angle [degrees] between facets above which their normals are not averaged
+constexpr Real contours_of_picture = 16;  // approximate number of contours over the height of the ground
 
 Vec3 node(const RigidGround& ground, Index n) { return Eigen::Map<const Vec3>(ground.nodes.data() + 3 * static_cast<std::size_t>(n)); }
 
@@ -53,7 +53,7 @@ vtkSmartPointer<vtkPolyData> surface_of(const RigidGround& ground, const Vec3& c
   return normals->GetOutput();
 }
 
-/// Brightness by the angle between the surface, which is seen from above, and the light.
+/// Sets the brightness from the angle between the surface, as seen from above, and the light.
 void shade(vtkPolyData* surface, const Vec3& up, const Vec3& light)
 {
   vtkNew<vtkUnsignedCharArray> colours;
@@ -71,7 +71,7 @@ void shade(vtkPolyData* surface, const Vec3& up, const Vec3& light)
   surface->GetPointData()->SetScalars(colours);
 }
 
-/// RigidGround beyond the plane that particles are cut by is left out, too.
+/// Cuts the ground at the same plane as the particles.
 void cut(vtkMapper* mapper, const Picture& picture)
 {
   if (!picture.clip)
@@ -90,7 +90,7 @@ void add_surface(vtkRenderer* renderer, const Picture& picture)
   shade(surface, picture.upwards, light_of(picture.camera));
   vtkNew<vtkPolyDataMapper> mapper;
   mapper->SetInputData(surface);
-  vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();  // lines on the surface are not buried in it
+  vtkMapper::SetResolveCoincidentTopologyToPolygonOffset();  // draws lines in front of the surface that they lie on
   cut(mapper, picture);
   vtkNew<vtkActor> actor;
   actor->SetMapper(mapper);

@@ -1,18 +1,18 @@
 #pragma once
-// The ground of a run in terrain: a shaded surface with contours in 3-D, a line in 2-D.
+// The ground of a run on terrain: a shaded surface with contours in 3-D, a line in 2-D.
 #include "io/pictures/render_canvas.hpp"
 
 class vtkRenderer;
 
 namespace talus::render {
 
-/// Colour of the line where layers end.
+/// The colour of the boundaries of layers.
 inline constexpr Colour layer_colour{92, 58, 22};
 
-/// Draws picture.ground, and where its layers end, where there is ground.  `over`: what lies over the particles.
+/// Draws picture.ground and the boundaries of its layers, if there is a ground.  `over`: the renderer for lines over the particles.
 void add_ground(vtkRenderer* scene, vtkRenderer* over, const Picture& picture);
 
-/// Lines at round elevations: the multiples of `step` [m] along `up`.  Points are relative to nothing, as the nodes are.
+/// Contours at multiples of `step` [m] along `up`, in the coordinates of the nodes.
 Lines contours_of(const RigidGround& ground, const Vec3& up, Real step);
 
 }  // namespace talus::render

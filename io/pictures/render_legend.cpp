@@ -1,4 +1,4 @@
-// Words beside, above and below the particles.
+// Texts beside, above and below the particles.
 #include "io/pictures/render_legend.hpp"
 
 #include <fmt/format.h>
@@ -15,16 +15,16 @@ namespace talus::render {
 
 namespace {
 
-using Size = std::array<Real, 2>;  // pixels of the window
+using Size = std::array<Real, 2>;  // size of the window [pixels]
 
-/// 2-D: a length to measure by, below the picture.
+/// Adds a length scale below a 2-D picture.
 void add_scale(Sheet& sheet, const Picture& picture, const Size& size)
 {
   add_length(sheet, panel_of(picture.size).height() * size[1] / (2 * picture.camera.half_height), 0.2 * size[0],
              {1.2 * sheet.letter(), 1.2 * sheet.letter()});
 }
 
-/// 3-D: which way the axes point.
+/// Adds the directions of the axes to a 3-D picture.
 void add_axes(Sheet& sheet, const Picture& picture)
 {
   const Vec3 right = picture.camera.up.cross(picture.camera.towards);
@@ -34,14 +34,14 @@ void add_axes(Sheet& sheet, const Picture& picture)
   for (int d = 0; d < 3; ++d) {
     const Real x = right[d], y = up[d];
     if (std::hypot(x, y) < 0.1)
-      continue;  // points at the eye
+      continue;  // points towards the camera
     sheet.line({{x0, y0}, {x0 + arm * x, y0 + arm * y}}, ink);
     const Real to_text = 1 + 0.25 / std::hypot(x, y);
     sheet.text(std::string(1, "xyz"[d]), x0 + to_text * arm * x, y0 + to_text * arm * y, Side::centre);
   }
 }
 
-/// Below the particles, from the right: the notes, and what the black lines are.
+/// Adds the notes and the meaning of black lines below the particles, from the right.
 void add_notes(Sheet& sheet, const Picture& picture, const Size& size)
 {
   const Real y = 1.2 * sheet.letter(), gap = 0.5 * sheet.letter(), sample = 1.8 * sheet.letter();

@@ -1,5 +1,5 @@
 #pragma once
-// Where bodies were: lines over the particles as they are now.
+// Outlines of bodies at another time, drawn over the present particles.
 #include <map>
 
 #include "io/pictures/render_camera.hpp"
@@ -7,7 +7,7 @@
 
 namespace talus::render {
 
-/// The contour of each body in 2-D; in 3-D the edge of each as the camera sees it, and its sharp edges.
+/// The contour of each body in 2-D; in 3-D the silhouette of each body from the camera, and its sharp edges.
 Lines outline_of(const std::map<int, Matter>& bodies, int dimension, const Camera& camera);
 
 }  // namespace talus::render

@@ -1,5 +1,5 @@
 #pragma once
-// Windows that are drawn off screen and saved: drawn at twice the size and averaged, which smooths particles, lines and letters alike.
+// Off-screen windows that are saved as pictures: drawn at twice the size and averaged, which smooths particles, lines and letters.
 #include <array>
 #include <filesystem>
 
@@ -9,10 +9,10 @@ namespace talus::render {
 
 inline constexpr int oversampling = 2;
 
-/// Makes a window that never shows, `size` pixels of the picture wide and high.
+/// Makes an off-screen window of `size` pixels of the picture.
 void prepare(vtkRenderWindow* window, const std::array<int, 2>& size);
 
-/// What the window shows as a picture, whole or not at all.  EnvironmentError if the file cannot be written.
+/// Writes the contents of the window as a picture, atomically.  Throws EnvironmentError if the file cannot be written.
 void save(vtkRenderWindow* window, const std::filesystem::path& png);
 
 }  // namespace talus::render

@@ -1,5 +1,5 @@
 #pragma once
-// The particle files of a run, of which some may be damaged.
+// The particle files of a run, some of which may be damaged.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 namespace talus::render {
 
-/// Files that cannot be read are left out, and named once each on standard error.
+/// Files that cannot be read are skipped, and named once on standard error.
 class FrameSeries {
  public:
   explicit FrameSeries(std::vector<ResultFile> files) : files_(std::move(files)) {}
@@ -20,7 +20,7 @@ class FrameSeries {
   std::size_t size() const noexcept { return files_.size(); }
   Real time(std::size_t frame) const { return files_[frame].time; }
 
-  /// read(path) of one frame; nothing if that throws EnvironmentError.
+  /// The result of read(path) for one frame; nothing if it throws EnvironmentError.
   template <class Read>
   auto read(std::size_t frame, Read&& read) -> std::optional<decltype(read(std::filesystem::path()))>
   {
@@ -32,7 +32,7 @@ class FrameSeries {
       return std::nullopt;
     }
   }
-  /// read(path) of the first frame that can be read.  EnvironmentError: none can.
+  /// The result of read(path) for the first frame that can be read.  Throws EnvironmentError if there is none.
   template <class Read>
   auto first(Read&& read_one)
   {
@@ -41,7 +41,7 @@ class FrameSeries {
         return *std::move(result);
     throw_all_damaged();
   }
-  /// As first(), from the end.
+  /// The result for the last frame that can be read.
   template <class Read>
   auto last(Read&& read_one)
   {

@@ -1,4 +1,4 @@
-// The two-dimensional part of a picture, by VTK's overlay.
+// The two-dimensional part of a picture, drawn by VTK's overlay.
 #include "io/pictures/render_sheet.hpp"
 
 #include <vtkActor2D.h>
@@ -49,14 +49,14 @@ Real Sheet::text(const std::string& words, Real x, Real y, Side side, Style styl
   font->SetBold(style.bold ? 1 : 0);
   font->SetOrientation(style.vertical ? 90 : 0);
   font->SetColor(channels(ink).data());
-  font->SetBackgroundColor(1, 1, 1);  // lines of the mesh may pass behind
+  font->SetBackgroundColor(1, 1, 1);  // lines of the mesh may pass behind the text
   font->SetBackgroundOpacity(words.empty() ? 0 : 0.8);
   font->SetJustification(side == Side::left ? VTK_TEXT_LEFT : side == Side::centre ? VTK_TEXT_CENTERED : VTK_TEXT_RIGHT);
   font->SetVerticalJustificationToCentered();
   actor->SetPosition(x, y);
   renderer_->AddActor2D(actor);
   std::array<int, 4> box{};
-  constexpr int dpi = 72;  // of every vtkRenderWindow
+  constexpr int dpi = 72;  // value of every vtkRenderWindow
   vtkTextRenderer::GetInstance()->GetBoundingBox(font, words, box.data(), dpi);
   return style.vertical ? box[3] - box[2] : box[1] - box[0];
 }

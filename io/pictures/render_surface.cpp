@@ -1,4 +1,4 @@
-// From particles to PLY, STL and OBJ by VTK's writers.
+// Surfaces from particles, written as PLY, STL and OBJ by VTK's writers.
 #include "io/pictures/render_surface.hpp"
 
 #include <fmt/format.h>
@@ -33,7 +33,7 @@ using Surface = vtkSmartPointer<vtkPolyData>;
 
 constexpr auto colour_name = "colour";
 
-/// Vertices with colours of the values around them.
+/// Sets colours of vertices from their values.
 void colour(vtkPolyData* surface)
 {
   vtkDataArray* value = surface->GetPointData()->GetArray("value");
@@ -54,7 +54,7 @@ void colour(vtkPolyData* surface)
   surface->GetPointData()->AddArray(colours);
 }
 
-/// Segments to long lines: what a drawing program can do something with.
+/// Joins segments to long lines, which drawing programs can use.
 Surface joined(vtkPolyData* contour)
 {
   vtkNew<vtkStripper> stripper;
@@ -70,11 +70,11 @@ void write_as(Writer& writer, vtkPolyData* surface, const fs::path& file)
 {
   writer.SetInputData(surface);
   write_whole(file, [&](const fs::path& temporary) {
-    const fs::path named = temporary.string() + file.extension().string();  // that of .ply adds the ending to names without it
+    const fs::path named = temporary.string() + file.extension().string();  // the writer of .ply adds the ending if it is missing
     writer.SetFileName(named.c_str());
     const bool written = writer.Write() != 0;
     std::error_code failed;
-    // A full disk is not noticed by every writer: each triangle takes twelve bytes or more.
+    // Not every writer of VTK reports a full disk: each triangle takes at least twelve bytes.
     const bool whole = fs::file_size(named, failed) > 12 * static_cast<std::uintmax_t>(surface->GetNumberOfPolys());
     if (!failed)
       fs::rename(named, temporary, failed);
@@ -129,7 +129,7 @@ std::vector<SurfaceSettings::Body> wanted_bodies(const SurfaceSettings& settings
   return all;
 }
 
-/// All bodies of one frame into one surface, and a line about each.
+/// Combines the surfaces of all bodies of one frame, with a line of text about each.
 Extracted extract(const std::map<int, Matter>& bodies, const SurfaceSettings& settings, int dimension)
 {
   vtkNew<vtkAppendPolyData> together;

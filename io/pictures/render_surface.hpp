@@ -8,8 +8,8 @@
 
 namespace talus::render {
 
-/// Writes the surfaces and calls `written` with every file once it is on the disk, and a line that says how much of each body it encloses.
-/// Needs no display.  Error if the run does not have what is asked for, or a grid would be too large; EnvironmentError for files.
+/// Writes the surfaces and calls `written` with every file that is on the disk, and a line with the enclosed volume of each body.  Needs no
+/// display.  Throws Error if the run does not have a requested item or a grid would be too large, EnvironmentError for files.
 void make_surfaces(const SurfaceSettings& settings,
                    const std::function<void(const std::filesystem::path& file, const std::string& said)>& written);
 

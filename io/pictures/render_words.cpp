@@ -11,7 +11,7 @@ namespace talus::render {
 namespace {
 
 constexpr Real wanted_intervals = 5;
-constexpr Real slack = 1e-9;  // of a step: an end of the range that is a tick but for round-off
+constexpr Real slack = 1e-9;  // fraction of a step: an end of the range that differs from a tick by round-off
 
 }  // namespace
 
@@ -29,7 +29,7 @@ std::vector<Tick> ticks(Real low, Real high)
   const Real step = round_below(1.5 * (high - low) / wanted_intervals);  // three to eight intervals
   const Real largest = std::max(std::abs(low), std::abs(high));
   const int decimals = std::max(0, static_cast<int>(-std::floor(std::log10(step) + slack)));
-  constexpr Real long_number = 1e5, fine = 1e-3;  // places on a map are long numbers that differ in their last digits
+  constexpr Real long_number = 1e5, fine = 1e-3;  // map coordinates are long numbers that differ in their last digits
   const bool in_full = decimals < 5 && (largest < long_number || step < fine * largest);
   std::vector<Tick> list;
   for (Real i = std::ceil(low / step - slack); i * step <= high + slack * step; ++i) {

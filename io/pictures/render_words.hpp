@@ -1,5 +1,5 @@
 #pragma once
-// Numbers for people: round ticks, scale lengths.
+// Round numbers for ticks and length scales.
 #include <string>
 #include <vector>
 
@@ -7,16 +7,16 @@
 
 namespace talus::render {
 
-/// The largest of 1, 2, 5 times a power of ten that is not above `length` (> 0).
+/// The largest of 1, 2, 5 times a power of ten that is at most `length` (> 0).
 Real round_below(Real length);
 
 struct Tick {
   Real value;
   std::string text;
 };
-/// Multiples of a round step in [low, high], about five of them, all with the same number of decimals.
+/// Multiples of a round step in [low, high], about five of them, with equal numbers of decimals.
 std::vector<Tick> ticks(Real low, Real high);
-/// Powers of ten in [low, high] (> 0), with twice and five times those where they are fewer than three.
+/// Powers of ten in [low, high] (> 0), with twice and five times those if there are fewer than three.
 std::vector<Tick> decades(Real low, Real high);
 
 }  // namespace talus::render

@@ -8,7 +8,7 @@ namespace talus {
 namespace {
 
 struct Preset {
-  Real cells;  ///< their size, as a factor
+  Real cells;  ///< factor of the cell sizes
   Index particles_2d, particles_3d;
   Real cfl;
 };

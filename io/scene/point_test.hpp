@@ -1,5 +1,5 @@
 #pragma once
-// The file of `talus drive`: one law and the path along which it is driven.
+// The file of `talus drive`: one law and its path of loading.
 #include <array>
 #include <vector>
 

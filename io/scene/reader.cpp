@@ -1,4 +1,5 @@
-// The only YAML code: the parser's events become a tree of located values, and what YAML has beyond that is refused.
+// The only code that uses the YAML library: the parser's events become a tree of located values, and unsupported features of YAML are
+// refused.
 #include "io/scene/reader.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ namespace {
 
 constexpr std::size_t deepest_nesting = 40;
 
-/// A document that cannot be taken apart any further.
+/// Thrown for a document that cannot be parsed further.
 struct Unparsable {
   Place place;
   std::string message;
@@ -66,21 +67,21 @@ class TreeBuilder : public YAML::EventHandler {
   void OnMapEnd() override { close(); }
 
  private:
-  /// A list or mapping whose end has not come yet.
+  /// A list or mapping whose end has not been read yet.
   struct Open {
     Node node;
     std::unordered_map<std::string, Place> seen;  ///< keys of the mapping
-    std::optional<Node::Key> key;                 ///< of the value that comes next
-    bool key_is_right = true;                     ///< otherwise the value is dropped
+    std::optional<Node::Key> key;                 ///< key of the next value
+    bool key_is_right = true;                     ///< if false, the value is dropped
   };
 
-  /// Marks count from zero; the text of an override has no lines of its own.
+  /// The position of a mark, which counts from zero; the text of an override has no lines of its own.
   Place place(const YAML::Mark& mark) const
   {
     return !source_.is_file || mark.is_null() ? Place{&source_} : Place{&source_, mark.line + 1, mark.column + 1};
   }
 
-  /// Keys and numbers that lead to the value that comes next.
+  /// The path of the next value.
   std::string path() const
   {
     std::string text;
@@ -130,7 +131,7 @@ class TreeBuilder : public YAML::EventHandler {
     add(std::move(done));
   }
 
-  /// A complete value: the root, an entry of a list, a key, or the value of the key before it.
+  /// Adds a complete value: the root, an entry of a list, a key, or the value of the previous key.
   void add(Node value)
   {
     if (open_.empty()) {
@@ -141,7 +142,7 @@ class TreeBuilder : public YAML::EventHandler {
       add_key(top, value);
     } else {
       if (value.kind == Node::Kind::empty)
-        value.place = top.key->place;  // the parser places it where the next thing stands
+        value.place = top.key->place;  // the parser gives the position of the next item
       if (top.key_is_right) {
         top.node.keys.push_back(std::move(*top.key));
         top.node.items.push_back(std::move(value));
@@ -173,7 +174,7 @@ class TreeBuilder : public YAML::EventHandler {
   Node root_;
 };
 
-/// The parser's message, with what usually is the matter.
+/// The parser's message, with the usual cause.
 std::string explained(const std::string& message)
 {
   static constexpr std::array<std::array<std::string_view, 2>, 6> reasons{{
@@ -253,7 +254,7 @@ Document read_document(const std::filesystem::path& file, std::string text, std:
   return document;
 }
 
-/// How long a value is that begins a text and ends in its first line; 0: it goes on in the next.
+/// The length of a value at the beginning of a text that ends on its first line; 0 if it continues on the next line.
 std::size_t length_in_line(const Node& node, std::string_view text)
 {
   if (node.kind == Node::Kind::scalar && !node.quoted)
@@ -271,12 +272,12 @@ std::size_t length_in_line(const Node& node, std::string_view text)
     else if (c == ']' || c == '}')
       --depth;
     if (quote == 0 && depth == 0)
-      return i == 0 ? 0 : i + 1;  // the first letter of a block opens nothing
+      return i == 0 ? 0 : i + 1;  // the first letter of a plain text is not a bracket
   }
   return 0;
 }
 
-/// Notes broken rules at the values they are about, unless these values are wrong already.
+/// Records broken rules at the values that they concern, unless these values have errors already.
 void add_findings(Document& document, const std::vector<Finding>& findings)
 {
   const std::vector<SceneError> before = document.problems.list();

@@ -1,4 +1,4 @@
-// Lines of two numbers -> a motion.
+// Reads a motion from lines of two numbers.
 #include "io/scene/record_file.hpp"
 
 #include <fmt/format.h>
@@ -13,9 +13,9 @@ namespace talus {
 namespace {
 
 constexpr std::string_view between_values = " \t,;";
-constexpr std::size_t most_problems_of_record = 20;  // a file of another kind has one in every line
+constexpr std::size_t most_problems_of_record = 20;  // a file of another kind has an error in every line
 
-/// The values of a line, as they stand there.
+/// The values of a line as text.
 std::vector<std::string_view> values_in(std::string_view line)
 {
   std::vector<std::string_view> values;
@@ -36,7 +36,7 @@ std::optional<Real> number_in(std::string_view text)
   return code == std::errc{} && end == text.data() + text.size() && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-/// In m/s or m/s^2.
+/// The unit in m/s or m/s^2.
 Real in_si(RecordUnit unit)
 {
   constexpr Real standard_gravity = 9.80665;  // CGPM 1901

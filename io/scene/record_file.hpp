@@ -7,11 +7,11 @@
 
 namespace talus {
 
-/// The motion [m/s].  Throws SceneErrors with file, line and column of all that is wrong in the file: not two numbers in a line, times that
-/// do not increase, fewer than two samples.
+/// The motion [m/s].  Throws SceneErrors with file, line and column of all errors: lines without two numbers, times that do not increase,
+/// fewer than two samples.
 Record read_record(const std::filesystem::path& file, const RecordOptions& spec);
 
-/// Its duration, its peaks and what is left of it at its end, in a line.
+/// A line with its duration, its peaks, and velocity and displacement at its end.
 std::string describe(const RecordOptions& spec, const Record& record);
 
 }  // namespace talus

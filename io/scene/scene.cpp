@@ -12,7 +12,7 @@ namespace talus {
 
 namespace {
 
-/// Complains unless exactly one of the keys is there.
+/// Adds an error unless exactly one of the keys is given.
 void exactly_one(std::string_view keys, int found, std::vector<std::string>& problems)
 {
   if (found == 0)

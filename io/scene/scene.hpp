@@ -1,9 +1,8 @@
 #pragma once
-// The scene: plain typed values, one struct per block of the file.  Their field lists are the user manual.
-//
-// A struct may have `Where where` (set by the reader to the place of its mapping) and `void check(std::vector<std::string>&) const`
-// (rules between its keys, in words).  Rules between blocks stand in scene_rules.hpp; rules that need the mesh are checked when the
-// model is built, with the same error type.
+// The scene: plain typed values, one struct per block of the file.  Their field lists are the user manual.  A struct may have
+// `SourceLocation where` (set by the reader to the position of its mapping) and `void check(std::vector<std::string>&) const` (rules
+// between its keys, in words).  Rules between blocks are in scene_rules.hpp; rules that need the mesh are checked when the model is built,
+// with the same error type.
 #include <array>
 #include <optional>
 #include <string>
@@ -29,7 +28,7 @@ namespace talus {
 
 struct TimeSpec {
   Real end = 0;
-  std::optional<Real> cfl;  ///< has a value in every scene that was read
+  std::optional<Real> cfl;  ///< set in every scene that was read
   std::optional<Real> max_step;
   Real min_step = 1e-12;
   SourceLocation where;
@@ -50,9 +49,9 @@ enum class Accuracy : std::uint8_t { draft, standard, fine };
 constexpr std::array<std::string_view, 3> enum_names(Accuracy) { return {"draft", "standard", "fine"}; }
 
 struct Scene {
-  std::string file;                    ///< path as given, for messages; directory of relative paths
-  std::string text;                    ///< the file, for the echo in the summary
-  std::vector<std::string> overrides;  ///< of --set
+  std::string file;                    ///< path as given, for messages; relative paths start in its directory
+  std::string text;                    ///< text of the file, for the summary
+  std::vector<std::string> overrides;  ///< changes by --set
   std::string title;
   Index dimension{};
   Accuracy accuracy = Accuracy::standard;

@@ -11,11 +11,11 @@
 
 namespace talus {
 
-/// What becomes of a quantity of particles that come from another run.
+/// What happens to a quantity of particles that come from another run.
 enum class Carried : std::uint8_t { keep, zero };
 constexpr std::array<std::string_view, 2> enum_names(Carried) { return {"keep", "zero"}; }
 
-/// A body of the scene and the one whose particles it takes.
+/// A body of the scene, and the body of the other run whose particles it takes.
 struct TakenSpec {
   std::string body, from;
   SourceLocation where;
@@ -26,7 +26,7 @@ struct TakenSpec {
   }
 };
 
-/// Bodies that begin as another run left them.
+/// Bodies that start from the state of another run.
 struct InitialSpec {
   std::string from;
   std::vector<TakenSpec> bodies;

@@ -27,7 +27,7 @@ struct GravitySpec {
 enum class PlaceOf : std::uint8_t { now, start };
 constexpr std::array<std::string_view, 2> enum_names(PlaceOf) { return {"now", "start"}; }
 
-/// Force per mass by formulas of place and time.
+/// A force per mass by formulas of position and time.
 struct BodyForceSpec {
   static constexpr std::string_view name = "body_force";
   std::vector<std::string> acceleration;
@@ -47,7 +47,7 @@ struct BodyForceSpec {
 enum class Carrier : std::uint8_t { particles, mesh };
 constexpr std::array<std::string_view, 2> enum_names(Carrier) { return {"particles", "mesh"}; }
 
-/// Force per area on a facet group: exactly one of traction and pressure.
+/// A force per area on a facet group: exactly one of traction and pressure.
 struct TractionSpec {
   static constexpr std::string_view name = "traction";
   std::string on;

@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// A named solid of inline geometry.  Regions that touch share their faces; a later region gives way where two overlap.
+/// A named solid of inline geometry.  Regions that touch share their faces; an overlap belongs to the earlier region.
 struct RegionSpec {
   std::string name;
   Shape shape;

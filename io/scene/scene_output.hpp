@@ -34,7 +34,7 @@ struct MeshOutputSpec {
   }
 };
 
-/// Follows the particle that is nearest to a place at the start.
+/// Tracks the particle that is nearest to a position at the start.
 struct PointSpec {
   std::string name;
   std::vector<Real> at;
@@ -51,7 +51,7 @@ struct PointSpec {
 enum class Direction : std::uint8_t { x_plus, x_minus, y_plus, y_minus, z_plus, z_minus };
 constexpr std::array<std::string_view, 6> enum_names(Direction) { return {"+x", "-x", "+y", "-y", "+z", "-z"}; }
 
-/// How far the mass reaches: run-out, crest height.
+/// The farthest position of mass in a direction: run-out, crest height.
 struct FrontSpec {
   std::string name;
   Direction direction{};
@@ -68,7 +68,7 @@ struct FrontSpec {
   }
 };
 
-/// What bodies do to a wall.
+/// The action of bodies on a wall.
 struct WallSpec {
   std::string on;
   SourceLocation where;
@@ -78,7 +78,7 @@ struct WallSpec {
   }
 };
 
-/// How far the mass has come from where its displacement counts.
+/// The displacement of mass.
 struct MovedSpec {
   std::string name;
   Real mass_share = 0.99;
@@ -118,7 +118,7 @@ struct HistoryOutputSpec {
   }
 };
 
-/// When the state of the run is kept, to go on from.
+/// The times of checkpoints, from which a run can be resumed.
 struct CheckpointSpec {
   std::optional<Real> every;
   std::optional<Index> steps;
@@ -136,7 +136,7 @@ struct CheckpointSpec {
   }
 };
 
-/// What `talus render` draws unless told otherwise.
+/// The defaults of `talus render`.
 struct PictureSpec {
   std::string field = "displacement";
   std::vector<Real> range, view{0.4, -1, 0.5}, up;

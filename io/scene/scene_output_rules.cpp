@@ -85,10 +85,10 @@ class OutputRules : private SceneRuleBase {
       different_columns(history);
   }
 
-  /// A table with two columns of one name is read differently by different programs.
+  /// Two columns must not have the same name, because programs read such tables differently.
   void different_columns(const HistoryOutputSpec& history)
   {
-    std::map<std::string, std::string> giver;  // of each column
+    std::map<std::string, std::string> giver;  // the entry that adds each column
     const auto note = [&](const std::string& path, std::string_view key, const std::string& name, const std::vector<CsvColumn>& columns) {
       bool told = name.empty();
       for (const CsvColumn& column : columns) {
@@ -124,7 +124,7 @@ class OutputRules : private SceneRuleBase {
         note("outputs.history", fmt::format("bodies[{}]", i), history.bodies[i], columns(body_columns(), history.bodies[i]));
   }
 
-  /// Of its name; others are found by different_names().
+  /// Checks an entry against others of its name; different names are checked by different_names().
   template <class Item>
   static bool is_first(const std::vector<Item>& items, std::size_t i)
   {
@@ -137,7 +137,7 @@ class OutputRules : private SceneRuleBase {
     int components;
   };
 
-  /// Fields of every particle, and the history variables of the laws that bodies have, from the beginning or by the change of a stage.
+  /// The fields of every particle, and the history variables of the laws of bodies, also of laws that bodies get in later stages.
   std::vector<ParticleField> fields_of_particles() const
   {
     std::vector<ParticleField> known;
@@ -165,7 +165,7 @@ class OutputRules : private SceneRuleBase {
     return used;
   }
 
-  /// The field of pictures may name a component: "velocity:x".
+  /// Checks the field of pictures, which may name a component: "velocity:x".
   void picture(const std::string& asked, const std::vector<ParticleField>& known)
   {
     const ViewedField shown = ViewedField::of(asked);

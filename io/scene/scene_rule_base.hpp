@@ -1,5 +1,5 @@
 #pragma once
-// What rules between the blocks of a scene have in common: findings, names that must exist or differ, lists that must fit the dimension.
+// Common parts of the rules between the blocks of a scene: findings, names that must exist or differ, lists that must fit the dimension.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ class SceneRuleBase {
  protected:
   void add(std::string path, std::string message) { findings_.push_back({std::move(path), std::move(message)}); }
 
-  /// Whether a word is there and known; one that is not known is a finding, with the nearest that is.
+  /// Whether a word is given and known; an unknown word is a finding, with the nearest known one.
   bool known_word(std::string path, std::string_view what, const std::string& word, const std::vector<std::string>& known);
   /// A list of known words without repetition.
   void known_words(const std::string& path, std::string_view what, const std::vector<std::string>& words,
@@ -46,7 +46,7 @@ class SceneRuleBase {
     if (scene_.dimension != 0 && !list.empty() && list.size() != static_cast<std::size_t>(scene_.dimension))
       add(path, fmt::format("needs {} values in {} dimensions, not {}", scene_.dimension, scene_.dimension, list.size()));
   }
-  /// A shape whose lists have one entry per dimension, and that there is in this dimension.
+  /// Checks that the lists of a shape have one entry per dimension, and that the shape exists in this dimension.
   void fits(const std::string& path, const Shape& shape);
   void fits(const std::string& path, const SimpleShape& shape);
 

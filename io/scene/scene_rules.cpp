@@ -79,7 +79,7 @@ class Rules : private SceneRuleBase {
         plane_stress(fmt::format("{}.bodies[{}].stress", path, i), *spec.bodies[i].stress);
   }
 
-  /// In plane strain nothing is sheared out of the plane.
+  /// In plane strain there is no shear out of the plane.
   void plane_stress(const std::string& path, const UniformStressSpec& stress)
   {
     if (scene_.dimension == 2 && (stress.yz != 0 || stress.xz != 0))
@@ -110,7 +110,8 @@ class Rules : private SceneRuleBase {
       water(*scene_.water);
   }
 
-  /// A body is filled or taken from another run, and what it says is used.  Without a list only that run can tell which are taken.
+  /// A body is either filled or taken from another run, and its keys must fit.  Without a list only the other run determines which bodies
+  /// are taken.
   void source_of_particles(const std::string& path, const BodySpec& body)
   {
     const auto& list = scene_.initial ? scene_.initial->bodies : std::vector<TakenSpec>{};
@@ -121,7 +122,7 @@ class Rules : private SceneRuleBase {
     if (!body.region.empty() && body.shape)
       return add(path, "only one of region or shape may be given");
     if (misspelt && !listed && !body.fills())
-      return;  // it may be the one that is meant
+      return;  // it may be the right one
     if (!listed && !body.fills() && (!scene_.initial || !list.empty()))
       return add(path, fmt::format("one of region or shape is needed{}", list.empty() ? "" : ": initial.bodies does not name this body"));
     if (body.fills() && !listed)
@@ -200,7 +201,7 @@ class Rules : private SceneRuleBase {
     }
   }
 
-  /// In balance with its loads, as far as the scene tells.
+  /// Whether the bodies begin in equilibrium with the loads, as far as the scene tells.
   bool begins_at_rest() const
   {
     return scene_.initial || (!scene_.stages.empty() && std::holds_alternative<GeostaticSpec>(scene_.stages.front()));
@@ -215,7 +216,7 @@ std::vector<std::string> kernel_names()
 {
   std::vector<std::string> names;
   for_each_type(Kernels<2>{}, [&]<class K>() {
-    constexpr std::string_view name = K::name;  // by value: nothing of the kernel is linked
+    constexpr std::string_view name = K::name;  // a copy, so that nothing of the kernel is linked
     names.emplace_back(name);
   });
   return names;

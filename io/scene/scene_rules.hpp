@@ -7,19 +7,19 @@
 
 namespace talus {
 
-/// A broken rule and the path of the key that it is about, such as "bodies[1].material"; the key need not exist.
+/// A broken rule with the path of its key, such as "bodies[1].material"; the key need not exist.
 struct Finding {
   std::string path, message;
 };
 
-/// What is wrong with a scene as a whole, apart from its mesh.  The scene may be half read: what is empty is passed over.
+/// The errors of a scene as a whole, apart from its mesh.  Parts that could not be read are empty and skipped.
 std::vector<Finding> broken_rules(const Scene& scene);
-/// Of them those about the block `mesh`, those about `outputs`, and those about what stages change: names, and what is there when.
+/// The errors of the block `mesh`, of the block `outputs`, and of the changes by stages.
 std::vector<Finding> broken_mesh_rules(const Scene& scene);
 std::vector<Finding> broken_output_rules(const Scene& scene);
 std::vector<Finding> broken_stage_rules(const Scene& scene);
 
-/// Names a scene may give as kernel.
+/// The names of kernels in a scene.
 std::vector<std::string> kernel_names();
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// The block `outputs.runout` of a scene: how far a slide gets, how thick, how fast, and the maps of it.
+// The block `outputs.runout` of a scene: run-out, thickness, speed, and maps of them.
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// A line over the plan along which the ground before, the surface after and what flowed between them are written.
+/// A line in the plan along which the ground before, the surface after and the moving material are written.
 struct SectionSpec {
   std::string name;
   std::vector<std::vector<Real>> along;

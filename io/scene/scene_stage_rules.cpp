@@ -1,4 +1,4 @@
-// Rules of what stages change: which bodies there are in each, what becomes of them, which walls act.
+// Rules for changes by stages: which bodies are present, what happens to them, which walls act.
 #include <map>
 
 #include "io/scene/scene_rule_base.hpp"
@@ -21,7 +21,7 @@ class StageRules : private SceneRuleBase {
   }
 
  private:
-  /// "stages[1] \"fill\""
+  /// The name of a stage in messages, such as "stages[1] \"fill\"".
   std::string said(Index s) const
   {
     const std::string& label = changes_of(scene_.stages[static_cast<std::size_t>(s)]).label;
@@ -106,7 +106,7 @@ class StageRules : private SceneRuleBase {
     return there.in(s);
   }
 
-  /// A body that has just come can be given the material at once.
+  /// A body that appears in a stage should be given its material directly.
   void begins_elsewhere(const std::string& path, const std::string& body, Index s)
   {
     if (presence(body).from == s)
@@ -133,7 +133,7 @@ class StageRules : private SceneRuleBase {
 
   Presence presence(const std::string& body) const { return presence_of(body, scene_.stages); }
 
-  /// The stage that names the body before that place in the list of stage `s`.
+  /// The earlier stage that names the body, before that position in the list of stage `s`.
   std::optional<Index> named_before(std::vector<std::string> StageChanges::*list, const std::string& body, Index s, std::size_t place) const
   {
     for (Index t = 0; t <= s; ++t) {

@@ -16,7 +16,7 @@
 
 namespace talus {
 
-/// A stress that is the same everywhere in a body [Pa].
+/// A uniform stress in a body [Pa].
 struct UniformStressSpec {
   Real xx{}, yy{}, zz{}, xy = 0, yz = 0, xz = 0;
   SourceLocation where;
@@ -32,8 +32,8 @@ struct UniformStressSpec {
   }
 };
 
-/// Horizontal over vertical stress, effective stresses where the law sees these: one number, by depth, or by the friction of the law.  Or the
-/// stress itself.
+/// The ratio of horizontal to vertical stress, of effective stresses where the law uses them: a number, by depth, or from the friction of
+/// the law.  Alternatively the stress itself.
 struct K0Rule {
   std::optional<Real> k0;
   std::vector<std::vector<Real>> k0_table;
@@ -66,7 +66,7 @@ constexpr auto k0_fields()
           "in drained bodies, to which the pore pressure comes")};
 }
 
-/// One body whose ratio differs from that of the others.
+/// The ratio of one body that differs from the others.
 struct K0OfBody : K0Rule {
   std::string body;
   SourceLocation where;
@@ -77,7 +77,7 @@ struct K0OfBody : K0Rule {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// Stress at the start: vertical stress from the weight above, horizontal stress in a given ratio to it; or as it is given.
+/// The initial stress: vertical stress from the weight above and horizontal stress in a given ratio to it, or a given stress.
 struct K0Spec : K0Rule {
   std::vector<K0OfBody> bodies;
   SourceLocation where;
@@ -86,11 +86,11 @@ struct K0Spec : K0Rule {
     return std::tuple_cat(k0_fields<K0Spec>(), std::tuple{optional_list("bodies", &K0Spec::bodies, "bodies with a ratio of their own")});
   }
   void check(std::vector<std::string>& problems) const;
-  /// That of a body: its own, or that of all.
+  /// The rule of a body: its own, or that of all bodies.
   const K0Rule& of(const std::string& body) const noexcept;
 };
 
-/// A body that goes on as another material.
+/// A change of the material of a body.
 struct NewMaterialSpec {
   std::string body, material;
   SourceLocation where;
@@ -101,7 +101,7 @@ struct NewMaterialSpec {
   }
 };
 
-/// Shear strength that drops: a trigger.
+/// A reduction of shear strength, as a trigger.
 struct WeakenSpec {
   std::string body;
   Real factor{};
@@ -127,9 +127,9 @@ struct StageWaterSpec {
   }
 };
 
-/// What a stage of any type may say of itself, and what it changes before its first step.
+/// The keys that stages of all types have in common: the name, and the changes before the first step.
 struct StageChanges {
-  std::string label;  ///< its name; empty: that of its type
+  std::string label;  ///< name; empty: that of its type
   std::vector<std::string> appear, vanish;
   std::vector<NewMaterialSpec> change;
   std::vector<WeakenSpec> weaken;
@@ -146,7 +146,7 @@ struct StageChanges {
   }
 };
 
-/// Finds the state at rest under the loads: gravity ramp and local damping until the unbalanced force is small.
+/// A stage that finds equilibrium under the loads: gravity ramp and local damping until the unbalanced force is small.
 struct GeostaticSpec : StageChanges {
   static constexpr std::string_view name = "geostatic";
   Real duration{}, ramp = 0, damping = 0.7, residual = 1e-3;
@@ -202,14 +202,14 @@ inline const SourceLocation& where_of(const StageSpec& stage)
 {
   return std::visit([](const auto& spec) -> const SourceLocation& { return spec.where; }, stage);
 }
-/// As messages and results call it.
+/// The name in messages and results.
 inline std::string name_of(const StageSpec& stage)
 {
   const std::string& label = changes_of(stage).label;
   return label.empty() ? std::visit([]<class Spec>(const Spec&) { return std::string(Spec::name); }, stage) : label;
 }
 
-/// The stages in which a body is there: [from, until).
+/// The stages in which a body is present: [from, until).
 struct Presence {
   Index from = 0, until = std::numeric_limits<Index>::max();
   bool in(Index stage) const noexcept { return from <= stage && stage < until; }

@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces that a scene speaks of: ground, bottoms of layers, the water table.
+// Surfaces in a scene: ground, bottoms of layers, the water table.
 #include <optional>
 #include <string>
 #include <vector>

@@ -16,7 +16,7 @@ void check_place(std::string_view key, const std::vector<Real>& place, Messages&
     problems.push_back(fmt::format("{} needs two numbers, [east, north]", key));
 }
 
-/// Two corners of a rectangle or all of a polygon; one number each where the plan is a line.
+/// Checks the two corners of a rectangle or all corners of a polygon; one number each if the plan is a line.
 void check_area(std::string_view key, const Points& corners, const std::string& file, Messages& problems)
 {
   if (!corners.empty() && !file.empty())

@@ -22,7 +22,7 @@ struct TerrainSectionSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// What lies between a surface and the one above it.
+/// The material between a surface and the one above it.
 struct LayerSpec {
   std::string name;
   SurfaceSpec bottom;
@@ -47,7 +47,7 @@ struct LayerSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// Room for what will move over the ground.
+/// Space above the ground for moving material.
 struct AirSpec {
   Real height{};
   std::optional<Real> reach, size;
@@ -83,7 +83,7 @@ struct FinerSpec {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// Something rigid that stands on the ground: cells are left out.
+/// A rigid obstacle on the ground, whose cells are left out.
 struct ObstacleSpec {
   std::string name;
   std::vector<std::vector<Real>> outline;

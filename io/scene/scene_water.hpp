@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// Water at rest in the pores, below a table that stays where it is.
+/// Pore water at rest below a constant table.
 struct WaterSpec {
   SurfaceSpec table;
   Real unit_weight = 9810, suction = 0;
@@ -35,7 +35,7 @@ struct WaterSpec {
   }
 };
 
-/// Whether the law of a body of that name sees effective stress.
+/// Whether the law of a body of that name uses effective stress.
 inline bool is_drained(const WaterSpec& water, const std::string& body)
 {
   const auto names = [&](const std::vector<std::string>& list) { return std::find(list.begin(), list.end(), body) != list.end(); };

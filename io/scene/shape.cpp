@@ -17,16 +17,16 @@ using Point = std::array<Real, 2>;
 
 Point point(const std::vector<Real>& x) { return {x[0], x[1]}; }
 
-/// Twice the area of the triangle a b c, positive if it turns left.
+/// Twice the signed area of the triangle a b c, positive if it is counterclockwise.
 Real turn(const Point& a, const Point& b, const Point& c) { return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]); }
 
-/// True if c, known to lie on the line through a and b, lies between them.
+/// Whether c, which lies on the line through a and b, lies between them.
 bool between_ends(const Point& a, const Point& b, const Point& c)
 {
   return std::min(a[0], b[0]) <= c[0] && c[0] <= std::max(a[0], b[0]) && std::min(a[1], b[1]) <= c[1] && c[1] <= std::max(a[1], b[1]);
 }
 
-/// True if the closed segments a b and c d have a point in common.
+/// Whether the closed segments a b and c d have a point in common.
 bool meet(const Point& a, const Point& b, const Point& c, const Point& d)
 {
   const Real c_side = turn(a, b, c), d_side = turn(a, b, d), a_side = turn(c, d, a), b_side = turn(c, d, b);
@@ -36,7 +36,7 @@ bool meet(const Point& a, const Point& b, const Point& c, const Point& d)
          (b_side == 0 && between_ends(c, d, b));
 }
 
-/// True if two sides cross or touch; neighbours may share their corner, but not fold back.
+/// Whether two sides cross or touch; neighbours may share their corner, but not overlap.
 bool sides_collide(const std::vector<std::vector<Real>>& corners, std::size_t i, std::size_t j)
 {
   const std::size_t n = corners.size();
@@ -52,8 +52,8 @@ bool sides_collide(const std::vector<std::vector<Real>>& corners, std::size_t i,
   return meet(a, b, c, d);
 }
 
-/// The numbers of two sides that collide, if any do.  Sides are swept from left to right, so that a polygon of many short sides
-/// takes little more than sorting them.
+/// The numbers of two sides that cross or touch, if there are any.  Sides are swept from left to right, so the cost for a polygon of many
+/// short sides is little more than that of sorting them.
 std::optional<std::pair<std::size_t, std::size_t>> colliding_sides(const std::vector<std::vector<Real>>& corners)
 {
   const std::size_t n = corners.size();
@@ -69,7 +69,7 @@ std::optional<std::pair<std::size_t, std::size_t>> colliding_sides(const std::ve
   return std::nullopt;
 }
 
-/// Position along the axis as a share of its length, and distance from the axis [m].
+/// The position along the axis as a fraction of its length, and the distance from the axis [m].
 std::array<Real, 2> along_axis(const Cylinder& cylinder, std::span<const Real> x)
 {
   Real length2 = 0, along = 0, distance2 = 0;
@@ -106,7 +106,7 @@ bool holds(const Cylinder& cylinder, std::span<const Real> x)
 
 enum class WhereInPolygon : std::uint8_t { inside, on_a_side, outside };
 
-/// Counts the sides crossed by a ray to the right; corners belong to the side above them.
+/// Counts the sides that a ray to the right crosses; corners belong to the side above them.
 WhereInPolygon place_in(const std::vector<std::vector<Real>>& corners, const Point& p)
 {
   bool inside = false;
@@ -158,7 +158,7 @@ bool holds(const Intersection& all, std::span<const Real> x)
   return std::all_of(all.of.begin(), all.of.end(), [&](const SimpleShape& part) { return holds(part, x); });
 }
 
-/// Complains unless the corners are those of a simple polygon; `key` is what they are called.  True if they are.
+/// Adds an error unless the corners are those of a simple polygon; `key` is their name.  Returns whether they are.
 bool check_ring(const std::string& key, const std::vector<std::vector<Real>>& points, std::vector<std::string>& problems)
 {
   const auto complain = [&](std::string what) {
@@ -180,7 +180,7 @@ bool check_ring(const std::string& key, const std::vector<std::vector<Real>>& po
     area += turn(origin, a, b) / 2;
     scale = std::max({scale, std::abs(a[0] - origin[0]), std::abs(a[1] - origin[1])});
   }
-  if (std::abs(area) <= 1e-12 * scale * scale)  // round-off of the sum, relative to the box around it
+  if (std::abs(area) <= 1e-12 * scale * scale)  // round-off of the sum, relative to the bounding box
     return complain(of_hole + "the polygon has no area");
   if (const auto sides = colliding_sides(points))
     return complain(fmt::format("the side after {0}[{1}] meets the side after {0}[{2}]", key, sides->first, sides->second));

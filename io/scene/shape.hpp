@@ -1,5 +1,5 @@
 #pragma once
-// Simple solids: inline geometry for the mesher, and regions of space that bodies fill.
+// Simple solids: inline geometry for the mesher, and regions that bodies fill.
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,10 +12,10 @@
 
 namespace talus {
 
-/// Complains unless low < high along every axis.
+/// Adds an error unless low < high along every axis.
 void check_corners(const std::vector<Real>& low, const std::vector<Real>& high, std::vector<std::string>& problems);
 
-/// Axis-parallel box.
+/// An axis-parallel box.
 struct Box {
   static constexpr std::string_view name = "box";
   std::vector<Real> low, high;
@@ -27,7 +27,7 @@ struct Box {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// Disk in 2-D, ball in 3-D.
+/// A disk in 2-D, a ball in 3-D.
 struct Sphere {
   static constexpr std::string_view name = "sphere";
   std::vector<Real> centre;
@@ -39,7 +39,7 @@ struct Sphere {
   }
 };
 
-/// Straight circular cylinder (3-D).
+/// A straight circular cylinder (3-D).
 struct Cylinder {
   static constexpr std::string_view name = "cylinder";
   std::vector<Real> from, to;
@@ -53,7 +53,7 @@ struct Cylinder {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// Simple polygon in the x-y plane, perhaps with holes; in 3-D it is extruded along z.
+/// A simple polygon in the x-y plane, optionally with holes; in 3-D it is extruded along z.
 struct Polygon {
   static constexpr std::string_view name = "polygon";
   std::vector<std::vector<Real>> points;
@@ -74,7 +74,7 @@ struct Polygon {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// What lies between two concentric circles in 2-D, two spheres in 3-D.
+/// The points between two concentric circles in 2-D, or two spheres in 3-D.
 struct Ring {
   static constexpr std::string_view name = "ring";
   std::vector<Real> centre;
@@ -89,10 +89,10 @@ struct Ring {
   void check(std::vector<std::string>& problems) const;
 };
 
-/// A shape that is not put together from others.
+/// A shape that is not combined from others.
 using SimpleShape = std::variant<Box, Sphere, Cylinder, Polygon, Ring>;
 
-/// What lies in one shape and in none of others.
+/// The points in one shape and in none of the others.
 struct Difference {
   static constexpr std::string_view name = "difference";
   SimpleShape of;
@@ -105,7 +105,7 @@ struct Difference {
   }
 };
 
-/// What lies in any of some shapes.
+/// The points in at least one of several shapes.
 struct Union {
   static constexpr std::string_view name = "union";
   std::vector<SimpleShape> of;
@@ -115,7 +115,7 @@ struct Union {
   }
 };
 
-/// What lies in all of some shapes.
+/// The points in all of several shapes.
 struct Intersection {
   static constexpr std::string_view name = "intersection";
   std::vector<SimpleShape> of;
@@ -127,7 +127,7 @@ struct Intersection {
 
 using Shape = std::variant<Box, Sphere, Cylinder, Polygon, Ring, Difference, Union, Intersection>;
 
-/// f(SimpleShape) for the shape, or for each from which it is put together.
+/// Calls f(SimpleShape) for the shape, or for each shape of a combination.
 template <class F>
 void for_each_part(const Shape& shape, F&& f)
 {
@@ -147,7 +147,7 @@ void for_each_part(const Shape& shape, F&& f)
       shape);
 }
 
-/// True if x (one number per dimension of the scene) lies in the shape or on its surface.  The shape must fit the dimension.
+/// Whether x (one number per dimension of the scene) lies in the shape or on its surface.  The shape must fit the dimension.
 bool contains(const Shape& shape, std::span<const Real> x) noexcept;
 
 }  // namespace talus

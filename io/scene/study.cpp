@@ -17,7 +17,7 @@ constexpr std::size_t most_cases = 10'000;
 
 Written written(std::string text, const Node& node, const std::string& path) { return {std::move(text), problem_at(node.place, path, "")}; }
 
-/// As a scene has it: six digits are more than anybody knows.
+/// The text of a sampled value, with six digits.
 std::string sample_text(Real value) { return fmt::format("{:.6g}", value); }
 
 /// The values of a key that has a distribution.
@@ -37,7 +37,7 @@ std::vector<Written> values_of(const Spread& spread, const std::string& key, con
   return values;
 }
 
-/// What belongs to samples alone.
+/// Checks keys that are valid for samples only.
 void check_samples(const Node& root, const StudySpec& spec, Problems& problems)
 {
   const bool latin = spec.combine == Combine::latin;
@@ -50,7 +50,7 @@ void check_samples(const Node& root, const StudySpec& spec, Problems& problems)
       problems.add(node->place, key, "is of combine: latin");
 }
 
-/// Keys and values, those that are right.
+/// Keys with their valid values.
 std::vector<Varied> read_vary(const StudySpec& spec, Problems& problems)
 {
   const Node& vary = spec.vary;
@@ -95,7 +95,7 @@ std::vector<Varied> read_vary(const StudySpec& spec, Problems& problems)
   return all;
 }
 
-/// A list that has another length than the first; cases that there would be twice.
+/// Checks for lists with a length different from the first, and for repeated cases.
 void check_cases(const Study& study, const Node& vary, Problems& problems)
 {
   const auto place_of = [&](std::size_t k) { return vary.items[k].place; };

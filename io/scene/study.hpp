@@ -1,5 +1,5 @@
 #pragma once
-// The file of `talus sweep`: a scene, what is varied of it, and which numbers are told of each case.
+// The file of `talus sweep`: a scene, its varied keys, and the numbers to collect from each case.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -10,25 +10,25 @@
 
 namespace talus {
 
-/// Which values of several keys meet: each with each of the others; the first with the first, the second with the second; samples of what they
-/// may be; or, one key at a time, its low and its high value with the middle ones of the others.
+/// How values of several keys are combined: grid: each with each of the others; rows: the first with the first, the second with the second;
+/// latin: samples of distributions; tornado: one key at a time, with its low and its high value and the middle values of the others.
 enum class Combine : std::uint8_t { grid, rows, latin, tornado };
 constexpr std::array<std::string_view, 4> enum_names(Combine) { return {"grid", "rows", "latin", "tornado"}; }
 
-/// A text of the file, and where it stands.
+/// A text of the file with its position.
 struct Written {
   std::string text;
-  SceneError at;  ///< without a message
+  SceneError at;  ///< position, without a message
   SceneError problem(std::string message) const { return {at.where, std::move(message), at.source_line}; }
 };
 
-/// A key of the scene as --set takes it, and its values.
+/// A key of the scene as in --set, and its values.
 struct Varied {
   std::string key;
   std::vector<Written> values;  ///< latin: the samples; tornado: middle, low, high
 };
 
-/// Maps of the cases, of which is told where a value is how often exceeded.
+/// Maps of the cases, from which the frequency of exceeding a value is computed.
 struct ExceedSpec {
   std::string map;
   Real above = 0;
@@ -42,26 +42,26 @@ struct ExceedSpec {
 
 struct Study {
   std::string file;  ///< path as given
-  Written scene;     ///< path of its file, relative to the study
+  Written scene;     ///< path of the scene, relative to the study
   std::vector<Varied> vary;
   Combine combine = Combine::grid;
-  std::vector<Written> collect;  ///< names of numbers; empty: the usual ones
+  std::vector<Written> collect;  ///< names of numbers; empty: the default ones
   std::vector<ExceedSpec> exceed;
 };
 
 /// A value of each key, in the order of Study::vary.
 using StudyCase = std::vector<Written>;
 
-/// Grid: the last key varies fastest.  Tornado: all in the middle, then the low and the high case of each key.
+/// The cases.  Grid: the last key varies fastest.  Tornado: all keys in the middle, then the low and the high case of each key.
 std::vector<StudyCase> cases_of(const Study& study);
 
-/// "key=value" for each key, as --set takes it.
+/// "key=value" for each key, as in --set.
 std::vector<std::string> changes_of(const Study& study, const StudyCase& values);
 
-/// Path of the scene as seen from here.
+/// The path of the scene relative to the present folder.
 std::filesystem::path scene_of(const Study& study);
 
-/// What the file holds before it is looked at as a whole.
+/// The contents of the file before it is checked as a whole.
 struct StudySpec {
   std::string scene;
   Node vary;
@@ -86,7 +86,7 @@ struct StudySpec {
   }
 };
 
-/// The study in `file`, whose tree is `root`; what is wrong goes to `problems`.
+/// The study in `file`, whose tree is `root`; errors are added to `problems`.
 Study study_of(const std::filesystem::path& file, const Node& root, const StudySpec& spec, Problems& problems);
 
 }  // namespace talus

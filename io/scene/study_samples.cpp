@@ -12,17 +12,17 @@ namespace talus {
 
 namespace {
 
-constexpr Real deviations_kept = 3;  // to either side of the mean, unless the ends are given
+constexpr Real deviations_kept = 3;  // limits in standard deviations, unless the ends are given
 
 bool is_normal(const Spread& spread) noexcept { return spread.mean.has_value(); }
 
 Real lowest(const Spread& s) noexcept { return s.low.value_or(is_normal(s) ? *s.mean - deviations_kept * *s.deviation : 0); }
 Real highest(const Spread& s) noexcept { return s.high.value_or(is_normal(s) ? *s.mean + deviations_kept * *s.deviation : 0); }
 
-/// Share of a standard normal distribution below x.
+/// The standard normal distribution function at x.
 Real normal_share(Real x) noexcept { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-/// The x of that share, by bisection: samples are few.
+/// The quantile of the standard normal distribution, by bisection: samples are few.
 Real normal_quantile(Real share) noexcept
 {
   Real low = -40, high = 40;
@@ -33,7 +33,7 @@ Real normal_quantile(Real share) noexcept
   return 0.5 * (low + high);
 }
 
-/// FNV-1a: another start of the random numbers for each key.
+/// FNV-1a, to give each key its own random numbers.
 std::uint64_t number_of(std::string_view text) noexcept
 {
   std::uint64_t hash = 0xcbf29ce484222325U;
@@ -86,7 +86,7 @@ LowMiddleHigh three_of(const Spread& s) noexcept
 
 std::vector<Real> latin_column(std::string_view key, std::uint64_t seed, std::size_t count)
 {
-  // The engine gives the same numbers everywhere, which the distributions of the standard library do not promise.
+  // The engine gives the same numbers everywhere, which the standard library does not guarantee for its distributions.
   std::mt19937_64 random(number_of(key) ^ (seed * 0x9e3779b97f4a7c15U));
   std::vector<std::size_t> part(count);
   std::iota(part.begin(), part.end(), std::size_t{0});

@@ -1,5 +1,5 @@
 #pragma once
-// Values that are not known for certain: how they are spread, and samples of them.
+// Uncertain values: their distributions, and samples of them.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace talus {
 
-/// Between two values; with `mode`, most likely there (triangular); with `mean` and `deviation`, normal, cut off at the two values.
+/// A distribution between two values: uniform; with `mode`, triangular; with `mean` and `deviation`, normal and truncated at the two
+/// values.
 struct Spread {
   std::optional<Real> low, mode, high, mean, deviation;
   static constexpr auto fields()
@@ -22,22 +23,23 @@ struct Spread {
                       optional("deviation", &Spread::deviation, positive, "-",
                                "standard deviation; cut off at low and high, by default three of them from the mean")};
   }
-  /// Rules between them, in words.
+  /// Adds the broken rules between its keys.
   void check(std::vector<std::string>& problems) const;
 };
 
-/// The value that a share 0 < p < 1 of all is below.
+/// The value below which a fraction 0 < p < 1 of the distribution lies.
 Real quantile(const Spread& spread, Real p) noexcept;
 
-/// A low, a middle and a high value: the ends and the mode, or the middle between the ends; of a normal distribution the mean and one deviation
-/// to either side, as far as it is not cut off.
+/// A low, a middle and a high value: the ends and the mode, or the middle between the ends; for a normal distribution the mean and one
+/// deviation to either side, within the truncation.
 struct LowMiddleHigh {
   Real low, middle, high;
 };
 LowMiddleHigh three_of(const Spread& spread) noexcept;
 
-/// `count` shares between 0 and 1, one in each of as many equal parts, in random order: a column of a Latin hypercube (McKay, Beckman & Conover
-/// 1979, Technometrics 21, 239).  Each key has random numbers of its own, so that one more leaves the others as they are; the same on any machine.
+/// `count` numbers between 0 and 1, one in each of as many equal intervals, in random order: a column of a Latin hypercube (McKay, Beckman
+/// & Conover 1979, Technometrics 21, 239).  Each key has its own random numbers, so that a further key does not change the others; the
+/// numbers are equal on all machines.
 std::vector<Real> latin_column(std::string_view key, std::uint64_t seed, std::size_t count);
 
 }  // namespace talus

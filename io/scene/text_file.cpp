@@ -1,4 +1,4 @@
-// From a file to text that can be parsed and shown.
+// Reads a file as text that can be parsed and shown.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace talus {
 
 namespace {
 
-constexpr std::uintmax_t largest_file = 4'000'000;  // bytes; a table of 100 000 points fits
+constexpr std::uintmax_t largest_file = 4'000'000;  // in bytes; a table of 100 000 points fits
 
 std::string read_bytes(const std::filesystem::path& file)
 {
@@ -39,7 +39,9 @@ std::string read_bytes(const std::filesystem::path& file)
   return bytes;
 }
 
-/// "\r\n" and "\r" become "\n"; a byte order mark goes.
+/// The text with "
+/// " for "\r
+/// " and "\r", without a byte order mark.
 std::string with_plain_ends(const std::string& bytes)
 {
   std::string text;
@@ -53,7 +55,7 @@ std::string with_plain_ends(const std::string& bytes)
   return text;
 }
 
-/// Length of the UTF-8 character at the beginning, or zero if there is none (RFC 3629: no overlong forms, no surrogates).
+/// The length of the UTF-8 character at the beginning, or zero if it is not valid (RFC 3629: no overlong forms, no surrogates).
 std::size_t character_length(std::string_view text)
 {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
@@ -70,7 +72,7 @@ std::size_t character_length(std::string_view text)
   return 0;
 }
 
-/// What makes a line unfit for a text file, and where.
+/// A character that a text file must not contain, and its position.
 struct Flaw {
   std::size_t at;
   std::string message;

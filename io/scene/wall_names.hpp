@@ -1,5 +1,5 @@
 #pragma once
-// What the walls of a scene are called in outputs and stages.
+// Names of boundary conditions in outputs and stages.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// Walls are called by the group that they are on; the second on a group is `<group>_2`, and so on.
+/// The names: that of the group of the condition; the second one on a group is `<group>_2`, and so on.
 std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries);
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// Another program beside this one.
+// A program started by this one.
 #include <sys/types.h>
 
 #include <optional>
@@ -8,21 +8,21 @@
 
 namespace talus {
 
-/// A program that was started and runs on its own.  Who lets go of it without having seen its end has it told to end, and waits.
+/// A running child process.  If it is destroyed before the end of the process was seen, it asks the process to end, and waits.
 class ChildProcess {
  public:
-  /// words: program, looked for on the path unless it is one, and its arguments.  Standard output and error go to the descriptor `output`.
-  /// EnvironmentError: there is no room for another process.  A program that is not there ends with `not_started`.
+  /// words: program, looked for on the path unless it is a path, and its arguments.  Standard output and error go to the descriptor
+  /// `output`.  Throws EnvironmentError if no process can be started.  A missing program ends with `not_started`.
   ChildProcess(std::vector<std::string> words, int output);
   ~ChildProcess();
   ChildProcess(ChildProcess&& other) noexcept;
   ChildProcess& operator=(ChildProcess&& other) noexcept;
 
-  /// Its exit code, or 128 + the number of the signal that ended it.
+  /// Waits; returns the exit code, or 128 + the number of the signal that ended it.
   int wait();
-  /// The same, or nothing while it runs.
+  /// As wait(), but returns nothing while it runs.
   std::optional<int> ended();
-  /// SIGTERM: a run that gets it writes a checkpoint and ends.
+  /// Sends SIGTERM; a run then writes a checkpoint and ends.
   void ask_to_end() const noexcept;
 
   static constexpr int not_started = 127, of_signal = 128;
@@ -32,14 +32,14 @@ class ChildProcess {
   std::optional<int> code_;
 };
 
-/// What a program said on both its outputs, and how it ended: as ChildProcess::wait().
+/// The output of a program on both its streams, and its exit code as in ChildProcess::wait().
 struct Ending {
   std::string output;
   int code;
 };
 Ending run_to_its_end(std::vector<std::string> words);
 
-/// Whether one of the folders of PATH has that program.
+/// Whether one of the folders of PATH contains that program.
 bool on_path(const std::string& program);
 
 }  // namespace talus

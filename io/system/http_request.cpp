@@ -30,7 +30,7 @@ std::string_view trimmed(std::string_view text)
   return text.substr(0, text.find_last_not_of(" \t") + 1);
 }
 
-/// Up to the line end, which goes too.
+/// Removes and returns the first line; its line end is removed too.
 std::string_view take_line(std::string_view& text)
 {
   const std::string_view line = text.substr(0, text.find(line_end));

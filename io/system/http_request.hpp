@@ -7,12 +7,12 @@ namespace talus {
 
 struct HttpRequest {
   std::string method;  ///< "GET"
-  std::string path;    ///< from its slash up to a question mark, as it was sent
-  std::string host;    ///< empty: there is none
+  std::string path;    ///< from its slash up to a question mark, as sent
+  std::string host;    ///< empty if missing
 };
 
-/// `head`: from the first line up to the empty one.  Strict: whatever two readers could understand in two ways is an error, such as two hosts, two
-/// lengths or a line that goes on in the next.  Error, in words, of what is wrong.
+/// Parses a head from the first line up to the empty one.  Everything ambiguous is an error, such as two hosts, two lengths or a continued
+/// line.  Throws Error with the reason.
 HttpRequest parse_http_request(std::string_view head);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-// One thread, and sockets that never wait: a slow client does not block the others.
+// One thread and non-blocking sockets, so that a slow client does not block the others.
 #include "io/system/http_server.hpp"
 
 #include <fcntl.h>
@@ -27,8 +27,8 @@ using Clock = std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
 constexpr auto loopback = "127.0.0.1";
-constexpr std::size_t most_connections = 32, most_of_address = 16;  // a browser opens six
-constexpr std::size_t longest_head = 8192;                          // bytes
+constexpr std::size_t most_connections = 32, most_of_address = 16;  // a browser opens six connections
+constexpr std::size_t longest_head = 8192;                          // in bytes
 constexpr auto time_for_request = 2s, time_for_answer = 30s, time_for_goodbye = 1s, time_to_end = 2s;
 
 constexpr std::string_view headers =
@@ -55,7 +55,7 @@ class Socket {
   int number_;
 };
 
-/// The head of an answer and what follows it.
+/// The head and body of an answer.
 struct Reply {
   std::string head;
   std::shared_ptr<const std::string> body;
@@ -74,7 +74,7 @@ Reply refusal(int status, std::string_view words, const std::string& why, bool h
   return reply(status, words, "text/plain", std::make_shared<const std::string>(why + '\n'), head_only, more);
 }
 
-/// One client.
+/// The connection of one client.
 struct Connection {
   enum class State : std::uint8_t { asks, takes, leaves };
 
@@ -82,16 +82,16 @@ struct Connection {
   Socket socket;
   std::uint32_t address;
   State state = State::asks;
-  Clock::time_point until = Clock::now() + time_for_request;  ///< then it is dropped
+  Clock::time_point until = Clock::now() + time_for_request;  ///< deadline after which it is closed
   std::string request;
   Reply answer;
-  std::size_t sent = 0;  ///< bytes of the answer
+  std::size_t sent = 0;  ///< bytes of the answer sent so far
 
-  /// False: it has gone.
+  /// Receives; false if the connection is closed.
   bool receive()
   {
     std::array<char, 4096> block{};
-    constexpr int at_a_time = 64;  // blocks: who sends without end shall not keep the others waiting
+    constexpr int at_a_time = 64;  // limit of reads, so that a client that sends without end does not block the others
     for (int n = 0; n < at_a_time; ++n) {
       const ssize_t got = ::recv(socket.number(), block.data(), block.size(), 0);
       if (got < 0)
@@ -114,7 +114,7 @@ struct Connection {
     state = State::takes;
     until = Clock::now() + time_for_answer;
   }
-  /// False: it has gone.
+  /// Sends; false if the connection is closed.
   bool send()
   {
     for (;;) {
@@ -129,7 +129,7 @@ struct Connection {
         return errno == EAGAIN || errno == EWOULDBLOCK || errno == EINTR;
       sent += static_cast<std::size_t>(gone);
     }
-    // Closed at once with something unread, the connection would be reset and the answer lost.
+    // If it were closed at once with unread input, the connection would be reset and the answer lost.
     ::shutdown(socket.number(), SHUT_WR);
     state = State::leaves;
     until = Clock::now() + time_for_goodbye;
@@ -218,7 +218,7 @@ struct HttpServer::Inside {
     }
   }
 
-  /// The oldest goes: a browser's request is there and answered within milliseconds.
+  /// Closes the oldest connection; the request of a browser is received and answered within milliseconds.
   void make_room(std::uint32_t address)
   {
     const auto same = [&](const Connection& one) { return one.address == address; };
@@ -230,7 +230,7 @@ struct HttpServer::Inside {
 
   void let_in()
   {
-    for (std::size_t n = 0; n < most_connections; ++n) {  // at a time: those who are in come next
+    for (std::size_t n = 0; n < most_connections; ++n) {  // limit of new connections at a time: the present ones are served next
       sockaddr_in from{};
       socklen_t size = sizeof from;
       const int number = ::accept4(door.number(), reinterpret_cast<sockaddr*>(&from), &size, SOCK_NONBLOCK | SOCK_CLOEXEC);
@@ -241,7 +241,7 @@ struct HttpServer::Inside {
           connections.pop_back();
         continue;
       }
-      if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {  // the process has no more of them
+      if (errno == EMFILE || errno == ENFILE || errno == ENOBUFS || errno == ENOMEM) {  // the process has no descriptors or memory left
         if (!connections.empty())
           connections.pop_front();
         std::this_thread::sleep_for(20ms);
@@ -250,7 +250,7 @@ struct HttpServer::Inside {
     }
   }
 
-  /// False: it has gone, or is to go.
+  /// Serves one connection; false if it is closed or has to be closed.
   bool serve(Connection& one) const
   {
     if (one.state != Connection::State::takes && !one.receive())
@@ -269,9 +269,9 @@ struct HttpServer::Inside {
       std::vector<pollfd> asked{{wake_read.number(), POLLIN, 0}, {door.number(), POLLIN, 0}};
       for (const Connection& one : connections)
         asked.push_back({one.socket.number(), static_cast<short>(one.state == Connection::State::takes ? POLLOUT : POLLIN), 0});
-      constexpr int at_least_every = 200;  // ms: those whose time is over
+      constexpr int at_least_every = 200;  // interval of the check for deadlines [ms]
       if (end) {
-        asked[0].fd = -1;  // passed over
+        asked[0].fd = -1;  // ignored
         asked[1].fd = -1;
       }
       const int ready = ::poll(asked.data(), asked.size(), connections.empty() && !end ? -1 : at_least_every);
@@ -284,7 +284,7 @@ struct HttpServer::Inside {
       }
       std::size_t i = 2;
       for (auto one = connections.begin(); one != connections.end(); ++i) {
-        // What has come while an answer was made is read before a client is dropped for being late.
+        // Input that arrived while an answer was made is read before a client is dropped for being late.
         const bool stays = asked[i].revents == 0 && Clock::now() < one->until ? true : serve(*one);
         one = stays ? std::next(one) : connections.erase(one);
       }

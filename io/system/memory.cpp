@@ -1,4 +1,4 @@
-// /proc and the control groups of Linux, old and new.
+// Reads /proc and the control groups of Linux, versions 1 and 2.
 #include "io/system/memory.hpp"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr Real unlimited = std::numeric_limits<Real>::infinity();
 
-/// The number behind a word of a file such as "MemAvailable:"; the first one for an empty word.  Nothing where there is none, as in "max".
+/// The number after a word of a file such as "MemAvailable:"; the first number for an empty word.  Nothing if there is none, as in "max".
 std::optional<Real> number_in(const fs::path& file, const std::string& word = "")
 {
   std::ifstream stream(file);
@@ -35,12 +35,12 @@ Real left_on_the_machine(const fs::path& root)
   return kilobytes ? *kilobytes * 1024 : unlimited;
 }
 
-/// Names in version 2 of control groups, or in version 1.
+/// Names of files in version 2 of control groups, or in version 1.
 struct GroupFiles {
   const char *folder, *limit, *used, *cache;
 };
 
-/// The group and those around it.  What they hold of files can be given back.
+/// The memory left in the group and its parent groups.  Their file caches count as free.
 Real left_in_groups(const fs::path& root, const std::string& group, const GroupFiles& files)
 {
   Real left = unlimited;
@@ -53,7 +53,7 @@ Real left_in_groups(const fs::path& root, const std::string& group, const GroupF
   }
 }
 
-/// Lines such as "0::/user.slice" (version 2) and "4:memory:/user.slice" (version 1).
+/// Parses lines such as "0::/user.slice" (version 2) and "4:memory:/user.slice" (version 1).
 Real left_in_groups(const fs::path& root)
 {
   Real left = unlimited;
@@ -88,7 +88,7 @@ Real available_memory(const fs::path& root)
   return std::max(Real{0}, std::min({left_on_the_machine(root), left_in_groups(root), left_of_addresses(root)}));
 }
 
-/// Not by getrusage: that begins with the size of the process that started this one.
+/// Not by getrusage, whose value starts with the size of the parent process.
 Real peak_memory(const fs::path& root) { return number_in(root / "proc/self/status", "VmHWM:").value_or(0) * 1024; }
 
 std::string too_many(Real items, const std::string& what, Real bytes)

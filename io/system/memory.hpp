@@ -1,5 +1,5 @@
 #pragma once
-// How much memory there is, so that a scene that asks for more is refused before the system ends the program without a word.
+// Available memory: a scene that needs more is refused, before the system kills the program.
 #include <filesystem>
 #include <string>
 
@@ -7,15 +7,15 @@
 
 namespace talus {
 
-/// Memory that this process can still take [B]: what the machine has to spare (swap not counted), what its control groups allow, what
-/// `ulimit -v` leaves, whichever is least; infinity where nobody tells.  `root` is that of /proc and /sys.
+/// The memory that this process can still allocate [B]: the least of the free memory of the machine (without swap), the limits of its
+/// control groups, and `ulimit -v`; infinity if unknown.  `root` is that of /proc and /sys.
 Real available_memory(const std::filesystem::path& root = "/");
 
-/// Most memory that this process has held [B]; 0 where nobody tells.
+/// The largest memory of this process so far [B]; 0 if unknown.
 Real peak_memory(const std::filesystem::path& root = "/");
 
-/// Why so many items are too many, such as "asks for 6e+09 particles, which need at least 2600 GB of memory; 12.3 GB are there"; empty
-/// if they are not.  `bytes`: of one, at least.
+/// The reason why a number of items needs too much memory, such as "asks for 6e+09 particles, which need at least 2600 GB of memory; 12.3
+/// GB are there"; empty if it does not.  `bytes`: least memory of one item.
 std::string too_many(Real items, const std::string& what, Real bytes);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-// ffmpeg, as a program of its own: its libraries would be three more dependencies for one command.
+// Runs ffmpeg as a program; its libraries would be three more dependencies for one command.
 #include "io/system/movie.hpp"
 
 #include <fmt/format.h>
@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 constexpr auto maker = "ffmpeg";
 
-/// Links 000000.png, 000001.png ... to the pictures, the form in which ffmpeg takes a series with gaps in its numbers.
+/// Links 000000.png, 000001.png ... to the pictures, because ffmpeg needs numbers without gaps.
 class Series {
  public:
   Series(const std::vector<fs::path>& pictures, fs::path folder) : folder_(std::move(folder))
@@ -36,7 +36,7 @@ class Series {
   Series(const Series&) = delete;
   Series& operator=(const Series&) = delete;
 
-  /// A percent sign of the folder's own is doubled.
+  /// The pattern of names; a percent sign in the path is doubled.
   std::string pattern() const
   {
     std::string text;
@@ -49,10 +49,10 @@ class Series {
   fs::path folder_;
 };
 
-/// Options for the format.
+/// The options for the format.
 std::vector<std::string> encoding(const fs::path& file)
 {
-  if (file.extension() == ".gif")  // few colours dithered lightly: smooth colour bars, and still areas that stay still
+  if (file.extension() == ".gif")  // few colours, lightly dithered: smooth colour bars, and constant areas without noise
     return {"-filter_complex",
             "split[a][b];[a]palettegen=stats_mode=full[p];[b][p]paletteuse=dither=bayer:bayer_scale=4:diff_mode=rectangle",
             "-loop",
@@ -92,7 +92,7 @@ void make_movie(const std::vector<fs::path>& pictures, Real per_second, const fs
                                    "-i",  series.pattern()};
     const auto format = encoding(file);
     words.insert(words.end(), format.begin(), format.end());
-    words.push_back(fs::absolute(temporary).string());  // a name that begins with a minus sign is no option then
+    words.push_back(fs::absolute(temporary).string());  // an absolute path, so that a name that begins with a minus sign is not an option
     if (const Ending ending = run_to_its_end(words); ending.code != 0)
       throw EnvironmentError(fmt::format("cannot write {}: ffmpeg failed (exit code {}): {}", file.string(), ending.code, ending.output));
   });

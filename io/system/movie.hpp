@@ -1,5 +1,5 @@
 #pragma once
-// Pictures one after the other, as one file.
+// A movie from a series of pictures.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace talus {
 
-/// What is wrong with such a name of a movie; empty if nothing is.
+/// The error in a name of a movie; empty if it is valid.
 std::string movie_problem(const std::filesystem::path& file);
 
-/// EnvironmentError, which says what to install: the program that makes movies is missing.
+/// Throws EnvironmentError, with the package to install, if ffmpeg is missing.
 void require_movie_maker();
 
-/// .mp4 (H.264, 4:2:0, which every browser and office program plays) or .gif (a palette of the whole series), whole or not at all.
-/// An odd number of pixels gets one more, in white.  EnvironmentError.
+/// Writes .mp4 (H.264, 4:2:0, which every browser and office program plays) or .gif (a palette of the whole series), atomically.  An odd
+/// number of pixels is increased by one, in white.  Throws EnvironmentError.
 void make_movie(const std::vector<std::filesystem::path>& pictures, Real per_second, const std::filesystem::path& file);
 
 }  // namespace talus

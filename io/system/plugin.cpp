@@ -13,7 +13,7 @@ const void* open_module(const std::string& name, const std::string& symbol, cons
 {
   const std::string file = fmt::format("libtalus_{}.so", name);
   void* part = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (std::error_code unknown; part == nullptr)  // a sanitizer's dlopen does not look where the program says
+  if (std::error_code unknown; part == nullptr)  // the dlopen of a sanitizer does not search the path of the program
     part = dlopen((std::filesystem::read_symlink("/proc/self/exe", unknown).parent_path() / file).c_str(), RTLD_NOW | RTLD_LOCAL);
   const void* const found = part != nullptr ? dlsym(part, symbol.c_str()) : nullptr;
   if (found == nullptr)

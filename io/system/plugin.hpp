@@ -1,13 +1,13 @@
 #pragma once
-// Parts of the program that are opened only where they are needed (libtalus_*.so): each brings a hundred libraries, and to load them takes
-// longer than many a command.
+// Plugins: libraries that are opened only when needed (libtalus_*.so), because each loads a hundred libraries, which takes longer than many
+// a command.
 #include <string>
 
 namespace talus {
 
-/// What `symbol` names in libtalus_<name>.so, which stands beside the program or its libraries; opened once and never closed, since such
-/// libraries leave things behind that are called at the end of the program.  EnvironmentError, which says what the part does ("makes meshes
-/// with gmsh"): it is not there or cannot be loaded.
+/// The object `symbol` in libtalus_<name>.so, which is beside the program or its libraries.  The plugin is opened once and never closed,
+/// since such libraries register functions that are called at the end of the program.  Throws EnvironmentError, with the purpose of the
+/// plugin ("makes meshes with gmsh"), if it is missing or cannot be loaded.
 const void* open_module(const std::string& name, const std::string& symbol, const std::string& what_it_does);
 
 }  // namespace talus

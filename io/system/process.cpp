@@ -1,4 +1,4 @@
-// POSIX: descriptors, signals, what is done at the end of a process.
+// POSIX: descriptors, signals, and the end of the process.
 #include "io/system/process.hpp"
 
 #include <fcntl.h>
@@ -34,10 +34,10 @@ void write_error(std::string_view text) noexcept
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size());
 }
 
-/// That this process may use.
+/// The number of processors that this process may use.
 int processors() noexcept { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
-/// The program ends here, in a library of others.
+/// Ends the program with a message after a failure inside a library.
 [[noreturn]] void end_in_library() noexcept
 {
   write_error("error: the program was ended by a library (");
@@ -79,8 +79,8 @@ volatile std::sig_atomic_t memory_ran_out = 0;
   ::_exit(environment_wrong);
 }
 
-/// Where the exception leaves a function of a library that promises to throw none, as some of libstdc++'s for folders do, it is on its way and is
-/// not the current one.
+/// An exception that leaves a noexcept function of a library, as in some functions of libstdc++ for folders, is not the current exception
+/// here.
 [[noreturn]] void at_terminate()
 {
   if (const std::exception_ptr error = std::current_exception())
@@ -104,11 +104,11 @@ void prepare_process()
       ::close(handle);
       break;
     }
-  std::signal(SIGXFSZ, SIG_IGN);  // then the write fails, with EFBIG
+  std::signal(SIGXFSZ, SIG_IGN);  // then the write fails with EFBIG
   std::set_new_handler(at_lack_of_memory);
   std::set_terminate(at_terminate);
   ::on_exit(at_exit, nullptr);
-#ifndef __SANITIZE_ADDRESS__  // which has handlers of its own
+#ifndef __SANITIZE_ADDRESS__  // the sanitizer has its own handlers
   static std::array<char, 65536> stack{};
   stack_t other{};
   other.ss_sp = stack.data(), other.ss_size = stack.size();

@@ -1,28 +1,28 @@
 #pragma once
-// What the process does before the first command and after the last word.
+// Preparation of the process before the first command, and its end.
 #include <string>
 
 namespace talus {
 
-/// First thing in main(): standard streams that are closed lead nowhere, so that no file gets their numbers and what is printed; a file that
-/// grows beyond what the system allows is an error of that write and not the end of the program; more threads than the machine can use are not
-/// started; a fault, or a library that ends the program, does not go without a word.
+/// To be called first in main().  Closed standard streams are opened to /dev/null, so that no file gets their numbers and with them the
+/// printed text; a file beyond the size limit of the system is an error of that write instead of the end of the program; the number of
+/// threads is limited to what the machine can use; a crash, or a library that ends the program, leads to a message.
 void prepare_process();
 
-/// The program is about to end by itself, with a code of its own.
+/// To be called when the program is about to end itself, with its own exit code.
 void leave_process() noexcept;
 
-/// Ends the process without tidying up: a library that found no memory may find its own data in disorder then.
+/// Ends the process without destructors: after a failed allocation the data of a library may be invalid.
 [[noreturn]] void end_at_once(int code) noexcept;
 
-/// Why what was printed has not arrived on standard output; empty if it has.
+/// The reason why printed text has not reached standard output; empty if it has.
 std::string unwritten_output();
 
-/// As many threads as this machine can have some use of: four a processor, and 16 where it has few, so that what does not depend on their number
-/// can be tried anywhere.
+/// The largest useful number of threads on this machine: four per processor, but at least 16, so that results for any number of threads can
+/// be tested anywhere.
 int most_threads() noexcept;
 
-/// So many threads from now on, but no more than most_threads(); then a warning says what asked for more.
+/// Sets the number of threads, limited to most_threads() with a warning that names `asked_by`.
 void use_threads(int wanted, const std::string& asked_by);
 
 }  // namespace talus

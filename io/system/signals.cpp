@@ -1,4 +1,4 @@
-// POSIX signals.  A handler may do next to nothing: it notes the number.
+// POSIX signals.  A handler may do next to nothing: it stores the number.
 #include "io/system/signals.hpp"
 
 #include <array>

@@ -4,14 +4,14 @@
 
 namespace talus {
 
-/// While this lives, SIGTERM, SIGINT and SIGUSR1 are noted instead of ending the process; a second SIGINT ends it.
+/// While it exists, SIGTERM, SIGINT and SIGUSR1 are recorded instead of ending the process; a second SIGINT ends it.
 class StopRequests {
  public:
   StopRequests();
   ~StopRequests();
   StopRequests(const StopRequests&) = delete;
   StopRequests& operator=(const StopRequests&) = delete;
-  /// Name of the signal that came, such as "SIGTERM"; empty while none has.
+  /// The name of the received signal, such as "SIGTERM"; empty if there was none.
   static std::string received();
 };
 

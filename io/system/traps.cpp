@@ -1,4 +1,4 @@
-// The C library's traps: which of the processor's exceptions become signals is a matter of each thread.
+// Floating-point traps of the C library.  Each thread has its own setting.
 #include "io/system/traps.hpp"
 
 #include <execinfo.h>
@@ -30,7 +30,7 @@ std::string_view words(int code) noexcept
 
 void say(std::string_view text) noexcept { [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text.data(), text.size()); }
 
-// A handler may call next to nothing: these write to the descriptor and allocate nothing.
+// A handler may call very few functions: these write to the descriptor and allocate nothing.
 extern "C" void tell_and_die(int, siginfo_t* signal, void*)
 {
   say("floating-point trap: ");
@@ -40,7 +40,7 @@ extern "C" void tell_and_die(int, siginfo_t* signal, void*)
   ::backtrace_symbols_fd(frames.data(), ::backtrace(frames.data(), static_cast<int>(frames.size())), STDERR_FILENO);
 }
 
-/// Thread i takes item i.
+/// Calls f(i) on thread i.
 template <class F>
 void on_every_thread(F&& f)
 {
@@ -53,13 +53,13 @@ FloatingPointTraps::FloatingPointTraps()
 {
   if constexpr (wanted) {
     std::array<void*, 1> first_frame{};
-    ::backtrace(first_frame.data(), 1);  // loads what it needs, which the handler must not
+    ::backtrace(first_frame.data(), 1);  // loads its library now, which the handler must not do
     struct sigaction action {};
     action.sa_sigaction = tell_and_die;
-    action.sa_flags = SA_SIGINFO | static_cast<int>(SA_RESETHAND);  // the operation is tried once more and ends the process
+    action.sa_flags = SA_SIGINFO | static_cast<int>(SA_RESETHAND);  // the operation is repeated and then ends the process
     ::sigaction(SIGFPE, &action, nullptr);
     on_every_thread([] {
-      std::feclearexcept(FE_ALL_EXCEPT);  // what has been raised so far
+      std::feclearexcept(FE_ALL_EXCEPT);  // clears the exceptions raised so far
       ::feenableexcept(trapped);
     });
   }

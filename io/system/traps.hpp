@@ -1,10 +1,10 @@
 #pragma once
-// The end of the program at the first operation without a finite result, in builds that look for such (preset traps).
+// Ends the program at the first operation without a finite result, in builds for that purpose (preset traps).
 
 namespace talus {
 
-/// While this lives, an operation that is invalid, divides by zero or overflows ends the process by SIGFPE, on every thread, after saying which and
-/// where.  Does nothing in a build without TALUS_TRAPS.
+/// While it exists, an operation that is invalid, divides by zero or overflows ends the process by SIGFPE, on every thread, after a message
+/// with kind and place.  Does nothing in a build without TALUS_TRAPS.
 class FloatingPointTraps {
  public:
   FloatingPointTraps();
@@ -13,7 +13,7 @@ class FloatingPointTraps {
   FloatingPointTraps& operator=(const FloatingPointTraps&) = delete;
 };
 
-/// While this lives, nothing ends the process on this thread: for libraries that compare with NaN and mean it.
+/// While it exists, no trap ends the process on this thread, for libraries that compute with NaN on purpose.
 class TrapsPaused {
  public:
   TrapsPaused();
@@ -22,7 +22,7 @@ class TrapsPaused {
   TrapsPaused& operator=(const TrapsPaused&) = delete;
 
  private:
-  int were_ = 0;  // exceptions that are signals otherwise
+  int were_ = 0;  // exceptions that were enabled before
 };
 
 }  // namespace talus

@@ -30,7 +30,7 @@ std::string lower_case(std::string_view text)
 
 bool is_key(std::string_view word) { return std::find(grid_keys.begin(), grid_keys.end(), lower_case(word)) != grid_keys.end(); }
 
-/// A number as GDAL reads it to its last character: with a point or a comma, "nan", "inf" and what Windows writes for them ("-1.#IND").
+/// A number in the notation of GDAL: with a point or a comma, "nan", "inf" and the notation of Windows for them ("-1.#IND").
 std::optional<Real> grid_number(std::string text)
 {
   if (text.starts_with('+'))
@@ -42,24 +42,24 @@ std::optional<Real> grid_number(std::string text)
     text[comma] = '.';
   Real value{};
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
-  // Digits without end are still a number, zero or infinite.
+  // Very long numbers are valid too, as zero or infinity.
   return (code == std::errc{} || code == std::errc::result_out_of_range) && end == text.data() + text.size() ? std::optional(value)
                                                                                                              : std::nullopt;
 }
 
-/// A word of the text and where it stands.
+/// A word of the text with its position.
 struct GridWord {
   std::string text;
   int line = 1, column = 1;
   bool begins_line = false;
 };
 
-/// The words of a file, read piece by piece: a grid may be larger than the memory that is left.
+/// The words of a file, read piece by piece, because a grid may be larger than the free memory.
 class GridWords {
  public:
   explicit GridWords(const fs::path& file) : stream_(file, std::ios::binary) { buffer_.resize(1 << 18); }
 
-  /// False at the end.  A word longer than any number comes in pieces.
+  /// Reads the next word; false at the end.  A word longer than any number comes in pieces.
   bool next(GridWord& word)
   {
     constexpr std::size_t longest = 400;
@@ -124,7 +124,7 @@ bool is_ascii_grid(const fs::path& file)
 std::vector<std::string> check_ascii_grid(const fs::path& file)
 {
   std::vector<SceneError> problems;
-  constexpr std::size_t most_problems = 20;  // a file of another kind has one in every word
+  constexpr std::size_t most_problems = 20;  // a file of another kind has an error in every word
   const auto complain = [&](const GridWord& word, const std::string& what) {
     problems.push_back({{file.string(), word.line, word.column, ""}, what, {}});
   };

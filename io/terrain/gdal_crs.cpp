@@ -19,7 +19,7 @@ std::optional<CrsFacts> crs_facts(const std::string& text)
   facts.geographic = OSRIsGeographic(crs.get()) != 0;
   const char* const name = OSRGetName(crs.get());
   facts.name = name != nullptr ? name : "unnamed";
-  char* unit = nullptr;  // remains the coordinate system's
+  char* unit = nullptr;  // owned by the coordinate system
   facts.metres = facts.geographic ? 1 : OSRGetLinearUnits(crs.get(), &unit);
   facts.unit = facts.geographic ? "degree" : unit != nullptr ? unit : "metre";
   return facts;

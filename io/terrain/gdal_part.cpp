@@ -1,4 +1,4 @@
-// What libtalus_gdal.so shows.
+// The functions that libtalus_gdal.so exports.
 #include "io/terrain/gdal_part.hpp"
 
 extern "C" {

@@ -1,5 +1,5 @@
 #pragma once
-// What libtalus_gdal.so is made of: the functions of GdalPart (io/terrain/gdal_plugin.hpp).
+// The functions of libtalus_gdal.so that GdalPart lists (io/terrain/gdal_plugin.hpp).
 #include "io/terrain/gdal_plugin.hpp"
 
 namespace talus::gdal_part {

@@ -29,7 +29,7 @@ MapRing ring_of(OGRGeometryH line)
   return ring;
 }
 
-/// Of collections each part, of a closed line what it surrounds.
+/// Adds each part of a collection, and the area inside a closed line.
 void add_polygons(OGRGeometryH geometry, const std::string& name, std::vector<MapPolygon>& found)
 {
   const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
@@ -57,7 +57,7 @@ std::vector<MapPolygon> polygons_of(OGRLayerH layer)
   const int name = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
   OGR_L_ResetReading(layer);
   while (const Feature feature{OGR_L_GetNextFeature(layer)})
-    // Arcs as chords: GDAL's own choice is one every four degrees.
+    // Arcs are approximated by chords, by default of GDAL one every four degrees.
     if (OGRGeometryH shape = OGR_F_GetGeometryRef(feature.get()))
       if (const Geometry straight{OGR_G_GetLinearGeometry(shape, 0, nullptr)})
         add_polygons(straight.get(), name >= 0 ? OGR_F_GetFieldAsString(feature.get(), name) : "", found);

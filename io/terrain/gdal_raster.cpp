@@ -15,16 +15,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Real nan = std::numeric_limits<Real>::quiet_NaN();
-constexpr Real no_data = -9999;  // what other programs write, and nothing that a map shows
+constexpr Real no_data = -9999;  // a common value in other programs, and not an elevation on a map
 
-/// Place and spacing on the map; `from_north`: the first row of the file is the northernmost.
+/// Sets position and spacing on the map; `from_north`: the first row of the file is the northernmost.
 void set_place(GDALDatasetH dataset, const fs::path& file, Raster& raster, bool& from_north)
 {
   std::array<double, 6> t{};
   if (GDALGetGeoTransform(dataset, t.data()) != CE_None)
     throw EnvironmentError(fmt::format("{}: the raster does not say where on the map it lies", file.string()));
   const auto [x0, dx, skew_x, y0, skew_y, dy] = t;
-  constexpr Real straight = 1e-9;  // of the spacing: what is left of the rounding of degrees of rotation
+  constexpr Real straight = 1e-9;  // relative to the spacing: rounding of rotations given in degrees
   if (std::abs(skew_x) > straight * std::abs(dx) || std::abs(skew_y) > straight * std::abs(dy))
     throw EnvironmentError(
         fmt::format("{}: the rows of the raster are turned by {:.4g} degrees; turn it north up first: gdalwarp -r bilinear {} north_up.tif",
@@ -38,25 +38,25 @@ void set_place(GDALDatasetH dataset, const fs::path& file, Raster& raster, bool&
   raster.south = from_north ? y0 + dy * raster.rows : y0;
 }
 
-/// As GDAL and other programs name units of height.
+/// The short name of a unit of height in the notation of GDAL and other programs.
 std::string unit_in_short(const std::string& unit)
 {
   return unit == "metre" || unit == "meter" || unit == "metres" || unit == "meters" ? "m" : unit;
 }
 
-/// Compression has its limits: a short file that claims to have millions of cells is damaged, or made to fill the memory.
+/// Throws if a file is too short for its number of cells: it is damaged, or made to fill the memory.
 void require_bytes(const fs::path& file, std::int64_t cells)
 {
   constexpr std::uintmax_t most_from_one = 1000,
-                           of_any_file = 1'000'000;  // cells from a byte; four times what deflate makes of equal values
+                           of_any_file = 1'000'000;  // largest number of cells per byte; four times what deflate reaches for equal values
   std::error_code unknown;
   const std::uintmax_t bytes = fs::file_size(file, unknown);
   if (!unknown && static_cast<std::uintmax_t>(cells) > of_any_file + most_from_one * bytes)
     throw EnvironmentError(fmt::format("{}: {} cells cannot be in {} bytes: the file is damaged", file.string(), cells, bytes));
 }
 
-/// GDAL takes an ESRI ASCII grid for one of whole numbers if its beginning has no decimal point: a cell of "nan" is 0 then, and what follows a
-/// point further down is cut off.
+/// Whether values may be truncated.  GDAL takes an ESRI ASCII grid for integers if its beginning has no decimal point: a cell "nan" is then
+/// 0, and decimals further down are cut off.
 bool may_be_cut(GDALDatasetH dataset)
 {
   return std::string_view(GDALGetDriverShortName(GDALGetDatasetDriver(dataset))) == "AAIGrid" && GDALGetRasterCount(dataset) > 0 &&
@@ -104,7 +104,7 @@ Raster read_raster(const fs::path& file)
   const GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   raster.unit = unit_in_short(GDALGetRasterUnitType(band));
   raster.values.resize(static_cast<std::size_t>(raster.columns) * static_cast<std::size_t>(raster.rows));
-  // Row by row into its place from the south: a negative distance between rows turns the raster over.
+  // Rows are read from north to south into rows from the south: a negative distance between rows flips the raster.
   const GSpacing row_bytes = static_cast<GSpacing>(sizeof(Real)) * raster.columns;
   Real* const first = from_north ? &raster.at(0, raster.rows - 1) : raster.values.data();
   if (GDALRasterIOEx(band, GF_Read, 0, 0, raster.columns, raster.rows, first, raster.columns, raster.rows, GDT_Float64, sizeof(Real),
@@ -113,7 +113,7 @@ Raster read_raster(const fs::path& file)
 
   int has_no_data = 0;
   Real none = GDALGetRasterNoDataValue(band, &has_no_data);
-  if (GDALGetRasterDataType(band) == GDT_Float32 && std::isfinite(none))  // as the values of the file can have it
+  if (GDALGetRasterDataType(band) == GDT_Float32 && std::isfinite(none))  // rounded like the values in the file
     none = std::abs(none) > std::numeric_limits<float>::max() ? none : static_cast<Real>(static_cast<float>(none));
   int scales = 0, shifts = 0;
   const Real scale = GDALGetRasterScale(band, &scales), shift = GDALGetRasterOffset(band, &shifts);

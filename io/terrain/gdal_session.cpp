@@ -17,8 +17,8 @@ namespace talus {
 
 namespace {
 
-// Formats that hold values and outlines themselves.  GDAL knows others that name further files, servers or programs to take them from, such as
-// VRT and WMS: a scene that somebody has sent must not make this machine ask for those.
+// Formats that contain values and outlines themselves.  Other formats of GDAL, such as VRT and WMS, name further files, servers or
+// programs; a scene from someone else must not make this machine access those.
 constexpr std::array<const char*, 10> raster_formats{"GTiff", "AAIGrid", "EHdr",  "ENVI",    "HFA",
                                                      "GSAG",  "GSBG",    "GS7BG", "USGSDEM", nullptr};
 constexpr std::array<const char*, 8> outline_formats{"GeoJSON", "ESRI Shapefile", "GPKG", "CSV", "DXF", "FlatGeobuf", "KML", nullptr};
@@ -28,7 +28,7 @@ bool is_one_of(std::span<const char* const> names, std::string_view name)
   return std::any_of(names.begin(), names.end(), [&](const char* one) { return one != nullptr && name == one; });
 }
 
-/// What GDAL asks for when something wants to read from the network.
+/// Called by GDAL for access to the network, which is refused.
 CPLHTTPResult* refuse_network(const char*, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc, void*, void*)
 {
   auto* const result = static_cast<CPLHTTPResult*>(CPLCalloc(1, sizeof(CPLHTTPResult)));
@@ -37,7 +37,7 @@ CPLHTTPResult* refuse_network(const char*, CSLConstList, GDALProgressFunc, void*
   return result;
 }
 
-/// The formats above and no way out of this machine: whatever a file names, no driver for it is left.
+/// Registers the formats above and disables access to the network, so that no other driver can be used.
 void know_formats()
 {
   CPLSetConfigOption("OGR_SQLITE_STATIC_VIRTUAL_OGR", "NO");         // a GeoPackage may else contain a table that is another file

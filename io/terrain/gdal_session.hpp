@@ -1,5 +1,5 @@
 #pragma once
-// GDAL behind one door: silent, its complaints kept until somebody asks.
+// A session of GDAL: silent, with its errors stored.
 #include <cpl_error.h>
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// While it lives GDAL prints nothing and what it complains of is kept.  Formats are known from the first on.
+/// While it exists GDAL prints nothing and its errors are stored.  The first session registers the formats.
 class GdalSession {
  public:
   GdalSession();
@@ -19,9 +19,9 @@ class GdalSession {
   GdalSession(const GdalSession&) = delete;
   GdalSession& operator=(const GdalSession&) = delete;
 
-  /// The first error since the session began; empty: none.
+  /// The first error since the session began; empty if there was none.
   const std::string& error() const noexcept { return error_; }
-  /// EnvironmentError: `file`, `what` and the error.
+  /// Throws EnvironmentError with `file`, `what` and the error.
   [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) const;
 
  private:
@@ -33,16 +33,16 @@ struct CloseDataset {
   void operator()(GDALDatasetH dataset) const noexcept { GDALClose(dataset); }
 };
 using Dataset = std::unique_ptr<void, CloseDataset>;
-/// An ordinary file of a format that holds its values itself, for reading; `kind` is GDAL_OF_RASTER or GDAL_OF_VECTOR.
+/// Opens an ordinary file of a format that contains its values itself, for reading; `kind` is GDAL_OF_RASTER or GDAL_OF_VECTOR.
 Dataset open_dataset(const GdalSession& session, const std::filesystem::path& file, unsigned kind);
 
 struct DestroyCrs {
   void operator()(OGRSpatialReferenceH crs) const noexcept { OSRRelease(crs); }
 };
 using Crs = std::unique_ptr<std::remove_pointer_t<OGRSpatialReferenceH>, DestroyCrs>;
-/// x before y, longitude before latitude; nothing where the text is not understood.
+/// A coordinate system with x before y and longitude before latitude; nothing if the text is not understood.
 Crs crs_of(const std::string& text);
-/// "EPSG:32633" where it has such a code, else WKT; empty for nothing.
+/// "EPSG:32633" if there is such a code, otherwise WKT; empty for none.
 std::string text_of(OGRSpatialReferenceH crs);
 
 }  // namespace talus

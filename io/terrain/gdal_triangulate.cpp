@@ -16,7 +16,7 @@ struct FreeTriangulation {
   void operator()(GDALTriangulation* triangulation) const noexcept { GDALTriangulationFree(triangulation); }
 };
 
-/// Points in the unit square.
+/// Whether points in the unit square lie on a line.
 bool lie_on_a_line(const std::vector<double>& x, const std::vector<double>& y)
 {
   std::size_t farthest = 0;
@@ -24,7 +24,7 @@ bool lie_on_a_line(const std::vector<double>& x, const std::vector<double>& y)
   for (std::size_t i = 1; i < x.size(); ++i)
     if (from_first(i) > from_first(farthest))
       farthest = i;
-  constexpr Real thin = 1e-9;  // of the extent
+  constexpr Real thin = 1e-9;  // relative to the extent
   for (std::size_t i = 1; i < x.size(); ++i)
     if (std::abs((x[farthest] - x[0]) * (y[i] - y[0]) - (x[i] - x[0]) * (y[farthest] - y[0])) > thin * from_first(farthest))
       return false;
@@ -40,7 +40,7 @@ std::vector<std::array<Index, 3>> triangulate(const std::vector<std::array<Real,
     throw EnvironmentError("GDAL was built without qhull and cannot triangulate points");
   if (points.size() < 3)
     return {};
-  // Near the origin and of size one: maps count from so far away that products of coordinates would lose the spacing of points.
+  // Shifted to the origin and scaled to size one: map coordinates are so large that their products would lose the spacing of points.
   std::array<Real, 2> low{points[0][0], points[0][1]}, high = low;
   for (const auto& point : points)
     for (std::size_t d = 0; d < 2; ++d) {
@@ -53,7 +53,7 @@ std::vector<std::array<Index, 3>> triangulate(const std::vector<std::array<Real,
     x[i] = (points[i][0] - low[0]) / size;
     y[i] = (points[i][1] - low[1]) / size;
   }
-  if (lie_on_a_line(x, y))  // qhull would say so at length on the console
+  if (lie_on_a_line(x, y))  // qhull would print a long message
     return {};
   const std::unique_ptr<GDALTriangulation, FreeTriangulation> made(
       GDALTriangulationCreateDelaunay(static_cast<int>(points.size()), x.data(), y.data()));

@@ -1,5 +1,5 @@
 #pragma once
-// Coordinate systems of maps: what there is to know of one, and from one to another.
+// Coordinate systems of maps: their properties, and transformations between them.
 #include <array>
 #include <optional>
 #include <string>
@@ -10,21 +10,21 @@
 namespace talus {
 
 struct CrsFacts {
-  std::string code;         ///< "EPSG:32633" where it has one, else WKT: as in MapFrame
-  std::string name;         ///< "WGS 84 / UTM zone 33N"
+  std::string code;         ///< "EPSG:32633" if there is such a code, otherwise WKT, as in MapFrame
+  std::string name;         ///< for example "WGS 84 / UTM zone 33N"
   bool geographic = false;  ///< coordinates are degrees of longitude and latitude
-  Real metres = 1;          ///< length of one unit of its coordinates over the plan [m]; of no meaning where geographic
+  Real metres = 1;          ///< length of one unit of plan coordinates [m]; without meaning if geographic
   std::string unit;         ///< name of that unit
 };
 
-/// Nothing: not understood.
+/// The properties; nothing if the text is not understood.
 std::optional<CrsFacts> crs_facts(const std::string& crs);
-/// Whether two coordinate systems say the same of places on the plan, whatever they say of heights.  False where one is not understood.
+/// Whether two coordinate systems are equal in the plan, whatever their heights.  False if one is not understood.
 bool same_plan(const std::string& one, const std::string& other);
-/// Places (x, y), longitude before latitude, from one coordinate system to another; NaN where that is not possible.  Empty: a coordinate
-/// system is not understood.
+/// Transforms positions (x, y), longitude before latitude, from one coordinate system to another; NaN where that is impossible.  Empty if a
+/// coordinate system is not understood.
 std::vector<std::array<Real, 2>> to_crs(const std::string& from, const std::string& to, const std::vector<std::array<Real, 2>>& places);
-/// "EPSG:32633": the UTM zone, on WGS 84, that a place of a coordinate system is in; nothing where it is in none.
+/// The UTM zone on WGS 84 that contains a position, such as "EPSG:32633"; nothing if there is none.
 std::optional<std::string> utm_zone_of(const std::string& crs, const std::array<Real, 2>& place);
 
 }  // namespace talus

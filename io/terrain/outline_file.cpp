@@ -13,7 +13,7 @@ namespace talus {
 std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
                                       std::vector<SceneError>& problems, std::vector<std::string>& repairs)
 {
-  gdal();  // that it cannot be loaded is no fault of the scene
+  gdal();  // checked here, because a missing plugin is not an error of the scene
   PolygonFile read;
   try {
     read = read_polygons(plan.directory / file);
@@ -30,7 +30,7 @@ std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocat
   }
   const auto is_no_degree = [](const std::array<Real, 2>& corner) { return std::abs(corner[0]) > 360 || std::abs(corner[1]) > 90; };
   const auto facts = crs_facts(read.crs);
-  // GeoJSON is in degrees by its standard, but many write it in metres.
+  // GeoJSON is in degrees by its standard, but many files are in metres.
   const bool is_metres = facts && facts->geographic && std::any_of(rings.begin(), rings.end(), [&](const MapRing* ring) {
                            return std::any_of(ring->begin(), ring->end(), is_no_degree);
                          });

@@ -14,7 +14,7 @@ namespace talus {
 
 namespace {
 
-/// The next of what commas, semicolons and blanks keep apart; two commas have nothing between them.
+/// The next entry of a line; entries are separated by commas, semicolons and blanks, and two commas have an empty entry between them.
 std::string_view take_entry(std::string_view& line)
 {
   const auto skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t\r"), line.size())); };
@@ -29,9 +29,9 @@ std::string_view take_entry(std::string_view& line)
 
 struct SurveyRow {
   std::array<Real, 3> point{};
-  int numbers = 0;         ///< so many of the three could be read
-  std::string_view wrong;  ///< what is no number
-  int column = 0;          ///< where it begins
+  int numbers = 0;         ///< how many of the three numbers could be read
+  std::string_view wrong;  ///< the entry that is not a number
+  int column = 0;          ///< its column
 };
 
 std::optional<SurveyRow> row_of(std::string_view line)
@@ -54,14 +54,14 @@ std::optional<SurveyRow> row_of(std::string_view line)
   return row;
 }
 
-/// Places along one axis that lie at equal distances, but for some that are left out.
+/// Positions along one axis with equal distances, of which some may be missing.
 struct PointRows {
   Real first = 0, step = 0;
   Index count = 1;
 };
 std::optional<PointRows> ladder_of(std::vector<Real> places)
 {
-  constexpr Real same = 1e-3;  // of the step: coordinates are written with few digits
+  constexpr Real same = 1e-3;  // relative to the step: coordinates are written with few digits
   std::sort(places.begin(), places.end());
   places.erase(std::unique(places.begin(), places.end()), places.end());
   Real step = std::numeric_limits<Real>::infinity();
@@ -122,7 +122,7 @@ std::vector<std::array<Real, 3>> read_points(const std::filesystem::path& file)
 std::optional<Raster> as_raster(const std::vector<std::array<Real, 3>>& points)
 {
   const auto x = ladder_of(coordinates(points, 0)), y = ladder_of(coordinates(points, 1));
-  constexpr std::size_t sparse = 4;  // a grid with so many places for each point is none
+  constexpr std::size_t sparse = 4;  // most grid positions per point
   if (!x || !y || static_cast<std::size_t>(x->count) * static_cast<std::size_t>(y->count) > sparse * points.size())
     return std::nullopt;
   Raster raster;
@@ -138,7 +138,7 @@ std::optional<Raster> as_raster(const std::vector<std::array<Real, 3>>& points)
     Real& value = raster.at(static_cast<Index>(std::lround((east - x->first) / x->step)),
                             static_cast<Index>(std::lround((north - y->first) / y->step)));
     if (!std::isnan(value) && value != z)
-      return std::nullopt;  // two heights for one place
+      return std::nullopt;  // two elevations at one position
     value = z;
   }
   return raster;

@@ -10,11 +10,12 @@
 
 namespace talus {
 
-/// One point a line, the first three numbers of it, between them commas, semicolons, tabs or blanks; a first line of words is a heading, `#`
-/// begins a comment.  SceneErrors name the lines that are none of these; what cannot be read at all is an EnvironmentError.
+/// Reads one point per line, its first three numbers, separated by commas, semicolons, tabs or blanks; a first line of words is a heading,
+/// `#` begins a comment.  Throws SceneErrors with the lines that are none of these, EnvironmentError if the file cannot be read.
 std::vector<std::array<Real, 3>> read_points(const std::filesystem::path& file);
 
-/// What points on a grid of equal spacing are, as which terrain is often handed on; NaN where the grid has no point.  Nothing: they are not.
+/// The raster of points on a regular grid, a common form of terrain data; NaN where the grid has no point.  Nothing if the points are not
+/// on such a grid.
 std::optional<Raster> as_raster(const std::vector<std::array<Real, 3>>& points);
 
 }  // namespace talus

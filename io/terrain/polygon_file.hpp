@@ -1,5 +1,5 @@
 #pragma once
-// Polygons in files: outlines that were drawn in a GIS.
+// Polygons in files: outlines drawn in a GIS.
 #include <array>
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// Corners (x, y) of a ring; the last is not the first again.
+/// The corners (x, y) of a ring; the first one is not repeated at the end.
 using MapRing = std::vector<std::array<Real, 2>>;
 
 struct MapPolygon {
@@ -19,12 +19,12 @@ struct MapPolygon {
 };
 
 struct PolygonFile {
-  std::vector<MapPolygon> polygons;  ///< in the order of the file; of many parts each is one
-  std::string crs;                   ///< as in MapFrame; empty: the file does not say
+  std::vector<MapPolygon> polygons;  ///< in the order of the file; each part of a multipart polygon is one
+  std::string crs;                   ///< as in MapFrame; empty if not in the file
 };
 
-/// GeoJSON, shapefile, GeoPackage, .csv with a column WKT and what else GDAL reads; the first layer that has polygons.  EnvironmentError
-/// names the file, also where there is no polygon in it.
+/// Reads GeoJSON, shapefile, GeoPackage, .csv with a column WKT and other formats of GDAL; the first layer with polygons.  Throws
+/// EnvironmentError with the name of the file, also if it contains no polygon.
 PolygonFile read_polygons(const std::filesystem::path& file);
 
 }  // namespace talus

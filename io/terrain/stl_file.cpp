@@ -14,7 +14,7 @@ namespace talus {
 
 namespace {
 
-// Binary: a heading without meaning, the number of triangles, and of each the normal, three corners and two bytes more.
+// Binary format: a header without meaning, the number of triangles, and for each the normal, three corners and two more bytes.
 constexpr std::size_t heading = 80, per_triangle = 50;
 
 template <class T>
@@ -53,7 +53,7 @@ TriangleSheet read_binary(std::string_view bytes, const std::filesystem::path& f
   return sheet;
 }
 
-/// Blanks before it go too.
+/// Removes and returns the first word; blanks before it are removed too.
 std::string_view take_word(std::string_view& line)
 {
   constexpr auto between = " \t\r";
@@ -96,7 +96,7 @@ TriangleSheet read_stl(const std::filesystem::path& file)
 {
   const std::string bytes = read_whole(file);
   const std::size_t told = bytes.size() < heading + 4 ? 0 : value_at<std::uint32_t>(bytes, heading);
-  // Binary files may begin with the word of the others.
+  // Binary files may begin with the first word of the ASCII format.
   const bool is_binary = bytes.size() >= heading + 4 && bytes.size() == heading + 4 + told * per_triangle;
   if (!is_binary && (!bytes.starts_with("solid") || bytes.find('\0') != bytes.npos))
     refuse(file, 0,

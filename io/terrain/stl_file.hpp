@@ -1,13 +1,13 @@
 #pragma once
-// Surfaces of triangles in STL files, as CAD programs write them.
+// Surfaces of triangles in STL files, as written by CAD programs.
 #include <filesystem>
 
 #include "mesh/geometry/triangle_surface.hpp"
 
 namespace talus {
 
-/// Binary or ascii; every triangle has corners of its own.  SceneErrors name the place in the file: its line, or the byte; what cannot be
-/// read at all is an EnvironmentError.
+/// Reads the binary or ASCII format; every triangle has its own corners.  Throws SceneErrors with line or byte of an error,
+/// EnvironmentError if the file cannot be read.
 TriangleSheet read_stl(const std::filesystem::path& file);
 
 }  // namespace talus

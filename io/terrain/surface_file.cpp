@@ -66,7 +66,7 @@ void check_cover(const SurfaceRead& surface, const SourceLocation& where, const 
     const MapBox& there = *surface.extent;
     const Real beyond =
         std::max({there.west - wanted.west, there.south - wanted.south, wanted.east - there.east, wanted.north - there.north});
-    constexpr Real slack = 1e-6;  // of the size: rounding
+    constexpr Real slack = 1e-6;  // relative to the size, for rounding
     if (beyond > slack * std::max(wanted.east - wanted.west, wanted.north - wanted.south)) {
       problems.push_back(
           {where,
@@ -75,7 +75,7 @@ void check_cover(const SurfaceRead& surface, const SourceLocation& where, const 
       return;
     }
   }
-  constexpr Real most = 400;  // places looked at along a side
+  constexpr Real most = 400;  // positions checked along a side
   const Real size = std::max(wanted.east - wanted.west, wanted.north - wanted.south);
   const Real step = std::max(surface.spacing, size / most);
   const Index columns = static_cast<Index>((wanted.east - wanted.west) / step),

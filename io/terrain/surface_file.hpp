@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces that a scene speaks of, read: from files, points and numbers.
+// Reads the surfaces of a scene: from files, points and numbers.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -12,34 +12,34 @@
 
 namespace talus {
 
-/// What a surface or an outline of a scene is read into.
+/// The map of a scene, into which surfaces and outlines are read.
 struct MapPlan {
-  std::filesystem::path directory;  ///< of the scene: files are relative to it
-  std::string crs;                  ///< of the map; empty: not known, and taken from the first file that says one
-  bool is_line = false;             ///< 2-D without a section: places of the plan are (x, 0), points are [x, elevation]
-  Surface ground;                   ///< what `depth` is counted from; none while it is the ground itself that is read
+  std::filesystem::path directory;  ///< folder of the scene, in which relative paths start
+  std::string crs;                  ///< of the map; empty: unknown, and taken from the first file that has one
+  bool is_line = false;             ///< 2-D without a section: positions of the plan are (x, 0), points are [x, elevation]
+  Surface ground;                   ///< reference of `depth`; none while the ground itself is read
 };
 
 struct SurfaceRead {
   Surface at;
-  std::string name;              ///< of the file; empty: none
-  std::optional<MapBox> extent;  ///< outside of which there is no value; nothing: it goes on without end
-  Real spacing = 0;              ///< [m] of what it was made of; zero: without
+  std::string name;              ///< name of the file; empty if none
+  std::optional<MapBox> extent;  ///< region with values; nothing if it is unlimited
+  Real spacing = 0;              ///< spacing of the data [m]; zero if there is none
 };
 
-/// Holes in rasters up to so many cells across are filled.
+/// Holes in rasters up to this number of cells across are filled.
 inline constexpr Index largest_hole_filled = 10;
 
-/// "0..100 east, 20..50 north"
+/// The box as text: "0..100 east, 20..50 north".
 std::string to_words(const MapBox& box);
 
-/// Nothing where something is wrong: `problems` then has what.  What was mended, or taken for granted, is in `repairs`, one sentence each.
-/// `plan.crs` becomes that of the file where it was empty.  EnvironmentError: GDAL cannot be loaded.
+/// Reads a surface; nothing after an error, which is added to `problems`.  Corrections and assumptions are added to `repairs`, one sentence
+/// each.  An empty `plan.crs` becomes that of the file.  Throws EnvironmentError if GDAL cannot be loaded.
 std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, std::vector<SceneError>& problems,
                                         std::vector<std::string>& repairs);
 
-/// A problem, if the surface has no value somewhere within the outline: which extents it has and which are wanted, or where the hole is.
-/// `of`: what is so named, "domain".
+/// Adds a problem if the surface has no value somewhere within the outline: its extents and those of the outline, or the position of the
+/// hole.  `of` is the name of the outline, such as "domain".
 void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
                  std::vector<SceneError>& problems);
 

@@ -56,7 +56,7 @@ std::optional<SurfaceRead> over_triangles(std::vector<std::array<Real, 3>> point
 
 namespace {
 
-/// A line through points whose x grow.
+/// A line through points with increasing x.
 Surface line_through(std::vector<std::vector<Real>> points)
 {
   return [points = std::move(points)](const std::array<Real, 2>& place) {

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file, and whoever wants to know of it.
+/// Reads a file of a surface of the scene.
 class FileReader {
  public:
   FileReader(const std::string& file, const SourceLocation& where, MapPlan& plan, std::vector<SceneError>& problems,
@@ -33,7 +33,7 @@ class FileReader {
  private:
   void complain(const std::string& what) { problems_.push_back({where_, fmt::format("{}: {}", file_, what), {}}); }
   void mend(const std::string& what) { repairs_.push_back(fmt::format("{}: {}: {}", to_string(where_), file_, what)); }
-  /// The command that makes what is wanted of a file that is not.
+  /// The command that converts the file to the coordinate system of the map.
   std::string warp_to(const std::string& crs) const
   {
     return fmt::format("gdalwarp -t_srs {} -r bilinear {} {}_on_the_map.tif", crs, file_, fs::path(file_).stem().string());
@@ -62,10 +62,10 @@ std::optional<SurfaceRead> FileReader::read()
   std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool of_points = kind == ".csv" || kind == ".xyz" || kind == ".txt";
   if (kind != ".stl")
-    gdal();  // that it cannot be loaded is no fault of the scene
+    gdal();  // checked here, because a missing plugin is not an error of the scene
   try {
     return kind == ".stl" ? read_stl_surface() : of_points ? read_point_surface() : read_raster_surface();
-  } catch (const SceneErrors& wrong) {  // at places in the file
+  } catch (const SceneErrors& wrong) {  // errors with positions in the file
     for (SceneError problem : wrong.problems()) {
       problem.message += fmt::format(" ({})", to_string(where_));
       problems_.push_back(std::move(problem));
@@ -76,7 +76,7 @@ std::optional<SurfaceRead> FileReader::read()
   return std::nullopt;
 }
 
-/// Degrees, feet and the coordinate system of another map are no places on this one.
+/// Refuses degrees, feet and the coordinate system of another map.
 bool FileReader::is_of_the_map(const Raster& raster)
 {
   const MapBox box = talus::extent_of(raster);
@@ -111,7 +111,7 @@ bool FileReader::is_of_the_map(const Raster& raster)
   return true;
 }
 
-/// Elevations become metres.
+/// Converts elevations to metres.
 bool FileReader::settle_units(Raster& raster)
 {
   struct Length {
@@ -145,7 +145,7 @@ bool FileReader::settle_units(Raster& raster)
   return true;
 }
 
-/// What programs write where there is no value, without saying so in the file.
+/// Removes common no-data values that the file does not declare.
 void FileReader::drop_undeclared(Raster& raster)
 {
   constexpr std::array usual{-9999.0, -32768.0, -32767.0, -99999.0};
@@ -171,7 +171,7 @@ bool FileReader::is_plausible(const Raster& raster)
       low = std::min(low, value);
       high = std::max(high, value);
     }
-  constexpr Real highest = 9000, lowest = -11500;  // m: of the Earth
+  constexpr Real highest = 9000, lowest = -11500;  // highest and lowest elevation of the Earth [m]
   if (!(low <= high))
     complain("no cell has a value");
   else if (low == 0 && high == 0)
@@ -249,7 +249,7 @@ std::optional<SurfaceRead> FileReader::read_stl_surface()
     return std::nullopt;
   }
   const Real farthest = std::max({std::abs(extent.west), std::abs(extent.east), std::abs(extent.south), std::abs(extent.north)});
-  // Coordinates of a binary file have 24 bits, and those of an ascii one often come from there.
+  // Coordinates of a binary file have 24 bits, and those of an ASCII file often come from a binary one.
   const auto is_single = [](const auto& corner) {
     return std::all_of(corner.begin(), corner.end(), [](Real x) { return x == static_cast<Real>(static_cast<float>(x)); });
   };

@@ -18,11 +18,11 @@ bool is_in_domain(const TerrainInput& input, const MapPlace& place)
   return x >= input.from && x <= input.to;
 }
 
-/// The lowest place on the smallest circle around that has one lower than its centre.
+/// The lowest position on the smallest circle with a position lower than its centre.
 std::optional<MapPlace> lower_place(const TerrainInput& input, const MapPlace& from, Real stride)
 {
   const int directions = input.is_line ? 2 : 36;
-  constexpr Real widest = 8;  // strides
+  constexpr Real widest = 8;  // largest radius in strides
   const auto& [along_x, along_y] = input.frame.along;
   for (Real radius = stride; radius <= widest * stride; radius *= 2) {
     std::optional<MapPlace> best;
@@ -41,7 +41,7 @@ std::optional<MapPlace> lower_place(const TerrainInput& input, const MapPlace& f
   return std::nullopt;
 }
 
-/// Thickness of a layer, none where it gives way.
+/// The thickness of a layer; zero where it is cut away.
 Real thickness_at(const TerrainInput& input, std::size_t layer, const MapPlace& place)
 {
   if (!is_in_domain(input, place) || (input.within[layer] && !input.within[layer]->contains(place)))
@@ -58,7 +58,7 @@ Real thickness_at(const TerrainInput& input, std::size_t layer, const MapPlace& 
 
 std::optional<MapPlace> centre_of_layer(const TerrainInput& input, std::size_t layer)
 {
-  constexpr Index samples = 200;  // along each axis
+  constexpr Index samples = 200;  // samples along each axis
   Real total = 0;
   MapPlace sum{};
   const auto add = [&](const MapPlace& place) {

@@ -1,5 +1,5 @@
 #pragma once
-// Where what lies on terrain will flow, before anything is computed: straight down, and no farther than energy lines reach.
+// Estimates of the flow over terrain before a simulation: steepest descent, and a limit from energy lines.
 #include <array>
 #include <optional>
 #include <vector>
@@ -8,21 +8,22 @@
 
 namespace talus {
 
-/// Mean place of a layer, by its thickness; nothing if it has none.
+/// The centroid of a layer in the plan, weighted by its thickness; nothing if it has no volume.
 std::optional<MapPlace> centre_of_layer(const TerrainInput& input, std::size_t layer);
 
-/// From a place down over the ground, in strides that get longer where the ground has pits, until no place up to eight strides around is lower.
+/// The path of steepest descent over the ground from a position, in strides that get longer in pits, until no position up to eight strides
+/// around is lower.
 MapLine steepest_descent(const TerrainInput& input, const MapPlace& from, Real stride);
 
-/// Lines that fall from sources (east, north, height) in all directions, by `fall` [m] for each metre.
+/// Energy lines, which fall from sources (east, north, height) in all directions by `fall` [m] per metre.
 class EnergyLines {
  public:
   EnergyLines(std::vector<std::array<Real, 3>> sources, Real fall);
-  /// Of the highest line over a place.
+  /// The height of the highest line at a position [m].
   Real height(const MapPlace& place) const noexcept;
 
  private:
-  std::vector<std::array<Real, 3>> highest_;  ///< those above which no line of another passes, from the highest down
+  std::vector<std::array<Real, 3>> highest_;  ///< sources that are not below a line of another source, in descending order
   Real fall_;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 using Points = std::vector<std::vector<Real>>;
 
-/// Reads one thing after the other; what is wrong is collected.
+/// Reads the parts of the block in sequence and collects errors.
 template <int D>
 class TerrainReader {
  public:
@@ -46,7 +46,7 @@ class TerrainReader {
  private:
   void complain(const SourceLocation& where, std::string message) { problems_.push_back({where, std::move(message), {}}); }
 
-  /// Nothing is known of a surface that cannot be read.
+  /// The surface; it has no value anywhere if it cannot be read.
   Surface surface(const SurfaceSpec& spec)
   {
     if (!input_.on_map)
@@ -67,7 +67,7 @@ class TerrainReader {
     if (!file.empty())
       return checked(where, fmt::format("{}_file", key), area_of(read_outlines(file, where, map_, problems_, input_.notes)));
     const bool plain = std::any_of(corners.begin(), corners.end(), [](const auto& corner) { return corner.size() < 2; });
-    if (!input_.on_map && corners.size() == 2) {  // of a line only x counts
+    if (!input_.on_map && corners.size() == 2) {  // only x of a line is used
       const Real side = 1;
       return rectangle({corners[0][0], -side}, {corners[1][0], side});
     }
@@ -162,7 +162,7 @@ class TerrainReader {
     }
     if (ground_ && !input_.domain.rings.empty())
       check_cover(*ground_, spec_.ground.where, input_.domain.rings.front(), "domain", problems_);
-    constexpr Real whole = 100;  // m: an origin that people can remember
+    constexpr Real whole = 100;  // the origin is rounded to this [m]
     const MapPlace low = bounds_of(input_.domain).first;
     if (spec_.origin.size() == 2)
       input_.frame.origin = {spec_.origin[0], spec_.origin[1]};

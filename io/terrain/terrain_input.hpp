@@ -1,5 +1,5 @@
 #pragma once
-// What a block `mesh.terrain` speaks of, read: surfaces, areas, and where all of it lies on the map.
+// The contents of a block `mesh.terrain`: surfaces, areas, and the position on the map.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,20 +14,20 @@ namespace talus {
 
 struct TerrainInput {
   MapFrame frame;
-  bool is_line = false;                     ///< 2-D: the plan is a line
-  bool on_map = true;                       ///< false in 2-D without a section: x is x
-  Surface ground;                           ///< all surfaces: elevation [m] at a place of the map
-  std::vector<Surface> bottoms;             ///< of the layers
-  std::vector<std::optional<Area>> within;  ///< of the layers; without one everywhere
+  bool is_line = false;                     ///< whether the plan is a line (2-D)
+  bool on_map = true;                       ///< false in 2-D without a section, where x is not a map coordinate
+  Surface ground;                           ///< this and the other surfaces: elevation [m] at a position of the map
+  std::vector<Surface> bottoms;             ///< of each layer
+  std::vector<std::optional<Area>> within;  ///< areas of the layers; without one a layer is everywhere
   std::vector<Area> obstacles;
-  Area domain;                     ///< 2-D: its width along the line counts
-  bool is_rectangle = false;       ///< the domain, its sides along the axes
-  Real from = 0, to = 0;           ///< 2-D: ends of x
-  std::vector<Real> kinks;         ///< 2-D: places x where lines that were given by points have corners
-  std::vector<std::string> notes;  ///< what was mended, in words
+  Area domain;                     ///< in 2-D only its width along the line is used
+  bool is_rectangle = false;       ///< whether the domain is a rectangle with sides along the axes
+  Real from = 0, to = 0;           ///< 2-D: range of x
+  std::vector<Real> kinks;         ///< 2-D: positions x of the corners of lines given by points
+  std::vector<std::string> notes;  ///< descriptions of corrections
 };
 
-/// SceneErrors with everything that cannot be read or cannot be.
+/// Throws SceneErrors with everything that cannot be read or is impossible.
 template <int D>
 TerrainInput read_terrain(const TerrainSpec& spec, const std::filesystem::path& directory);
 

@@ -9,24 +9,24 @@ namespace talus {
 
 namespace {
 
-/// Columns of which something is to be told.
+/// Sums over columns, for messages.
 struct StepSums {
   Index columns = 0;
-  Real extent = 0;   ///< of the plan around them [m^(D-1)]
-  Real volume = 0;   ///< [m^D]
-  Real largest = 0;  ///< thickness [m]
+  Real extent = 0;   ///< plan area of the columns, in 2-D length [m^(D-1)]
+  Real volume = 0;   ///< volume [m^D]
+  Real largest = 0;  ///< largest thickness [m]
   void add(Real around, Real thickness)
   {
     ++columns, extent += around, volume += around * thickness, largest = std::max(largest, thickness);
   }
 };
 
-/// What became of the columns of a layer.
+/// The treatment of the columns of a layer.
 struct LayerCells {
-  StepSums saved, blank, crossed, closed;  ///< blank: the bottom is not known; crossed: it lies above the surface over it
+  StepSums saved, blank, crossed, closed;  ///< blank: bottom unknown; crossed: bottom above the surface over it; closed: too thin
 };
 
-/// The bottom of layer l, and what became of it, below a surface.
+/// The bottom of layer l below a surface, and the treatment of its columns.
 template <int D>
 std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& above, const Surface& wanted, const LayerSpec& layer,
                                                       const SurveyedPlan<D>& plan, const Marks& own)
@@ -36,7 +36,7 @@ std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& a
   for (Index n = 0; n < plan.n_nodes(); ++n) {
     const Real here = wanted(plan.place[n]), thickness = above[n] - here;
     const Real cell = plan.height_of_cells(layer.size, n);
-    constexpr Real touching = 1e-3;  // of a cell: surfaces that are meant to meet
+    constexpr Real touching = 1e-3;  // relative to a cell: surfaces that are meant to meet
     const bool is_kept = thickness >= thinnest * cell;
     if (is_kept)
       bottom[n] = here;
@@ -51,7 +51,7 @@ std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& a
   return {std::move(bottom), fates};
 }
 
-/// Why nothing is left of a layer.
+/// The reason why nothing is left of a layer.
 std::string in_words(const LayerCells& fates, const std::string& upper, std::string_view unit)
 {
   std::string text;

@@ -1,5 +1,5 @@
 #pragma once
-// Layers of terrain over a plan: where each ends below, after what had to give way.
+// Layers of terrain over a plan: the bottom of each after corrections.
 #include <string>
 #include <vector>
 
@@ -7,19 +7,19 @@
 
 namespace talus {
 
-/// Layers thinner than this share of a cell are closed: they would cost short steps, and hold little.
+/// Layers thinner than this fraction of a cell are removed: they would require short steps and contain little.
 inline constexpr Real thinnest = 0.25;
 
 struct TerrainLayers {
-  std::vector<std::vector<Real>> bottoms;  ///< by layer and plan node [m]: nowhere above the bottom of the layer before, or the ground
-  std::vector<Marks> inside;               ///< by layer and plan cell: within the sides of the layer
+  std::vector<std::vector<Real>> bottoms;  ///< for each layer and plan node [m]; never above the bottom of the previous layer or the ground
+  std::vector<Marks> inside;               ///< for each layer and plan cell: whether it lies within the area of the layer
 };
 
-/// From the ground down.  What is wrong is added to `problems`, what gave way, in words, to the notes.
+/// Computes the layers from the ground downwards.  Errors are added to `problems`, descriptions of corrections to the notes.
 template <int D>
 TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainInput& input, std::vector<SceneError>& problems);
 
-/// What is meshed, "512000 to 512060 east, 5180000 to 5180030 north".
+/// The meshed region as text, "512000 to 512060 east, 5180000 to 5180030 north".
 std::string domain_in_words(const TerrainInput& input);
 
 extern template TerrainLayers lay<2>(const TerrainSpec&, const SurveyedPlan<2>&, TerrainInput&, std::vector<SceneError>&);

@@ -60,7 +60,7 @@ class TerrainMaker {
       throw SceneErrors(std::move(problems_));
   }
 
-  /// Before anything is made: the plan alone may be more than there is room for.
+  /// Throws before anything is made if the plan alone needs too much memory.
   void check_size()
   {
     const auto [low, high] = bounds_of(input_.domain);
@@ -109,7 +109,7 @@ class TerrainMaker {
     return found == spec_.layers.end() ? 0 : static_cast<std::size_t>(found - spec_.layers.begin());
   }
 
-  /// Plan cells with air above the ground: all, or those that a line falling from the layer reaches.
+  /// Marks plan cells with air above the ground: all cells, or those that an energy line from the layer reaches.
   void air()
   {
     has_air_.assign(plan_.n_cells(), spec_.air ? 1 : 0);
@@ -159,12 +159,12 @@ class TerrainMaker {
         input_.notes.push_back(fmt::format("{}: obstacle \"{}\" reaches beyond what is meshed, {}, and is cut off there",
                                            to_string(obstacle.where), obstacle.name, domain_in_words(input_)));
     }
-    for (std::size_t c = 0; c < has_air_.size(); ++c)  // over the whole of each
+    for (std::size_t c = 0; c < has_air_.size(); ++c)  // over all of each marked layer
       if (obstacle_of_cell_[c] != none)
         has_air_[c] = 1;
   }
 
-  /// How high the obstacles are: over their own plan cells, and in between by their distances, so that the cells beside them fit.
+  /// The height of obstacles: over their own plan cells, and in between interpolated by distance, so that the cells beside them fit.
   std::vector<Real> shelf() const
   {
     std::vector<Real> height(plan_.ground.size(), 0);
@@ -178,7 +178,7 @@ class TerrainMaker {
       Real sum = 0, weights = 0;
       for (std::size_t o = 0; o < input_.obstacles.size(); ++o)
         for (const MapLine& ring : input_.obstacles[o].rings) {
-          constexpr Real nearest = 1e-3;  // m
+          constexpr Real nearest = 1e-3;  // smallest distance [m]
           const Real weight = std::pow(std::max(nearest, distance(ring, plan_.place[n])), -2);
           sum += weight * spec_.obstacles[o].height;
           weights += weight;
@@ -188,7 +188,7 @@ class TerrainMaker {
     return height;
   }
 
-  // Slabs from the bottom up: the layers, the shelf of the obstacles if there are any, the air.  Groups: the layers, then air.
+  // Slabs from the bottom to the top: the layers, the slab of obstacles if there are any, the air.  Groups: the layers, then air.
   Index air_group() const { return static_cast<Index>(n_layers_); }
   Index shelf_slab() const { return spec_.obstacles.empty() ? none : static_cast<Index>(n_layers_); }
 
@@ -228,7 +228,7 @@ class TerrainMaker {
     return all;
   }
 
-  /// By plan cell: layer l, or the next below it within whose sides the cell lies.
+  /// For each plan cell the layer l, or the next one below it whose area contains the cell.
   std::vector<Index> owners(std::size_t l) const
   {
     std::vector<Index> owners;
@@ -260,7 +260,7 @@ class TerrainMaker {
   }
 
   std::string group_name(Index group) const { return group == air_group() ? "air" : "layer:" + spec_.layers[group].name; }
-  /// Slab of a layer, or beneath everything.
+  /// Whether a slab is a layer, or lies below everything.
   bool is_below_ground(Index slab) const { return slab == none || slab < static_cast<Index>(n_layers_); }
   bool is_above_ground(Index slab) const { return slab == none || slab >= static_cast<Index>(n_layers_); }
   bool is_obstacle(Index slab, Index plan_cell) const
@@ -296,10 +296,10 @@ class TerrainMaker {
         data.facet_sets["sides"].push_back(side.nodes);
   }
 
-  /// Cells that are nearly flat are told.
+  /// Adds a note about nearly flat cells.
   void judge(const MeshData<D>& data)
   {
-    constexpr Real poor = 0.02;  // mean ratio: some ten times as long as thick
+    constexpr Real poor = 0.02;  // mean ratio of cells that are about ten times as long as thick
     Index count = 0;
     Real worst = 1;
     Vec<D> where = Vec<D>::Zero();
@@ -328,7 +328,7 @@ class TerrainMaker {
   SurveyedPlan<D> plan_{};
   TerrainLayers layers_;
   Marks has_air_;                        // by plan cell
-  std::vector<Index> obstacle_of_cell_;  // by plan cell; none
+  std::vector<Index> obstacle_of_cell_;  // by plan cell; `none` without an obstacle
   std::vector<SceneError> problems_;
 };
 

@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-/// Every area that has sides of its own.
+/// All areas with sides of their own.
 std::vector<Area> areas_of(const TerrainInput& input)
 {
   std::vector<Area> areas = input.obstacles;
@@ -20,7 +20,7 @@ std::vector<Area> areas_of(const TerrainInput& input)
   return areas;
 }
 
-/// Ends of the line, outlines on it, and corners of lines where there is room for a node.
+/// The ends of the line, outlines on it, and corners of lines where there is room for a node.
 std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
 {
   const MapPlace from = input.frame.to_map(input.from), to = input.frame.to_map(input.to);
@@ -30,7 +30,7 @@ std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
       x.push_back(input.from + share * (input.to - input.from));
   std::sort(x.begin(), x.end());
   x.erase(std::unique(x.begin(), x.end()), x.end());
-  constexpr Real room = 0.3;  // of a cell
+  constexpr Real room = 0.3;  // relative to a cell
   for (const Real kink : input.kinks) {
     const Real least = room * sizes(input.frame.to_map(kink));
     const bool free = std::all_of(x.begin(), x.end(), [&](Real other) { return std::abs(other - kink) >= least; });
@@ -41,7 +41,7 @@ std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
   return x;
 }
 
-/// Nodes from a to b, the last one left out: as many to each piece of the way as its cells per length ask for.
+/// Adds nodes from a to b without the last one; the number in each interval follows from the desired size of cells.
 void divide(Real a, Real b, const TerrainInput& input, const PlanSizes& sizes, std::vector<Vec<1>>& nodes)
 {
   const auto place = [&](Real share) { return a * (1 - share) + b * share; };
@@ -50,7 +50,7 @@ void divide(Real a, Real b, const TerrainInput& input, const PlanSizes& sizes, s
                                             return s.inside < t.inside;
                                           })->inside;
   const auto pieces = sizes.strips.empty() ? 1 : static_cast<Index>(std::ceil(8 * (b - a) / std::min(smallest, sizes.size)));
-  std::vector<Real> cells{0};  // up to the end of each piece
+  std::vector<Real> cells{0};  // number of cells up to the end of each interval
   for (Index i = 0; i < pieces; ++i)
     cells.push_back(cells.back() + (b - a) / pieces / sizes(input.frame.to_map(place((i + 0.5) / pieces))));
   const Index n = std::max<Index>(1, static_cast<Index>(std::lround(cells.back())));
@@ -89,10 +89,10 @@ Plan<3> grid_of(const TerrainInput& input, Real size)
   return {std::move(data.nodes), std::move(data.cells)};
 }
 
-/// Without corners that are close to the one before and add little: outlines drawn in a GIS have many to a cell.
+/// The ring without corners that are close to the previous one and change it little: outlines drawn in a GIS have many corners per cell.
 MapLine thinned(const MapLine& ring, const PlanSizes& sizes)
 {
-  constexpr Real close = 0.5, little = 0.05;  // of a cell
+  constexpr Real close = 0.5, little = 0.05;  // relative to a cell
   MapLine saved;
   for (std::size_t i = 0; i < ring.size(); ++i) {
     const MapPlace &corner = ring[i], &next = ring[(i + 1) % ring.size()];
@@ -111,7 +111,7 @@ Polygon local(const MapLine& ring, const MapFrame& frame)
   return polygon;
 }
 
-/// The triangles of a mesh that lie in the domain, with the nodes they use.
+/// The triangles of a mesh that lie in the domain, with their nodes.
 Plan<3> inside(const MeshData<2>& data, const TerrainInput& input)
 {
   Plan<3> plan;
@@ -132,10 +132,10 @@ Plan<3> inside(const MeshData<2>& data, const TerrainInput& input)
   return plan;
 }
 
-/// Outlines of areas as far as they have sides in the domain or near it: an outline may be that of a country.
+/// The outlines of areas that have sides in the domain or near it, cut to it: an outline may be that of a country.
 std::vector<Polygon> outlines_in_domain(const TerrainInput& input, const PlanSizes& sizes)
 {
-  constexpr Real around = 2.236;  // cells beside the domain, not a round number: corners of outlines often are
+  constexpr Real around = 2.236;  // cells beside the domain; not a round number, as corners of outlines often are
   auto [low, high] = bounds_of(input.domain);
   for (std::size_t d = 0; d < 2; ++d)
     low[d] -= around * sizes.size, high[d] += around * sizes.size;
@@ -171,7 +171,7 @@ Real extent_of(const Plan<3>& plan, const std::array<Index, 3>& cell)
 
 Real PlanSizes::operator()(const MapPlace& place) const noexcept
 {
-  constexpr Real growth = 1.0 / 3;  // of an edge over its length
+  constexpr Real growth = 1.0 / 3;  // change of edge length per length
   Real least = size;
   for (const auto& [along, width, inside] : strips)
     least = std::min(least, inside + growth * std::max(Real{0}, distance(along, place) - width / 2));

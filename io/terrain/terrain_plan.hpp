@@ -1,5 +1,5 @@
 #pragma once
-// The plan over which columns of terrain stand.
+// The plan of the columns of a terrain mesh.
 #include <cstdint>
 #include <optional>
 
@@ -9,21 +9,21 @@
 
 namespace talus {
 
-/// A strip in which cells are smaller.
+/// A strip with smaller cells.
 struct Strip {
-  MapLine along;  ///< on the map
-  Real width;     ///< [m]
-  Real inside;    ///< edge length [m]
+  MapLine along;  ///< line on the map
+  Real width;     ///< width [m]
+  Real inside;    ///< edge length in the strip [m]
 };
 
-/// Edge lengths over the map [m].
+/// The edge length over the map [m].
 struct PlanSizes {
   Real size;
   std::vector<Strip> strips;
   Real operator()(const MapPlace& place) const noexcept;
 };
 
-/// On the map, of a place of the plan.
+/// The map coordinates of a position of the plan.
 template <int D>
 MapPlace on_map(const MapFrame& frame, const Vec<D - 1>& x) noexcept
 {
@@ -34,29 +34,29 @@ MapPlace on_map(const MapFrame& frame, const Vec<D - 1>& x) noexcept
 template <int D>
 Plan<D> make_plan(const TerrainInput& input, const PlanSizes& sizes, const SourceLocation& where);
 
-/// One for each plan cell or node, whether it belongs to something.
+/// A flag for each plan cell or node.
 using Marks = std::vector<std::uint8_t>;
 
-/// A plan and what is known at its nodes.
+/// A plan with values at its nodes.
 template <int D>
 struct SurveyedPlan {
   Plan<D> plan;
-  std::vector<MapPlace> place;  ///< on the map
-  std::vector<Real> extent;     ///< around each node: area, in 2-D length [m^(D-1)]
-  Real usual_size;              ///< edge length without strips [m]
-  std::vector<Real> size;       ///< the one wanted at each node [m]
-  std::vector<Real> ground;     ///< [m]; NaN where it is not known
+  std::vector<MapPlace> place;  ///< positions on the map
+  std::vector<Real> extent;     ///< plan area around each node, in 2-D length [m^(D-1)]
+  Real usual_size;              ///< edge length outside of strips [m]
+  std::vector<Real> size;       ///< desired edge length at each node [m]
+  std::vector<Real> ground;     ///< elevation of the ground [m]; NaN where unknown
 
   Index n_nodes() const noexcept { return static_cast<Index>(plan.nodes.size()); }
   std::size_t n_cells() const noexcept { return plan.cells.size(); }
   Marks nodes_of(const Marks& cells) const;
-  /// Height of cells over a node [m]: like edges on the plan, or as large as said for places without strips.
+  /// The height of cells over a node [m]: equal to the edge length in the plan, or the given height, which is scaled in strips.
   Real height_of_cells(const std::optional<Real>& said, Index n) const { return said.value_or(usual_size) * size[n] / usual_size; }
 };
 template <int D>
 SurveyedPlan<D> survey(Plan<D> plan, const TerrainInput& input, const PlanSizes& sizes);
 
-/// Plan cells whose centre lies in the area.
+/// Marks the plan cells whose centre lies in the area.
 template <int D>
 Marks cells_in(const Area& area, const SurveyedPlan<D>& plan);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The base of a model above an elastic halfspace, from which a wave comes up and into which waves leave.
+// The base of a model on an elastic halfspace: an incident wave enters through it, and waves leave through it.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -42,19 +42,19 @@ struct CompliantBaseOptions : BoundaryCommon, MotionOptions {
   }
 };
 
-/// The halfspace resists a node that moves with v by C v and drives it by 2 C v_up, where v_up is the velocity of the wave that comes up:
-/// one half is that wave, the other the one that it would be reflected as [Joyner & Chen 1975].
+/// The halfspace resists a node with velocity v by C v and drives it by 2 C v_up, where v_up is the velocity of the incident wave: one half
+/// is that wave, the other half its reflection [Joyner & Chen 1975].
 template <int D>
 struct CompliantBase {
   using Options = CompliantBaseOptions;
   Halfspace halfspace;
-  PrescribedMotion<D> motion;  ///< of the wave that comes up
+  PrescribedMotion<D> motion;  ///< velocity of the incident wave
   static CompliantBase make(const Options& options, const ConditionSetup<D>& setup)
   {
     return {{options.density, options.s_wave, options.p_wave}, motion_of<D>(options, setup.record)};
   }
 
-  /// It holds its nodes until the dynamic phase begins.
+  /// The velocity of the nodes before the dynamic phase begins: zero.
   static Vec<D> velocity(const DynamicPhase&, Real) noexcept { return Vec<D>::Zero(); }
   template <class Node>
   void hold(const DynamicPhase&, Node& node) const noexcept
@@ -74,12 +74,12 @@ struct CompliantBase {
   {
     return phase.begun ? motion(time - phase.begin) : Vec<D>(Vec<D>::Zero());
   }
-  /// The velocity [m/s] that the dashpot of a node resists departures from, and the force [N] on a node that does not move.
+  /// The velocity [m/s] relative to which the dashpot of a node acts, and the force [N] on a node that does not move.
   Vec<D> free_velocity(const Dashpot<D>&, const Vec<D>&, const DynamicPhase& phase, Real time) const noexcept { return wave(phase, time); }
   Vec<D> force_at_rest(const Dashpot<D>& dashpot, const Vec<D>& up) const noexcept { return dashpot.resistance * (2 * up); }
 
   ColumnBase<D> column_base(const DynamicPhase& phase, Real time) const noexcept { return {wave(phase, time), halfspace}; }
-  Real peak_speed() const { return 2 * motion.peak_speed(); }  // the wave meets the one that is reflected
+  Real peak_speed() const { return 2 * motion.peak_speed(); }  // incident and reflected wave together
 };
 
 }  // namespace talus

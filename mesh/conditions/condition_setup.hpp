@@ -1,5 +1,5 @@
 #pragma once
-// What a boundary condition may ask for while it is made from its options.
+// Information for a boundary condition while it is made from its options.
 #include <functional>
 #include <optional>
 #include <span>
@@ -15,12 +15,12 @@ namespace talus {
 template <int D>
 struct ConditionSetup {
   const Mesh<D>& mesh;
-  std::span<const Facet> facets;  ///< of the group, seen from the material; none for a condition on nodes
+  std::span<const Facet> facets;  ///< facets of the group, with normals out of the material; empty for a condition on nodes
   Vec<D> up;                      ///< unit vector against gravity
-  std::optional<Record> record;   ///< the motion of the file that the options name
-  /// The condition that holds or moves a node in all directions, of those made before, or none.
+  std::optional<Record> record;   ///< motion in the file that the options name
+  /// The index of an earlier condition that prescribes all components of a node, or none.
   std::function<Index(Index node)> holder_of;
-  /// The ground behind the facets as a column of layers; nothing if there is none, or none with a shear modulus.  Every rank has to call.
+  /// The ground behind the facets as a column of layers; nothing if there is none, or none with a shear modulus.  Collective.
   std::function<std::optional<SoilColumn<D>>()> column_beside;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Dashpots through which plane waves leave a model.
+// Dashpots through which plane waves leave a model [Lysmer & Kuhlemeyer 1969].
 #include <map>
 #include <utility>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace talus {
 
-/// Elastic ground as waves see it.
+/// The elastic properties of ground that determine its waves.
 struct Halfspace {
   Real density{};           ///< [kg/m^3]
   Real s_wave{}, p_wave{};  ///< speeds of shear and pressure waves [m/s]
@@ -30,7 +30,7 @@ template <int D>
 struct Dashpot {
   Index condition = none;
   Mat<D> resistance = Mat<D>::Zero();                     ///< force per velocity [N s/m]
-  std::vector<std::pair<std::size_t, Vec<D>>> face = {};  ///< of a free field: layer and share of the area vector [m^(D-1)]
+  std::vector<std::pair<std::size_t, Vec<D>>> face = {};  ///< free field: layers and their fractions of the area vector [m^(D-1)]
 };
 template <int D>
 using DashpotsOfNodes = std::map<Index, Dashpot<D>>;

@@ -6,11 +6,11 @@
 
 namespace talus {
 
-/// It begins with the first stage that is not geostatic.  Records and waves count their time from there, and absorbing boundaries, which
-/// hold the model before, become dashpots.
+/// The dynamic phase begins with the first stage that is not geostatic.  Records and waves count their time from there, and absorbing
+/// boundaries, which hold the model before, become dashpots.
 struct DynamicPhase {
   bool begun = false;
-  Real begin = 0;  ///< [s]
+  Real begin = 0;  ///< time at which it begins [s]
   static constexpr auto fields() { return std::tuple{saved("begun", &DynamicPhase::begun), saved("begin", &DynamicPhase::begin)}; }
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// An upright side of a model, beside which level ground goes on: the free field.
+// An upright side of a model with level ground beyond it: the free field.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -24,19 +24,19 @@ struct FreeFieldOptions : BoundaryCommon {
   }
 };
 
-/// The ground beside is a column of layers that moves by itself, on the base of the model.  It exerts its stress on the side, and dashpots
-/// absorb what differs from its motion [Zienkiewicz, Bicanic & Shen 1988].
+/// The ground beside the model is a column of layers that moves independently of the model, on the same base.  Its stress acts on the side,
+/// and dashpots absorb the difference between the two motions [Zienkiewicz, Bicanic & Shen 1988].
 template <int D>
-struct FreeField : Roller<D> {  // until the dynamic phase begins
+struct FreeField : Roller<D> {  // a roller until the dynamic phase begins
   using Options = FreeFieldOptions;
   SoilColumn<D> column;
-  Index base = none;        ///< the condition below the column
-  ColumnMotion motion{};    ///< of the column now
-  ColumnMotion previous{};  ///< the same at the beginning of the step
+  Index base = none;        ///< index of the condition below the column
+  ColumnMotion motion{};    ///< present motion of the column
+  ColumnMotion previous{};  ///< motion of the column at the beginning of the step
 
   static FreeField make(const Options& options, const ConditionSetup<D>& setup)
   {
-    constexpr Real vertical = 0.01;  // cosine between the normal of a facet and the vertical
+    constexpr Real vertical = 0.01;  // largest vertical component of the unit normal of an upright facet
     Index lowest = none;
     for (const Facet facet : setup.facets) {
       const Vec<D> area = setup.mesh.area_vector(facet);
@@ -67,7 +67,7 @@ struct FreeField : Roller<D> {  // until the dynamic phase begins
                        column.layer.back().ground.s_wave);
   }
 
-  /// A facet above the column, which no ground lies beside, has no dashpot.
+  /// The dashpots of the nodes.  A facet above the ground surface of the column has none.
   DashpotsOfNodes<D> dashpots(const Mesh<D>& mesh, std::span<const Facet> facets) const
   {
     DashpotsOfNodes<D> all;
@@ -87,8 +87,8 @@ struct FreeField : Roller<D> {  // until the dynamic phase begins
     }
     return all;
   }
-  /// The velocity [m/s] that the dashpot of a node resists departures from, and the force [N] on a node that does not move.  The stress of
-  /// the column is that at the beginning of the step, as the stress of the particles, and its velocity that of the middle.
+  /// The velocity [m/s] relative to which the dashpot of a node acts, and the force [N] on a node that does not move.  The stress of the
+  /// column is that at the beginning of the step, like the stress of the particles; its velocity is that of the middle of the step.
   Vec<D> free_velocity(const Dashpot<D>&, const Vec<D>& place, const DynamicPhase&, Real) const noexcept
   {
     return column.velocity_at(column.up.dot(place), motion);
@@ -101,14 +101,14 @@ struct FreeField : Roller<D> {  // until the dynamic phase begins
     return force;
   }
 
-  /// A step of length dt [s] of the ground beside.
+  /// Moves the ground beside the model by a step of length dt [s].
   void advance(const ColumnBase<D>& below, Real dt)
   {
     previous = motion;
     talus::advance(column, below, dt, motion);
   }
   void reset() { motion = column.at_rest(); }
-  /// Whether the motion, read from a checkpoint, may be that of this column.
+  /// Whether a motion read from a checkpoint has the sizes of this column.
   bool fits() const { return motion.velocity.size() == D * column.level.size() && motion.traction.size() == D * column.layer.size(); }
   static constexpr auto fields() { return std::tuple{saved("motion", &FreeField::motion)}; }
 };

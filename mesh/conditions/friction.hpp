@@ -1,5 +1,5 @@
 #pragma once
-// Walls with Coulomb friction, which material may leave.
+// Walls with Coulomb friction, which material may leave freely.
 #include <algorithm>
 
 #include "mesh/conditions/boundary_common.hpp"
@@ -23,11 +23,11 @@ template <int D>
 struct Friction {
   using Options = FrictionOptions;
   static constexpr bool two_sided = false;
-  Real coefficient{};  ///< [-]
+  Real coefficient{};  ///< coefficient of friction [-]
   static Friction make(const Options& options, const ConditionSetup<D>&) { return {options.coefficient}; }
 
-  /// The normal points out of the mesh.  What would pass the wall is stopped, and the tangential velocity is reduced by at most the
-  /// coefficient times the normal velocity that was stopped; the work of that tangential impulse is heat.
+  /// Applies the wall to a node; the normal points out of the mesh.  A normal velocity into the wall is removed, and the tangential
+  /// velocity is reduced by at most the coefficient times the removed velocity.  The work of the tangential impulse is heat.
   template <class Node>
   void act(Node& node, const Vec<D>& normal) const noexcept
   {

@@ -1,5 +1,5 @@
 #pragma once
-// A velocity in time, given by a table or a record: what moves a boundary, or comes up to it as a wave.
+// A velocity over time, given by a table or a record, for a moving boundary or an incident wave.
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// Keys of the conditions that have a motion; each of them describes these in its own words.
+/// Keys of the conditions that have a motion; each condition describes them in its own words.
 struct MotionOptions {
   std::vector<Real> velocity;
   Table table;
@@ -25,11 +25,11 @@ struct MotionOptions {
 
 template <int D>
 struct PrescribedMotion {
-  Vec<D> velocity = Vec<D>::Zero();  ///< [m/s], times the value of the table or the record
+  Vec<D> velocity = Vec<D>::Zero();  ///< velocity [m/s], multiplied by the value of the table or the record
   Table table = {};
-  std::optional<Record> record = {};  ///< in the place of the table
+  std::optional<Record> record = {};  ///< used instead of the table
 
-  /// The velocity [m/s] after that time [s].
+  /// The velocity [m/s] at the time `since` [s] after the beginning of the motion.
   Vec<D> operator()(Real since) const noexcept { return (record ? (*record)(since) : table(since)) * velocity; }
   /// The largest speed [m/s] at any time.
   Real peak_speed() const { return velocity.norm() * (record ? record->peak_velocity() : table.largest_magnitude()); }

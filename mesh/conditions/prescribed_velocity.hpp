@@ -28,14 +28,14 @@ struct PrescribedVelocity {
   PrescribedMotion<D> motion;
   static PrescribedVelocity make(const Options& options, const ConditionSetup<D>& setup) { return {motion_of<D>(options, setup.record)}; }
 
-  /// A table counts from the start of the run, a record from the beginning of the dynamic phase.
+  /// The velocity [m/s].  A table counts time from the start of the run, a record from the beginning of the dynamic phase.
   Vec<D> velocity(const DynamicPhase& phase, Real time) const noexcept
   {
     if (motion.record && !phase.begun)
       return Vec<D>::Zero();
     return motion(motion.record ? time - phase.begin : time);
   }
-  /// Its work is the impulse times its own mean velocity over the step.
+  /// Gives a node the velocity; the work is the impulse times the mean velocity of the condition over the step.
   template <class Node>
   void hold(const DynamicPhase& phase, Node& node) const noexcept
   {

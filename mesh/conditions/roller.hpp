@@ -1,5 +1,5 @@
 #pragma once
-// Surfaces without motion along their normal, on which sliding is free.
+// Surfaces without motion along their normal, with free sliding.
 #include "mesh/conditions/boundary_common.hpp"
 #include "mesh/conditions/condition_setup.hpp"
 

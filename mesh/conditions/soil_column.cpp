@@ -19,7 +19,7 @@ auto level_row(const std::vector<Real>& numbers, std::size_t i)
   return Eigen::Map<const Vec<D>>(&numbers[D * i]);
 }
 
-/// [Pa]
+/// The shear modulus [Pa].
 Real shear_modulus(const Halfspace& ground) { return ground.density * ground.s_wave * ground.s_wave; }
 Real confined_modulus(const Halfspace& ground) { return ground.density * ground.p_wave * ground.p_wave; }
 
@@ -55,7 +55,7 @@ template <int D>
 void advance(const SoilColumn<D>& column, const ColumnBase<D>& base, Real dt, ColumnMotion& motion)
 {
   const std::size_t n = column.layer.size();
-  constexpr Real safe = 0.5;  // fraction of the time in which a wave crosses a layer
+  constexpr Real safe = 0.5;  // fraction of the time in which a wave crosses a layer, for stability
   Real longest = std::numeric_limits<Real>::infinity();
   const auto thickness = [&](std::size_t l) { return column.level[l + 1] - column.level[l]; };
   for (std::size_t l = 0; l < n; ++l)
@@ -65,7 +65,7 @@ void advance(const SoilColumn<D>& column, const ColumnBase<D>& base, Real dt, Co
   const auto mass = [&](std::size_t l) { return column.layer[l].filled * column.layer[l].ground.density * thickness(l) / 2; };
   for (int substep = 0; substep < n_substeps; ++substep) {
     for (std::size_t i = 0; i <= n; ++i) {
-      Real m = 0;  // of this level, per area
+      Real m = 0;  // mass of this level per area [kg/m^2]
       Vec<D> force = Vec<D>::Zero();
       if (i > 0)
         m += mass(i - 1), force -= column.layer[i - 1].filled * level_row<D>(motion.traction, i - 1);
@@ -74,7 +74,7 @@ void advance(const SoilColumn<D>& column, const ColumnBase<D>& base, Real dt, Co
       auto v = level_row<D>(motion.velocity, i);
       if (i > 0) {
         v += step / m * force;
-      } else if (base.halfspace) {  // as the compliant base of the model: see Dashpots::apply
+      } else if (base.halfspace) {  // as for the compliant base of the model: see Dashpots::apply
         const Mat<D> resistance = impedance<D>(*base.halfspace, column.up);
         v = (m * Mat<D>::Identity() + step * resistance).inverse() * (m * v + step * (force + resistance * base.velocity * 2)).eval();
       } else {

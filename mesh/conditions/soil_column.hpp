@@ -1,5 +1,5 @@
 #pragma once
-// The soil column of a free field: level ground of infinite extent, whose motion depends on the height alone.
+// The soil column of a free field: level ground of infinite extent, whose motion depends on height and time only.
 #include <optional>
 #include <vector>
 
@@ -10,27 +10,27 @@ namespace talus {
 
 /// The motion of a column.
 struct ColumnMotion {
-  std::vector<Real> velocity;  ///< of each level, D numbers [m/s]
-  std::vector<Real> traction;  ///< on horizontal planes of each layer, without that at rest, D numbers [Pa]
+  std::vector<Real> velocity;  ///< velocity of each level, D numbers [m/s]
+  std::vector<Real> traction;  ///< traction on horizontal planes of each layer minus its value at rest, D numbers [Pa]
   static constexpr auto fields()
   {
     return std::tuple{saved("velocity", &ColumnMotion::velocity), saved("traction", &ColumnMotion::traction)};
   }
 };
 
-/// Layers between levels, from the base to the ground surface.  A layer that is partly filled has that fraction of its mass and stiffness,
-/// as a cell of the model has.
+/// Layers between levels, from the base to the ground surface.  Mass and stiffness of a partly filled layer are multiplied by the filled
+/// fraction, as in the cells of the model.
 template <int D>
 struct SoilColumn {
   struct Layer {
     Halfspace ground;
-    Real filled = 1;  ///< fraction of its volume
+    Real filled = 1;  ///< filled fraction of the volume
   };
   Vec<D> up = Vec<D>::Unit(D - 1);
-  std::vector<Real> level;  ///< heights [m], ascending, one more than layers
+  std::vector<Real> level;  ///< heights [m], ascending; one more than layers
   std::vector<Layer> layer;
 
-  /// The layer at a height [m]; beyond the levels the lowest or the highest layer.
+  /// The index of the layer at a height [m]; the lowest or highest layer beyond the levels.
   std::size_t layer_at(Real height) const noexcept;
   /// The velocity at a height [m/s], linear between levels.
   Vec<D> velocity_at(Real height, const ColumnMotion& motion) const noexcept;
@@ -39,14 +39,14 @@ struct SoilColumn {
   ColumnMotion at_rest() const { return {std::vector<Real>(D * level.size(), 0), std::vector<Real>(D * layer.size(), 0)}; }
 };
 
-/// The base of a column.
+/// The ground or motion below a column.
 template <int D>
 struct ColumnBase {
-  Vec<D> velocity = Vec<D>::Zero();    ///< of the base, or of the wave that comes up through the halfspace [m/s]
-  std::optional<Halfspace> halfspace;  ///< below a compliant base
+  Vec<D> velocity = Vec<D>::Zero();    ///< velocity of the base, or of the incident wave in the halfspace [m/s]
+  std::optional<Halfspace> halfspace;  ///< set for a compliant base
 };
 
-/// A step of length dt [s] by central differences, in as many substeps as stability needs.
+/// Advances the column by dt [s] with central differences, in as many substeps as stability needs.
 template <int D>
 void advance(const SoilColumn<D>& column, const ColumnBase<D>& base, Real dt, ColumnMotion& motion);
 

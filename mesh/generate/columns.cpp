@@ -11,22 +11,22 @@ namespace talus {
 
 namespace {
 
-/// Intervals of a slab in the column over a plan node.
+/// The number of intervals of a slab in the column over a plan node.
 template <int D>
 Index intervals(const Stack<D>& stack, std::size_t s, Index column)
 {
   const Real from = s == 0 ? stack.bottom[column] : stack.slabs[s - 1].top[column], to = stack.slabs[s].top[column];
   if (!(to > from))
     return 0;
-  constexpr Real most = 1e6;  // a slip of the pen is found by whoever counts cells
+  constexpr Real most = 1e6;  // most intervals of a slab in a column: more is a typing error
   return static_cast<Index>(std::clamp(std::round((to - from) / stack.slabs[s].height[column]), Real{1}, most));
 }
 
-/// Where a node stands in its column.
+/// The nodes of one column, from below.
 struct ColumnHeights {
   Index column;
-  Index slab;  ///< the interval below it belongs to; `none` at the bottom
-  Real share;  ///< of the slab's thickness, (0, 1]; quotients of whole numbers, so that the same share is the same bits
+  Index slab;  ///< the slab of the interval below the node; `none` at the bottom
+  Real share;  ///< fraction of the slab's thickness, in (0, 1]; a quotient of integers, so that equal fractions are bitwise equal
 };
 bool comes_first(const ColumnHeights& a, const ColumnHeights& b) noexcept
 {
@@ -37,7 +37,7 @@ template <int D>
 struct Nodes {
   std::vector<Vec<D>> place;
   std::vector<ColumnHeights> stand;
-  std::vector<Index> begin;  ///< of each column, and the end of the last
+  std::vector<Index> begin;  ///< first node of each column, and the end of the last
 };
 
 template <int D>
@@ -67,14 +67,14 @@ Nodes<D> make_nodes(const Stack<D>& stack)
   return nodes;
 }
 
-/// Every cell of the stack, and the slab it belongs to.
+/// All cells of the stack with their slabs.
 template <int D>
 struct Filling {
   std::vector<std::array<Index, D + 1>> cells;
   std::vector<Index> plan_cell, slab;
 };
 
-/// Closes the columns over one plan cell.
+/// Makes the cells between the columns over one plan cell.
 template <int D>
 class PrismCutter {
  public:
@@ -108,7 +108,7 @@ class PrismCutter {
   }
 
  private:
-  /// The column whose next node comes first; D when all have come to their ends.
+  /// The column with the lowest next node; D if all columns are complete.
   int next(const std::array<Index, D>& columns) const
   {
     int first = D;
@@ -126,7 +126,7 @@ class PrismCutter {
   std::array<Index, D> now_{};
 };
 
-/// Nodes of the facet opposite a local node.
+/// The nodes of the facet opposite a local node.
 template <int D>
 std::array<Index, D> facet_of(const std::array<Index, D + 1>& cell, int local)
 {
@@ -136,7 +136,7 @@ std::array<Index, D> facet_of(const std::array<Index, D + 1>& cell, int local)
   return nodes;
 }
 
-/// Facets with an upright edge: two of their nodes stand in one column.
+/// Collects facets with an upright edge: two of their nodes lie in one column.
 template <int D>
 bool is_upright(const std::array<Index, D>& facet, const std::vector<ColumnHeights>& stand)
 {

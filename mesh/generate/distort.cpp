@@ -1,4 +1,4 @@
-// The ways of spoiling a mesh on purpose that generate.hpp declares.
+// Distortions of meshes, declared in generate.hpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Vec<D> in_cube(std::mt19937_64& random)
   return x;
 }
 
-/// Fisher-Yates.
+/// A random permutation of 0 ... n-1 (Fisher-Yates).
 std::vector<Index> shuffled(Index n, std::mt19937_64& random)
 {
   std::vector<Index> order(n);
@@ -45,11 +45,11 @@ Simplex<D> corners(const MeshData<D>& data, Index c)
   return s;
 }
 
-/// For each node the normals, orthonormal, of the boundary facets it belongs to: it may only move across them.
+/// For each node the orthonormal normals of its boundary facets; the node may only move perpendicular to them.
 template <int D>
 std::vector<std::vector<Vec<D>>> boundary_normals(const MeshData<D>& data)
 {
-  constexpr Real independent = 1e-6;  // sine of the angle between planes that count as two
+  constexpr Real independent = 1e-6;  // sine of the angle above which two planes count as different
   std::vector<std::vector<Vec<D>>> normals(data.nodes.size());
   const FacetMatch<D> match = match_facets<D>(data.cells, cells_at_nodes<D>(data.cells, static_cast<Index>(data.nodes.size())));
   for (Index c = 0; c < static_cast<Index>(data.cells.size()); ++c)
@@ -69,7 +69,7 @@ std::vector<std::vector<Vec<D>>> boundary_normals(const MeshData<D>& data)
   return normals;
 }
 
-/// Smallest |volume| at node n with the node at x, relative to what it was; negative if a cell is turned over.
+/// The smallest |volume| at node n after moving it to x, relative to its volume before; negative if a cell is inverted.
 template <int D>
 Real least_volume_ratio(const MeshData<D>& data, std::span<const Index> cells, Index n, const Vec<D>& x, std::span<const Real> volume)
 {
@@ -84,7 +84,7 @@ Real least_volume_ratio(const MeshData<D>& data, std::span<const Index> cells, I
   return least;
 }
 
-/// The place above the middle of `base` where the smallest angle of all cells at node n is `angle`, if there is one.
+/// The position above the middle of `base` where the smallest angle of all cells at node n is `angle`, if it exists.
 template <int D>
 std::optional<Vec<D>> press_flat(const MeshData<D>& data, std::span<const Index> cells, Index n, const std::array<Vec<D>, D>& base,
                                  Real angle)
@@ -93,7 +93,7 @@ std::optional<Vec<D>> press_flat(const MeshData<D>& data, std::span<const Index>
   for (const Vec<D>& x : base)
     middle += x / D;
   const Vec<D> normal = area_vector(base).normalized();
-  const Real top = normal.dot(data.nodes[n] - middle);  // signed
+  const Real top = normal.dot(data.nodes[n] - middle);  // signed height [m]
   const auto least_angle = [&](const Vec<D>& x) {
     Real least = std::numeric_limits<Real>::infinity();
     for (const Index c : cells) {
@@ -105,7 +105,7 @@ std::optional<Vec<D>> press_flat(const MeshData<D>& data, std::span<const Index>
     }
     return least;
   };
-  Real high = 1;  // share of the height of the node; bisected until they are neighbouring numbers
+  Real high = 1;  // fraction of the height of the node; bisected down to neighbouring numbers
   while (high > 0 && least_angle(middle + high * top * normal) >= angle)
     high /= 2;
   if (high == 1)
@@ -131,7 +131,7 @@ std::vector<Real> signed_volumes(const MeshData<D>& data)
 template <int D>
 MeshData<D> jittered(MeshData<D> data, Real amount, std::uint64_t seed, BoundaryNodes boundary)
 {
-  constexpr Real least_share = 0.2;  // of its volume that a cell keeps in one move
+  constexpr Real least_share = 0.2;  // smallest fraction of its volume that a cell keeps in one move
   constexpr int most_halvings = 20;
   const Index n_nodes = static_cast<Index>(data.nodes.size());
   const Csr cells_of_node = cells_at_nodes<D>(data.cells, n_nodes);
@@ -140,7 +140,7 @@ MeshData<D> jittered(MeshData<D> data, Real amount, std::uint64_t seed, Boundary
   const std::vector<Vec<D>> start = data.nodes;
   std::mt19937_64 random(seed);
   for (Index n = 0; n < n_nodes; ++n) {
-    Vec<D> move = in_cube<D>(random);  // drawn for every node, so that `boundary` changes nothing inside
+    Vec<D> move = in_cube<D>(random);  // drawn for every node, so that the option `boundary` does not change inner nodes
     if (!normals[n].empty() && boundary == BoundaryNodes::stay)
       continue;
     Real shortest = std::numeric_limits<Real>::infinity();

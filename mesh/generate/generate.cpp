@@ -14,7 +14,7 @@ namespace talus {
 
 namespace {
 
-/// Numbers of the nodes of a structured box, x fastest.
+/// The numbers of the nodes of a structured box, x fastest.
 template <int D>
 struct Grid {
   std::array<Index, D> cells;
@@ -25,7 +25,7 @@ struct Grid {
       n = n * (cells[d] + 1) + at[d];
     return n;
   }
-  /// f(at) for all places with at[d] < count[d].
+  /// Calls f(at) for all grid positions with at[d] < count[d].
   template <class F>
   static void for_each(const std::array<Index, D>& count, F&& f)
   {
@@ -60,14 +60,14 @@ MeshData<D> box_nodes(Vec<D> low, Vec<D> high, std::array<Index, D> cells)
   MeshData<D> data;
   Grid<D>::for_each(count, [&](const std::array<Index, D>& at) {
     Vec<D> x;
-    for (int d = 0; d < D; ++d)  // weights, not steps: the last node is `high` to the bit
+    for (int d = 0; d < D; ++d)  // interpolated, not accumulated: the last node is bitwise `high`
       x[d] = (low[d] * (cells[d] - at[d]) + high[d] * at[d]) / cells[d];
     data.nodes.push_back(x);
   });
   return data;
 }
 
-/// Sides and the set `all`.  Facets on a side are recognised by their nodes, whatever way the cells were cut.
+/// Makes the facet sets of the sides and the cell set `all`.  Facets on a side are recognised by their nodes, for every division of cells.
 template <int D>
 void name_sides(MeshData<D>& data, const Grid<D>& grid)
 {
@@ -102,7 +102,7 @@ MeshData<D> box(Vec<D> low, Vec<D> high, std::array<Index, D> cells)
     MeshData<D> data = box_nodes<D>(low, high, cells);
     const Grid<D> grid{cells};
     Grid<D>::for_each(cells, [&](const std::array<Index, D>& at) {
-      // One tetrahedron per way from corner (0,0,0) to (1,1,1) along the edges of the brick.
+      // One tetrahedron for each path from corner (0,0,0) to (1,1,1) along the edges of the brick.
       std::array<int, 3> way{0, 1, 2};
       do {
         std::array<Index, 3> corner = at;

@@ -13,7 +13,7 @@ MapPlace minus(const MapPlace& a, const MapPlace& b) noexcept { return {a[0] - b
 Real cross(const MapPlace& a, const MapPlace& b) noexcept { return a[0] * b[1] - a[1] * b[0]; }
 Real dot(const MapPlace& a, const MapPlace& b) noexcept { return a[0] * b[0] + a[1] * b[1]; }
 
-/// Share of the way from a to b at which it meets the side from p to q.  Sides in one line meet nowhere.
+/// The fraction of the way from a to b at which it meets the side from p to q.  Collinear sides do not meet.
 std::optional<Real> meeting(const MapPlace& a, const MapPlace& b, const MapPlace& p, const MapPlace& q) noexcept
 {
   const MapPlace way = minus(b, a), side = minus(q, p), between = minus(p, a);
@@ -30,7 +30,7 @@ MapPlace at(const MapPlace& a, const MapPlace& b, Real share) noexcept
   return {a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])};
 }
 
-/// True if two sides in one line have more than an end in common.
+/// Whether two collinear sides have more than an end in common.
 bool overlap(const MapPlace& a, const MapPlace& b, const MapPlace& p, const MapPlace& q) noexcept
 {
   const MapPlace way = minus(b, a);
@@ -40,14 +40,14 @@ bool overlap(const MapPlace& a, const MapPlace& b, const MapPlace& p, const MapP
   return std::max(from, to) > 0 && std::min(from, to) < dot(way, way);
 }
 
-/// Ends of the part of the way from a to b that lies in the rectangle, on its border where the way comes from outside or goes there; nothing
-/// where only the border is touched.
+/// The part of the way from a to b inside the rectangle: its ends lie on the border where the way enters or leaves.  Nothing if only the
+/// border is touched.
 std::optional<std::pair<MapPlace, MapPlace>> part_in(const MapPlace& a, const MapPlace& b, const MapPlace& low,
                                                      const MapPlace& high) noexcept
 {
   Real from = 0, to = 1;
   MapPlace first = a, last = b;
-  std::optional<std::size_t> entry, exit;  // axes whose border is met
+  std::optional<std::size_t> entry, exit;  // axes of the borders that are crossed
   for (std::size_t d = 0; d < 2; ++d) {
     const Real way = b[d] - a[d];
     if (way == 0 && (a[d] <= low[d] || a[d] >= high[d]))
@@ -76,11 +76,11 @@ std::optional<std::pair<MapPlace, MapPlace>> part_in(const MapPlace& a, const Ma
   return std::pair(first, last);
 }
 
-/// Closes a line that begins and ends on the border of the rectangle: counterclockwise along it from its end to its beginning.
+/// Closes a line that begins and ends on the border of the rectangle, counterclockwise along the border from its end to its beginning.
 void close_along_border(const MapPlace& low, const MapPlace& high, MapLine& line)
 {
   const std::array<MapPlace, 4> corners{{{low[0], low[1]}, {high[0], low[1]}, {high[0], high[1]}, {low[0], high[1]}}};
-  const auto along = [&](const MapPlace& x) {  // sides passed since the lower left corner
+  const auto along = [&](const MapPlace& x) {  // distance along the border from the lower left corner, in sides
     if (x[1] == low[1] && x[0] < high[0])
       return (x[0] - low[0]) / (high[0] - low[0]);
     if (x[0] == high[0] && x[1] < high[1])
@@ -135,7 +135,7 @@ std::pair<MapPlace, MapPlace> bounds_of(const Area& area) noexcept
   return {low, high};
 }
 
-// Sides are swept from west to east, so that an outline of many short sides takes little more than sorting them.
+// Sides are swept from west to east, so the cost for an outline of many short sides is little more than that of sorting them.
 std::optional<MapPlace> crossing_of(const MapLine& ring)
 {
   const std::size_t n = ring.size();

@@ -1,8 +1,7 @@
 #pragma once
-// A tree of bounding boxes over items that are already sorted along a space-filling curve: what holds a point, what is nearest.
-//
-// Every box covers four consecutive items, every box of the next level four boxes.  No pointers, no splitting: the order of the
-// items is the tree.  Unlike bins it does not care how unequal the sizes of the items are.
+// A tree of bounding boxes over items that are sorted along a space-filling curve, to find the items at a point and the nearest item.
+// Every box covers four consecutive items, every box of the next level four boxes; the order of the items determines the tree.  Unlike a
+// grid of bins it does not depend on similar sizes of the items.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -38,7 +37,7 @@ struct Extent {
 template <int D>
 class BoxTree {
  public:
-  /// box_of(i) for the items 0 .. n-1.
+  /// Builds the tree; box_of(i) returns the box of item i, 0 <= i < n.
   template <class BoxOf>
   BoxTree(Index n, BoxOf&& box_of) : n_items_(n)
   {
@@ -54,20 +53,20 @@ class BoxTree {
     }
   }
 
-  /// visit(i), ascending, for the items of every lowest box that holds x, until visit answers true.
+  /// Calls visit(i), ascending, for the items of every lowest box that contains x, until visit returns true.
   template <class Visit>
   void around(const Vec<D>& x, Visit&& visit) const noexcept
   {
     where([&](const Extent<D>& box) { return box.holds(x); }, visit);
   }
-  /// visit(i), ascending, for the items of every lowest box that meets the other box, until visit answers true.
+  /// Calls visit(i), ascending, for the items of every lowest box that meets the other box, until visit returns true.
   template <class Visit>
   void around(const Extent<D>& other, Visit&& visit) const noexcept
   {
     where([&](const Extent<D>& box) { return box.meets(other); }, visit);
   }
 
-  /// The item with the least squared_distance(i); the lowest of equals.  There must be one.
+  /// The item with the smallest squared_distance(i), the lowest of equals.  The tree must not be empty.
   template <class SquaredDistance>
   Index nearest(const Vec<D>& x, SquaredDistance&& squared_distance) const noexcept
   {
@@ -98,7 +97,7 @@ class BoxTree {
  private:
   static constexpr Index fan = 4;
   struct Stack {
-    std::array<std::pair<Index, Index>, 64> entry;  // 16 levels hold 4^16 > 2^31 items; a level leaves at most 3 behind
+    std::array<std::pair<Index, Index>, 64> entry;  // 16 levels hold 4^16 > 2^31 items; each level leaves at most 3 entries
     int size = 0;
     bool empty() const noexcept { return size == 0; }
     void push(Index level, Index i) noexcept { entry[size++] = {level, i}; }
@@ -107,8 +106,8 @@ class BoxTree {
   Index top() const noexcept { return static_cast<Index>(levels_.size()) - 1; }
   Index size_of(Index level) const noexcept { return static_cast<Index>(levels_[level].size()); }
 
-  /// visit(i), ascending, for the items of every lowest box of which `wanted` is true and was true of all boxes above it, until visit answers
-  /// true.
+  /// Calls visit(i), ascending, for the items of every lowest box for which, and for all boxes above it, `wanted` is true, until visit
+  /// returns true.
   template <class Wanted, class Visit>
   void where(Wanted&& wanted, Visit&& visit) const noexcept
   {

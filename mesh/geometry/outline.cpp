@@ -22,14 +22,14 @@ void sort_once(std::vector<Edge>& edges)
 
 Vec3 point(std::span<const Real> nodes, Index n) { return Eigen::Map<const Vec3>(nodes.data() + 3 * static_cast<std::size_t>(n)); }
 
-/// Of length one, with either sign: the corners of the facets are sorted.
+/// The unit normal of a facet.  Its sign is arbitrary, because the corners of facets are sorted.
 Vec3 normal(std::span<const Real> nodes, const Triangle& facet)
 {
   const Vec3 a = point(nodes, facet[0]), u = point(nodes, facet[1]) - a, v = point(nodes, facet[2]) - a;
   return Vec3(u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]).normalized();
 }
 
-/// How much of a triangle's plane lies away from an edge, as a unit vector: from the edge to the third corner.
+/// The unit vector in the plane of a triangle that is perpendicular to an edge and points to the third corner.
 Vec3 away(std::span<const Real> nodes, const Edge& of, const Triangle& facet)
 {
   const auto third = std::find_if(facet.begin(), facet.end(), [&](Index n) { return n != of[0] && n != of[1]; });
@@ -37,7 +37,7 @@ Vec3 away(std::span<const Real> nodes, const Edge& of, const Triangle& facet)
   return (to - to.dot(along) * along).normalized();
 }
 
-/// Whether two facets that meet in an edge are bent there.
+/// Whether the angle between two facets at a common edge is sharp.
 bool is_bent(std::span<const Real> nodes, const Edge& at, const Triangle& a, const Triangle& b)
 {
   const bool folded = away(nodes, at, a).dot(away(nodes, at, b)) > 0;
@@ -50,7 +50,7 @@ MeshEdges edges_of_triangles(std::span<const Index> corners)
   for (std::size_t c = 0; c + 2 < corners.size(); c += 3)
     for (std::size_t a = 0; a < 3; ++a)
       edges.all.push_back(edge(corners[c + a], corners[c + (a + 1) % 3]));
-  edges.outline = single_items(edges.all);  // sides of one cell alone
+  edges.outline = single_items(edges.all);  // edges of one cell only
   sort_once(edges.all);
   return edges;
 }
@@ -65,7 +65,7 @@ MeshEdges edges_of_tetrahedra(std::span<const Real> nodes, std::span<const Index
       facets.push_back(facet);
     }
   facets = single_items(std::move(facets));
-  std::vector<std::pair<Edge, std::size_t>> sides;  // with their facet
+  std::vector<std::pair<Edge, std::size_t>> sides;  // each side with the index of its facet
   for (std::size_t f = 0; f < facets.size(); ++f)
     for (const Edge& side : {Edge{facets[f][0], facets[f][1]}, Edge{facets[f][1], facets[f][2]}, Edge{facets[f][0], facets[f][2]}})
       sides.emplace_back(side, f);

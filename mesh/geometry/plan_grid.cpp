@@ -7,13 +7,13 @@ namespace talus {
 
 namespace {
 
-/// Along one axis: the cells that [low, high] meets, counted from 0, and which share of it lies in each.
+/// Cells along one axis that an interval meets, counted from 0, and the fraction of the interval in each.
 struct Line {
   Index first;
   std::vector<Real> share;
 };
 
-/// [place - side/2, place + side/2] on n cells of width d from `begin` on.
+/// Distributes [place - side/2, place + side/2] over n cells of width d, the first of which starts at `begin`.
 Line line_of(Real place, Real side, Real begin, Real d, Index n)
 {
   const Real low = std::clamp((place - side / 2 - begin) / d, Real{0}, Real(n)),

@@ -1,5 +1,5 @@
 #pragma once
-// Cells over the plan: what moves in space is counted on them.
+// A grid of cells over the plan, in which moving quantities are counted.
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace talus {
 
-/// columns x rows cells of dx by dy [m] from a corner on, in the order of a Raster.  In 2-D there is one row, of dy = 1 m.
+/// columns x rows cells of dx by dy [m], in the order of a Raster.  In 2-D there is one row with dy = 1 m.
 struct PlanGrid {
   Index columns = 0, rows = 0;
   Real west = 0, south = 0;  ///< lower left corner [m]
@@ -22,17 +22,17 @@ struct PlanGrid {
   std::array<Real, 2> centre(Index column, Index row) const noexcept { return {west + (column + 0.5) * dx, south + (row + 0.5) * dy}; }
 };
 
-/// A share of something in a cell.
+/// A cell and the fraction of a quantity in it.
 struct CellShare {
   std::size_t cell;
   Real share;
 };
 
-/// A square of that side [m] about a place, shared out by area; what lies beyond the rim goes to the cells at the rim, so the shares add up
-/// to 1.
+/// Distributes a square with the given side [m] around a position by area.  Parts outside the grid go to the cells at its boundary, so the
+/// fractions sum to 1.
 void spread(const PlanGrid& grid, const std::array<Real, 2>& place, Real side, std::vector<CellShare>& shares);
 
-/// The value at a place: linear between the centres around it, of those that have one; NaN where the nearest has none.
+/// The value at a position: linear between the surrounding centres that have a value; NaN where the nearest one has none.
 Real sampled(const PlanGrid& grid, const std::vector<Real>& values, const std::array<Real, 2>& place);
 
 }  // namespace talus

@@ -12,7 +12,7 @@ namespace {
 
 constexpr Real no_value = std::numeric_limits<Real>::quiet_NaN();
 
-/// The first of two neighbouring centres, and how far behind it on the way to the second a place is, in spacings.
+/// The first of two neighbouring centres, and the distance of a position from it in spacings.
 struct Between {
   Index first, second;
   Real share;
@@ -33,7 +33,7 @@ bool at_edge(const Raster& raster, Cell cell)
   return cell.column == 0 || cell.row == 0 || cell.column == raster.columns - 1 || cell.row == raster.rows - 1;
 }
 
-/// All cells without a value that hang together with the first.
+/// All cells without a value that are connected to the first.
 std::vector<Cell> cells_of_hole(const Raster& raster, Cell first, std::vector<bool>& seen)
 {
   std::vector<Cell> cells{first};
@@ -55,7 +55,7 @@ std::vector<Cell> cells_of_hole(const Raster& raster, Cell first, std::vector<bo
   return cells;
 }
 
-/// Laplace's equation by sweeps: every cell becomes the mean of its four neighbours until none changes.
+/// Solves Laplace's equation by sweeps: every cell becomes the mean of its four neighbours until the changes are negligible.
 void stretch_over(const std::vector<Cell>& cells, Raster& raster)
 {
   const auto neighbours = [&](Cell cell) {
@@ -74,7 +74,7 @@ void stretch_over(const std::vector<Cell>& cells, Raster& raster)
       }
   for (const Cell cell : cells)
     raster.at(cell.column, cell.row) = sum / count;
-  constexpr Real enough = 1e-9;  // of the range of what is around
+  constexpr Real enough = 1e-9;  // tolerance relative to the range of the surrounding values
   constexpr int most_sweeps = 10000;
   Real change = high - low;
   for (int sweep = 0; sweep < most_sweeps && change > enough * (high - low); ++sweep) {
@@ -101,12 +101,12 @@ Surface surface_of(Raster raster)
   return [shared = std::make_shared<const Raster>(std::move(raster))](const std::array<Real, 2>& place) {
     const Raster& r = *shared;
     const Real x = (place[0] - r.west) / r.dx, y = (place[1] - r.south) / r.dy;
-    // What is outside by rounding alone is inside.
+    // Positions outside by round-off count as inside.
     constexpr Real slack = 1e-6;
     if (!(x >= -slack && x <= static_cast<Real>(r.columns) + slack && y >= -slack && y <= static_cast<Real>(r.rows) + slack))
       return no_value;
     const Between u = between(x - 0.5, r.columns), v = between(y - 0.5, r.rows);
-    // A neighbour without weight may be without a value.
+    // A neighbour with zero weight may have no value.
     const auto mixed = [](Real a, Real b, Real share) { return share == 0 ? a : share == 1 ? b : a + share * (b - a); };
     return mixed(mixed(r.at(u.first, v.first), r.at(u.second, v.first), u.share),
                  mixed(r.at(u.first, v.second), r.at(u.second, v.second), u.share), v.share);

@@ -1,5 +1,5 @@
 #pragma once
-// Rasters as surfaces.
+// Surfaces made from rasters.
 #include <vector>
 
 #include "mesh/geometry/raster.hpp"
@@ -9,19 +9,19 @@ namespace talus {
 
 MapBox extent_of(const Raster& raster);
 
-/// Bilinear between the centres of cells, going on straight over the outer half of the outermost ones; NaN outside and beside cells that
-/// have no value.
+/// Bilinear interpolation between the centres of cells, with linear extrapolation over the outer half of the outermost cells; NaN outside
+/// and beside cells without a value.
 Surface surface_of(Raster raster);
 
-/// Cells without a value that touch each other, by a side or a corner.
+/// A connected group of cells without a value; cells are connected by a side or a corner.
 struct RasterHole {
-  Index cells = 0, across = 0;  ///< across: columns or rows, whichever are more
+  Index cells = 0, across = 0;  ///< number of cells; columns or rows that it covers, whichever are more
   MapBox extent;
   bool filled = false;
 };
 
-/// Gives values to the cells of holes that are at most `largest` cells across and do not touch the edge of the raster: those of a stretched
-/// membrane (Laplace's equation), which has neither peaks nor pits of its own.  Returns all holes but those that touch the edge.
+/// Fills holes of at most `largest` cells across that do not touch the edge of the raster, by Laplace's equation: the filled surface has no
+/// peaks or pits of its own.  Returns all other holes that do not touch the edge.
 std::vector<RasterHole> fill_holes(Index largest, Raster& raster);
 
 }  // namespace talus

@@ -1,12 +1,12 @@
 #pragma once
-// Facets of one cell alone lie on the boundary of a mesh, edges of one facet alone on the rim of a surface.
+// Items that occur once in a list: facets of one cell only are the boundary of a mesh, edges of one facet only the rim of a surface.
 #include <algorithm>
 #include <cstddef>
 #include <vector>
 
 namespace talus {
 
-/// Those that stand in the list once, ascending.
+/// The items that occur exactly once, ascending.
 template <class Item>
 std::vector<Item> single_items(std::vector<Item> items)
 {

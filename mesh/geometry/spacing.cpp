@@ -14,18 +14,18 @@ namespace talus {
 
 namespace {
 
-constexpr std::size_t sample = 250;  // points asked for their neighbours: each looks at all others, which takes no tree for so few
+constexpr std::size_t sample = 250;  // number of points whose neighbours are searched among all points
 
-constexpr Real widest_hole = 2.2;         // radius of a disk that fits into a void over that of the disks drawn
-constexpr Real fineness = 8;              // places of the grid over a radius
-constexpr Real coarsest = 0.5;            // distance of places over the radius
-constexpr std::size_t most_places = 4e7;  // of the grid: coarser where it would have more
+constexpr Real widest_hole = 2.2;         // radius of a disk that fits into a void, relative to the radius of the drawn disks
+constexpr Real fineness = 8;              // grid positions per radius
+constexpr Real coarsest = 0.5;            // largest distance of grid positions relative to the radius
+constexpr std::size_t most_places = 4e7;  // largest number of grid positions; the grid is coarser where it would have more
 
-/// How far each place of a grid is from the nearest point; no places where they would be too coarse to tell holes.
+/// The distance from each position of a grid to the nearest point; empty if the grid would be too coarse to show holes.
 struct NearestPoints {
   Real low_x{}, low_y{}, step{};
   std::size_t columns{}, rows{};
-  std::vector<float> distance;  ///< infinite where none is near [m]
+  std::vector<float> distance;  ///< infinite where no point is near [m]
   std::vector<Index> nearest;
 };
 
@@ -70,7 +70,7 @@ NearestPoints nearest_points(std::span<const Real> positions, Real radius)
   return grid;
 }
 
-/// Places of one row from the first to the last that are further than so much from any point.
+/// An interval of a grid row whose positions are further than a given distance from any point.
 struct Run {
   std::ptrdiff_t first, last;
 };
@@ -90,12 +90,12 @@ std::vector<std::vector<Run>> empty_runs(const NearestPoints& grid, Real far)
   return rows;
 }
 
-/// For each place of row `row`, whether it is no further than `reach` from the middle of an empty disk.
+/// For each position of row `row`, whether it is within `reach` of the centre of an empty disk.
 std::vector<bool> open_places(const NearestPoints& grid, const std::vector<std::vector<Run>>& empty, std::size_t row, Real reach)
 {
   const auto columns = static_cast<std::ptrdiff_t>(grid.columns), rows = static_cast<std::ptrdiff_t>(grid.rows);
   const auto reached = static_cast<std::ptrdiff_t>(reach / grid.step), here = static_cast<std::ptrdiff_t>(row);
-  std::vector<int> begun(grid.columns + 1, 0);  // disks that begin at a place less those that ended before
+  std::vector<int> begun(grid.columns + 1, 0);  // disks that begin at a position minus those that ended before
   for (std::ptrdiff_t j = std::max<std::ptrdiff_t>(0, here - reached); j <= std::min(rows - 1, here + reached); ++j) {
     const Real away = static_cast<Real>(j - here) * grid.step;
     const auto half = static_cast<std::ptrdiff_t>(std::sqrt(std::max(Real{0}, reach * reach - away * away)) / grid.step);
@@ -120,9 +120,9 @@ std::vector<Real> closing_radii(std::span<const Real> positions, Real radius)
     return radii;
   const NearestPoints grid = nearest_points(positions, radius);
   if (grid.distance.empty())
-    return radii;  // so many disks across that none of them can be seen
+    return radii;  // that many disks across: single points are not visible
   const Real reach = widest_hole * radius;
-  const Real between = grid.step * std::numbers::sqrt2 / 2;  // from a place to the furthest point that is nearer to no other place
+  const Real between = grid.step * std::numbers::sqrt2 / 2;  // distance from a grid position to the furthest point of its cell
   const Real covered = radius - between;
   const auto empty = empty_runs(grid, reach);
   for (std::size_t j = 0; j < grid.rows; ++j) {
@@ -160,7 +160,7 @@ std::vector<Real> Spread::of(std::span<const std::int64_t> ids) const
 
 std::vector<Real> closing_radii(std::span<const Real> positions, Real radius, std::span<const Real> spread)
 {
-  constexpr Real levels_a_doubling = 2;  // radii up to a fifth too large or too small leave no hole
+  constexpr Real levels_a_doubling = 2;  // radii that are up to a fifth too large or too small leave no hole
   std::vector<Real> radii(positions.size() / 3, radius);
   std::vector<long> levels(radii.size(), 0);
   for (std::size_t p = 0; p < levels.size(); ++p)
@@ -185,7 +185,7 @@ Real spacing_of(std::span<const Real> positions, int dimension)
   std::vector<Real> means((n + stride - 1) / stride);
   parallel_for(static_cast<Index>(means.size()), [&](Index i) {
     const std::size_t p = static_cast<std::size_t>(i) * stride;
-    std::vector<Real> nearest(neighbours + 1, std::numeric_limits<Real>::infinity());  // squared, a heap; the point itself is one of them
+    std::vector<Real> nearest(neighbours + 1, std::numeric_limits<Real>::infinity());  // heap of squared distances, own one included
     for (std::size_t q = 0; q < n; ++q) {
       Real square = 0;
       for (std::size_t d = 0; d < 3; ++d)

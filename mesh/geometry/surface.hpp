@@ -1,5 +1,5 @@
 #pragma once
-// A surface over the plan: ground, bottom of a layer, water table.
+// A surface over the plan: ground, bottom of a layer or water table.
 #include <array>
 #include <functional>
 
@@ -7,10 +7,10 @@
 
 namespace talus {
 
-/// Elevation [m] at a place of the map [m]: (east, north), in 2-D without a section (x, 0).  NaN where it is not known.
+/// The elevation [m] at a position of the map [m]: (east, north), in 2-D without a section (x, 0).  NaN where it is unknown.
 using Surface = std::function<Real(const std::array<Real, 2>& place)>;
 
-/// A rectangle of the map [m].
+/// A rectangle on the map [m].
 struct MapBox {
   Real west = 0, south = 0, east = 0, north = 0;
 };

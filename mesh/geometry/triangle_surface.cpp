@@ -12,7 +12,8 @@ namespace {
 
 constexpr Real nowhere = std::numeric_limits<Real>::quiet_NaN();
 
-/// Triangles by the squares of a grid over the plan that their extents touch, about as many squares as triangles.
+/// The triangles sorted into the squares of a grid over the plan that their bounding boxes touch; there are about as many squares as
+/// triangles.
 class TriangleGrid {
  public:
   explicit TriangleGrid(TriangleSheet sheet);
@@ -42,7 +43,7 @@ class TriangleGrid {
   std::array<Real, 2> low_{}, high_{};
   std::array<Index, 2> count_{1, 1};
   Real spacing_ = 1;
-  std::vector<std::size_t> first_;  // of each square in members_, and the end of the last
+  std::vector<std::size_t> first_;  // first entry of each square in members_, and the end of the last
   std::vector<std::size_t> members_;
 };
 
@@ -59,7 +60,7 @@ TriangleGrid::TriangleGrid(TriangleSheet sheet) : sheet_(std::move(sheet))
   if (sheet_.triangles.empty())
     return;
   const Real wide = high_[0] - low_[0], deep = high_[1] - low_[1], count = static_cast<Real>(sheet_.triangles.size());
-  // Of a strip without width, along it.
+  // If the triangles form a strip without width, the spacing is that along the strip.
   spacing_ = std::max({std::sqrt(wide * deep / count), std::max(wide, deep) / count, std::numeric_limits<Real>::min()});
   count_ = {static_cast<Index>(wide / spacing_) + 1, static_cast<Index>(deep / spacing_) + 1};
   first_.assign(static_cast<std::size_t>(count_[0]) * static_cast<std::size_t>(count_[1]) + 1, 0);
@@ -86,7 +87,7 @@ Real TriangleGrid::height(const std::array<Real, 2>& place, const std::array<Ind
   const auto &a = corner(triangle[0]), &b = corner(triangle[1]), &c = corner(triangle[2]);
   const Real twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
   const Real size = std::max({std::abs(b[0] - a[0]), std::abs(b[1] - a[1]), std::abs(c[0] - a[0]), std::abs(c[1] - a[1])});
-  constexpr Real flat = 1e-12, slack = 1e-9;  // slack: a place on a common edge is in one of both, whatever the rounding
+  constexpr Real flat = 1e-12, slack = 1e-9;  // slack: a position on a common edge is always found in a triangle
   if (std::abs(twice_area) <= flat * size * size)
     return nowhere;
   const Real of_b = ((place[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (place[1] - a[1])) / twice_area;

@@ -1,5 +1,5 @@
 #pragma once
-// Triangles in space as surfaces over the plan.
+// Surfaces over the plan made from triangles in space.
 #include <array>
 #include <vector>
 
@@ -8,11 +8,11 @@
 namespace talus {
 
 struct TriangleSheet {
-  std::vector<std::array<Real, 3>> corners;     ///< (x, y, z), on the map
-  std::vector<std::array<Index, 3>> triangles;  ///< in any order and turned either way
+  std::vector<std::array<Real, 3>> corners;     ///< positions (x, y, z) on the map [m]
+  std::vector<std::array<Index, 3>> triangles;  ///< in any order and orientation
 };
 
-/// The highest of the triangles over or under a place; NaN where there is none.  Upright triangles count for nothing.
+/// The elevation of the highest triangle at a position; NaN where there is none.  Upright triangles are ignored.
 Surface surface_of(TriangleSheet sheet);
 
 }  // namespace talus

@@ -17,7 +17,7 @@ PLAN = {"y": (0, 2), "z": (0, 1)}  # up -> the two axes of the plan
 
 
 def tops(position, up, low, square, shape):
-    """Height of the highest particle over each square, of no particle -inf; shape (nx, ny)."""
+    """Height of the highest particle over each square, -inf without particles; shape (nx, ny)."""
     place = ((position[:, PLAN[up]] - low) / square).astype(int)
     highest = np.full(shape, -np.inf)
     np.maximum.at(highest, tuple(place.T), position[:, "xyz".index(up)])

@@ -14,7 +14,7 @@ import talus  # noqa: E402
 
 
 def plot(history, wanted, out):
-    """One panel per unit, in the order in which the units are asked for."""
+    """Draws one panel per unit, in the order of the columns."""
     panels = list(dict.fromkeys(history.units[name] for name in wanted))
     figure = Figure(figsize=(8, 1 + 2.6 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), 1, sharex=True, squeeze=False)[:, 0]

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Surface of a slope before and after: the highest particle over each stretch of x, and how far the debris came.
+"""Surface of a slope before and after: the highest particle in each interval of x, and the distance of the debris.
 
 Usage: slope_profile.py DIR [--stretch METRES] [--out FILE.png]      in 3-D the highest over the whole width
 """

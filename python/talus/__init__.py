@@ -1,20 +1,20 @@
-"""Reads what Talus writes: runs, particles, meshes, histories, checkpoints, parameter studies.
+"""Reads the results of Talus: runs, particles, meshes, histories, checkpoints, parameter studies.
 
     import talus
     run = talus.Run("runs/slope")
     run.history["kinetic"], run.history.units["kinetic"]      # (rows,), "J"
     last = run.particles[-1]
     last.time, last["position"], last.units["position"]       # s, (particles, 3), "m"
-    last.of("clay")["stress"]                                 # of one body: (particles of it, 6)
-    run.checkpoints[-1]["particles/velocity"]                 # in the precision of the run, its digest checked
+    last.of("clay")["stress"]                                 # of one body: (its particles, 6)
+    run.checkpoints[-1]["particles/velocity"]                 # in the precision of the run, with its digest checked
 
-One folder, to be copied where it is wanted.  It needs numpy, h5py where checkpoints are read and lz4 where particles and meshes are
+The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes
 (Debian: python3-numpy, python3-h5py, python3-lz4).  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,
 xx, yy, zz, xy, yz, xz (`tensors` makes matrices of them), others nine, by rows.  Vectors of particle and mesh files have three components
-in two dimensions too.  Nothing here writes.
+in two dimensions too.  The package never writes files.
 
-What is wrong with a file is a FileError that names it: `Damaged`, or `UnknownFormat` where another version wrote it.  A file that is not
-there is a FileNotFoundError, a field, column or body that is not there a `Missing`, which says what there is.
+Errors in a file are FileErrors with its name: `Damaged`, or `UnknownFormat` for a file of another version.  A missing file is a
+FileNotFoundError; a missing field, column or body is a `Missing` error, which lists the existing ones.
 """
 from .checkpoints import Body, CHECKPOINT_FORMATS, Checkpoint
 from .comparison import Comparison, Difference, compare, tensors

@@ -12,11 +12,11 @@ from .digests import fits_digest
 from .errors import Damaged, Missing, UnknownFormat
 from .tables import PURE
 
-CHECKPOINT_FORMATS = (4, 5, 6, 7, 8)  # those that Checkpoint reads
+CHECKPOINT_FORMATS = (4, 5, 6, 7, 8)  # formats that Checkpoint reads
 
 
 class Body(NamedTuple):
-    """A body as a checkpoint has it; its particles are the rows `begin` to `end`."""
+    """A body in a checkpoint; its particles are the rows from `begin` up to `end`, without `end`."""
 
     name: str
     material: str
@@ -27,12 +27,12 @@ class Body(NamedTuple):
 
 class Checkpoint(Mapping[str, np.ndarray]):
     """A checkpoint (.h5): every array by its path, such as `particles/stress`, shape (rows,) or (rows, columns), in the precision of the run.
-    A text is an array of uint8; `text` decodes it.  The file is open as long as the object lives, or until `close`; it is its own context.
+    A text is an array of uint8; `text` decodes it.  The file is open as long as the object lives, or until `close`; it can be used in a `with` statement.
 
-    time [s], step, bodies, version, commit; `units` is {path: unit}.
+    Attributes: time [s], step, bodies, version, commit; `units` is {path: unit}.
 
-    check: the digest of each array is computed as it is read, and Damaged raised where it does not fit (0.15 s for a column of a million rows).
-    UnknownFormat: not a checkpoint, or of a format other than CHECKPOINT_FORMATS.
+    check: whether the digest of each array is compared when it is read; Damaged is raised if it differs (0.15 s for a million rows).
+    Raises UnknownFormat if the file is not a checkpoint, or has a format other than CHECKPOINT_FORMATS.
     """
 
     def __init__(self, path: str | os.PathLike[str], check: bool = True) -> None:
@@ -92,7 +92,7 @@ class Checkpoint(Mapping[str, np.ndarray]):
         return np.frombuffer(values.tobytes(), "u1") if values.dtype.kind == "S" else values
 
     def text(self, name: str) -> str:
-        """A text, such as `run/scene`."""
+        """The text at a path, such as `run/scene`."""
         return self[name].tobytes().decode()
 
     def _unit(self, name: str) -> str:
@@ -100,8 +100,8 @@ class Checkpoint(Mapping[str, np.ndarray]):
         return (unit.decode() if isinstance(unit, bytes) else str(unit)).replace("^D", f"^{self.dimension}")
 
     def particles(self, body: str | int | None = None) -> dict[str, np.ndarray]:
-        """Fields of all particles, as `particles/...` has them; of one body, by name or number, with the history variables of its law as well.
-        Fields that the run had no use for are left out."""
+        """The fields of all particles in `particles/...`, or of one body, by name or number, with the history variables of its law.
+        Fields that the run did not use are left out."""
         fields = {name.removeprefix("particles/"): self[name] for name in self._paths if name.startswith("particles/")}
         rows = len(fields["id"])
         fields = {name: values for name, values in fields.items() if len(values) == rows}

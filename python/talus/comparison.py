@@ -1,4 +1,4 @@
-"""Particles of two files, side by side; matrices of tensors."""
+"""Comparison of the particles of two files; matrices of tensors."""
 from __future__ import annotations
 
 from collections.abc import Mapping
@@ -17,19 +17,19 @@ def tensors(values: np.ndarray) -> np.ndarray:
 
 
 class Difference(NamedTuple):
-    """Where two files are furthest apart in a field."""
+    """The largest difference of two files in a field."""
 
-    largest: float  #: in the unit of the field, of any component
-    id: int         #: of the particle
+    largest: float  #: largest difference of any component, in the unit of the field
+    id: int         #: id of the particle
     component: int
-    over: float     #: the largest value of the field in both, to compare with
+    over: float     #: the largest value of the field in both files, for comparison
 
 
 class Comparison:
-    """Particles of two files, found again by their ids.
+    """Particles of two files, matched by their ids.
 
-    ids                     (n,) of those that are in both, ascending
-    only_first, only_second of those that are in one
+    ids                     (n,) ids of the particles in both files, ascending
+    only_first, only_second ids of the particles in one file only
     """
 
     def __init__(self, first: Mapping[str, np.ndarray], second: Mapping[str, np.ndarray]) -> None:
@@ -38,16 +38,16 @@ class Comparison:
         self.only_first, self.only_second = np.setdiff1d(first["id"], self.ids), np.setdiff1d(second["id"], self.ids)
 
     def pair(self, field: str) -> tuple[np.ndarray, np.ndarray]:
-        """The values of both, row for row of `ids`."""
+        """The values of both files, in the order of `ids`."""
         return self._first[field][self._rows_1], self._second[field][self._rows_2]
 
     def difference(self, field: str) -> np.ndarray:
-        """Second less first, in double precision, row for row of `ids`."""
+        """The second minus the first values, in double precision, in the order of `ids`."""
         first, second = self.pair(field)
         return second.astype(float) - first
 
     def largest(self, field: str) -> Difference:
-        """Where they are furthest apart; a nan on one side only is as far apart as can be (inf).  Missing: no particle is in both."""
+        """The largest difference; a nan on one side only counts as inf.  Raises Missing if no particle is in both files."""
         first, second = (values.astype(float).reshape(len(self.ids), -1) for values in self.pair(field))
         if not first.size:
             raise Missing("comparison", "particle in both of field", field, [])
@@ -59,5 +59,5 @@ class Comparison:
 
 
 def compare(first: Mapping[str, np.ndarray], second: Mapping[str, np.ndarray]) -> Comparison:
-    """Two files of particles, of one run or of two, by the ids of the particles.  What `Particles`, `Particles.of` and `Checkpoint.particles` give."""
+    """Compares particles of one or two runs by their ids.  Arguments: results of `Particles`, `Particles.of` or `Checkpoint.particles`."""
     return Comparison(first, second)

@@ -1,4 +1,4 @@
-"""Digests of arrays, as io/checkpoint/array_digest.cpp computes them."""
+"""Digests of arrays as computed by io/checkpoint/array_digest.cpp."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -16,7 +16,7 @@ def _digest_step(h: np.ndarray, word: np.ndarray) -> np.ndarray:
 
 
 def _digests(pieces: Sequence[bytes], seed: int) -> list[int]:
-    """Digests of pieces of bytes, as io/checkpoint/array_digest.cpp computes them: eight lanes of words and what is left over; of all pieces at a time."""
+    """Digests of pieces of bytes as in io/checkpoint/array_digest.cpp: eight lanes of words and the remaining bytes, for all pieces at once."""
     if not pieces:
         return []
     size = max(map(len, pieces))
@@ -42,8 +42,8 @@ def _digest_of_words(words: Sequence[int], seed: int) -> int:
 
 
 def fits_digest(name: str, array: Any, values: np.ndarray) -> bool:
-    """Whether the values of an array are those that were written (io/checkpoint/array_digest.cpp): each piece of rows has a digest that begins with that of what
-    the values mean, and the attribute `digest` is that of all of them."""
+    """Whether the values of an array are unchanged since they were written (io/checkpoint/array_digest.cpp): the digest of each piece of rows starts from the
+    digest of the meaning of the values, and the attribute `digest` is the digest of these digests."""
     rows, columns = (*values.shape, 1)[:2]
     word = {"f8": "double", "f4": "float", "i4": "int32", "i8": "int64", "u1": "uint8"}.get(values.dtype.str[1:], "text")
     unit = array.attrs.get("unit", b"")

@@ -1,4 +1,4 @@
-"""What is wrong with a file, and what is not in it."""
+"""Errors of files, and of names that are not in them."""
 from __future__ import annotations
 
 import difflib
@@ -10,15 +10,15 @@ class FileError(Exception):
 
 
 class Damaged(FileError):
-    """A file that is cut short, or whose content contradicts itself."""
+    """A file that is truncated or inconsistent."""
 
 
 class UnknownFormat(FileError):
-    """A file of another program, or of a version of Talus that this module does not know."""
+    """A file of another program, or of a version of Talus that this module cannot read."""
 
 
 class Missing(KeyError):
-    """A field, column, array or body that is not there; the text says which there are."""
+    """A field, column, array or body that does not exist; the text lists the existing ones."""
 
     def __init__(self, where: object, what: str, name: object, there: Sequence[str]) -> None:
         like = difflib.get_close_matches(str(name), there, 1)

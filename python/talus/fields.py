@@ -1,4 +1,4 @@
-"""Files of particles and meshes, and series of them."""
+"""Files of particles and meshes, and time series of them."""
 from __future__ import annotations
 
 import os
@@ -14,12 +14,12 @@ from .tables import PURE
 
 _NUMBERS = {"Float32": "<f4", "Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "u1", "String": "u1"}
 _MARK = b'<AppendedData encoding="raw">'
-_LONGEST_HEAD = 1 << 22  # bytes; as Talus writes it, it has some thousands
+_LONGEST_HEAD = 1 << 22  # bytes; headers of Talus have some thousands
 
 
 class _VtkFile:
     """Arrays of a VTK XML file as Talus writes it: appended raw data, LZ4 blocks, 64-bit headers (VTK file formats, 'XML file formats').  Each is
-    read when it is asked for."""
+    read on demand."""
 
     def __init__(self, path: Path, kind: str) -> None:
         self.path = path
@@ -52,7 +52,7 @@ class _VtkFile:
         return next((key.text.strip() for key in array.iter("InformationKey") if key.get("name") == "UNITS_LABEL" and key.text), PURE)
 
     def read(self, array: tree.Element) -> np.ndarray:
-        """Header (blocks, size, size of the last, compressed sizes), then the blocks.  Shape (n,) or (n, components)."""
+        """Reads the header (blocks, size, size of the last, compressed sizes), then the blocks.  Shape (n,) or (n, components)."""
         import lz4.block
         name = array.get("Name")
         try:
@@ -78,7 +78,7 @@ class _VtkFile:
 
 
 class _Fields(Mapping[str, np.ndarray]):
-    """Fields of a file by name, each read when it is first asked for."""
+    """Fields of a file by name, each read at its first use."""
 
     def __init__(self, file: _VtkFile, fields: dict[str, tree.Element]) -> None:
         self._file, self._fields = file, fields
@@ -103,20 +103,20 @@ class _Fields(Mapping[str, np.ndarray]):
 
     @property
     def time(self) -> float:
-        """[s]"""
+        """The time of the file [s]."""
         return self._file.time()
 
     @property
     def made_by(self) -> str:
-        """The program and the scene that wrote the file, in words."""
+        """The program and the scene of the run, as text."""
         return self._file.made_by()
 
 
 class Particles(_Fields):
-    """A particle file (.vtp): fields by name, one row a particle; `position` [m], shape (n, 3), and `id`, shape (n,), are always there.
+    """A particle file (.vtp): fields by name, one row per particle; `position` [m], shape (n, 3), and `id`, shape (n,), always exist.
 
     units    {field: unit}
-    bodies   names of the bodies, in the order of their numbers in the field `body`; empty where no summary told them
+    bodies   names of the bodies, in the order of their numbers in the field `body`; empty without a summary
     """
 
     def __init__(self, path: str | os.PathLike[str], bodies: Sequence[str] = ()) -> None:
@@ -125,7 +125,7 @@ class Particles(_Fields):
         self.bodies = list(bodies)
 
     def of(self, body: str | int) -> dict[str, np.ndarray]:
-        """All fields of the particles of one body, by its name or number.  Missing: there is no such body."""
+        """All fields of the particles of one body, by its name or number.  Raises Missing if there is no such body."""
         number = self.bodies.index(body) if body in self.bodies else body
         if not isinstance(number, int):
             raise Missing(self.path, "body", body, self.bodies)
@@ -134,7 +134,7 @@ class Particles(_Fields):
 
 
 class Mesh(_Fields):
-    """A mesh file (.vtu): fields on nodes and cells by name (`on_cells` says which are which).
+    """A mesh file (.vtu): fields on nodes and cells by name (`on_cells` contains the names of fields on cells).
 
     nodes   (nodes, 3) [m]
     cells   (cells, 3) triangles or (cells, 4) tetrahedra: numbers of their nodes
@@ -154,10 +154,10 @@ class Mesh(_Fields):
 
 
 class Series(Sequence[Any]):
-    """Files of a .pvd in order of time, each opened when it is asked for: `series[-1]`, `series.at(2.5)`.
+    """Files of a .pvd in order of time, each opened on demand: `series[-1]`, `series.at(2.5)`.
 
     times   (n,) [s]
-    paths   of the files
+    paths   paths of the files
     """
 
     def __init__(self, path: str | os.PathLike[str], open_file: Any) -> None:
@@ -176,7 +176,7 @@ class Series(Sequence[Any]):
         return [self._open(path) for path in self.paths[number]] if isinstance(number, slice) else self._open(self.paths[number])
 
     def at(self, time: float) -> Any:
-        """The file nearest to this time [s]."""
+        """The file whose time is nearest to this time [s]."""
         if not self.paths:
             raise Missing(self.path, "file at", time, [])
         return self[int(np.abs(self.times - time).argmin())]

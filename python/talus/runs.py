@@ -17,14 +17,14 @@ _BEFORE_THE_END = "the run did not end"  # app/run/summary.hpp
 
 
 def _written(path: Path, what: str) -> Path:
-    """The path of a file that not every folder has."""
+    """The path of an optional file; raises FileNotFoundError if it does not exist."""
     if not path.exists():
         raise FileNotFoundError(f"{path} is not there: nothing has written {what} to this folder")
     return path
 
 
 class Run:
-    """A folder of results.  Of a run that goes on, or was killed, it shows what is there so far."""
+    """A results folder.  For a run in progress, or a killed one, it shows the results so far."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
@@ -33,7 +33,7 @@ class Run:
 
     @property
     def summary(self) -> dict[str, Any]:
-        """summary.json; units stand in its keys, such as "mass [kg]"."""
+        """The contents of summary.json; its keys contain units, such as "mass [kg]"."""
         path = self.folder / "summary.json"
         try:
             return json.loads(path.read_text(encoding="utf-8"))
@@ -42,28 +42,28 @@ class Run:
 
     @property
     def status(self) -> str:
-        """`done`, `stopped`, `failed`, or `not ended` of a run that goes on or was killed."""
+        """`done`, `stopped`, `failed`, or `not ended` for a run in progress or a killed one."""
         summary = self.summary
         return "not ended" if summary.get("message") == _BEFORE_THE_END else summary["status"]
 
     @property
     def bodies(self) -> list[str]:
-        """Names of the bodies, in the order of their numbers; empty as long as the summary does not tell them."""
+        """Names of the bodies, in the order of their numbers; empty while the summary does not contain them."""
         return [body["name"] for body in self.summary.get("bodies", [])] if (self.folder / "summary.json").exists() else []
 
     @property
     def scene(self) -> str:
-        """The text of the scene; what `--set` changed stands at its end, in comments."""
+        """The text of the scene, with the changes by `--set` as comments at its end."""
         return (self.folder / "scene.yaml").read_text(encoding="utf-8")
 
     @property
     def history(self) -> Table:
-        """history.csv: a row for each time."""
+        """The table history.csv, with a row for each output time."""
         return Table(_written(self.folder / "history.csv", "a history (outputs.history)"))
 
     @property
     def runout(self) -> Table:
-        """runout.csv: a row for each look."""
+        """The table runout.csv, with a row for each sample."""
         return Table(self.folder / "runout.csv")
 
     def section(self, name: str) -> Table:
@@ -83,17 +83,17 @@ class Run:
 
     @property
     def mesh_fields(self) -> Series:
-        """Files of fields on the mesh, where the scene asks for them (`outputs.mesh`): a series of `Mesh`."""
+        """Files of fields on the mesh (`outputs.mesh` of the scene): a series of `Mesh`."""
         return Series(_written(self.folder / "mesh.pvd", "files of fields on the mesh (outputs.mesh)"), Mesh)
 
     @property
     def checkpoints(self) -> list[Checkpoint]:
-        """Those that are kept, in the order of their steps; empty where there are none."""
+        """The existing checkpoints, in the order of their steps."""
         return [Checkpoint(path) for path in sorted((self.folder / "checkpoints").glob("step_*.h5"))]
 
 
 class Sweep:
-    """The folder of a parameter study (`talus sweep`): `table` has a row for each case, `run(k)` its results, k counted from 1 as in the column `case`."""
+    """The folder of a parameter study (`talus sweep`): `table` has a row for each case; `run(k)` opens the results of case k, as numbered in the column `case`."""
 
     def __init__(self, folder: str | os.PathLike[str]) -> None:
         self.folder = Path(folder)
@@ -101,13 +101,13 @@ class Sweep:
 
     @property
     def keys(self) -> list[str]:
-        """Those of the scene that vary: columns of the table."""
+        """The varied keys of the scene, which are columns of the table."""
         names = list(self.table)
         return names[1:names.index("status")]
 
     @property
     def done(self) -> np.ndarray:
-        """(cases,) whether it is done: only then its numbers are there."""
+        """Whether each case is done, shape (cases,); only then its numbers exist."""
         return self.table["status"] == "done"
 
     def run(self, case: int) -> Run:

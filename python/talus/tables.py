@@ -1,4 +1,4 @@
-"""Tables (.csv) by their columns."""
+"""Tables (.csv) as columns."""
 from __future__ import annotations
 
 import csv
@@ -14,22 +14,22 @@ PURE = "-"  # the unit of a pure number
 
 
 def _as_text(entry: str) -> str:
-    """Without the apostrophe that stands before what a spreadsheet would take for a formula."""
+    """The entry without the apostrophe that keeps spreadsheets from running it as a formula."""
     return entry[1:] if entry.startswith("'") and entry.lstrip("'")[:1] in ("=", "+", "-", "@") else entry
 
 
 class Table(Mapping[str, np.ndarray]):
-    """Columns of a .csv by name: `table["kinetic"]` has one number a row, an empty entry is nan.  A column with an entry that is no number is
+    """Columns of a .csv by name: `table["kinetic"]` has one number per row; empty entries are nan.  A column with entries that are not numbers is
     an array of str.
 
-    path    of the file
+    path    path of the file
     units   {column: unit}
     """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = Path(path)
         text = self.path.read_text(encoding="utf-8")
-        records = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))  # a last row that is still being written is left out
+        records = list(csv.reader(text[: text.rfind("\n") + 1].splitlines()))  # without a last row that is still being written
         if not records:
             raise Damaged(f"{self.path}: there is no heading")
         self.units: dict[str, str] = {}
@@ -59,7 +59,7 @@ class Table(Mapping[str, np.ndarray]):
 
     @property
     def array(self) -> np.ndarray:
-        """The same as a structured array, shape (rows,); `pandas.DataFrame(table.array)` takes it."""
+        """The table as a structured array of shape (rows,), for example for `pandas.DataFrame(table.array)`."""
         whole = np.empty(self.rows, [(name, values.dtype) for name, values in self._columns.items()])
         for name, values in self._columns.items():
             whole[name] = values

@@ -1,5 +1,5 @@
 #pragma once
-// One boundary condition of a scene, and what it has done to the bodies.
+// One boundary condition of a scene, and the impulses that it has exerted.
 #include <string>
 
 #include "mesh/conditions/conditions.hpp"
@@ -10,8 +10,8 @@ template <int D>
 struct BoundaryCondition {
   std::string name;
   AnyCondition<D> kind;
-  Vec<D> impulse = Vec<D>::Zero();  ///< exerted on the bodies since the start of the run [N s]
-  Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
+  Vec<D> impulse = Vec<D>::Zero();  ///< impulse on the bodies since the start of the run [N s]
+  Vec3 angular = Vec3::Zero();      ///< moment of the impulse about the origin [N m s]
   static constexpr auto fields()
   {
     return std::tuple{saved("impulse", &BoundaryCondition::impulse), saved("angular", &BoundaryCondition::angular),
@@ -32,7 +32,7 @@ struct BoundaryCondition {
         },
         kind);
   }
-  /// The record that moves it, or nullptr.
+  /// The record of its motion, or nullptr.
   const Record* record() const
   {
     return std::visit(

@@ -72,7 +72,7 @@ void BoundaryConditions<D>::add_planes(Index condition, bool two_sided, const Me
     const Vec<D> area = mesh.area_vector(facet);
     for (const Index n : mesh.nodes_of(facet)) {
       auto& planes = two_sided ? rule(mesh, n).two_sided : rule(mesh, n).one_sided;
-      // until finalize() the normal of a plane is the sum of the area vectors that it stands for
+      // until finalize() the normal of a plane is the sum of its area vectors
       const auto same = std::find_if(planes.begin(), planes.end(), [&](const Plane& plane) {
         return plane.normal.dot(area) > smooth * plane.normal.norm() * area.norm();
       });
@@ -112,7 +112,7 @@ void BoundaryConditions<D>::finalize()
       plane.normal.normalize();
     // planes that are released in the dynamic phase come last, so that the others do not depend on them
     std::stable_partition(rule.two_sided.begin(), rule.two_sided.end(), [&](const Plane& plane) { return !is_temporary(plane); });
-    std::vector<Plane> basis;  // Gram-Schmidt; a normal that the others span already adds nothing
+    std::vector<Plane> basis;  // Gram-Schmidt; a normal that depends on the others adds nothing
     for (Plane plane : rule.two_sided) {
       plane.normal.normalize();
       for (const Plane& other : basis)
@@ -324,7 +324,7 @@ void BoundaryConditions<D>::continue_from(const BoundaryConditions& earlier)
         [&]<class C>(C& kind) {
           if constexpr (HasFields<C>) {
             for_each_field<C>([&](const auto& field) { kind.*field.member = std::get<C>(earlier.conditions_[c].kind).*field.member; });
-            if (!kind.fits())  // bodies have appeared or vanished beside it
+            if (!kind.fits())  // bodies beside it have appeared or vanished
               kind.reset();
           }
         },

@@ -11,9 +11,9 @@ namespace talus {
 
 namespace {
 
-/// The particles in the cells behind the facets of a layer.
+/// Sums over the particles in the cells behind the facets of a layer.
 struct LayerContent {
-  Real mass{}, volume{};     ///< [kg], [m^3]
+  Real mass{}, volume{};     ///< [kg] and [m^3]
   Real shear{}, confined{};  ///< moduli times volume [N m]
 };
 
@@ -36,7 +36,8 @@ std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const 
     mean += (high - low) / static_cast<Real>(facets.size());
   }
   std::sort(heights.begin(), heights.end());
-  constexpr Real apart = 0.3;  // of the height of a facet: in an unstructured mesh hardly any two nodes are at the same height
+  constexpr Real apart = 0.3;  // smallest distance of levels, relative to the height of a facet: in an unstructured mesh hardly any two
+                               // nodes are at the same height
   for (const Real height : heights)
     if (column.level.empty() || height > column.level.back() + apart * mean)
       column.level.push_back(height);

@@ -1,5 +1,5 @@
 #pragma once
-// The soil column of a free field, from the particles beside it.
+// The soil column of a free field, made from the particles beside it.
 #include <optional>
 #include <span>
 
@@ -11,9 +11,9 @@
 
 namespace talus {
 
-/// The column beside upright facets, from the particles in the cells behind them: a level at each height at which there are nodes, and in
-/// each layer the mean of the particles in it, up to the first layer without any.  The elastic stiffness is that at small strains.  Nothing
-/// without particles, or where one of them has a law without a shear modulus.  Every rank has to call.
+/// The column beside upright facets, from the particles in the cells behind them: a level at each height with nodes, and in each layer the
+/// mean of its particles, up to the first layer without any.  The elastic stiffness is that at small strains.  Nothing without particles,
+/// or if one of them has a law without a shear modulus.  Collective.
 template <int D>
 std::optional<SoilColumn<D>> column_beside(const Mesh<D>& mesh, std::span<const Facet> facets, const Vec<D>& up,
                                            const Particles<D>& particles, std::span<const Material> materials, Communicator& ranks);

@@ -33,7 +33,7 @@ void Dashpots<D>::restrict_to(const Subdomain& share)
 template <int D>
 void Dashpots<D>::find_reactions(Communicator& ranks, const Nodes<D>& nodes)
 {
-  std::vector<std::int64_t> bits(D * n_nodes_, 0);  // the bits of a number come from one rank, the others add nothing to them
+  std::vector<std::int64_t> bits(D * n_nodes_, 0);  // the bits of a number come from one rank, the others add zero
   for (const DashpotNode& at : nodes_) {
     const auto n = static_cast<std::size_t>(at.node);
     const Vec<D> reaction = -nodes.sum[n].mass / nodes.kick * nodes.motion[n].change;
@@ -46,7 +46,7 @@ void Dashpots<D>::find_reactions(Communicator& ranks, const Nodes<D>& nodes)
   reactions_known_ = true;
 }
 
-/// Implicit in the new velocity v, because a dashpot may carry off more momentum in a step than a light node has:
+/// Implicit in the new velocity v, because a dashpot may absorb more momentum in a step than a light node has:
 ///   m (v - v_free) / kick = F - C v + reaction
 /// where C is the resistance of the dashpots and F the force on the node at rest.  Waves and free fields are those of the time of v.
 template <int D>

@@ -1,5 +1,5 @@
 #pragma once
-// Nodes at absorbing boundaries: dashpots of all conditions that have some, solved together at each node.
+// Nodes at absorbing boundaries: the dashpots of all conditions at a node, solved together.
 #include <span>
 #include <vector>
 
@@ -11,14 +11,14 @@
 
 namespace talus {
 
-/// The impulse of the dashpots on a node in the step at hand.
+/// The impulse of the dashpots on a node in the present step.
 template <int D>
 struct DashpotImpulse {
   Index node;
-  Index condition;  ///< that keeps the impulse: the first of the node
+  Index condition;  ///< condition to which the impulse is added: the first of the node
   Vec<D> place;
   Vec<D> impulse;  ///< [N s]
-  Real waves;      ///< energy that waves brought to it [J]
+  Real waves;      ///< energy of the incident waves [J]
 };
 
 template <int D>
@@ -26,14 +26,14 @@ class Dashpots {
  public:
   void add(const Mesh<D>& mesh, Index condition, DashpotsOfNodes<D> dashpots);
   void restrict_to(const Subdomain& share);
-  /// The model is held at rest again.
+  /// Returns to the state before the dynamic phase.
   void reset() { reactions_known_ = false, reaction_.clear(); }
-  /// Pushes the nodes.  In the first step the force that keeps each node in balance is found, and from then on it goes on.  Every rank has
-  /// to call.
+  /// Applies the dashpots to the nodes.  In the first step the reaction that keeps each node in equilibrium is computed; it acts from then
+  /// on.  Collective.
   void apply(std::span<const BoundaryCondition<D>> conditions, const DynamicPhase& phase, Real mid, Communicator& ranks, Nodes<D>& nodes);
   bool empty() const noexcept { return n_nodes_ == 0; }
 
-  /// f(DashpotImpulse) for the active nodes that are counted on this rank.
+  /// Calls f(DashpotImpulse) for the active nodes that are counted on this rank.
   template <class F>
   void for_each_impulse(const Nodes<D>& nodes, F&& f) const
   {
@@ -42,7 +42,7 @@ class Dashpots {
         f(DashpotImpulse<D>{at.node, at.dashpots.front().condition, at.place, at.impulse, at.waves});
   }
 
-  /// Whether the reactions, read from a checkpoint, may be those of these nodes.
+  /// Whether the reactions read from a checkpoint have the size for these nodes.
   bool fits() const noexcept { return reactions_known_ ? reaction_.size() == D * n_nodes_ : reaction_.empty(); }
   void continue_from(const Dashpots& earlier) { reactions_known_ = earlier.reactions_known_, reaction_ = earlier.reaction_; }
   static constexpr auto fields()
@@ -53,19 +53,19 @@ class Dashpots {
  private:
   struct DashpotNode {
     Index node;
-    std::size_t row;  ///< of its reaction
+    std::size_t row;  ///< row of its reaction
     Vec<D> place;
     std::vector<Dashpot<D>> dashpots;
-    bool counted = true;              ///< on this rank, and not on another one that has a copy of the node
-    Vec<D> impulse = Vec<D>::Zero();  ///< in the step at hand [N s]
-    Real waves{};                     ///< energy that waves brought in the step at hand [J]
+    bool counted = true;              ///< false on ranks with a copy of the node
+    Vec<D> impulse = Vec<D>::Zero();  ///< impulse in the present step [N s]
+    Real waves{};                     ///< energy of incident waves in the present step [J]
   };
   void find_reactions(Communicator& ranks, const Nodes<D>& nodes);
 
   std::vector<DashpotNode> nodes_;
-  std::size_t n_nodes_ = 0;  ///< in the whole mesh
+  std::size_t n_nodes_ = 0;  ///< number of nodes of the whole mesh
   bool reactions_known_ = false;
-  std::vector<Real> reaction_;  ///< of all nodes of the whole mesh, D numbers each [N]
+  std::vector<Real> reaction_;  ///< reaction of all nodes of the whole mesh, D numbers each [N]
 };
 
 extern template class Dashpots<2>;

@@ -1,16 +1,17 @@
 #pragma once
-// What the conditions at a node do to its velocity, and the impulse and work of each.
+// The change of velocity of a node by its conditions, and the impulse and work of each.
 #include "solver/boundary/boundary_conditions.hpp"
 
 namespace talus {
 
-/// A mass at a node while conditions act on it one after the other.  Consecutive pushes of one condition are added up before they are kept.
+/// A mass at a node while conditions act on it one after the other.  Consecutive impulses of one condition are added up before they are
+/// stored.
 template <int D>
 class BoundaryConditions<D>::PushedNode {
  public:
   Vec<D> v;
   const Kick& kick;
-  Index condition = none;  ///< that acts now
+  Index condition = none;  ///< condition that acts at present
   bool pushed = false, sliding = false;
 
   PushedNode(const NodeRule& rule, const Kick& times, Real mass, const Vec<D>& v_free, std::vector<ExactSums<Impulse>>& pushed_by)
@@ -34,7 +35,7 @@ class BoundaryConditions<D>::PushedNode {
     sliding = true;
   }
   void carry(const Vec<D>& velocity) { carried_ = velocity; }
-  /// The work of all pushes; they are kept.
+  /// Stores the impulses and returns their work.
   BoundaryWork finish(const Vec<D>& v_old)
   {
     keep();
@@ -54,7 +55,7 @@ class BoundaryConditions<D>::PushedNode {
   Real mass_;
   Vec<D> v_free_;
   std::vector<ExactSums<Impulse>>& pushed_by_;
-  Index pushing_ = none;  ///< condition that pushed last
+  Index pushing_ = none;  ///< condition of the last impulse
   Vec<D> sum_ = Vec<D>::Zero(), friction_ = Vec<D>::Zero(), carried_ = Vec<D>::Zero();
 };
 

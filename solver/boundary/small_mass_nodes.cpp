@@ -4,7 +4,7 @@ namespace talus {
 
 namespace {
 
-/// Parts of the rows of the nodes that `sends` marks.  Rows of other nodes are left alone.
+/// Parts of the rows of the nodes that `sends` marks.  Rows of other nodes are not changed.
 template <class Parts>
 struct OfMarked {
   Parts parts;
@@ -47,7 +47,7 @@ void SmallMassNodes<D>::for_each_active_around(const Mesh<D>& mesh, Index node, 
   for (const Index n : mesh.ring_of_node()[node])
     if (ring == 1)
       visit(n);
-    else  // a node may be visited more than once, which gives it more weight
+    else  // a node may be visited more than once, which increases its weight
       std::ranges::for_each(mesh.ring_of_node()[n], visit);
 }
 
@@ -117,7 +117,7 @@ void SmallMassNodes<D>::exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>&
 
 namespace {
 
-/// What a node of small mass gives to its hosts, and what their shares of it follow from.
+/// The data that a node of small mass gives to its hosts, and from which their shares are computed.
 template <int D>
 struct NodeAndHosts {
   NodeSum<D>& sum;

@@ -1,5 +1,5 @@
 #pragma once
-// Nodes with too little mass for a motion of their own.
+// Nodes whose mass is too small for a motion of their own.
 #include "solver/boundary/boundary_conditions.hpp"
 #include "solver/halo/halo_exchange.hpp"
 #include "solver/state/owned_nodes.hpp"
@@ -16,20 +16,20 @@ namespace talus {
 template <int D>
 class SmallMassNodes {
  public:
-  /// For a rank that is alone.
+  /// Construction for a single rank.
   SmallMassNodes() = default;
-  /// Every rank has to construct one.
+  /// Construction for one of several ranks.  Collective.
   SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const OwnNodes& own);
 
   /// Finds the nodes of small mass, sets the active flags of own nodes, and gives mass, momentum and force to the hosts.
   void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
   /// Gives only the momentum to the hosts, after it was summed again.
   void lump_momentum(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);
-  /// The motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which push the mass that the node
-  /// itself has.  Their work is added to `work`.
+  /// Sets the motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which act on the mass of
+  /// the node itself.  Their work is added to `work`.
   void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& walls,
                    std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work);
-  /// The same for the velocity `v` alone, without work.
+  /// Sets the velocity `v` only, without work.
   void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& walls, Real mid,
                             std::vector<NodeMotion<D>>& motion);
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
@@ -37,21 +37,21 @@ class SmallMassNodes {
  private:
   struct SmallMassNode {
     Index node;
-    Real mass;  ///< before it went to the hosts [kg]
+    Real mass;  ///< mass before it was given to the hosts [kg]
   };
-  /// f(n, mass) for the active nodes of the first or second ring around a node.
+  /// Calls f(n, mass) for the active nodes of the first or second ring around a node.
   template <class F>
   void for_each_active_around(const Mesh<D>& mesh, Index node, int ring, F&& f) const;
-  /// f(host, share) for the hosts of a node; it has none if no node within two rings is active.
+  /// Calls f(host, share) for the hosts of a node; there are none if no node within two rings is active.
   template <class F>
   void for_each_host(const Mesh<D>& mesh, Index small_mass_node, F&& f) const;
   void weigh_hosts(const Mesh<D>& mesh, Index small_mass_node);
-  /// f(sum of the host, share, sum of the node) for own hosts, with the nodes of small mass in ascending order.
+  /// Calls f(sum of the host, share, sum of the node) for own hosts, with the nodes of small mass in ascending order.
   template <class F>
   void give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes, F&& f) const;
-  /// Exchanges which nodes near a border have small mass, and the masses of the nodes around them.
+  /// Exchanges which nodes near the border between ranks have small mass, and the masses of the nodes around them.
   void exchange_neighbours(const Mesh<D>& mesh, const Nodes<D>& nodes);
-  /// Messages between the owners of nodes of small mass and the owners of the nodes around them, where there are any.
+  /// Exchanges messages between the owners of nodes of small mass and the owners of the nodes around them, where there are any.
   template <class What, class Rows>
   void send_to_hosts(Rows&& rows, const What& what);
   template <class What, class Rows>

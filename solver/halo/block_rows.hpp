@@ -1,5 +1,5 @@
 #pragma once
-// Rows of blocks of cells: where the particles of a block deposit, apart from every other block.
+// Rows of blocks of cells: separate sums for the particles of each block.
 #include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/state/cell_order.hpp"
@@ -7,16 +7,16 @@
 
 namespace talus {
 
-/// Static tables and the rows themselves.  A node reached from several blocks has a row in each; `assemble` (halo.hpp) adds them up
-/// in ascending order, so no two threads ever write the same row and sums do not depend on the number of threads.
+/// Static tables and the rows.  A node that several blocks reach has a row in each of them; `assemble` (halo.hpp) adds the rows in
+/// ascending order.  So no two threads write the same row, and sums do not depend on the number of threads.
 template <int D, class Sum = NodeSum<D>>
 struct BlockRows {
-  std::vector<Index> begin;         ///< block -> its first row; one more at the end
-  std::vector<std::uint16_t> slot;  ///< for every stencil entry of every cell: row within the block
-  std::vector<Index> slot_begin;    ///< cell -> its first entry in `slot`
-  Csr rows_of_node;                 ///< node -> its rows, ascending
+  std::vector<Index> begin;         ///< first row of each block; one more at the end
+  std::vector<std::uint16_t> slot;  ///< row within the block for every stencil entry of every cell
+  std::vector<Index> slot_begin;    ///< first entry in `slot` of each cell
+  Csr rows_of_node;                 ///< rows of each node, ascending
   std::vector<Index> block_of_row;
-  std::vector<std::uint8_t> occupied;  ///< block holds particles in this step
+  std::vector<std::uint8_t> occupied;  ///< whether each block contains particles in this step
   std::vector<Sum> row;
 
   Index size() const noexcept { return static_cast<Index>(occupied.size()); }
@@ -34,7 +34,7 @@ struct BlockRows {
   }
 };
 
-/// Tables for stencils on a mesh: stencil(cell) are its nodes.
+/// The tables for stencils on a mesh; stencil(cell) returns the nodes.
 template <class Sum, int D, class Stencil>
 BlockRows<D, Sum> make_block_rows(const Mesh<D>& mesh, Stencil&& stencil)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// Nodes that blocks of several ranks share: rows go to the rank that owns the node, which adds them up in the order of blocks as it would
-// alone, and what comes of it goes back to all that read it.
+// Sums of nodes that blocks of several ranks share.  Rows are sent to the rank that owns the node, which adds them in the order of blocks,
+// as a single rank would.  The result is sent back to all ranks that use it.
 #include <numeric>
 #include <stdexcept>
 
@@ -10,7 +10,7 @@
 
 namespace talus {
 
-/// From blocks to the owners of nodes: rows of own blocks on nodes of others, by block and node.  Every rank has to ask.
+/// Messages from blocks to the owners of nodes: rows of own blocks on nodes of other ranks, by block and node.  Collective.
 template <int D, class Sum>
 std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share,
                                             const BlockRows<D, Sum>& blocks)
@@ -34,7 +34,7 @@ std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& 
         all[static_cast<std::size_t>(of_block)].in.push_back(row);
     }
   }
-  // Each rank says what rows it sends: others must expect the same.
+  // Each rank announces the rows that it will send, so that the others expect them.
   const auto names = [&](const std::vector<Index>& rows) {
     std::vector<Index> named;
     for (const Index r : rows)
@@ -56,12 +56,13 @@ std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& 
   return borders;
 }
 
-/// `Sum` is what blocks keep rows of: NodeSum, HatSum or the rows of StarSums.  Rows that no particle has touched are not sent.
+/// The exchange for one type of row; `Sum` is NodeSum, ProjectedNodeSum or the rows of StarSums.  Rows without contributions of particles
+/// are not sent.
 template <class Sum>
 class Halo {
  public:
   Halo() = default;
-  /// A rank that is alone: all blocks are inner ones.
+  /// The exchange of a single rank: all blocks are inner blocks.
   explicit Halo(Index blocks) : inner_(static_cast<std::size_t>(blocks)) { std::iota(inner_.begin(), inner_.end(), 0); }
   template <int D>
   Halo(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const BlockRows<D, Sum>& blocks)
@@ -78,7 +79,7 @@ class Halo {
         foreign_.push_back(b);
   }
 
-  /// Own blocks with rows on nodes of others, which is to say: whose particles read such nodes; and those without.
+  /// Own blocks with rows on nodes of other ranks, whose particles use such nodes; the inner blocks have none.
   std::span<const Index> outer_blocks() const noexcept { return outer_; }
   std::span<const Index> inner_blocks() const noexcept { return inner_; }
 
@@ -88,7 +89,7 @@ class Halo {
   {
     letters_.send(blocks.row, What{});
   }
-  /// Rows of others on own nodes, into their places here.
+  /// Receives rows of other ranks on own nodes.
   template <class What, int D>
   void take_rows(BlockRows<D, Sum>& blocks)
   {
@@ -102,7 +103,7 @@ class Halo {
   std::vector<Index> outer_, inner_, foreign_;
 };
 
-/// Marks the nodes that particles in own blocks read.
+/// Marks the nodes that particles in own blocks use.
 template <int D, class Sum>
 std::vector<std::uint8_t> nodes_read(const Subdomain& share, const BlockRows<D, Sum>& blocks)
 {
@@ -114,7 +115,8 @@ std::vector<std::uint8_t> nodes_read(const Subdomain& share, const BlockRows<D, 
   return read;
 }
 
-/// Rows of blocks -> sums of the nodes that this rank owns, and those of others that it has `copies` of; the rest stay empty.
+/// Adds the rows of blocks to sums of the nodes that this rank owns, and of those of other ranks of which it has `copies`; other sums stay
+/// empty.
 template <class What, int D, class Sum>
 void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, HaloExchange& copies, std::vector<Sum>& sum)
 {
@@ -131,11 +133,11 @@ void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, H
   for (const NeighbourRank& border : copies.borders())
     parallel_for(static_cast<Index>(border.out.size()), [&](Index i) { add_up(border.out[static_cast<std::size_t>(i)]); });
   copies.send(sum, What{});
-  parallel_for(static_cast<Index>(sum.size()), add_up);  // the few once more: cheaper than to ask which
+  parallel_for(static_cast<Index>(sum.size()), add_up);  // repeats the few sums above, which is cheaper than to leave them out
   copies.take(sum, What{});
 }
 
-/// f(block) for the own blocks, and their rows sent on their way.
+/// Calls f(block) for the own blocks and sends their rows.
 template <class What, int D, class Sum, class F>
 void for_each_own_block(BlockRows<D, Sum>& blocks, Halo<Sum>& halo, F&& f)
 {
@@ -148,7 +150,7 @@ void for_each_own_block(BlockRows<D, Sum>& blocks, Halo<Sum>& halo, F&& f)
   }
 }
 
-/// f(block) for the own blocks; for those that read nodes of others after arrive().
+/// Calls f(block) for the own blocks; for blocks that use nodes of other ranks after arrive().
 template <class Sum, class Arrive, class F>
 void for_each_reading_block(const Halo<Sum>& halo, Arrive&& arrive, F&& f)
 {

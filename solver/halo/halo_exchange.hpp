@@ -1,5 +1,5 @@
 #pragma once
-// Rows that neighbouring ranks exchange, one message each.
+// Exchange of rows between neighbouring ranks, one message for each neighbour.
 #include <algorithm>
 #include <cstring>
 #include <tuple>
@@ -11,10 +11,10 @@
 
 namespace talus {
 
-/// What a message is about: messages of different kinds do not mix.
+/// The kind of a message; messages of different kinds do not mix.
 enum class MessageTag : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, small_mass_nodes = 6, hosts = 7 };
 
-/// What of a row goes into a message: all of it,
+/// Selects the parts of a row to be sent: the whole row.
 struct Whole {
   template <class Row>
   static auto parts(Row& row) noexcept
@@ -37,7 +37,7 @@ struct Whole {
     sum += row;
   }
 };
-/// or momentum alone.
+/// Selects the momentum only.
 struct MomentumAlone {
   template <class Sum>
   static auto parts(Sum& sum) noexcept
@@ -61,7 +61,7 @@ struct MomentumAlone {
   }
 };
 
-/// Numbers or vectors, all of them.
+/// Selects whole numbers or vectors.
 struct Numbers {
   template <class Row>
   static auto parts(Row& row) noexcept
@@ -78,10 +78,11 @@ struct Numbers {
   {}
 };
 
-/// Rows in a message: first which of them are there, a bit each, then the parts of those that are.  `Rows` are found by number.
+/// Rows in a message: first one bit for each row that tells whether it is present, then the parts of the rows that are.  `Rows` are
+/// accessed by number.
 class Sheet {
  public:
-  /// Of rows[which[k]].
+  /// Writes the rows rows[which[k]].
   template <class What, class Rows>
   std::span<std::byte> fill(const std::vector<Index>& which, Rows& rows, const What& what)
   {
@@ -136,13 +137,13 @@ class Sheet {
   std::vector<std::byte> bytes_;
 };
 
-/// What goes between this rank and another: out here is in there.
+/// Rows exchanged between this rank and another one: the rows `out` on one side are the rows `in` on the other.
 struct NeighbourRank {
   int rank = 0;
   std::vector<Index> out, in;
 };
 
-/// All borders of a rank, for messages of one topic.  A rank alone has none.
+/// The exchange with all neighbouring ranks, for messages of one kind.  A single rank has no neighbours.
 class HaloExchange {
  public:
   HaloExchange() = default;
@@ -151,7 +152,8 @@ class HaloExchange {
   {}
   const std::vector<NeighbourRank>& borders() const noexcept { return borders_; }
 
-  /// Sends rows `out` across the borders whose numbers to(border) has, and expects some across those of from(border); both sides must agree.
+  /// Sends rows `out` to the neighbours that to(border) selects, and expects rows from those that from(border) selects; both sides must
+  /// agree.
   template <class What, class Rows, class To, class From>
   void send(Rows& rows, const What& what, To&& to, From&& from)
   {
@@ -175,7 +177,7 @@ class HaloExchange {
     const auto all = [](std::size_t) { return true; };
     send(rows, what, all, all);
   }
-  /// What was expected, into its rows; those that are not there are cleared.
+  /// Receives the expected rows; rows that are not present are cleared.
   template <class What, class Rows>
   void take(Rows& rows, const What& what)
   {
@@ -191,13 +193,13 @@ class HaloExchange {
   Communicator* ranks_ = nullptr;
   MessageTag topic_{};
   std::vector<NeighbourRank> borders_;
-  std::vector<Sheet> sheets_out_, sheets_in_;  // by border
+  std::vector<Sheet> sheets_out_, sheets_in_;  // by neighbour
   std::vector<Message> parcels_out_, parcels_in_;
-  std::vector<std::size_t> expected_;  // borders
+  std::vector<std::size_t> expected_;  // numbers of neighbours
   PendingMessages talk_;
 };
 
-/// Nodes within `rings` rings of those that `marked` holds.
+/// The nodes within `rings` rings of the nodes in `marked`.
 template <int D>
 std::vector<std::uint8_t> spread_by_rings(const Mesh<D>& mesh, std::vector<std::uint8_t> marked, int rings)
 {
@@ -211,11 +213,11 @@ std::vector<std::uint8_t> spread_by_rings(const Mesh<D>& mesh, std::vector<std::
   return marked;
 }
 
-/// From owners of nodes to the ranks that want to know of them: `wanted` marks nodes, own ones too.  Every rank has to ask.
+/// The exchange from owners of nodes to the ranks that need their values; `wanted` marks the needed nodes, own ones included.  Collective.
 inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& share, MessageTag topic, std::span<const std::uint8_t> wanted)
 {
   std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::vector<Index>> asked(all.size());  // whole numbers
+  std::vector<std::vector<Index>> asked(all.size());  // numbers in the whole mesh
   for (std::size_t n = 0; n < wanted.size(); ++n)
     if (wanted[n] != 0 && !share.owns_node(static_cast<Index>(n))) {
       const auto owner = static_cast<std::size_t>(share.rank_of_node[n]);
@@ -234,7 +236,7 @@ inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& share,
   return HaloExchange(ranks, topic, std::move(borders));
 }
 
-/// All nodes that are sent anywhere.
+/// Marks all nodes that are sent to any rank.
 inline std::vector<std::uint8_t> nodes_out(const HaloExchange& letters, std::size_t n_nodes)
 {
   std::vector<std::uint8_t> out(letters.borders().empty() ? 0 : n_nodes, 0);

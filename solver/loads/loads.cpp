@@ -16,7 +16,7 @@ ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Fa
     if (const auto found = in_cell.find(particles.cell[static_cast<std::size_t>(p)]); found != in_cell.end())
       found->second.push_back(p);
 
-  std::map<std::int64_t, Vec<D>> share;  // by id: one entry for a particle behind several facets
+  std::map<std::int64_t, Vec<D>> share;  // by id, so that a particle behind several facets has one entry
   for (const Facet facet : facets) {
     const auto& behind = in_cell[facet.cell];
     for (const Index p : behind) {
@@ -110,7 +110,7 @@ void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& foll
 
 namespace {
 
-/// f(node, force) for every node of every mesh traction.
+/// Calls f(node, force) for every node of every mesh traction.
 template <int D, class F>
 void for_each_mesh_force(const Loads<D>& loads, Real time, Real ramp, F&& f)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// Loads: gravity at the nodes, forces of place and time, tractions carried by particles or by facets of the mesh.
+// Loads: gravity at the nodes, body forces depending on position and time, tractions carried by particles or by facets of the mesh.
 #include <functional>
 #include <span>
 #include <vector>
@@ -16,7 +16,7 @@
 
 namespace talus {
 
-/// Gravity is added at the nodes, exactly and for free; `ramp` is the factor of the stage, the same for every load.
+/// Gravity, which is added at the nodes exactly; `ramp` is the factor of the stage for all loads.
 template <int D>
 struct Gravity {
   Vec<D> acceleration = Vec<D>::Zero();  ///< [m/s^2]
@@ -24,27 +24,27 @@ struct Gravity {
   Vec<D> operator()(Real time, Real ramp) const noexcept { return ramp * table(time) * acceleration; }
 };
 
-/// Force per mass [m/s^2] as a function of place and time, such as that of a manufactured solution.
+/// A force per mass [m/s^2] as a function of position and time, such as that of a manufactured solution.
 template <int D>
 struct BodyForce {
-  /// Writes the acceleration at each place.  Called by several threads at once; must not throw.
+  /// Writes the acceleration at each position.  Called by several threads at once; must not throw.
   std::function<void(std::span<const Vec<D>> places, Real time, std::span<Vec<D>> accelerations)> acceleration;
-  bool at_start = false;  ///< the place is that at the start (particles.x0, which must be kept), not that of now
+  bool at_start = false;  ///< whether positions are the initial ones (particles.x0, which must be stored) instead of the present ones
 };
 
-/// Force per area that the first layer of particles behind a facet group takes along.  Each facet's area is shared among the
-/// particles of the cell behind it; a pressure turns and stretches with the surface, n da = J F^-T N dA (Nanson).
+/// A traction that the first layer of particles behind a facet group carries.  Each facet's area is divided among the particles of the cell
+/// behind it; a pressure turns and stretches with the surface, n da = J F^-T N dA (Nanson).
 template <int D>
 struct ParticleTraction {
-  Vec<D> traction = Vec<D>::Zero();  ///< [Pa], per initial area
-  Real pressure{};                   ///< [Pa], positive pushes
+  Vec<D> traction = Vec<D>::Zero();  ///< traction per initial area [Pa]
+  Real pressure{};                   ///< pressure [Pa], positive in compression
   Table table;
   SourceLocation where;
-  std::vector<std::int64_t> id;  ///< particles that carry it
-  std::vector<Vec<D>> area;      ///< share of the outward area vector at the start [m^(D-1)]
+  std::vector<std::int64_t> id;  ///< ids of the particles that carry it
+  std::vector<Vec<D>> area;      ///< share of each particle in the initial outward area vector [m^(D-1)]
 };
 
-/// Force per area on facets of the mesh, for as long as there is mass at their nodes.
+/// A traction on facets of the mesh; it acts while there is mass at their nodes.
 template <int D>
 struct MeshTraction {
   Vec<D> traction = Vec<D>::Zero();
@@ -65,19 +65,19 @@ struct Loads {
   bool any_on_particles() const noexcept { return !of_place.empty() || !on_particles.empty(); }
 };
 
-/// Of one of several ranks: nodes that are held, in their numbers here.
+/// The part of a mesh traction on this rank, with local numbers of nodes.
 template <int D>
 void restrict_to(const Subdomain& share, MeshTraction<D>& load);
 
-/// Shares the facets' area among the particles of the cells behind them.
-/// Facets without a particle behind them are left out; the caller may compare the areas.
+/// Divides the facets' area among the particles of the cells behind them.  Facets without a particle behind them are left out; the caller
+/// may compare the areas.
 template <int D>
 ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Facet> facets, const Particles<D>& particles);
-/// Shares the facets' area among their nodes.
+/// Divides the facets' area among their nodes.
 template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets);
 
-/// Particles that carry a traction, each once for every load that it carries.
+/// The ids of particles that carry a traction, once for each traction.
 template <int D>
 std::vector<std::int64_t> ids_of(const std::vector<ParticleTraction<D>>& loads)
 {
@@ -87,17 +87,17 @@ std::vector<std::int64_t> ids_of(const std::vector<ParticleTraction<D>>& loads)
   return ids;
 }
 
-/// Writes particles.applied [N] anew; does nothing for a scene without forces on particles.  `followed` finds those that carry tractions.
-/// The forces are added to `total`.
+/// Computes particles.applied [N]; does nothing for a scene without forces on particles.  `followed` finds the particles that carry
+/// tractions.  The forces are added to `total`.
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
            ExactSums<ForceAndMoment<D>>& total);
 
-/// Adds the work [J] of mesh tractions over a step: impulse times the mean of old and new velocity of the nodes that are `own`.
+/// Adds the work [J] of mesh tractions over a step: impulse times the mean of old and new velocity of the `own` nodes.
 template <int D>
 void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, const Nodes<D>& nodes, ExactSums<Real>& total);
 
-/// Adds mesh tractions to the force of nodes that have mass, and those of `own` nodes to `total`.
+/// Adds mesh tractions to the force of nodes that have mass, and those on `own` nodes to `total`.
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
            ExactSums<ForceAndMoment<D>>& total);

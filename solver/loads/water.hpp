@@ -1,5 +1,5 @@
 #pragma once
-// Water in the pores: hydrostatic pressure under a table that is given, part of the stress of drained bodies.
+// Pore water: hydrostatic pressure below a given water table, part of the stress of drained bodies.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -11,17 +11,18 @@
 
 namespace talus {
 
-/// A table that stays where it is during a stage, while bodies move through it.  Its elevation is known at the nodes and linear between them, like the mesh.
+/// A water table that is constant during a stage, while bodies move through it.  Its elevation is given at the nodes and linear in each
+/// cell.
 struct Water {
-  std::vector<Real> table;            ///< elevation [m] at each node; empty where there is no water
-  std::vector<std::uint8_t> drained;  ///< of each body: whether its law sees effective stress
-  Real unit_weight = 0;               ///< [N/m^3]
-  Real suction = 0;                   ///< largest one [Pa]
+  std::vector<Real> table;            ///< elevation of the table at each node [m]; empty without water
+  std::vector<std::uint8_t> drained;  ///< whether the law of each body uses effective stress
+  Real unit_weight = 0;               ///< unit weight of water [N/m^3]
+  Real suction = 0;                   ///< largest suction [Pa]
   bool any() const noexcept { return !table.empty(); }
   bool drains(Index body) const noexcept { return any() && drained[static_cast<std::size_t>(body)] != 0; }
 };
 
-/// How far a place in a cell, or just beside it, lies below the table [m].  The last coordinate points up.
+/// The depth [m] of a position in a cell, or just beside it, below the water table.  The last coordinate points up.
 template <int D>
 Real depth_below_table(const Mesh<D>& mesh, const Water& water, Index cell, const Vec<D>& x) noexcept
 {
@@ -32,11 +33,11 @@ Real depth_below_table(const Mesh<D>& mesh, const Water& water, Index cell, cons
   return depth;
 }
 
-/// Water while a share of gravity acts: as this grows from nothing, so does the weight of the water.
+/// Pore water while a fraction of gravity acts; the weight of the water has the same factor.
 struct PoreWater {
   const Water& water;
   Real share;
-  /// Pore pressure [Pa]; < 0 is suction.
+  /// The pore pressure [Pa]; negative values are suction.
   template <int D>
   Real pressure(const Mesh<D>& mesh, Index cell, const Vec<D>& x) const noexcept
   {
@@ -44,7 +45,8 @@ struct PoreWater {
   }
 };
 
-/// Drained bodies get the pore pressure of where they are; their effective stress stays.  After a step this changes nothing.
+/// Sets the pore pressure of drained bodies at their present positions; the effective stress stays.  Directly after a step this changes
+/// nothing.
 template <int D>
 void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bodies, Particles<D>& particles)
 {
@@ -58,7 +60,7 @@ void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bo
       });
 }
 
-/// What one of several ranks holds of a table.
+/// The part of a water table on one of several ranks.
 inline std::vector<Real> part_of_table(const Subdomain& share, const std::vector<Real>& table)
 {
   std::vector<Real> held;

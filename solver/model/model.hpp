@@ -1,5 +1,5 @@
 #pragma once
-// A run in memory: what it is about, its state, room for a step and the transfer of its kernel.
+// A run in memory: the problem, its state, the workspace of a step and the transfer of its kernel.
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,46 +20,46 @@ struct Model {
   Model(Mesh<D> mesh, std::unique_ptr<Transfer<D>> of_kernel)
       : problem(std::move(mesh)), work(problem.mesh.n_nodes()), transfer(std::move(of_kernel))
   {}
-  /// Becomes that of one of several ranks, its mesh being their part of a larger one.  Every rank has to join.
+  /// Turns the model of a single rank into that of one of several ranks, whose mesh is their part of a larger one.  Collective.
   void join(Communicator& others, Subdomain part);
   Index n_bodies() const noexcept { return static_cast<Index>(state.bodies.size()); }
 };
 
-/// Makes the columns of particles that are not there as they are of particles at rest; what comes from another run is kept.
+/// Fills missing columns of particles with the values of particles at rest; columns from another run are kept.
 template <int D>
 void fill_columns(const WantedColumns& wanted, Particles<D>& particles);
 
-/// Sizes what depends on the particles and finds their cells; once, when bodies, walls and loads are in place.  `to_come` are laws that bodies
-/// take on later: what they need is there from the beginning.
+/// Allocates what depends on the particles and finds their cells.  To be called once, when bodies, walls and loads are complete.  `to_come`
+/// are laws that bodies get in later stages: what these need is allocated from the beginning.
 template <int D>
 void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come = {});
 
-/// To be called when rows of particles have changed: finds the rows of tracked particles.
+/// To be called after rows of particles have changed: finds the rows of tracked particles.
 template <int D>
 void update_tracked_rows(Model<D>& m);
 
-/// To be called when particles have been replaced; their cells are known.  Every rank has to call it.
+/// To be called after particles have been replaced and their cells are known.  Collective.
 template <int D>
 void update_rows(Model<D>& m);
 
-/// To be called when the state has been replaced.  Where ranks share the run each has some of the particles, in cells of the whole mesh: they go
-/// to the ranks whose cells these are.  Every rank has to call it.
+/// To be called after the state has been replaced.  With several ranks each has some of the particles, with cells of the whole mesh; they
+/// are sent to the owners of these cells.  Collective.
 template <int D>
 void adopt_state(Model<D>& m);
 
-/// To be called when the last boundary condition has been added.
+/// To be called after the last boundary condition has been added.
 template <int D>
 void bind_boundary_conditions(Model<D>& m);
 
-/// The pore water that the law of a body sees at a time; nothing where it sees total stress.
+/// The pore water for the law of a body at a time; nothing where the law uses total stress.
 template <int D>
 std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time);
 
-/// Mass, momentum and energy of the particles of all ranks.  Every rank has to ask.
+/// Mass [kg], momentum [kg m/s] and energy [J] of the particles of all ranks.  Collective.
 template <int D>
 Totals<D> totals(const Model<D>& m);
 
-/// Energy dissipated by the laws so far, of all ranks [J].  Every rank has to ask.
+/// Energy dissipated by the laws so far, over all ranks [J].  Collective.
 template <int D>
 Real plastic_work(const std::vector<Material>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks);
 template <int D>

@@ -1,5 +1,5 @@
 #pragma once
-// What no step changes: the mesh and its part of this rank, loads, limits and options.  Stages may change it between two steps.
+// Data that no step changes: the mesh and its part on this rank, loads, limits and options.  Stages may change them between two steps.
 #include <utility>
 
 #include "core/parallel/communicator.hpp"
@@ -15,15 +15,15 @@
 
 namespace talus {
 
-/// Columns of particles that not every run has.
+/// Optional columns of particles.
 struct WantedColumns {
-  bool affine = false;        ///< an affine field of its own
+  bool affine = false;        ///< an affine velocity field different from L
   bool applied = false;       ///< forces on particles
   bool volume_ratio = false;  ///< a law averages its volume
   bool viscous = false;       ///< a law has bulk viscosity
-  bool pore = false;          ///< there is water
+  bool pore = false;          ///< there is pore water
 };
-/// What a scene prescribes besides the bodies and their boundary conditions.
+/// The parts of a scene other than bodies and their boundary conditions.
 template <int D>
 struct SceneConditions {
   TransferOptions transfer{.scheme = Scheme::flip};  ///< plain unless set-up says otherwise
@@ -37,16 +37,16 @@ template <int D>
 struct Problem : SceneConditions<D> {
   Mesh<D> mesh;
   Locator<D> locator;
-  Communicator* ranks = &one_rank();  ///< of the run
-  Subdomain share;                    ///< of this rank
+  Communicator* ranks = &one_rank();  ///< communicator of the run
+  Subdomain share;                    ///< part of the mesh on this rank
   OwnNodes own;
   WantedColumns columns;
 
   explicit Problem(Mesh<D> m) : mesh(std::move(m)), locator(mesh), own(all_nodes(mesh)) {}
 };
 
-/// Rings of cells to be held around own ones.  Stencils and the rows of operators reach one ring, what operators are made from one more; and the
-/// nodes of small mass of other ranks that may hang on own nodes are two rings away, with all the cells around them.
+/// The number of rings of cells around own cells on each rank.  Stencils and rows of operators reach one ring, the construction of
+/// operators one more.  Nodes of small mass of other ranks whose hosts are own nodes are two rings away, with all cells around them.
 inline constexpr int rings_held = 3;
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// The state of a run between two steps: all that the steps to come depend on and that the scene does not tell.
+// The state of a run between two steps: everything that later steps depend on and that the scene does not contain.
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -17,30 +17,30 @@
 namespace talus {
 
 struct Clock {
-  std::int64_t step = 0;  ///< steps done
-  Real time = 0;          ///< of places, deformation and stress [s]
-  Real dt = 0;            ///< of the last step [s]
-  Real lag = 0;           ///< by how much velocities are behind `time` [s]: half a step, or nothing where they have just been given
+  std::int64_t step = 0;  ///< number of steps done
+  Real time = 0;          ///< time of positions, deformation and stress [s]
+  Real dt = 0;            ///< length of the last step [s]
+  Real lag = 0;           ///< delay of velocities behind `time` [s]: half a step, or zero where they have just been set
   static constexpr auto fields()
   {
     return std::tuple{saved("step", &Clock::step), saved("time", &Clock::time), saved("dt", &Clock::dt), saved("lag", &Clock::lag)};
   }
 };
 
-/// What a stage sets for every step it makes, and how far it is.
+/// The settings of a stage for each of its steps, and its progress.
 struct StageState {
-  Index number = 0;                                       ///< of the stage
+  Index number = 0;                                       ///< number of the stage
   std::int64_t first_step = 0;                            ///< steps done when it began
-  int balanced = 0;                                       ///< steps in balance, one after the other, up to now
-  Real damping = 0;                                       ///< local, share of the unbalanced force
-  Real first_residual = 0;                                ///< unbalanced force over the loads in its first step
+  int balanced = 0;                                       ///< consecutive steps in equilibrium up to now
+  Real damping = 0;                                       ///< local damping, fraction of the unbalanced force [-]
+  Real first_residual = 0;                                ///< unbalanced force over the loads in its first step [-]
   Real begin = 0, ramp_time = 0;                          ///< [s]; gravity and loads grow from 0 to 1 over [begin, begin + ramp_time]
-  Real altitude = std::numeric_limits<Real>::infinity();  ///< least one of the cells that held particles when it began [m]
-  Real pull = 0;                                          ///< largest acceleration by forces on particles then [m/s^2]
+  Real altitude = std::numeric_limits<Real>::infinity();  ///< least altitude of the cells that contained particles at its beginning [m]
+  Real pull = 0;                                          ///< largest acceleration by forces on particles at its beginning [m/s^2]
   RampShape ramp_shape = RampShape::linear;
-  bool elastic = false;     ///< yielding suspended
-  bool seeks_rest = false;  ///< ends at rest, or is damped
-  bool done = false;        ///< it has ended
+  bool elastic = false;     ///< whether plastic flow is suspended
+  bool seeks_rest = false;  ///< whether it ends in equilibrium, or is damped
+  bool done = false;        ///< whether it has ended
   Real ramp(Real time) const noexcept { return ramp_time > 0 ? ramp_at(ramp_shape, (time - begin) / ramp_time) : Real{1}; }
   static constexpr auto fields()
   {
@@ -60,7 +60,7 @@ struct StageState {
   }
 };
 
-/// Time spent per phase of the step [s], and the work counted.
+/// Time spent per phase of the step [s], and the number of particle-steps.
 struct Timings {
   Real locate{}, scatter{}, nodes{}, gather{}, stress{}, output{};
   Real particle_steps{};
@@ -76,13 +76,13 @@ struct Timings {
   }
 };
 
-/// What the limits of the run were compared with since its start.
+/// The quantities that are compared with the limits of the run.
 struct LimitMonitor {
-  Real speed{};                        ///< of the fastest particle in the last step [m/s]
-  Real fastest{};                      ///< the same, in any step
-  Real gain{}, mass{};                 ///< largest, as in RunLimits
-  std::int64_t speeding{}, gaining{};  ///< steps, and looks at the sums, beyond the limit
-  std::string failure;                 ///< of particles that were deleted for it, the last one
+  Real speed{};                        ///< speed of the fastest particle in the last step [m/s]
+  Real fastest{};                      ///< largest speed in any step [m/s]
+  Real gain{}, mass{};                 ///< largest values, as in RunLimits
+  std::int64_t speeding{}, gaining{};  ///< numbers of steps and of checks of the sums beyond the limit
+  std::string failure;                 ///< reason of the last deletion of a failed particle
   static constexpr auto fields()
   {
     return std::tuple{saved("speed", &LimitMonitor::speed),       saved("fastest", &LimitMonitor::fastest),
@@ -92,21 +92,21 @@ struct LimitMonitor {
   }
 };
 
-/// By value: a copy is a run at that time.  Whoever saves, sends or compares states does so part by part, by parts().
+/// The state of a run; a copy is the run at that time.  Saving, sending and comparing use parts().
 template <int D>
 struct State {
   Clock clock;
   StageState stage;
-  EnergyLedger energy;  ///< since the beginning of the stage
+  EnergyLedger energy;  ///< balance since the beginning of the stage
   MassLedger<D> mass;
   MomentumLedger<D> momentum;
   LimitMonitor watched;
   Timings timings;
-  Real residual = 0;  ///< of the last step: unbalanced force of the nodes over the loads
-  Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is a share of it
+  Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
+  Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is proportional to it
   BoundaryConditions<D> walls;
   std::vector<Body> bodies;
-  std::vector<Material> materials;  ///< one for each body, of the same rows
+  std::vector<Material> materials;  ///< one for each body, with the same rows
   Particles<D> particles;
 
   static constexpr auto parts()
@@ -119,7 +119,7 @@ struct State {
   }
 };
 
-/// f(name, part) for each part of a state.
+/// Calls f(name, part) for each part of a state.
 template <class S, class F>
 void for_each_part(S& state, F&& f)
 {

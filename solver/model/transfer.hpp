@@ -1,5 +1,5 @@
 #pragma once
-// The part of a step that depends on the kernel, behind an interface: everything above sees no kernel.
+// The part of a step that depends on the kernel, behind an interface: callers do not depend on the kernel.
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -13,18 +13,18 @@ namespace talus {
 template <int D>
 struct Model;
 
-/// Which nodes have too little mass to move by themselves, see NodeSum.
+/// Limits of mass below which a node does not move by itself, see NodeSum.
 struct LeastShares {
-  Real of_particles;  ///< of the lightest particle around
-  Real of_gross;      ///< of the mass without signs
+  Real of_particles;  ///< relative to the lightest particle around
+  Real of_gross;      ///< relative to the sum of absolute masses
 };
 
-/// Transfer between particles and nodes by the shape functions of one kernel.  Each function is called once in a step, or less often; loops over
-/// particles are behind them.
+/// Transfer between particles and nodes by the shape functions of one kernel.  Each function is called at most once per step and contains
+/// the loop over particles.
 template <int D>
 class Transfer {
  public:
-  /// To be called when the velocity gradients of a body in a block of cells are new, while its particles are still in the cache.
+  /// To be called when the velocity gradients of a body in a block of cells have been computed, while its particles are in the cache.
   using StressUpdate = std::function<void(Index body, Index block)>;
 
   Transfer() = default;
@@ -32,29 +32,29 @@ class Transfer {
   Transfer& operator=(const Transfer&) = delete;
   virtual ~Transfer() = default;
 
-  /// Becomes that of one of several ranks.  Every rank has to call it.
+  /// Adapts to the part of the mesh on one of several ranks.  Collective.
   virtual void join(const Problem<D>& problem) = 0;
-  /// Sizes what depends on the options of the run; once, before the first step.
+  /// Allocates what depends on the options of the run; to be called once, before the first step.
   virtual void prepare(const TransferOptions& options) = 0;
 
-  /// Mass, momentum and force of every particle, into the rows of its block (P2G).
+  /// Adds mass, momentum and force of every particle to the rows of its block (P2G).
   virtual void particles_to_nodes(Model<D>& m) = 0;
-  /// Rows of blocks and ranks -> sums of the nodes, in a fixed order.
+  /// Adds the rows of blocks and ranks to sums of the nodes, in a fixed order.
   virtual void assemble_nodes(Model<D>& m) = 0;
-  /// The part of the net accelerations of nodes, `felt`, that particles feel.
+  /// Replaces the net accelerations of nodes, `felt`, by the part that acts on particles.
   virtual void filter_acceleration(Model<D>& m) = 0;
-  /// Starts the exchange of the motion of nodes with other ranks.
+  /// Starts to send the motion of nodes to other ranks.
   virtual void send_motion(Model<D>& m) = 0;
-  /// Velocity, velocity gradient and position of every particle (G2P), with or without the second pass of MUSL; `to`: when the velocities of
-  /// boundaries are prescribed.
+  /// Computes velocity, velocity gradient and position of every particle (G2P), with or without the second pass of MUSL; `to` is the time
+  /// of prescribed velocities.
   virtual void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const StressUpdate& update) = 0;
 
   virtual LeastShares least_shares() const = 0;
-  /// Appends the nodes that move particles in a cell.
+  /// Appends the nodes on which the motion of particles in a cell depends.
   virtual void add_nodes_of_cell(const Mesh<D>& mesh, Index cell, std::vector<Index>& nodes) const = 0;
-  /// How many nodes of this rank are treated as corners because no positive weights keep linear fields there.
+  /// The number of nodes of this rank that are treated as corners because no positive weights are exact for linear fields there.
   virtual std::int64_t nodes_as_corners(const OwnNodes& own) const = 0;
-  /// Memory that the transfer takes [B].
+  /// The memory of the transfer [B].
   virtual std::int64_t bytes() const = 0;
 };
 

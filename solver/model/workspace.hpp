@@ -1,5 +1,5 @@
 #pragma once
-// What a step needs and no restart saves: it follows from the state, or is written anew in every step.
+// Data that a step needs and no restart saves: they follow from the state, or are computed anew in every step.
 #include <optional>
 #include <vector>
 
@@ -18,20 +18,20 @@ namespace talus {
 template <int D>
 struct Workspace {
   CellOrder order;
-  FollowedRows followed;  ///< particles that carry tractions
+  FollowedRows followed;  ///< rows of particles that carry tractions
   Migration<D> migration;
   ParticleErrors health;
 
   Nodes<D> nodes;
   SmallMassNodes<D> small_mass_nodes;
-  StepSums<D> sums;                     ///< of the step at hand
-  std::vector<StressSums> stress_sums;  ///< of the particles of each body in each block
+  StepSums<D> sums;                     ///< sums of the present step
+  std::vector<StressSums> stress_sums;  ///< sums over the particles of each body in each block
 
-  std::optional<StarSums<D, 2>> stars;  ///< if a body averages its volume
+  std::optional<StarSums<D, 2>> stars;  ///< used if a body averages its volume
   std::vector<Real> averaged;           ///< volume ratios of average_volume()
   std::vector<Real> pore_after;         ///< pore pressure of each particle at the end of the step [Pa]
-  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() takes as one
-  std::optional<HeatSums<D>> heat;      ///< if a body conducts heat
+  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() treats as one
+  std::optional<HeatSums<D>> heat;      ///< used if a body conducts heat
 
   explicit Workspace(Index n_nodes)
   {

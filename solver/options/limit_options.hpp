@@ -42,14 +42,14 @@ struct LimitOptions {
   }
 };
 
-/// The limits of one run; see solver/run_limits.hpp.
+/// The limits of a valid state; see solver/run_limits.hpp.
 struct RunLimits {
-  Real speed = std::numeric_limits<Real>::infinity();  ///< of any particle [m/s]
-  Real gain = std::numeric_limits<Real>::infinity();   ///< energy that no work was done for, over the largest term
-  Real mass = 1e-9;                                    ///< between particles and nodes, over all of it
+  Real speed = std::numeric_limits<Real>::infinity();  ///< largest speed of any particle [m/s]
+  Real gain = std::numeric_limits<Real>::infinity();   ///< energy gain without work, relative to the largest energy term [-]
+  Real mass = 1e-9;                                    ///< mass lost between particles and nodes, relative to the total [-]
   Real least_energy = 0;                               ///< smaller gains are round-off [J]
-  Real failed = 0;                                     ///< mass of particles that may fail and be deleted, over all of it
-  bool speed_stops = true, gain_stops = true;          ///< otherwise it is only counted
+  Real failed = 0;                                     ///< mass of failed particles that may be deleted, relative to the total [-]
+  bool speed_stops = true, gain_stops = true;          ///< whether exceeding stops the run; otherwise it is only counted
 
   RunLimits() = default;
   /// `default_speed` [m/s] holds where the options give no speed.

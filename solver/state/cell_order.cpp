@@ -18,7 +18,7 @@ bool before(std::span<const Index> cell, std::span<const std::int64_t> id, Index
   return at(cell, a) != at(cell, b) ? at(cell, a) < at(cell, b) : at(id, a) < at(id, b);
 }
 
-/// Rows almost in order.
+/// Insertion sort for rows that are almost in order.
 void insertion_sort(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<Index> rows)
 {
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -30,7 +30,7 @@ void insertion_sort(std::span<const Index> cell, std::span<const std::int64_t> i
   }
 }
 
-/// Sorts the rows of one block by cell, those of a cell as they come; each(f) calls f(row) for all of them.
+/// Sorts the rows of one block by cell, keeping the order within each cell; each(f) calls f(row) for all of them.
 template <class Each>
 void count_cells(std::span<const Index> cell, Each&& each, std::span<Index> to)
 {
@@ -81,10 +81,11 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
 {
   const std::size_t keys = order.keys();
   const auto n_keys = static_cast<Index>(keys);
-  const auto base_of = [&](std::size_t key) { return key - key % static_cast<std::size_t>(order.blocks); };  // bodies do not change
+  // the body of a row does not change
+  const auto base_of = [&](std::size_t key) { return key - key % static_cast<std::size_t>(order.blocks); };
   const auto key_of = [&](std::size_t base, Index row) { return base + static_cast<std::size_t>(at(cell, row) / block_cells); };
   order.is_new = true;
-  order.arrived.reserve(order.row.size());  // never grows within a step
+  order.arrived.reserve(order.row.size());  // does not grow within a step
   order.moved.resize(order.row.size());
   order.next_row.resize(order.row.size());
   order.left.assign(keys, 0);
@@ -96,14 +97,14 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
         at(leaving, order.left[key]++) = row;
   });
 
-  // Those who leave, few, to where they arrive.
+  // The particles that leave their block, few, are counted at their destination.
   order.next_first.assign(keys + 1, 0);
   for (std::size_t key = 0; key < keys; ++key)
     for (Index i = 0; i < order.left[key]; ++i)
       ++order.next_first[key_of(base_of(key), at(order.moved, order.first[key] + i)) + 1];
   for (std::size_t key = 0; key < keys; ++key)
     order.next_first[key + 1] += order.next_first[key];
-  std::vector<Index>& arrivals = order.next_first;  // key -> its first in `arrived`
+  std::vector<Index>& arrivals = order.next_first;  // first entry in `arrived` of each key
   order.arrived.resize(static_cast<std::size_t>(arrivals.back()));
   order.count.assign(arrivals.begin(), arrivals.end());
   for (std::size_t key = 0; key < keys; ++key)
@@ -112,7 +113,7 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
       at(order.arrived, order.count[key_of(base_of(key), row)]++) = row;
     }
 
-  order.count.assign(keys + 1, 0);  // key -> its first row to be
+  order.count.assign(keys + 1, 0);  // first row of each key in the new order
   for (std::size_t key = 0; key < keys; ++key)
     order.count[key + 1] = order.count[key] + order.first[key + 1] - order.first[key] - order.left[key] + arrivals[key + 1] - arrivals[key];
   parallel_for(n_keys, [&](Index k) {
@@ -143,11 +144,11 @@ void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id,
 {
   const auto blocks = static_cast<std::size_t>(order.blocks);
   order.is_new = true;
-  std::vector<Index> stood(std::max(order.row.size(), cell.size()));  // row -> which it was
+  std::vector<Index> stood(std::max(order.row.size(), cell.size()));  // old row of each row
   std::iota(stood.begin(), stood.end(), 0);
   for (const auto& [from, to] : moves)
     at(stood, to) = at(stood, from);
-  std::vector<Index> stands(stood.size());  // the other way round
+  std::vector<Index> stands(stood.size());  // the inverse of `stood`
   std::iota(stands.begin(), stands.end(), 0);
   for (const auto& [from, to] : moves)
     if (static_cast<std::size_t>(to) < cell.size())
@@ -156,7 +157,7 @@ void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id,
   std::vector<std::uint8_t> is_left(blocks, 0);
   for (const Index block : left)
     at(is_left, block) = 1;
-  std::vector<std::vector<Index>> here(order.keys());  // those who arrive
+  std::vector<std::vector<Index>> here(order.keys());  // particles that arrive
   std::size_t body = 0;
   for (const Index row : arrived) {
     while (row >= bodies[body].end)

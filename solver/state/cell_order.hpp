@@ -1,5 +1,5 @@
 #pragma once
-// Who is in which cell: particle rows sorted by body, cell and id, and where each block of cells begins.
+// The particles of each cell: rows sorted by body, cell and id, and the beginning of each block of cells.
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -10,14 +10,14 @@
 
 namespace talus {
 
-/// Inside a cell particles stand in the order of their ids, so nodal sums depend on the state and not on its history.
+/// The order of particles.  Within a cell particles are sorted by id, so nodal sums depend on the state only, not on its history.
 struct CellOrder {
   std::vector<Index> row;    ///< particle rows sorted by (body, cell, id)
-  std::vector<Index> first;  ///< (body * blocks + block) -> first position in `row`; one more at the end
+  std::vector<Index> first;  ///< first position in `row` for each (body * blocks + block); one more at the end
   Index blocks = 0;
-  bool is_new = false;  ///< since follow_order() last looked
+  bool is_new = false;  ///< whether it changed since the last call of follow_order()
 
-  /// Where in `first` the particles of a body in a block begin.
+  /// The index in `first` for the particles of a body in a block.
   std::size_t key(Index body, Index block) const noexcept
   {
     return static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
@@ -29,29 +29,30 @@ struct CellOrder {
     return std::span(row).subspan(static_cast<std::size_t>(first[at]), static_cast<std::size_t>(first[at + 1] - first[at]));
   }
 
-  // Scratch of both sorts.
-  std::vector<Index> count;            ///< particles per cell, or per block
-  std::vector<Index> next_row, moved;  ///< `row` to be; particles that leave a block, in the part of `moved` that is the block's in `row`
+  // Buffers of both sorts.
+  std::vector<Index> count;  ///< particles per cell, or per block
+  /// The new `row`; particles that leave a block, stored in `moved` at the positions of the block in `row`.
+  std::vector<Index> next_row, moved;
   std::vector<Index> next_first, left, arrived;
 };
 
-/// Sorts anew from `cell` and `id`; `order` keeps its buffers.  Linear in particles and cells.
+/// Sorts by `cell` and `id` from scratch; `order` keeps its buffers.  Linear in particles and cells.
 void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
                   CellOrder& order);
 
-/// Sorts after some particles have changed their cells: the same order, but only blocks that somebody has left, entered or moved in are
-/// touched, in parallel.
+/// Sorts after some particles have changed their cells.  The result is that of sort_by_cell(), but only blocks with changes are touched, in
+/// parallel.
 void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, CellOrder& order);
 
-/// After all rows in the blocks `left` have gone, for which others have taken their places: `moves` tell from where to where, one after the
-/// other.  `arrived` are new rows, body by body; their cells and ids are known, and so are the ranges of bodies as they are now.
+/// Updates the order after all rows in the blocks `left` have been removed and other rows have moved to their places: `moves` lists the
+/// moves in sequence.  `arrived` are new rows, body by body; their cells and ids and the ranges of bodies are already up to date.
 void follow_moves(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, std::span<const Index> left,
                   std::span<const std::pair<Index, Index>> moves, std::span<const Index> arrived, CellOrder& order);
 
-/// Share of the particles whose row does not follow that of the particle before them in the order.
+/// The fraction of the particles whose row does not follow that of the previous particle in the order.
 Real disorder(const CellOrder& order) noexcept;
 
-/// f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as above.
+/// Calls f(cell, run) for the particles of each single cell in `rows`, which are sorted by cell; `ask` as in PrefetchRows.
 template <class F, class Ask = AskForNothing>
 void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& f, Ask ask = {})
 {
@@ -67,8 +68,8 @@ void for_each_run(std::span<const Index> rows, std::span<const Index> cell, F&& 
   }
 }
 
-/// f(cell, runs) for each cell of a block that holds particles of the bodies, ascending; runs(g) calls g(run) for the particles of each of
-/// these bodies in the cell.  Allocates nothing.
+/// Calls f(cell, runs) for each cell of a block that contains particles of the bodies, ascending; runs(g) calls g(run) for the particles of
+/// each of these bodies in the cell.  Allocates nothing.
 template <class F>
 void for_each_cell_of(const CellOrder& order, std::span<const Index> bodies, Index block, std::span<const Index> cell, F&& f)
 {

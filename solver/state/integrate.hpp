@@ -1,5 +1,5 @@
 #pragma once
-// The nodes' equation of motion.
+// The equation of motion of the nodes.
 #include "core/parallel/threads.hpp"
 #include "mesh/mesh.hpp"
 #include "solver/state/node_work.hpp"
@@ -7,15 +7,15 @@
 
 namespace talus {
 
-/// Local non-viscous damping [Cundall 1987]: a force against the motion of a node, componentwise the share `damping` of its net
-/// force.  Nodes under a wall condition are left out.  `net` is force or acceleration, the result the same.
+/// Local non-viscous damping [Cundall 1987]: a force against the motion of a node, in each component the fraction `damping` of its net
+/// force.  Not used for nodes with a boundary condition.  `net` may be a force or an acceleration.
 template <int D>
 Vec<D> damping_of(const Vec<D>& net, const Vec<D>& v_old, Real damping) noexcept
 {
   return -damping * net.cwiseAbs().cwiseProduct(v_old.cwiseSign());
 }
 
-/// v <- v + kick (f/m + g): forces act from the time of the old velocities to that of the new ones, over a `kick` [s].
+/// Integrates v <- v + kick (f/m + g); forces act over `kick` [s], from the time of the old velocities to that of the new ones.
 template <int D>
 void integrate(const Vec<D>& gravity, Real kick, Nodes<D>& nodes)
 {
@@ -34,7 +34,7 @@ void integrate(const Vec<D>& gravity, Real kick, Nodes<D>& nodes)
   });
 }
 
-/// Net accelerations of the nodes, walls included: those of nodes of small mass count as none.
+/// The net accelerations of the nodes, boundary conditions included; zero for nodes of small mass.
 template <int D>
 void find_net_acceleration(Nodes<D>& nodes)
 {
@@ -43,7 +43,7 @@ void find_net_acceleration(Nodes<D>& nodes)
     nodes.felt[i] = nodes.motion[i].change / nodes.kick;
 }
 
-/// Damps nodes that no wall holds by what is felt of their net acceleration.
+/// Damps nodes without boundary conditions by the part of their net acceleration that acts on particles.
 template <int D>
 void damp(Real damping, Nodes<D>& nodes)
 {
@@ -57,7 +57,7 @@ void damp(Real damping, Nodes<D>& nodes)
   });
 }
 
-/// What gravity and damping did and the kinetic energies, once boundary conditions have acted: of one node.
+/// Adds the work of gravity and damping and the kinetic energies of one node, after boundary conditions have acted.
 template <int D>
 NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, Index n)
 {
@@ -81,9 +81,9 @@ NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, 
   return work;
 }
 
-/// Forces act on the mean of old and new velocity, and bodies strain by remapped velocities, which are the old ones of the next step: half
-/// of what forces do in the part of the new velocity that the remap takes out again comes from no strain [J].  `remapped`: remapped
-/// velocities in `v`, those of the step in `change`.
+/// The work [J] of forces in the part of the new velocity that the remap removes.  Forces act on the mean of old and new velocity, and
+/// bodies strain by remapped velocities, which are the old ones of the next step; so half of the work of forces in the removed part
+/// corresponds to no strain.  `remapped`: remapped velocities in `v`, those of the step in `change`.
 template <int D>
 Real remap_work(const Nodes<D>& nodes, const std::vector<NodeMotion<D>>& remapped, Index n)
 {
@@ -91,7 +91,7 @@ Real remap_work(const Nodes<D>& nodes, const std::vector<NodeMotion<D>>& remappe
   return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(remapped[i].change - remapped[i].v) : 0;
 }
 
-/// Those at one node.  The net force is the one that is `felt` in stages that seek rest.
+/// Adds the energies at one node.  In stages that seek equilibrium the net force is the one in `felt`.
 template <int D>
 Balance balance_at(bool felt, const Nodes<D>& nodes, Index n)
 {
@@ -104,7 +104,8 @@ Balance balance_at(bool felt, const Nodes<D>& nodes, Index n)
   return {sum.mass * (felt ? nodes.felt[i] : change).norm(), sum.mass * nodes.gravity.norm(), reaction};
 }
 
-/// Net force over gravity and `other_loads` [N], or over reactions where walls alone load the bodies: zero at rest in equilibrium.
+/// The unbalanced force: net force over gravity and `other_loads` [N], or over reactions where only boundary conditions load the bodies;
+/// zero in equilibrium at rest.
 inline Real unbalanced(const Balance& sums, Real other_loads) noexcept
 {
   const Real load = sums.load + other_loads;

@@ -1,11 +1,11 @@
 #pragma once
-// What particles take from the nodes, four particles at a time.
+// Nodal values interpolated to particles, four particles at a time.
 #include "core/particle_pack.hpp"
 #include "solver/state/cell_order.hpp"
 
 namespace talus {
 
-/// f(pack, x) for the particles of a run, four at a time.
+/// Calls f(pack, x) for the particles of a cell batch, four at a time.
 template <class S, int D, class F>
 void for_each_placed_pack(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
 {
@@ -18,7 +18,7 @@ void for_each_placed_pack(std::span<const Index> run, const Rows<Vec<D>>& places
   });
 }
 
-/// Velocities of the nodes, interpolated at four particles.
+/// Velocities of the nodes, interpolated to four particles.
 template <int D>
 struct Interpolated {
   Pack v[D], change[D];  ///< sum w v,  sum w change  [m/s]

@@ -1,5 +1,5 @@
 #pragma once
-// Where energy, momentum and mass went: every term is computed by itself, so that the balance proves something.
+// Balances of energy, momentum and mass.  Every term is computed independently, so a closed balance is evidence.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -10,26 +10,28 @@
 
 namespace talus {
 
-/// Sums over a stage since it began [J], except where noted.
+/// Sums over a stage since its beginning [J], except where noted.
 struct EnergyLedger {
   Real gravity{};   ///< work of gravity
   Real loads{};     ///< work of tractions and pressures
-  Real walls{};     ///< work of walls other than friction: of those that move, and of dashpots
+  Real walls{};     ///< work of boundary conditions other than friction: of prescribed motions and dashpots
   Real friction{};  ///< work of friction, <= 0
-  Real waves{};     ///< energy that waves brought to walls that give way: part of the work of walls, and a measure of it
+  Real waves{};     ///< energy of waves incident on absorbing boundaries; a part of the work of walls, given for reference
   Real damping{};   ///< work of local damping, <= 0
-  Real arrival{};   ///< kinetic energy that mass loses where walls make it move as they do, <= 0: part of what transfer() gives
-  Real
-      nodes{};  ///< change of the nodes' kinetic energy within the steps but for arrival, and what walls did to nodes of small mass and linear shape functions
-  Real remap{};     ///< MUSL: what internal forces and loads did in the part of the new velocities that the remap takes out again
-  Real internal{};  ///< stress power of the particles: strain energy plus what the laws dissipate
-  Real kinetic_start{}, plastic_start{};  ///< at the beginning of the stage
-  Real set_to_rest{};                     ///< kinetic energy that a stage which ends at rest takes out at its end
-  Real carried_away{};                    ///< kinetic energy of the particles that were deleted
-  Real plastic_deleted{};                 ///< plastic work that they had behind them
+  Real arrival{};   ///< kinetic energy lost where a boundary gives mass its motion, <= 0; part of the result of transfer()
+  /// Change of the nodes' kinetic energy within the steps without arrival, and work of boundaries on nodes of small mass and linear shape
+  /// functions.
+  Real nodes{};
+  Real remap{};     ///< MUSL: work of internal forces and loads in the part of the new velocities that the remap removes
+  Real internal{};  ///< stress power of the particles: strain energy plus dissipation of the laws
+  Real kinetic_start{}, plastic_start{};  ///< values at the beginning of the stage
+  Real set_to_rest{};                     ///< kinetic energy removed at the end of a stage that ends in equilibrium
+  Real carried_away{};                    ///< kinetic energy of deleted particles
+  Real plastic_deleted{};                 ///< plastic work of deleted particles
   Real largest_before{};                  ///< largest term of the stages before
-  Real largest_seen{};                    ///< largest term at any time up to now, and not less than what is judged: the size of the balance
-  Real internal_ahead{}, loads_ahead{};   ///< of `internal`, and of `loads` on particles: done after the time of the velocities
+  /// Largest term at any time so far, at least the least energy that is judged: the size of the balance.
+  Real largest_seen{};
+  Real internal_ahead{}, loads_ahead{};  ///< parts of `internal`, and of `loads` on particles, done after the time of the velocities
   static constexpr auto fields()
   {
     return std::tuple{saved("gravity", &EnergyLedger::gravity),
@@ -53,8 +55,8 @@ struct EnergyLedger {
                       saved("loads_ahead", &EnergyLedger::loads_ahead)};
   }
 
-  /// With what was done up to the time of the velocities, by which kinetic energies and all other works are counted: that of stress and
-  /// places is half a step later.
+  /// The balance with the work done up to the time of the velocities, which kinetic energies and all other works refer to; stress and
+  /// positions are half a step later.
   EnergyLedger at_velocities() const noexcept
   {
     EnergyLedger then = *this;
@@ -63,7 +65,7 @@ struct EnergyLedger {
     return then;
   }
 
-  /// Largest of the terms, of this stage and of those before: what errors are measured by [J].
+  /// The largest of the terms [J], of this stage and those before; errors are relative to it.
   Real largest_term(Real kinetic_now) const noexcept
   {
     Real largest = largest_before;
@@ -72,17 +74,17 @@ struct EnergyLedger {
     return largest;
   }
 
-  /// Kinetic energy lost between particles and nodes: what the nodes gained and the particles, deleted ones included, did not get.  What
-  /// the remap takes out again nodes have gained in vain: strain, which is taken from remapped velocities, has not given it.
+  /// The kinetic energy lost between particles and nodes: the gain of the nodes minus that of the particles, deleted ones included.  The
+  /// part that the remap removes is subtracted, because strain, which is computed from remapped velocities, does not provide it.
   Real transfer(Real kinetic_now) const noexcept { return nodes - remap - (kinetic_now - kinetic_start + carried_away); }
-  /// All work done on the bodies, minus what became of it: zero if everything is accounted for, at_velocities().
+  /// All work done on the bodies minus the energy terms [J]: zero if the balance is closed, for at_velocities().
   Real defect(Real kinetic_now) const noexcept
   {
     return gravity + loads + walls + friction + damping - internal - transfer(kinetic_now) - carried_away - (kinetic_now - kinetic_start);
   }
 };
 
-/// x cross f, in 2-D with the plane's only component last.
+/// The cross product x cross f; in 2-D the only component is the last one.
 template <int D>
 Vec3 moment(const Vec<D>& x, const Vec<D>& f) noexcept
 {
@@ -92,7 +94,7 @@ Vec3 moment(const Vec<D>& x, const Vec<D>& f) noexcept
     return {x[1] * f[2] - x[2] * f[1], x[2] * f[0] - x[0] * f[2], x[0] * f[1] - x[1] * f[0]};
 }
 
-/// Forces [N] or impulses [N s], their moment about the origin, and the sums of the moduli of both.
+/// Forces [N] or impulses [N s], their moment about the origin, and the sums of the absolute values of both.
 template <int D>
 struct ForceAndMoment {
   Vec<D> linear = Vec<D>::Zero();
@@ -118,14 +120,14 @@ struct ForceAndMoment {
   }
 };
 
-/// What gave momentum to the bodies since the start of the run, but for walls, which keep their own [N s].
+/// The impulses on the bodies since the start of the run [N s], without those of boundary conditions, which store their own.
 template <int D>
 struct MomentumLedger {
-  ForceAndMoment<D> loads;  ///< gravity, tractions, forces of place
+  ForceAndMoment<D> loads;  ///< gravity, tractions, body forces
   ForceAndMoment<D> damping;
-  ForceAndMoment<D> rest;        ///< of the motion that is taken out at the end of stages that seek rest
-  ForceAndMoment<D> changes;     ///< of what stages place and take away: bodies, and mass where a density changes
-  Vec3 on_nodes = Vec3::Zero();  ///< moment of momentum that nodes, and what hangs on them, got within the steps [kg m^2/s]
+  ForceAndMoment<D> rest;        ///< of the motion that is removed at the end of stages that seek equilibrium
+  ForceAndMoment<D> changes;     ///< of changes by stages: placed and removed bodies, and mass where a density changes
+  Vec3 on_nodes = Vec3::Zero();  ///< change of angular momentum of nodes and nodes of small mass within the steps [kg m^2/s]
   static constexpr auto fields()
   {
     return std::tuple{saved("loads", &MomentumLedger::loads), saved("damping", &MomentumLedger::damping),
@@ -136,16 +138,16 @@ struct MomentumLedger {
 
 template <int D>
 struct MassLedger {
-  Real start{};     ///< [kg]
-  Real on_nodes{};  ///< what the nodes carried in the last step, less what failed in it [kg]
-  Real deleted{};   ///< left the mesh, or failed [kg]
-  Real failed{};    ///< of it what failed [kg]
+  Real start{};     ///< mass at the start [kg]
+  Real on_nodes{};  ///< mass at the nodes in the last step without particles that failed in it [kg]
+  Real deleted{};   ///< mass of particles that left the mesh or failed [kg]
+  Real failed{};    ///< part of `deleted` that failed [kg]
   Index deleted_count{}, failed_count{};
-  Real placed{}, taken{};  ///< by stages: bodies that appeared and vanished, and what a new density made heavier and lighter [kg]
+  Real placed{}, taken{};  ///< mass added and removed by stages: bodies, and changes of density [kg]
   Index placed_count{}, taken_count{};
-  ForceAndMoment<D> carried_away;  ///< momentum of what was deleted
-  std::int64_t held_count{};       ///< times a particle was set back onto a closed wall
-  Real largest_set_back{};         ///< farthest such set-back [m]
+  ForceAndMoment<D> carried_away;  ///< momentum of deleted particles
+  std::int64_t held_count{};       ///< number of times a particle was moved back onto a closed wall
+  Real largest_set_back{};         ///< largest such distance [m]
   static constexpr auto fields()
   {
     return std::tuple{saved("start", &MassLedger::start),
@@ -162,17 +164,17 @@ struct MassLedger {
                       saved("held_count", &MassLedger::held_count),
                       saved("held_most", &MassLedger::largest_set_back)};
   }
-  /// That should be there [kg].
+  /// The mass that should be present [kg].
   Real due() const noexcept { return start + placed - deleted - taken; }
 };
 
-/// What particles take along that are deleted, and what was done to those that stay; numbers of particles are whole.
+/// Sums over deleted particles and over particles moved back onto a wall; counts are whole numbers.
 template <int D>
 struct RemovedParticles {
-  Real mass{}, count{}, failed{}, failed_count{};  ///< [kg], of them those that failed
-  Real kinetic{}, plastic{};                       ///< [J]
+  Real mass{}, count{}, failed{}, failed_count{};  ///< mass and number of deleted particles, and of those that failed [kg, -]
+  Real kinetic{}, plastic{};                       ///< kinetic energy and plastic work of deleted particles [J]
   ForceAndMoment<D> momentum{};
-  Real held_count{};  ///< set back onto a closed wall
+  Real held_count{};  ///< number of particles moved back onto a closed wall
 };
 template <int D>
 void record_removed(const RemovedParticles<D>& gone, MassLedger<D>& mass, EnergyLedger& energy) noexcept
@@ -190,7 +192,7 @@ template <int D>
 struct Totals {
   Real mass{}, kinetic{};            ///< [kg], [J]
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
-  Vec3 angular = Vec3::Zero();       ///< about the origin, with the affine part of the particle's own field left out [kg m^2/s]
+  Vec3 angular = Vec3::Zero();       ///< about the origin, without the affine part of the particle's own field [kg m^2/s]
   Vec<D> centre = Vec<D>::Zero();    ///< first moment of mass [kg m]
   Totals& operator+=(const Totals& other) noexcept
   {
@@ -199,7 +201,7 @@ struct Totals {
   }
 };
 
-/// Those of one particle.
+/// The contribution of one particle.
 template <int D>
 Totals<D> totals_of(const Particles<D>& particles, std::size_t p) noexcept
 {

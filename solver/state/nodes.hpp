@@ -1,5 +1,5 @@
 #pragma once
-// Nodal rows: what particles deposit, and what they read back.
+// Nodal rows: sums over particles, and the motion that particles read.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,19 +11,19 @@
 
 namespace talus {
 
-/// What the particles around a node add up to.  One cache line; `lightest` and `gross` are for comparisons only.
+/// Sums over the particles around a node.  One cache line; `lightest` and `gross` are for comparisons only.
 template <int D>
 struct alignas(64) NodeSum {
   Real mass{};              ///< [kg]
-  float lightest = unseen;  ///< mass of the lightest particle whose stencil holds the node [kg]
-  float
-      gross{};  ///< what `mass` is measured by [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around
+  float lightest = unseen;  ///< mass of the lightest particle whose stencil contains the node [kg]
+  /// Reference for `mass` [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around.
+  float gross{};
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
   void clear_momentum() noexcept { momentum.setZero(); }
   void add_momentum(const NodeSum& other) noexcept { momentum += other.momentum; }
   bool has_momentum() const noexcept { return !momentum.isZero(0); }
-  /// For messages, without padding.
+  /// The members for messages, without padding.
   template <class Self>
   static auto parts(Self& sum) noexcept
   {
@@ -47,8 +47,8 @@ struct alignas(64) NodeSum {
   }
 };
 
-/// What particles add up to on a linear shape function: with its share B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and what the
-/// operators need besides.
+/// Sums over particles on a linear shape function: with its values B, momentum sum B m (v + A (c_n - c_p)) with c_p = sum_n B_n c_n, and
+/// further sums for the operators.
 template <int D>
 struct ProjectedNodeSum : NodeSum<D> {
   Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
@@ -85,12 +85,12 @@ struct ProjectedNodeSum : NodeSum<D> {
   }
 };
 
-/// How a node moves.  One cache line in 3-D.
+/// The motion of a node.  One cache line in 3-D.
 template <int D>
 struct alignas(64) NodeMotion {
   Vec<D> v = Vec<D>::Zero();       ///< new velocity, of the middle of the step [m/s]
   Vec<D> change = Vec<D>::Zero();  ///< v minus the old velocity [m/s]
-  /// Any bit of it.
+  /// Whether any value differs from zero.
   bool is_seen() const noexcept
   {
     const auto all_clear = [](const Vec<D>& a) {
@@ -105,7 +105,7 @@ struct alignas(64) NodeMotion {
   }
 };
 
-/// What particles read on the linear shape function of a node, where the kernel has a set of node operators.
+/// The motion that particles read on a linear shape function, for kernels with node operators.
 template <int D>
 struct alignas(64) ProjectedNodeMotion {
   Vec<D> v = Vec<D>::Zero();       ///< [m/s]
@@ -113,7 +113,7 @@ struct alignas(64) ProjectedNodeMotion {
   Mat<D> L = Mat<D>::Zero();       ///< velocity gradient [1/s]
 };
 
-/// The times of the old velocities and of the new ones: forces act from the one to the other [s].
+/// The times of the old and the new velocities [s], between which forces act.
 struct Kick {
   Real from{}, to{};
   Real length() const noexcept { return to - from; }
@@ -123,13 +123,14 @@ template <int D>
 struct Nodes {
   std::vector<NodeSum<D>> sum;
   std::vector<NodeMotion<D>> motion;
-  std::vector<std::uint8_t> active;  ///< takes part with a mass of its own
-  std::vector<std::uint8_t> bound;   ///< under a wall condition: no local damping, its net force is known only after the wall's
-  std::vector<Vec<D>> felt;          ///< net acceleration as particles feel it [m/s^2], in stages that seek rest
-  Vec<D> gravity = Vec<D>::Zero();   ///< of the step at hand [m/s^2]
-  Real kick{};                       ///< the time over which its forces act, from the old velocities to the new ones [s]
-  Real least_share{};                ///< of the lightest particle around: nodes with less do not take part by themselves
-  Real least_share_of_gross{};       ///< the same of `gross`
+  std::vector<std::uint8_t> active;  ///< nodes with enough mass for a motion of their own
+  /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
+  std::vector<std::uint8_t> bound;
+  std::vector<Vec<D>> felt;         ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
+  Vec<D> gravity = Vec<D>::Zero();  ///< gravity in the present step [m/s^2]
+  Real kick{};                      ///< time over which forces act, from the old velocities to the new ones [s]
+  Real least_share{};               ///< limit of mass relative to the lightest particle around: nodes with less are nodes of small mass
+  Real least_share_of_gross{};      ///< limit of mass relative to `gross`
 };
 
 }  // namespace talus

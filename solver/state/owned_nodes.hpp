@@ -1,5 +1,5 @@
 #pragma once
-// The nodes that a rank counts: each node of the whole mesh is some rank's own.
+// The nodes that a rank owns; each node of the whole mesh is owned by one rank.
 #include <utility>
 #include <vector>
 
@@ -9,20 +9,20 @@
 
 namespace talus {
 
-/// Numbers [begin, end).
+/// The numbers in [begin, end).
 struct IndexRange {
   Index begin, end;
 };
 
-/// Nodes are numbered by the first cell that uses them, so those that a block is the first to use stand in a row.
+/// Own nodes.  Nodes are numbered by the first cell that uses them, so the nodes first used by a block are consecutive.
 struct OwnNodes {
-  std::vector<IndexRange> of_block;  ///< of own blocks, ascending
-  std::vector<std::uint8_t> owned;   ///< by node
+  std::vector<IndexRange> of_block;  ///< ranges of nodes first used by own blocks, ascending
+  std::vector<std::uint8_t> owned;   ///< flag for each node
 
   bool has(Index node) const noexcept { return owned[static_cast<std::size_t>(node)] != 0; }
 };
 
-/// Those of a rank that is alone.
+/// The own nodes of a single rank: all nodes.
 template <int D>
 OwnNodes all_nodes(const Mesh<D>& mesh)
 {
@@ -35,7 +35,7 @@ OwnNodes all_nodes(const Mesh<D>& mesh)
   return own;
 }
 
-/// Those of one of several ranks.
+/// The own nodes of one of several ranks.
 template <int D>
 OwnNodes own_nodes(const Mesh<D>& mesh, const Subdomain& share)
 {

@@ -1,11 +1,11 @@
 #pragma once
-// Which columns of the particles go from rank to rank: those that any of them keeps.
+// The columns of particles that are sent between ranks: those that any rank stores.
 #include "core/parallel/communicator.hpp"
 #include "core/particles.hpp"
 
 namespace talus {
 
-/// For each column how many ranks keep it: one that has no particles cannot tell.  Every rank has to ask.
+/// The number of ranks that store each column; a rank without particles cannot know.  Collective.
 template <int D>
 std::vector<std::int64_t> count_keepers(Communicator& ranks, const Particles<D>& particles)
 {
@@ -15,7 +15,7 @@ std::vector<std::int64_t> count_keepers(Communicator& ranks, const Particles<D>&
   return keepers;
 }
 
-/// f(column) for every column that some rank keeps.
+/// Calls f(column) for every column that some rank stores.
 template <class AnyParticles, class F>
 void for_each_kept_column(AnyParticles& particles, std::span<const std::int64_t> keepers, F&& f)
 {

@@ -1,5 +1,5 @@
 #pragma once
-// What is summed up in the course of a step, and becomes numbers at its end, once for all ranks.
+// Sums over a step, which are rounded to numbers at its end, once for all ranks.
 #include "core/parallel/communicator.hpp"
 #include "solver/state/ledger.hpp"
 #include "solver/state/node_work.hpp"
@@ -9,17 +9,18 @@ namespace talus {
 template <int D>
 struct StepSums {
   ExactSums<RemovedParticles<D>> departed;
-  Real largest_set_back = 0;                           ///< farthest way on which a particle was set back onto a wall [m]
+  Real largest_set_back = 0;                           ///< largest distance by which a particle was moved back onto a wall [m]
   ExactSums<ForceAndMoment<D>> on_particles, on_mesh;  ///< forces of loads [N]
-  ExactSums<BoundaryWork> at_nodes;                    ///< work of walls on nodes
+  ExactSums<BoundaryWork> at_nodes;                    ///< work of boundary conditions on nodes
   ExactSums<BoundaryWork>
-      beyond_nodes;  ///< on nodes of small mass and linear shape functions, of which the kinetic energy of nodes knows nothing
+      beyond_nodes;  ///< on nodes of small mass and linear shape functions, which the kinetic energy of the nodes does not contain
   ExactSums<NodeWork<D>> nodes;
   ExactSums<Balance> balance;
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
   ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
-  ExactSums<Real> particles;                                  ///< their number
-  Digits digits;                                              ///< of these and of the pushes of walls, kept from step to step
+  ExactSums<Real> particles;                                  ///< number of particles
+  /// Digits in use of these sums and of the impulses of boundary conditions, kept from step to step.
+  Digits digits;
   void clear() noexcept
   {
     largest_set_back = 0;
@@ -29,7 +30,7 @@ struct StepSums {
   }
 };
 
-/// Adds the sums of a step to the balances, all ranks together; gravity [m/s^2] acted over `kick` [s].
+/// Adds the sums of a step over all ranks to the balances; gravity [m/s^2] acted over `kick` [s].  Collective.
 template <int D>
 void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLedger<D>& mass, MomentumLedger<D>& momentum,
               EnergyLedger& energy)

@@ -1,6 +1,5 @@
 #pragma once
-// Sums that come out the same however blocks of cells are shared out among threads and ranks: within a block in a fixed order, over the
-// blocks exact.
+// Sums that do not depend on the distribution of blocks among threads and ranks: in a fixed order within a block, exact over the blocks.
 #include <span>
 #include <utility>
 #include <vector>
@@ -15,19 +14,19 @@
 
 namespace talus {
 
-/// Adds part(i) of all i in [0, n); the parts are found in parallel.
+/// Adds part(i) for all i in [0, n); the parts are computed in parallel.
 template <class T, class F>
 void add_parts(Index n, ExactSums<T>& sum, F&& part)
 {
   static thread_local std::vector<T> buffer;
   buffer.resize(static_cast<std::size_t>(n));
-  std::vector<T>& parts = buffer;  // a name that the threads below share
+  std::vector<T>& parts = buffer;  // a name that the threads below can share
   parallel_for(n, [&](Index i) { parts[static_cast<std::size_t>(i)] = part(i); });
   for (const T& one : parts)
     sum.add(one);
 }
 
-/// Adds f(i) of all i in the ranges, each range added up by itself in ascending order.
+/// Adds f(i) for all i in the ranges; each range is summed in ascending order.
 template <class T, class F>
 void add_ranges(std::span<const IndexRange> ranges, ExactSums<T>& sum, F&& f)
 {
@@ -39,7 +38,7 @@ void add_ranges(std::span<const IndexRange> ranges, ExactSums<T>& sum, F&& f)
   });
 }
 
-/// Adds f(row) of the particles of bodies [first, last), those of a block and body added up by themselves in the order of cells and ids.
+/// Adds f(row) for the particles of bodies [first, last); those of one body in one block are summed in the order of cells and ids.
 template <class T, class F>
 void add_particles(const CellOrder& order, std::pair<Index, Index> bodies, ExactSums<T>& sum, F&& f)
 {
@@ -64,7 +63,7 @@ inline void add_plastic_work(const Material& material, const CellOrder& order, I
                 [&](Index row) { return plastic_work(material, row - material.begin, volume0[static_cast<std::size_t>(row)]); });
 }
 
-/// Sum over the particles of all ranks, each of which has to ask.
+/// The sum over the particles of all ranks.  Collective.
 template <class T, class F>
 T sum_particles(const CellOrder& order, Communicator& ranks, F&& f)
 {
@@ -74,7 +73,7 @@ T sum_particles(const CellOrder& order, Communicator& ranks, F&& f)
   return sum.value();
 }
 
-/// Of all ranks, each of which has to ask.
+/// The totals over all ranks.  Collective.
 template <int D>
 Totals<D> totals(const Particles<D>& particles, const CellOrder& order, Communicator& ranks)
 {

@@ -1,6 +1,6 @@
 #pragma once
-// Transfers that are compiled in a unit of their own, <kernel>_2d.cpp and <kernel>_3d.cpp.  A kernel of the list that is missing here is compiled
-// with make_transfer.cpp.
+// The kernels whose transfers are compiled in a unit of their own, <kernel>_2d.cpp and <kernel>_3d.cpp.  Other kernels of the list are
+// compiled with make_transfer.cpp.
 #include "kernels/kernels.hpp"
 #include "solver/transfer/transfer_of.hpp"
 

@@ -1,12 +1,12 @@
 #pragma once
-// What particles of a cell deposit on its stencil: mass, momentum and force through the weights of a kernel.
+// The contributions of the particles of a cell to its stencil: mass, momentum and force through the weights of a kernel.
 #include "kernels/kernel.hpp"
 #include "solver/halo/block_rows.hpp"
 #include "solver/state/interpolated.hpp"
 
 namespace talus {
 
-/// Sums over the stencil of one cell, one array per component so that lanes run over nodes.
+/// Sums over the stencil of one cell, one array per component so that lanes are nodes.
 template <int D, int N>
 struct CellSums {
   alignas(64) Real mass[N];
@@ -21,7 +21,7 @@ struct CellSums {
       std::fill_n(force[i], n, 0.0);
     }
   }
-  /// `lightest` [kg] of the particles summed.
+  /// Adds the sums to the rows; `lightest` [kg] is the mass of the lightest particle summed.
   template <class Sum>
   void add_to(std::span<Sum> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
   {
@@ -65,9 +65,9 @@ Tension<D> tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pa
   return tension;
 }
 
-/// m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G.
-/// A is of `fields`, used if `affine`; f_p the force of loads, used if `loaded`; without `forces` (the second half of
-/// MUSL) only momentum is summed.  A sweep per component: all that a sweep needs of the particle stays in registers.
+/// Adds m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G.
+/// A is taken from `fields` if `affine`; f_p is the force of loads if `loaded`; without `forces` (the second half of MUSL) only momentum is
+/// summed.  There is one loop per component, so that all data of the particle in a loop stay in registers.
 template <bool affine, bool loaded, bool forces, int D, int N, class S>
 void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const ParticleColumn<Mat<D>>& fields,
              const StencilCell<D, N>& cell, const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
@@ -137,7 +137,7 @@ void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const
   }
 }
 
-/// f_v -= V sigma grad w_v of one particle, for the first n nodes.
+/// Subtracts V sigma grad w_v of one particle from f_v, for the first n nodes.
 template <int D, int N, class S>
 void deposit_force(const Particles<D>& particles, const ParticlePackOf<S>& pack, int lane, const Real (&slopes)[D][N], int n,
                    CellSums<D, N>& sums) noexcept

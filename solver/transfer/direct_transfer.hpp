@@ -1,10 +1,10 @@
 #pragma once
-// How particles of a cell reach the nodes through the weights of a kernel: deposit on its stencil, and read from it.
+// Transfer between the particles of a cell and the nodes through the weights of a kernel.
 #include "solver/transfer/deposit.hpp"
 
 namespace talus {
 
-/// Motion of the nodes of one cell's stencil, one array per component.
+/// The motion of the nodes of one cell's stencil, one array per component.
 template <int D, int N>
 struct CellMotion {
   alignas(64) Real v[D][N];
@@ -26,7 +26,7 @@ struct CellMotion {
   }
 };
 
-/// Sums over the stencil for one particle, four nodes a lane.  Without the gradient `v` is sum w v, otherwise sum s v.
+/// Sums over the stencil for one particle, four nodes per pack.  Without the gradient `v` is sum w v, otherwise sum s v.
 template <int D, bool with_change, bool with_gradient>
 struct StencilSums {
   Pack v[D];
@@ -69,7 +69,7 @@ template <bool with_change, bool with_gradient, int D, int N>
   }
 }
 
-/// `change` and `L` are found only if asked for.
+/// Interpolates to the particles; `change` and `L` are computed only if needed.
 template <bool with_change, bool with_gradient, int D, int N>
 Interpolated<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights, int count) noexcept
 {
@@ -107,8 +107,8 @@ Interpolated<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights
   return seen;
 }
 
-/// APIC's affine field B D^-1 with B = sum w v (x) r, D = sum w r (x) r, r = x_v - x_p.  D is indefinite near the boundary of a
-/// mesh where weights turn negative, and singular on nodes; there the kernel's own gradient L takes its place.
+/// The affine field of APIC, B D^-1 with B = sum w v (x) r, D = sum w r (x) r, r = x_v - x_p.  D is indefinite near the boundary of a mesh
+/// where weights are negative, and singular on nodes; there the kernel's gradient L is used instead.
 template <int D, int N>
 Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion, const Weights<D, N>& weights, int lane, const Vec<D>& x,
                   const Mat<D>& L) noexcept
@@ -127,14 +127,15 @@ Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion,
     moment += plain.w[a] * r * r.transpose();
     spread += std::abs(plain.w[a]) * r.squaredNorm();
   }
-  constexpr Real least_share = 1e-2;  // of the mean second moment: below, B D^-1 amplifies round-off and sign errors
+  constexpr Real least_share = 1e-2;  // limit relative to the mean second moment: below, B D^-1 amplifies round-off and errors of sign
   bool sound = spread > 0;
-  for (int k = 1; k <= D; ++k)  // positive definite with room: leading minors against powers of the scale
+  for (int k = 1; k <= D; ++k)  // positive definite with a margin: leading minors against powers of the scale
     sound = sound && moment.topLeftCorner(k, k).determinant() > std::pow(least_share * spread / D, k);
   return sound ? Mat<D>(B * moment.inverse()) : L;
 }
 
-/// The cell at hand, its particles' weights, and the sums of a run.  Lives on the stack of a thread; see ThroughHats for its twin.
+/// The open cell, the weights of its particles, and the sums of a cell batch.  Lives on the stack of a thread; ProjectedTransfer has the
+/// same interface.
 template <int D, Kernel<D> K>
 class DirectTransfer {
  public:

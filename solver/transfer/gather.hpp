@@ -1,12 +1,12 @@
 #pragma once
-// Nodes -> particles (G2P): velocity, velocity gradient and the move.
+// Transfer from nodes to particles (G2P): velocity, velocity gradient and motion.
 #include "solver/transfer/scatter.hpp"
 
 namespace talus {
 namespace detail {
 
-/// v_p and, if asked for, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme keeps its own.
-/// With `musl` L is found later, from remapped velocities.
+/// Computes v_p and, if needed, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme stores it
+/// separately.  With `musl` L is computed later, from remapped velocities.
 template <bool increments, bool with_gradient, bool musl, int D, class Through_, class S>
 Interpolated<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const ParticlePackOf<S>& pack,
                               Particles<D>& particles) noexcept
@@ -32,15 +32,15 @@ Interpolated<D> take_velocity(const Through_& through, Scheme scheme, Real pic, 
   return seen;
 }
 
-/// x <- x + dt v
+/// Moves particles, x <- x + dt v.
 template <int D, class S>
 void move(const ParticlePackOf<S>& pack, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
 {
   pack.store(VecOf<D>(vector_of(x) + SimdReal(dt) * vector_of(v)), particles.x);
 }
 
-/// f(c, run, through) for the runs of a block, the cell entered and its share of `motion` read; ask(p) before, see RowsAhead; then
-/// done(body), body by body.
+/// Calls f(c, run, through) for the cell batches of a block, with the cell opened and its part of `motion` read; ask(p) before each row is
+/// used, see PrefetchRows; then done(body) for each body.
 template <int D, Kernel<D> K, class Ask, class F, class Done>
 void for_each_reading_run(const Model<D>& m, const KernelRows<D, K>& of, Index b,
                           const std::vector<typename KernelRows<D, K>::Motion>& motion, Ask&& ask, F&& f, Done&& done)
@@ -59,7 +59,7 @@ void for_each_reading_run(const Model<D>& m, const KernelRows<D, K>& of, Index b
   }
 }
 
-/// What own particles read of nodes of other ranks; linear shape functions have it by now.
+/// Receives the motion of nodes of other ranks that own particles use; for linear shape functions it has already arrived.
 template <int D, Kernel<D> K>
 void take_motion([[maybe_unused]] Model<D>& m, KernelRows<D, K>& of)
 {
@@ -93,7 +93,7 @@ template <class S, bool increments, bool affine, int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 {
   const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
-  take_motion(m, of);  // blocks that read nodes of others have rows for them, which must be on their way first
+  take_motion(m, of);  // blocks that use nodes of other ranks have rows for them, which must be sent first
   for_each_own_block<MomentumAlone>(of.blocks, of.halo, [&](Index b) {
     if (!of.blocks.occupied[static_cast<std::size_t>(b)])
       return;
@@ -120,8 +120,8 @@ void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 struct Nothing {
   void operator()(Index, Index) const noexcept {}
 };
-/// v_p, L_p, the affine field, and x_p <- x_p + dt sum w v.  then(body, block) is called when the particles of a body in a block have
-/// been told: they are still in the cache.
+/// Computes v_p, L_p and the affine field, and moves x_p <- x_p + dt sum w v.  Calls then(body, block) after the particles of a body in a
+/// block, while they are in the cache.
 template <int D, Kernel<D> K, class Then = Nothing>
 void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then = {})
 {
@@ -130,7 +130,7 @@ void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then = {})
   });
 }
 
-/// MUSL, first half: v_p and the affine field, whose momentum goes back at once to the rows of the blocks with the weights at hand.
+/// MUSL, first half: computes v_p and the affine field, and adds their momentum to the rows of the blocks with the same weights.
 template <int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 {
@@ -143,8 +143,8 @@ void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
   });
 }
 
-/// MUSL, second half: L_p from the remapped velocities, while particles move with those of the step itself.
-/// What they read holds the remapped velocity, or its gradient, and the step's own velocity in `change`; arrive(): that of other ranks.
+/// MUSL, second half: computes L_p from the remapped velocities, while particles move with the velocities of the step.  The rows contain
+/// the remapped velocity, or its gradient, and the velocity of the step in `change`; arrive() receives those of other ranks.
 template <int D, Kernel<D> K, class Arrive, class Then>
 void gather_gradient(Model<D>& m, KernelRows<D, K>& of, const std::vector<typename KernelRows<D, K>::Motion>& remapped, Arrive&& arrive,
                      Real dt, Then&& then)

@@ -1,5 +1,5 @@
 #pragma once
-// What the transfer of one kernel keeps as long as a run: the kernel, the rows of blocks, and what stands between these and the nodes.
+// Data of the transfer of one kernel for a whole run: the kernel, the rows of blocks, and the data between these and the nodes.
 #include <type_traits>
 
 #include "kernels/kernel.hpp"
@@ -9,17 +9,17 @@
 
 namespace talus {
 
-/// Exchange of what is to be known here of nodes that other ranks own.
+/// Exchanges of the values of nodes that other ranks own.
 struct GhostNodes {
-  HaloExchange sums;    ///< of linear shape functions, where unknowns of own nodes collect from them
-  HaloExchange motion;  ///< that own particles read, or the projected nodes that they read
-  HaloExchange felt;    ///< accelerations, where operators stand between nodes and particles
+  HaloExchange sums;    ///< sums on linear shape functions that own nodes need
+  HaloExchange motion;  ///< motion of nodes, or of projected nodes, that own particles use
+  HaloExchange felt;    ///< accelerations, for kernels with node operators
 };
 
 template <int D, Kernel<D> K>
 struct KernelRows {
   static constexpr bool projects = HasNodeOperators<K, D>;
-  /// Transfer within a cell; what particles deposit is its `Sum`, what they read its `Motion`.
+  /// The transfer within a cell; particles add to its `Sum` and read its `Motion`.
   using Through = std::conditional_t<projects, ProjectedTransfer<D, K>, DirectTransfer<D, K>>;
   using Sum = typename Through::Sum;
   using Motion = typename Through::Motion;
@@ -28,8 +28,8 @@ struct KernelRows {
   BlockRows<D, Sum> blocks;
   Halo<Sum> halo;
   GhostNodes ghosts;
-  ProjectedNodes<D> projected;          ///< if the kernel has node operators
-  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, the step's own in `change`
+  ProjectedNodes<D> projected;          ///< used if the kernel has node operators
+  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
 
   KernelRows(const Mesh<D>& mesh, const Options<K>& options)
       : kernel(make_kernel<K>(mesh, options)),
@@ -42,7 +42,7 @@ struct KernelRows {
     }
   }
 
-  /// What particles read.
+  /// The motion that particles read.
   const std::vector<Motion>& motion(const Nodes<D>& nodes) const noexcept
   {
     if constexpr (projects)

@@ -1,5 +1,5 @@
 #pragma once
-// The transfer of the kernel that a scene names.
+// Construction of the transfer of the kernel that a scene names.
 #include <memory>
 #include <string_view>
 #include <tuple>
@@ -10,10 +10,11 @@
 
 namespace talus {
 
-/// Options of every kernel that has some.
+/// The options of all kernels that have options.
 using KernelOptions = std::tuple<UmlsOptions, ProjectedOptions>;
 
-/// `kernel` is a name of the list Kernels<D>.  std::invalid_argument: the kernel refuses the mesh, naming cell and place.
+/// The transfer of the kernel with the name `kernel` in Kernels<D>.  Throws std::invalid_argument with cell and position if the kernel
+/// refuses the mesh.
 template <int D>
 std::unique_ptr<Transfer<D>> make_transfer(std::string_view kernel, const KernelOptions& options, const Mesh<D>& mesh);
 

@@ -1,5 +1,6 @@
 #pragma once
-// The solver's side of a kernel with a set of node operators: particles see the linear shape functions of their cell, operators stand between linear shape functions and unknowns.
+// Use of node operators by the solver: particles use the linear shape functions of their cell, and operators connect these with the
+// unknowns.
 #include "kernels/node_operators.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/owned_nodes.hpp"
@@ -10,7 +11,7 @@ template <int D>
 struct ProjectedNodes {
   std::vector<ProjectedNodeSum<D>> sum;
   std::vector<ProjectedNodeMotion<D>> motion;
-  std::vector<std::uint8_t> late;  ///< of one of several ranks: linear shape functions that read nodes of others
+  std::vector<std::uint8_t> late;  ///< several ranks: linear shape functions that use nodes of other ranks
   void find_late(const Mesh<D>& mesh, const OwnNodes& own)
   {
     late.resize(sum.size());
@@ -19,13 +20,13 @@ struct ProjectedNodes {
   }
 };
 
-/// Linear shape functions -> unknowns, the transpose of the way back:
+/// Maps sums on linear shape functions to the unknowns, by the transpose of the map of the motion:
 ///
 ///     m_v = sum_n S_nv m_n     p_v = sum_n S_nv (p_n + K_n (x_v - c_n))     f_v = sum_n (S_nv f_n - Z_n D_nv)
 ///
-/// with K the affine moment and Z the tension.  p_n is about c_n = sum_v S_nv x_v, where the row of n reads: so momentum is kept and
-/// linear fields are handed on as they were read, whatever S is.  Of nodes that are not `own` nothing is collected.  What the mass of
-/// a node is measured by is the mean mass of the linear shape functions around.
+/// with the affine moment K and the tension Z.  p_n refers to c_n = sum_v S_nv x_v, the position at which the row of n reads values: so
+/// momentum is conserved and linear fields are passed on exactly, for any S.  Nodes that are not `own` are left out.  The reference for the
+/// mass of a node is the mean mass of the linear shape functions around.
 template <int D>
 void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
                   const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
@@ -52,7 +53,7 @@ void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const 
   });
 }
 
-/// The same for momentum alone.
+/// The momentum only.
 template <int D>
 void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
                       const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
@@ -70,8 +71,8 @@ void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
   });
 }
 
-/// f(n, linear shape function) for the linear shape functions that particles see, in parallel; what f leaves in `hat` is read.  Those that read nodes of other ranks have to wait until
-/// arrive() returns.
+/// Calls f(n, linear shape function) for the linear shape functions that particles use, in parallel; f writes their values.  Those that use
+/// nodes of other ranks wait until arrive() returns.
 template <int D, class Arrive, class F>
 void for_each_seen_hat(ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
 {
@@ -88,9 +89,9 @@ void for_each_seen_hat(ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
   }
 }
 
-/// The part of accelerations of the unknowns that particles feel, handed back to the unknowns: M^-1 S^T m S a.  S hardly sees
-/// checkerboards of the unknowns: what is left of them moves no particle, and must not count where a body is to come to rest.
-/// arrive(): accelerations of nodes of other ranks.
+/// Replaces the accelerations of the unknowns by the part that acts on particles, M^-1 S^T m S a.  S has almost no response to checkerboard
+/// modes of the unknowns: what remains of them moves no particle and must not count in the criterion of equilibrium.  arrive() receives
+/// accelerations of nodes of other ranks.
 template <int D, class Arrive>
 void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, ProjectedNodes<D>& projected,
                          std::vector<Vec<D>>& a)
@@ -113,8 +114,8 @@ void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own,
   });
 }
 
-/// Unknowns -> linear shape functions that particles see: v_n = sum_v S_nv v_v and the same for changes, L_n = sum_v v_v (x) D_nv.
-/// arrive(): the motion of nodes of other ranks.
+/// From unknowns to the linear shape functions that particles use: v_n = sum_v S_nv v_v, changes likewise, L_n = sum_v v_v (x) D_nv.
+/// arrive() receives the motion of nodes of other ranks.
 template <int D, class Arrive>
 void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
                     ProjectedNodes<D>& projected)
@@ -131,7 +132,7 @@ void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMot
   });
 }
 
-/// The gradient of remapped velocities; the step's own velocity goes to `change`.
+/// The gradient of remapped velocities; the velocity of the step is stored in `change`.
 template <int D, class Arrive>
 void project_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive,
                       ProjectedNodes<D>& projected)

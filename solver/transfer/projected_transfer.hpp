@@ -1,5 +1,6 @@
 #pragma once
-// How particles of a cell reach the linear shape functions of its vertices, for a kernel with a set of node operators: four particles side by side.
+// Transfer between the particles of a cell and the linear shape functions of its vertices, for a kernel with node operators: four particles
+// at a time.
 #include "kernels/linear.hpp"
 #include "solver/state/interpolated.hpp"
 #include "solver/transfer/projected_nodes.hpp"
@@ -28,14 +29,14 @@ template <int D>
   return shares;
 }
 
-/// Sums over the particles of a run, on each vertex of their cell, of up to `most` quantities times its share.
+/// Sums over the particles of a cell batch, on each vertex of their cell, of up to `most` quantities times the shape function.
 template <int D, int most>
 struct CornerSums {
   alignas(64) Real of[D + 1][padded(most)];
 
   void clear() noexcept { std::fill_n(of[0], (D + 1) * padded(most), 0.0); }
-  /// The first n quantities of four particles, one per lane; overwrites them.  Four quantities of one particle a pack while they are
-  /// summed: the sums stay in registers, whatever cells the lanes are from, and nothing is left to be added up across lanes.
+  /// Adds the first n quantities of four particles, one per lane, and overwrites them.  They are transposed to packs of four quantities of
+  /// one particle, so that the sums stay in registers and no sum across lanes is needed at the end.
   template <int n>
   [[gnu::always_inline]] inline void add(const CornerWeights<D>& shares, Pack (&quantities)[padded(n)]) noexcept
   {
@@ -59,7 +60,7 @@ struct CornerSums {
   }
 };
 
-/// V sigma of four particles.
+/// V sigma of four particles [N m].
 template <int D, class S>
 [[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pack, Pack* to) noexcept
 {
@@ -70,7 +71,8 @@ template <int D, class S>
       to[Symmetric<D>::place(i, j)] = volume * stress[Symmetric<3>::place(i, j)].of;
 }
 
-/// What particles of a run deposit, in this order: momentum, m A if `affine`, mass and V sigma if `forces`, load if `loaded`.
+/// The contributions of the particles of a cell batch, in this order: momentum, m A if `affine`, mass and V sigma if `forces`, load if
+/// `loaded`.
 template <int D, bool affine, bool loaded, bool forces>
 struct Deposit {
   static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + (forces ? 1 : 0),
@@ -79,7 +81,8 @@ struct Deposit {
 template <int D>
 using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
 
-/// Adds a pack, momentum about the origin of the cell: m (v - A x), x the places about the origin where the particles see their mass.
+/// Adds a pack, with the momentum about the origin of the cell: m (v - A x), where x is the position, relative to the origin, of the centre
+/// of the particles' weights.
 template <bool affine, bool loaded, bool forces, int D, class S>
 [[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack,
                                            const ParticleColumn<Mat<D>>& fields, const Pack (&x)[D], const CornerWeights<D>& shares,
@@ -113,7 +116,8 @@ template <bool affine, bool loaded, bool forces, int D, class S>
   sums.template add<Of::size>(shares, quantities);
 }
 
-/// Sums of a cell batch -> rows of its block.  `arms`: centres of the linear shape functions about the origin of the cell [m].
+/// Adds the sums of a cell batch to the rows of its block.  `arms`: centres of the linear shape functions relative to the origin of the
+/// cell [m].
 template <bool affine, bool loaded, bool forces, int D>
 void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
             std::span<const std::uint16_t> slots, float lightest) noexcept
@@ -139,7 +143,7 @@ void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::
   }
 }
 
-/// What four particles see of the linear shape functions of their cell.
+/// Values of the linear shape functions of a cell interpolated to four particles.
 template <bool with_change, int D>
 [[gnu::always_inline]] inline void see_velocity(const std::array<ProjectedNodeMotion<D>, D + 1>& projected, const CornerWeights<D>& shares,
                                                 Interpolated<D>& seen) noexcept
@@ -176,7 +180,7 @@ std::array<ProjectedNodeMotion<D>, D + 1> hats_of(const std::vector<ProjectedNod
   return here;
 }
 
-/// The cell at hand, its particles' barycentric coordinates, and the sums of a run.  Lives on the stack of a thread.
+/// The open cell, the barycentric coordinates of its particles, and the sums of a cell batch.  Lives on the stack of a thread.
 template <int D, Kernel<D> K>
 class ProjectedTransfer {
  public:
@@ -202,7 +206,7 @@ class ProjectedTransfer {
   void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Pack (&)[D],
                const ParticleColumn<Mat<D>>& fields) noexcept
   {
-    Pack x[D]{};  // sum B c: the place where values are read is the one about which they are handed on
+    Pack x[D]{};  // sum B c: values are read and passed on about the same position
     for (int a = 0; a <= D; ++a)
       for (int d = 0; d < D; ++d)
         x[d] += shares_.of[a] * arms_[static_cast<std::size_t>(a)][d];
@@ -228,7 +232,7 @@ class ProjectedTransfer {
  private:
   const K& kernel_;
   typename K::Cell cell_;
-  std::array<Vec<D>, D + 1> arms_;  ///< centres of the linear shape functions about the origin [m]
+  std::array<Vec<D>, D + 1> arms_;  ///< centres of the linear shape functions relative to the origin [m]
   CornerWeights<D> shares_;
   HatSums<D> sums_;
   std::array<ProjectedNodeMotion<D>, D + 1> motion_;

@@ -1,5 +1,5 @@
 #pragma once
-// Particles -> rows of their block of cells (P2G).
+// Transfer from particles to the rows of their block of cells (P2G).
 #include <utility>
 
 #include "solver/model/model.hpp"
@@ -45,13 +45,13 @@ void scatter(Model<D>& m, KernelRows<D, K>& of)
           },
           ask);
     if (std::exchange(of.blocks.occupied[static_cast<std::size_t>(b)], occupied ? 1 : 0) && !occupied)
-      std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});  // nothing left for others to read
+      std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});  // no old values for other ranks to read
   });
 }
 
 }  // namespace detail
 
-/// Mass, momentum and force of every particle, into the rows of its block.
+/// Adds mass, momentum and force of every particle to the rows of its block.
 template <int D, Kernel<D> K>
 void scatter(Model<D>& m, KernelRows<D, K>& of)
 {

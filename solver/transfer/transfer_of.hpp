@@ -1,5 +1,5 @@
 #pragma once
-// Transfer<D> for one kernel.  A kernel of the list is compiled once, in transfer_<kernel>.cpp; any other wherever it is used.
+// Transfer<D> for one kernel.  It is compiled once for the kernels of compiled_transfers.hpp, and for any other kernel wherever it is used.
 #include <algorithm>
 #include <utility>
 
@@ -8,19 +8,20 @@
 
 namespace talus {
 
-/// A node with less than this share of the lightest particle around moves with its neighbours.  Where weights may be negative, sums
-/// cancel and a small mass says nothing about the momentum beside it: there the cut lies above the negative share that moving
-/// least squares reach beside a boundary (0.012 of a particle).
+/// Nodes with less than this fraction of the mass of the lightest particle around are nodes of small mass.  Where weights may be negative,
+/// sums cancel and a small mass gives no information on the momentum: there the limit lies above the negative weights that moving least
+/// squares reach beside a boundary (0.012 of a particle).
 inline constexpr Real least_share = 1e-8, least_share_of_signed_weights = 2e-2;
 
-/// Cells whose weights have different signs may leave a node next to nothing of what they bring; velocity and acceleration are then
-/// quotients of two small differences.  Measured on two grids that become 4 and two that become 10 times finer from one cell to the
-/// next: with 0.1 particles turn inside out on one, with 0.5 one gains 35 times its energy, with 0.3 none breaks.  Where all weights
-/// are positive it never matters.
+/// Limit of the ratio of the mass of a node to the sum of absolute masses from single cells.  Cells whose weights have different signs may
+/// leave a node next to no mass; velocity and acceleration are then quotients of two small differences.  Measured on two grids that become
+/// 4 and two that become 10 times finer from one cell to the next: with 0.1 particles invert on one, with 0.5 one gains 35 times its
+/// energy, with 0.3 none fails.  Without effect where all weights are positive.
 inline constexpr Real least_share_of_cells = 0.3;
-/// With a set of node operators, rows of nodes on a wall stay in the wall: a node beside a wall that carries a film has next to no mass, but the
-/// film's stress pulls at it.  Its mass is measured by that of the linear shape functions around.  On a regular lattice it has 0.4 of their mean under a film
-/// half a cell thick and 0.17 under a fifth of one; nodes at free surfaces have about 0.9.
+/// Limit of the ratio of the mass of a node to the mean mass of the linear shape functions around, for kernels with node operators.  Rows
+/// of nodes on a wall contain nodes on the wall only, so a node beside a wall that carries a thin film has next to no mass, but the film's
+/// stress acts on it.  On a regular lattice the ratio is 0.4 under a film half a cell thick and 0.17 under a fifth of one; nodes at free
+/// surfaces have about 0.9.
 inline constexpr Real least_share_of_hats = 0.2;
 
 template <int D, Kernel<D> K>
@@ -129,8 +130,8 @@ class TransferOf final : public Transfer<D> {
     return bytes;
   }
 
-  /// Motion of the nodes -> what particles read: the same, or that of projected nodes, on which boundary conditions act once more where
-  /// their values mix those of nodes.
+  /// Makes the motion that particles read from that of the nodes: a copy, or projected nodes, on which boundary conditions act once more
+  /// where their values combine those of several nodes.
   void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] const Kick& kick)
   {
     if constexpr (Rows::projects) {
@@ -142,8 +143,8 @@ class TransferOf final : public Transfer<D> {
   }
 
  private:
-  /// MUSL: momentum of the new particle velocities on the nodes, held by the boundaries; then L_p from these velocities, while the
-  /// particles move with those of the step itself.
+  /// MUSL: puts the momentum of the new particle velocities on the nodes, under the boundary conditions; then computes L_p from these
+  /// velocities, while the particles move with the velocities of the step.
   void gather_from_remapped(Model<D>& m, Real mid, Real dt, const typename Transfer<D>::StressUpdate& update)
   {
     Problem<D>& problem = m.problem;
@@ -182,7 +183,7 @@ class TransferOf final : public Transfer<D> {
   Rows rows_;
 };
 
-/// A model of one rank without particles, for a kernel that is known here.
+/// A model of one rank without particles, for a kernel known at compile time.
 template <class K, int D>
 Model<D> make_model(Mesh<D> mesh, const Options<K>& options = {})
 {

@@ -18,9 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What one file holds of one table.
+/// The contents of one file for one table.
 struct Snapshot {
-  std::optional<std::vector<std::int64_t>> ids;  ///< nothing for items that are numbered
+  std::optional<std::vector<std::int64_t>> ids;  ///< nothing for numbered items
   std::vector<StoredField> fields;
 };
 
@@ -30,7 +30,7 @@ const StoredField* find_field(const std::vector<StoredField>& fields, const std:
   return found == fields.end() ? nullptr : &*found;
 }
 
-/// Row i beside row i.
+/// Pairs row i with row i.
 std::vector<std::pair<std::size_t, std::size_t>> side_by_side(std::size_t rows)
 {
   std::vector<std::pair<std::size_t, std::size_t>> pairs(rows);
@@ -48,7 +48,7 @@ FieldLine& line_of(FieldTable& table, const std::string& name)
   return table.lines.back();
 }
 
-/// Takes note of a field of run `r` before anything is compared: the tolerance needs the largest value of all.
+/// Records a field of run `r` before the comparison: the tolerance needs the largest value of all files.
 void note_field(FieldTable& table, std::size_t r, const std::string& name, const FieldShape& shape, std::span<const Real> values)
 {
   FieldLine& line = line_of(table, name);
@@ -57,7 +57,7 @@ void note_field(FieldTable& table, std::size_t r, const std::string& name, const
     line.shape[r] = shape;
 }
 
-/// Keeps the lines that are asked for, and says what keeps them from being compared at all.
+/// Keeps the requested lines, and records why some cannot be compared.
 void choose_lines(FieldTable& table, const RunFolders& folders, const DiffOptions& options)
 {
   for (const FieldLine& line : table.lines)
@@ -76,7 +76,7 @@ void choose_lines(FieldTable& table, const RunFolders& folders, const DiffOption
   }
 }
 
-/// Behind a comma; nothing for a scalar.
+/// The name of a component with a preceding comma; empty for a scalar.
 std::string component_name(int component, int components)
 {
   if (components == 1)
@@ -85,7 +85,7 @@ std::string component_name(int component, int components)
   return names.empty() ? fmt::format(", component {}", component) : ", " + names[static_cast<std::size_t>(component)];
 }
 
-/// Adds what was found in one pair of files; `where` is asked only for a new largest difference.
+/// Adds the result for one pair of files; `where` is called only for a new largest difference.
 template <class Where>
 void add_gap(FieldLine& line, const Gap& gap, Where&& where)
 {
@@ -102,7 +102,7 @@ void add_gap(FieldLine& line, const Gap& gap, Where&& where)
 
 Real tolerance_of(const FieldLine& line, const DiffOptions& options) { return options.absolute + options.relative * line.scale; }
 
-/// Times must ascend for two lists of them to be laid side by side.
+/// Checks that times ascend, so that two lists can be compared.
 void check_ascending(std::span<const Real> times, const fs::path& file)
 {
   for (std::size_t i = 0; i < times.size(); ++i)
@@ -110,7 +110,7 @@ void check_ascending(std::span<const Real> times, const fs::path& file)
       throw Error(fmt::format("{}: its times do not ascend: entry {} is {} s", file.string(), i + 1, times[i]));
 }
 
-/// Times that are compared, and in words what only one run has.
+/// The times that both runs have, and a description of the others.
 struct CommonTimes {
   std::vector<std::pair<std::size_t, std::size_t>> both;
   std::vector<std::string> one_sided = {};
@@ -135,10 +135,10 @@ CommonTimes common_times(const std::array<std::vector<Real>, 2>& times, const Ru
   return common;
 }
 
-/// Particles that only one run has, at all times together.
+/// Particles that only one run has, over all times.
 struct LoneItems {
   std::size_t times = 0;
-  std::string first = {};  ///< in words
+  std::string first = {};  ///< description of the first one
 
   void add(const std::vector<std::int64_t>& ids, const std::vector<std::size_t>& rows, Real time)
   {
@@ -191,7 +191,7 @@ void compare_snapshots(FieldTable& table, const Snapshot& a, const Snapshot& b, 
   }
 }
 
-/// Compares the files of a list (.pvd), each of which holds a snapshot for each of the tables.
+/// Compares the files of a list (.pvd), each of which has a snapshot for each table.
 template <class ReadSnapshots>
 void compare_series(std::vector<FieldTable>& tables, const std::string& list, ReadSnapshots&& read, const RunFolders& folders,
                     const DiffOptions& options)
@@ -255,7 +255,7 @@ std::vector<Snapshot> mesh_fields_in(const fs::path& file)
   return snapshots;
 }
 
-/// Columns are told apart by their names.
+/// Checks that the names of columns differ.
 void check_different(const std::vector<CsvColumn>& columns, const fs::path& file)
 {
   for (std::size_t c = 0; c < columns.size(); ++c)
@@ -300,7 +300,7 @@ FieldTable compare_histories(const RunFolders& folders, const DiffOptions& optio
 
 bool is_there(const fs::path& file)
 {
-  std::error_code ignored;  // what cannot be looked at is not there for us
+  std::error_code ignored;  // inaccessible files count as missing
   return fs::exists(file, ignored);
 }
 

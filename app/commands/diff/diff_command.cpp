@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Entries of a line of the printed table.
+/// The entries of a line of the printed table.
 using Cells = std::array<std::string, 6>;
 
 Cells cells_of(const FieldLine& line)
@@ -55,7 +55,7 @@ void print_table(const FieldTable& table)
     fmt::print("  {}\n", words);
 }
 
-/// What the runs were made from and with: told, but no difference of results.
+/// Prints scene and program of the runs, which do not count as differences.
 void print_origins(const RunFolders& folders)
 {
   std::vector<std::string> same, other;
@@ -88,7 +88,7 @@ void print_origins(const RunFolders& folders)
     fmt::print("made with other {}\n", fmt::join(other, ", "));
 }
 
-/// Fields that were asked for must be in one of the runs at least.
+/// Throws unless each requested field exists in at least one run.
 void check_names(const std::vector<FieldTable>& tables, const RunFolders& folders, const DiffOptions& options)
 {
   std::vector<std::string> known;

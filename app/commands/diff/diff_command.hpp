@@ -9,13 +9,13 @@
 namespace talus {
 
 struct DiffOptions {
-  std::filesystem::path a, b;       ///< folders of two runs
+  std::filesystem::path a, b;       ///< results folders of two runs
   Real relative = 0, absolute = 0;  ///< values differ where |a - b| > absolute + relative * largest value of their field
-  std::vector<std::string> fields;  ///< empty: all
-  bool last = false;                ///< only the last time that both have
+  std::vector<std::string> fields;  ///< fields to compare; empty: all
+  bool last = false;                ///< compares only the last time that both have
 };
-/// Compares the results in two folders and prints a table; whether they are the same.  Error for what cannot be read, and for words that
-/// mean nothing: a status of 1 says that results differ.
+/// Compares the results in two folders and prints a table; returns whether they are equal.  Throws Error for unreadable results and invalid
+/// options, so that the exit code 1 always means different results.
 bool same_results(const DiffOptions& options);
 
 }  // namespace talus

@@ -9,9 +9,9 @@ namespace talus {
 
 namespace {
 
-constexpr Real same_time = 1e-12;  // relative; two runs may add up the same steps in another order
+constexpr Real same_time = 1e-12;  // relative; two runs may add the same steps in another order
 
-/// Walks along two ascending lists at once.  comes_before(x, y) is false both ways for what belongs together.
+/// Walks along two ascending lists at once.  comes_before(x, y) is false in both directions for items that belong together.
 template <class T, class Before>
 Pairs match_in_order(std::span<const T> a, std::span<const std::size_t> order_a, std::span<const T> b, std::span<const std::size_t> order_b,
                      Before&& comes_before)
@@ -39,7 +39,7 @@ std::vector<std::size_t> ascending(std::span<const T> values)
   return order;
 }
 
-/// |a - b|; infinite where they cannot be subtracted and are not the same.
+/// |a - b|; infinite if the difference is not defined and they are not equal.
 Real distance(Real a, Real b)
 {
   if (a == b || (std::isnan(a) && std::isnan(b)))
@@ -80,7 +80,7 @@ Gap compare(std::span<const Real> a, std::span<const Real> b, int components, st
     for (std::size_t c = 0; c < width; ++c) {
       const Real value_a = a[width * rows[r].first + c], value_b = b[width * rows[r].second + c];
       const Real d = distance(value_a, value_b);
-      gap.differing += d > tolerance || std::isinf(d) ? 1 : 0;  // an infinite tolerance does not make a number of what is none
+      gap.differing += d > tolerance || std::isinf(d) ? 1 : 0;  // infinite differences count even with an infinite tolerance
       if (d > gap.largest) {
         gap.largest = d;
         gap.pair = r;

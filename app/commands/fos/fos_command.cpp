@@ -24,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A trial that says nothing clear begins anew, so many times as long.
+/// A trial without a clear verdict is repeated with its duration multiplied by this factor.
 constexpr int longest_trial = 2;
 
-/// Trials side by side unless asked for otherwise: of n the bracket becomes an (n + 1)th, which more than some do not make faster.
+/// Default limit of simultaneous trials: n trials divide the bracket by n + 1, so more of them save little time.
 constexpr std::size_t most_at_a_time = 4;
 
 /// The search in its folder: runs, verdicts, files.
@@ -41,7 +41,7 @@ class FosSearch {
         broken_off_(broken_off(plan.folder / "fos.json"))
   {}
 
-  /// RunError, Stopped, EnvironmentError.
+  /// Runs the search.  Throws RunError, Stopped, EnvironmentError.
   void operator()()
   {
     find_rest();
@@ -128,7 +128,7 @@ class FosSearch {
   }
 
  private:
-  /// A run of a factor, and how many times as long as usual it is.
+  /// A factor to run, and its duration relative to the usual one.
   struct Planned {
     Real factor;
     int times;
@@ -156,7 +156,7 @@ class FosSearch {
         fmt::format("stopped by {}: {} trials are judged; go on by giving the command again", StopRequests::received(), trials_.size()));
   }
 
-  /// Waits for the runs that are at work; end(number, code, seconds) of each.
+  /// Waits for the runs in progress; calls end(number, code, seconds) for each.
   template <class F>
   void wait(F&& end)
   {
@@ -178,7 +178,7 @@ class FosSearch {
     if (status.state == CaseState::done)
       return say(fmt::format("at rest: done before, in {}", plan_.at_rest.folder.string()));
     say(fmt::format("at rest: {} in {}", status.goes_on_from ? "goes on" : "begins", plan_.at_rest.folder.string()));
-    // Alone, so with all that there is.
+    // Alone, so with all cores.
     ChildRuns alone(options_.launcher, options_.threads, plan_.quick);
     std::swap(alone, runs_);
     runs_.start(0, plan_.scene, plan_.at_rest, status);
@@ -197,7 +197,7 @@ class FosSearch {
     if (code == run_was_stopped && StopRequests::received().empty())
       throw Stopped("a run was told to stop; go on by giving the command again");
   }
-  /// Nothing is thrown of what was told to end.
+  /// Throws the error of a run, except for runs that were told to end.
   static void throw_why(int code, const std::string& message)
   {
     if (!StopRequests::received().empty())
@@ -207,7 +207,7 @@ class FosSearch {
     throw EnvironmentError(message);
   }
 
-  /// What an earlier search has left.
+  /// Reads the trials of an earlier search.
   void look_for_trials()
   {
     std::vector<Real> factors;
@@ -217,7 +217,7 @@ class FosSearch {
       if (name.starts_with("trial_") && fs::exists(entry.path() / "summary.json", unreadable))
         try {
           factors.push_back(std::stod(name.substr(std::string_view("trial_").size())));
-        } catch (const std::logic_error&) {  // the folder of somebody else
+        } catch (const std::logic_error&) {  // a folder that is not one of this search
         }
     }
     std::sort(factors.begin(), factors.end());
@@ -229,7 +229,7 @@ class FosSearch {
       say(fmt::format("{} trial{} judged before", trials_.size(), trials_.size() == 1 ? "" : "s"));
   }
 
-  /// Whether the run is there and says something; that goes among the trials.
+  /// Judges an existing run; returns whether it has a verdict, which is added to the trials.
   bool judge_run(const Planned& planned, bool is_last)
   {
     const CaseStatus status = status_of(planned.run, plan_.quick);
@@ -280,7 +280,7 @@ class FosSearch {
     });
   }
 
-  /// A run has ended: a verdict, or the same run twice as long.
+  /// Handles the end of a run: adds a verdict, or the same run with twice the duration.
   void see_end(const Planned& one, const ChildRuns::Ended& ended, std::deque<Planned>& waiting)
   {
     if (!StopRequests::received().empty() && ended.code != 0)
@@ -309,12 +309,12 @@ class FosSearch {
   const FosPlan& plan_;
   SideBySide side_;
   ChildRuns runs_;
-  std::vector<std::string> broken_off_;  ///< digests of trials that ended by their own physics
+  std::vector<std::string> broken_off_;  ///< digests of trials that failed by their physics
   std::vector<FosTrial> trials_;         ///< in the order of their factors
   std::vector<Planned> made_;
 };
 
-/// Displacement over factor, and the bodies where they just fail.
+/// Draws displacement over factor, and the bodies of the lowest factor that fails.
 void draw_fos(const FosPlan& plan, const FosSearch& search)
 {
   const auto [low, high, out_of_order] = search.bracket();

@@ -15,16 +15,16 @@ struct FosOptions {
   std::optional<std::filesystem::path> out;
   FosRange range;
   FosCriterion criterion;
-  std::optional<Real> duration;     ///< of a trial [s]
-  Real damping = 0.3;               ///< of a trial, as stages have it
-  Real mass_share = 0.99;           ///< whose displacement counts, as outputs.history.moved has it
-  std::vector<std::string> bodies;  ///< whose strength is divided; empty: of all that have some
+  std::optional<Real> duration;     ///< duration of a trial [s]
+  Real damping = 0.3;               ///< local damping of a trial, as in stages
+  Real mass_share = 0.99;           ///< fraction of mass whose displacement is measured, as in outputs.history.moved
+  std::vector<std::string> bodies;  ///< bodies whose strength is divided; empty: all with a strength
   std::optional<int> jobs, threads;
   std::optional<std::string> launcher;
   bool quick = false, quiet = false, pictures = true;
 };
-/// Finds the factor by which the strength of bodies can be divided before they fail: runs the scene until it is at rest, then trials from there, and
-/// leaves fos.csv, fos.json and pictures.  SceneErrors, RunError, Stopped, EnvironmentError as above.
+/// Finds the factor by which the strength of bodies can be divided before they fail: runs the scene until it is in equilibrium, then trials
+/// from there, and writes fos.csv, fos.json and pictures.  Throws SceneErrors, RunError, Stopped, EnvironmentError.
 void find_fos(const FosOptions& options);
 
 }  // namespace talus

@@ -11,7 +11,7 @@ namespace talus {
 
 namespace {
 
-/// Of a column at a time, linearly between rows.
+/// The value of a column at a time, linear between rows.
 Real value_at(Real time, std::span<const Real> times, std::span<const Real> values)
 {
   const auto after = static_cast<std::size_t>(std::lower_bound(times.begin(), times.end(), time) - times.begin());
@@ -26,7 +26,7 @@ bool is_known(Real factor, std::span<const FosTrial> trials)
   return std::any_of(trials.begin(), trials.end(), [&](const FosTrial& trial) { return trial.factor == factor; });
 }
 
-/// In two digits.
+/// The value rounded to two digits.
 Real rounded(Real value)
 {
   const Real digit = std::pow(10, std::floor(std::log10(value)) - 1);

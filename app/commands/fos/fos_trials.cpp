@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Rows of a trial's history and files of its particles.
+/// Numbers of rows of a trial's history and of files of its particles.
 constexpr int rows_of_trial = 100, files_of_trial = 10;
 
 fs::path default_fos_folder(const fs::path& scene) { return default_results(scene).string() + "_fos"; }
@@ -42,7 +42,7 @@ Index material_number(const Scene& scene, const std::string& name)
   return static_cast<Index>(found - scene.materials.begin());
 }
 
-/// Bodies whose strength is divided, with their materials: of those that are there in the stage `last`.
+/// Selects the bodies whose strength is divided, with their materials, among those present in the stage `last`.
 void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
 {
   const Scene& scene = plan.spec;
@@ -82,7 +82,7 @@ void choose_bodies(const FosOptions& options, Index last, FosPlan& plan)
     throw SceneErrors(std::move(problems));
 }
 
-/// What particles and materials say of the state before.
+/// The properties of particles and materials before the division.
 template <int D>
 AtRest measured(const FosPlan& plan)
 {
@@ -110,7 +110,7 @@ AtRest measured(const FosPlan& plan)
   return before;
 }
 
-/// One number of a material and those inside its groups: those that differ, as changes.
+/// The changes of one number of a material and of those in its groups, where they differ.
 template <class T>
 void tell_difference(const T& before, const T& after, const std::string& path, std::vector<std::string>& changes)
 {
@@ -127,7 +127,7 @@ void tell_difference(const T& before, const T& after, const std::string& path, s
   }
 }
 
-/// Entries of a list of the scene as they are written, joined to a list again: those that are kept, each with some of its keys and more.
+/// Rewrites a list of the scene: the selected entries, each with some of its keys and additional ones.
 class Rewritten {
  public:
   Rewritten(const FosOptions& options, std::string list) : options_(options), list_(std::move(list)) {}
@@ -146,7 +146,7 @@ class Rewritten {
   std::vector<std::string> entries_;
 };
 
-/// A text in quotes that YAML reads back.
+/// The text in quotes, which YAML reads back unchanged.
 std::string in_quotes(const fs::path& path)
 {
   Node text;
@@ -156,7 +156,7 @@ std::string in_quotes(const fs::path& path)
   return in_one_line(text);
 }
 
-/// The stages up to the state at rest.  SceneErrors: a law that changes on the way is not that of the scene's bodies any more.
+/// Keeps the stages up to equilibrium.  Throws SceneErrors if a law changes on the way, because it would not be the law in the scene.
 void keep_stages(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
 {
   Rewritten stages(options, "stages");
@@ -173,7 +173,7 @@ void keep_stages(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
   plan.at_rest.changes.push_back(stages.change());
 }
 
-/// Bodies that come later are left out; a trial has those that are there when all is at rest.
+/// Keeps the bodies that are present in equilibrium; bodies that appear later are left out.
 void keep_bodies(const FosOptions& options, Index last, FosPlan& plan)
 {
   Rewritten before(options, "bodies"), then(options, "bodies");
@@ -191,7 +191,7 @@ void keep_bodies(const FosOptions& options, Index last, FosPlan& plan)
   plan.of_state.push_back(then.change());
 }
 
-/// Walls act in the trials as they do in the stage that finds rest.
+/// Boundary conditions act in the trials as in the stage that finds equilibrium.
 void keep_walls(const FosOptions& options, Index last, FosPlan& plan)
 {
   const auto& walls = plan.spec.boundaries;
@@ -215,7 +215,7 @@ void keep_walls(const FosOptions& options, Index last, FosPlan& plan)
   plan.of_state.push_back(then.change());
 }
 
-/// The water table of trials is that of the state at rest.
+/// The water table of trials is that of the equilibrium.
 void keep_table(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
 {
   for (std::size_t i = n_stages; i-- > 0;)
@@ -224,8 +224,8 @@ void keep_table(const FosOptions& options, std::size_t n_stages, FosPlan& plan)
                                      written_in_scene(options.scene, options.set, fmt::format("stages[{}].water.table", i)));
 }
 
-/// The scene itself has been read: what is wrong with it after these changes is no mistake in the scene or on the command line, so the
-/// error names the scene and not a --set that was not typed.
+/// The scene has been read before: errors after these changes are not errors of the user, so the message names the scene and not a --set
+/// that was not typed.
 std::string digest_of_changed(const FosPlan& plan, const std::vector<std::string>& changes)
 try {
   return scene_digest(read_scene(plan.scene, changes));
@@ -324,7 +324,7 @@ FosPlan plan_fos(const FosOptions& options)
   plan.moved = fmt::format("[{}]", fmt::join(moved, ", "));
   if (const std::string picture = written_in_scene(options.scene, options.set, "outputs.picture"); picture.starts_with('{'))
     plan.picture = ", picture: " + picture;
-  trial_of(plan, 1, 1);  // what keeps a trial from being run is said before the state at rest is sought
+  trial_of(plan, 1, 1);  // errors of a trial are reported before the equilibrium is computed
   return plan;
 }
 

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first comment of a template that is not for editors.
+/// The first comment of a template, apart from comments for editors.
 std::string_view summary_of(std::string_view text)
 {
   for (const std::string_view line : lines_of(text))
@@ -31,7 +31,7 @@ void list_templates()
     fmt::print("{:<8}  {}\n", one.name, summary_of(one.text));
 }
 
-/// The template of that name, or the text of a file.
+/// The text of the template of that name, or of a file.
 std::string text_of(const std::string& name_or_file)
 {
   for (const TemplateText& one : shipped_templates())
@@ -64,7 +64,7 @@ void new_scene(const NewOptions& options)
   const fs::path out = options.out.value_or(fs::path(*options.from).stem().string() + ".yaml");
   if (std::error_code unknown; !options.force && fs::exists(fs::symlink_status(out, unknown)))
     throw Error(fmt::format("{} is there already: choose another file with --out, or replace it with --force", out.string()));
-  read_scene_text(out, text);  // values that make no scene leave no file
+  read_scene_text(out, text);  // invalid values throw before the file is written
   write_whole(out, text);
   const std::string scene = shell_word(out), results = shell_word("runs/" + out.stem().string());
   fmt::print("{} is written: edit it. Next:\n  talus check {}\n  talus run {} --out {}\n  talus render {}\n", out.string(), scene, scene,

@@ -7,7 +7,7 @@
 
 namespace talus {
 
-/// A file of scenes/templates, as it stood there when the program was built.
+/// A file of scenes/templates, with its text when the program was built.
 struct TemplateText {
   std::string_view name, text;
 };

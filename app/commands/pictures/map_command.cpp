@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names of the axes of the plan, to the right and upwards.
+/// The names of the axes of the plan, to the right and upwards.
 std::array<std::string, 2> names_of_axes(const Scene& scene)
 {
   Vec3 gravity = Vec3::Zero();
@@ -31,7 +31,7 @@ std::array<std::string, 2> names_of_axes(const Scene& scene)
   return {std::string(1, "xyz"[axes.plan[0]]), std::string(1, "xyz"[axes.plan[1]])};
 }
 
-/// Error: there is nothing to draw.
+/// Throws Error if there is nothing to draw.
 void require_maps(const fs::path& folder, const Scene& scene, bool movie)
 {
   std::error_code unreadable;

@@ -20,7 +20,7 @@ std::vector<fs::path> pictures_by(const std::vector<std::string>& words)
   return pictures;
 }
 
-/// A folder that is gone afterwards.
+/// A folder that is removed in the end.
 struct Passing {
   fs::path folder;
   ~Passing()

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of talus-render as a movie.
+// Movies from pictures of talus-render.
 #include <string>
 #include <vector>
 
@@ -7,10 +7,10 @@
 
 namespace talus {
 
-/// What is wrong with the movie asked for, if one is; `words` are those of talus-render.
+/// Adds the errors of the options of a movie, if there is one; `words` are those of talus-render.
 void check_movie(const MovieOptions& options, const std::vector<std::string>& words, std::vector<std::string>& problems);
 
-/// Has talus-render draw what the words say, makes a movie of it, and prints its name.
+/// Draws pictures by talus-render, makes a movie of them, and prints its name.
 void make_movie(const MovieOptions& options, std::vector<std::string> words);
 
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// Options of the commands that join their pictures to a movie.
+// Options of the commands that can make a movie of their pictures.
 #include <filesystem>
 #include <optional>
 
@@ -8,8 +8,8 @@
 namespace talus {
 
 struct MovieOptions {
-  std::optional<std::filesystem::path> movie;  ///< a .mp4 or .gif of all pictures
-  Real per_second = 10;                        ///< pictures of the movie
+  std::optional<std::filesystem::path> movie;  ///< .mp4 or .gif of all pictures
+  Real per_second = 10;                        ///< pictures per second
   bool keep_frames = false;
 };
 

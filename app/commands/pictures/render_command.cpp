@@ -23,7 +23,7 @@ void add(const std::string& option, const std::vector<Real>& numbers, Words& wor
     words.push_back(fmt::format("{}", number));
 }
 
-/// Against gravity, so that what falls falls down in the picture.
+/// The direction against gravity, so that material falls downwards in the picture.
 std::vector<Real> up_of(const Scene& scene)
 {
   if (!scene.outputs.picture.up.empty() || scene.dimension == 2)
@@ -33,7 +33,7 @@ std::vector<Real> up_of(const Scene& scene)
   return {};
 }
 
-/// What the scene says where the command line says nothing.
+/// The options with the defaults of the scene.
 Words with_defaults(const Scene& scene, const RenderOptions& options)
 {
   const PictureSpec& picture = scene.outputs.picture;
@@ -52,7 +52,7 @@ Words with_defaults(const Scene& scene, const RenderOptions& options)
   return words;
 }
 
-/// The whole series with the same colours throughout.
+/// Adds options for a series with constant colours.
 void add_movie_defaults(Words& words)
 {
   if (!has_option(words, "--frames"))

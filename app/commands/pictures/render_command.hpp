@@ -10,10 +10,10 @@ namespace talus {
 
 struct RenderOptions : MovieOptions {
   std::filesystem::path folder;
-  std::vector<std::string> words;  ///< render::picture_options and what follows them
+  std::vector<std::string> words;  ///< render::picture_options with their values
 };
-/// Draws the results in a folder; what is not asked for is as the scene says.  Error with all that is wrong with the words, before anything is
-/// drawn; EnvironmentError.
+/// Draws the results in a folder, with the defaults of the scene.  Throws Error with all errors of the options before anything is drawn;
+/// EnvironmentError.
 void render_results(const RenderOptions& options);
 
 }  // namespace talus

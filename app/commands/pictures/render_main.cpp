@@ -1,4 +1,4 @@
-// talus-render: pictures and surfaces in a process of their own, because VTK ends the process when there is no display.
+// talus-render: pictures and surfaces in a separate process, because VTK ends the process if there is no display.
 #include <fmt/format.h>
 
 #include <csignal>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace talus;
 
-/// io/pictures/settings/launch_render.cpp looks for these lines: a file, and what there is to say of it.
+/// Prints a file and lines about it in the format that io/pictures/settings/launch_render.cpp parses.
 void announce(const std::filesystem::path& file, const std::string& said = "")
 {
   fmt::print("file: {}\n", file.string());
@@ -68,11 +68,11 @@ void draw_pictures(std::span<const std::string> words)
 
 }  // namespace
 
-// Exit codes as those of talus: 0 done, 1 unforeseen, 2 wrong arguments, 3 wrong environment.
+// Exit codes as those of talus: 0 done, 1 unexpected error, 2 wrong arguments, 3 wrong environment.
 int main(int argc, char** argv)
 {
   const std::vector<std::string> arguments(argv + 1, argv + argc);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too long is an error of the write that does not fit
+  std::signal(SIGXFSZ, SIG_IGN);  // a file beyond the size limit is an error of the write
   try {
     if (arguments.size() == 1 && arguments.front() == "--help") {
       fmt::print("{}", render::usage());

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Fields of the first file that can be read.  EnvironmentError of the last one, if none can.
+/// The fields of the first file that can be read.  Throws the EnvironmentError of the last one if there is none.
 std::vector<std::pair<std::string, int>> fields_of_first(const std::vector<std::pair<Real, fs::path>>& files)
 {
   for (std::size_t f = 0;; ++f)

@@ -1,5 +1,5 @@
 #pragma once
-// The results of a run, as what is to be drawn.
+// The results of a run to be drawn.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -13,10 +13,10 @@ struct RenderedRun {
   Scene scene;
   render::RunFacts facts;
 };
-/// Error: the folder holds no results of a run; EnvironmentError: none of particles.
+/// Throws Error if the folder contains no results of a run, EnvironmentError if it contains none of particles.
 RenderedRun read_rendered_run(const std::filesystem::path& folder);
 
-/// Whether the option is among the words of a command line.
+/// Whether an option is among the words of a command line.
 bool has_option(const std::vector<std::string>& words, std::string_view option);
 
 }  // namespace talus

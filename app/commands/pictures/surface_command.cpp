@@ -11,7 +11,7 @@ namespace talus {
 
 namespace {
 
-/// One body, or all of them, as words of talus-render.
+/// The options of talus-render for one body, or for all.
 std::vector<std::string> body_words(const Scene& scene, const std::optional<std::string>& wanted, std::vector<std::string>& problems)
 {
   std::vector<std::string> words, known;

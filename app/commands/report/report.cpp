@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr Real bytes_of_megabyte = 1e6;
-constexpr std::size_t most_cell_edges = 200'000;  // of a mesh: more would be a grey surface
+constexpr std::size_t most_cell_edges = 200'000;  // most edges of a mesh: with more it would be a grey area
 
 std::vector<PageBody> bodies_of(const RunFolder& run)
 {
@@ -54,7 +54,7 @@ BlockId add_edges(const std::vector<Edge>& edges, Page& page)
   return page.add(packed(nodes));
 }
 
-/// The nodes that these edges use, under new numbers; the rest of a mesh in 3-D nobody sees.
+/// The nodes of these edges, renumbered; other nodes of a 3-D mesh are not visible.
 std::vector<Real> renumber(std::span<const Real> nodes, MeshEdges& edges)
 {
   std::vector<Index> number(nodes.size() / 3, none);
@@ -87,7 +87,7 @@ PagePlaces places_of(std::span<const Real> nodes, Page& page)
   return places;
 }
 
-/// Nothing where there is no mesh file, or a damaged one, which the page says.
+/// The mesh; nothing if the file is missing, or damaged, which is noted in the page.
 std::optional<StoredMesh> mesh_in(const fs::path& folder, Page& page)
 try {
   const fs::path file = folder / "mesh.vtu";
@@ -114,7 +114,7 @@ void add_mesh(const StoredMesh& mesh, Page& page)
   page.mesh = std::move(shown);
 }
 
-/// A mesh file that cannot be read leaves a page without ground, which says so.
+/// Adds the ground; an unreadable mesh file gives a page without ground and a note.
 void add_ground(const fs::path& folder, Page& page)
 {
   std::optional<RigidGround> ground;
@@ -137,7 +137,7 @@ void add_ground(const fs::path& folder, Page& page)
   page.ground = std::move(shown);
 }
 
-/// A table that cannot be read is left out.
+/// A table; empty with a note if it cannot be read.
 HistoryTable table_in(const fs::path& file, const std::string& what, Page& page)
 {
   if (!fs::exists(file))

@@ -12,7 +12,7 @@ namespace talus {
 
 namespace {
 
-/// What every file has and nobody looks at as colours.
+/// Whether a field is useful as colours; position and id are not.
 bool is_shown(const StoredField& field) { return field.name != "position" && field.name != "body"; }
 
 std::vector<std::string> names_of_fields(const StoredParticles& particles)

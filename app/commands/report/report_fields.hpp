@@ -1,22 +1,22 @@
 #pragma once
-// Which fields of the particles a page shows, and their values.
+// The fields of particles that a page shows, and their values.
 #include "core/field_component.hpp"
 #include "io/output/vtk.hpp"
 
 namespace talus {
 
-/// The field of that name; nothing if the file does not have it.
+/// The field of that name; nullptr if the file does not have it.
 const StoredField* stored_field(const StoredParticles& particles, std::string_view name);
 
-/// One number a particle.
+/// The shown value of each particle.
 std::vector<Real> viewed_values(const StoredField& field, const ViewedField& viewed);
 
-/// Of the particles of a run: those asked for; if none, the one of its pictures and then every field that was written.  Error: there is no
-/// such field, or it has no such component.
+/// The fields to show: the requested ones, or else the one of the pictures and then every field that was written.  Throws Error if a field
+/// or component does not exist.
 std::vector<ViewedField> fields_to_show(const StoredParticles& particles, const std::vector<std::string>& asked,
                                         const std::string& of_picture);
 
-/// "stress:xy", as it was asked for.
+/// The field as the user names it, such as "stress:xy".
 std::string words_of(const ViewedField& field);
 
 }  // namespace talus

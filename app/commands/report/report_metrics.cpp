@@ -13,16 +13,16 @@ namespace {
 constexpr Real nothing = std::numeric_limits<Real>::quiet_NaN();
 constexpr std::string_view axis_letters = "xyz";
 
-/// A direction on the level in which mass may run out.
+/// A horizontal direction of run-out.
 struct Outward {
-  std::string word;  ///< "+x"
+  std::string word;  ///< for example "+x"
   Index axis;
   bool positive;
   Real front(const Vec3& low, const Vec3& high) const { return positive ? high[axis] : low[axis]; }
   Real advance(Real from, Real to) const { return positive ? to - from : from - to; }
 };
 
-/// Along all axes but the one that is nearest to `up`; along all where there is no gravity.
+/// The directions along all axes but the one nearest to `up`; along all axes without gravity.
 std::vector<Outward> directions(const MetricTask& task)
 {
   Index vertical = 0;
@@ -37,7 +37,7 @@ std::vector<Outward> directions(const MetricTask& task)
   return all;
 }
 
-/// Of all bodies first, then of each where there are several.
+/// The names of all bodies together, and of each if there are several.
 std::vector<std::string> names_of_masses(const MetricTask& task)
 {
   std::vector<std::string> names{task.bodies.size() == 1 ? task.bodies.front() : "all bodies"};
@@ -46,7 +46,7 @@ std::vector<std::string> names_of_masses(const MetricTask& task)
   return names;
 }
 
-/// Largest value over all frames, with its time.
+/// The largest value over all frames, with its time.
 template <class Value>
 std::optional<std::pair<Real, Real>> largest(const RunSurvey& survey, std::size_t m, Value&& value)
 {
@@ -57,7 +57,7 @@ std::optional<std::pair<Real, Real>> largest(const RunSurvey& survey, std::size_
   return found;
 }
 
-/// Numbers of one body, or of all.
+/// The metrics of one body, or of all.
 class MassMetrics {
  public:
   MassMetrics(const RunSurvey& survey, std::size_t m, std::string group, const MetricTask& task, std::vector<PageMetric>& all)
@@ -108,7 +108,7 @@ class MassMetrics {
          fmt::format("outermost particle at t = {:.6g} s; at t = {:.6g} s {:.6g} m", end(), begin(), from));
     tell("advance along " + way.word, way.advance(from, to), "m", "how far the outermost particle is beyond the one at the first output");
   }
-  /// Numbers that the run has written are taken as they are, so that page, summary and runout.csv have one number.
+  /// Values that the run has written are used unchanged, so that page, summary and runout.csv agree.
   void add_way(const MovedMass& moved)
   {
     Real height = moved.height, length = moved.length;

@@ -1,5 +1,6 @@
 #pragma once
-// What a run's particles say in numbers: run-out, crest, speeds.  Of all particles at all output times, not only of those a page shows.
+// Metrics of a run: run-out, crest, speeds.  They are computed from all particles at all output times, not only from those that a page
+// shows.
 #include "app/commands/report/report_survey.hpp"
 #include "io/page/page.hpp"
 #include "io/scene/scene_output.hpp"
@@ -9,17 +10,17 @@ namespace talus {
 struct MetricTask {
   int dimension = 2;
   Vec3 up;
-  bool gravity = true;              ///< without it nothing falls: only extents and motion are told
-  std::vector<std::string> bodies;  ///< names
+  bool gravity = true;              ///< without gravity only extents and motion are listed
+  std::vector<std::string> bodies;  ///< names of bodies
   std::vector<FrontSpec> fronts;    ///< columns of the history
-  ReachRule rule;                   ///< by which the survey found what has moved
-  HistoryTable runout;              ///< runout.csv, which the run itself has written; may be empty
+  ReachRule rule;                   ///< rule by which the survey found the moved particles
+  HistoryTable runout;              ///< runout.csv of the run; may be empty
 };
 
-/// `history`: as the run has written it; may be empty.
+/// `history`: that of the run; may be empty.
 std::vector<PageMetric> metrics_of(const RunSurvey& survey, const HistoryTable& history, const MetricTask& task);
 
-/// What they were at each output time: crest, fronts of what has moved, height and length of its way, speed, displacement.
+/// The metrics at each output time: crest, fronts of the moved mass, height and length of its path, speed, displacement.
 struct RunOutTable {
   std::vector<CsvColumn> columns;
   std::vector<std::vector<Real>> values;  ///< NaN where nothing has moved

@@ -14,13 +14,13 @@ namespace talus {
 
 namespace {
 
-/// Particles of a frame that are shown.
+/// The shown particles of a frame.
 struct ShownFrame {
   std::vector<std::int64_t> ids;
-  std::vector<std::uint8_t> body;         // empty where there is one
-  std::vector<Real> places;               // 3 numbers a particle
-  std::vector<Real> volume;               // m^3, m^2 in 2-D; empty where the file does not have it
-  std::vector<std::vector<Real>> fields;  // empty where the file does not have it
+  std::vector<std::uint8_t> body;         // empty if there is one body
+  std::vector<Real> places;               // 3 numbers per particle
+  std::vector<Real> volume;               // m^3, m^2 in 2-D; empty if not in the file
+  std::vector<std::vector<Real>> fields;  // empty if not in the file
 };
 
 template <class T>
@@ -62,7 +62,7 @@ std::vector<Real> coordinate(const std::vector<Real>& places, std::size_t axis)
   return values;
 }
 
-/// By how many hundredths of the radius each disc is larger, so that no hole is left between neighbours; empty where none is.
+/// By how many hundredths of the radius each disc is larger, so that neighbours leave no holes; empty if none is.
 std::vector<std::uint8_t> growth_of(std::span<const Real> places, Real radius, std::span<const Real> spread)
 {
   const std::vector<Real> radii = closing_radii(places, radius, spread);
@@ -74,7 +74,7 @@ std::vector<std::uint8_t> growth_of(std::span<const Real> places, Real radius, s
   return growth;
 }
 
-/// Puts frames into a page one after the other.  What does not change from one to the next is there once.
+/// Adds frames to a page in sequence.  Data that do not change are stored once.
 class FrameWriter {
  public:
   FrameWriter(const RunSurvey& survey, const ParticleWishes& wishes, const PagePlan& plan, Page& page)
@@ -156,19 +156,19 @@ class FrameWriter {
   Spread spread_;
 };
 
-/// Before anything is known: what irregular meshes in 3-D take.
+/// An estimate before any measurement, from irregular meshes in 3-D.
 ParticleCost guess(const RunSurvey& survey, int dimension)
 {
-  constexpr Real place = 2, field = 1;  // B an axis, a field
+  constexpr Real place = 2, field = 1;  // bytes per axis and per field
   return {1, place * dimension, std::vector<Real>(survey.fields.size(), field), 0};
 }
 
-/// Measured with the first, the middle and the last frame of a plan.
+/// Measures the cost with the first, middle and last frame of a plan.
 ParticleCost measure(const RunSurvey& survey, const ParticleWishes& wishes, const PagePlan& plan)
 {
   PagePlan all_fields = plan;
   all_fields.fields = survey.fields.size();
-  constexpr Real of_block = 200, of_frame = 300;  // B: what describes it
+  constexpr Real of_block = 200, of_frame = 300;  // bytes of descriptions
   const auto blocks = static_cast<Real>(survey.fields.size()) + wishes.dimension + (wishes.dimension == 2 ? 1 : 0);
   ParticleCost cost{0, 0, std::vector<Real>(survey.fields.size()), of_frame + of_block * blocks};
   const auto frames = evenly_spread(std::min<std::size_t>(3, plan.frames.size()), plan.frames.size());
@@ -204,7 +204,7 @@ std::vector<std::string> words_of_fields(std::span<const ViewedField> fields)
   return names;
 }
 
-/// What a plan leaves out, in words.
+/// Descriptions of what a plan leaves out.
 std::vector<std::string> notes_of(const RunSurvey& survey, const PagePlan& plan, std::int64_t total, std::int64_t shown)
 {
   std::vector<std::string> notes;
@@ -219,7 +219,7 @@ std::vector<std::string> notes_of(const RunSurvey& survey, const PagePlan& plan,
   return notes;
 }
 
-/// Plans within a budget, of the frames that are asked for.
+/// Plans the contents of a page within a budget, for the requested frames.
 class Planner {
  public:
   Planner(const RunSurvey& survey, const ParticleWishes& wishes)
@@ -252,7 +252,7 @@ bool is_sampled(std::int64_t id, Real share) noexcept
 {
   if (share >= 1)
     return true;
-  auto bits = static_cast<std::uint64_t>(id) + 0x9e3779b97f4a7c15U;  // splitmix64: neighbours in number have nothing to do with each other
+  auto bits = static_cast<std::uint64_t>(id) + 0x9e3779b97f4a7c15U;  // splitmix64, so that neighbouring numbers give independent results
   bits = (bits ^ (bits >> 30U)) * 0xbf58476d1ce4e5b9U;
   bits = (bits ^ (bits >> 27U)) * 0x94d049bb133111ebU;
   bits ^= bits >> 31U;
@@ -274,11 +274,11 @@ void add_particles(const RunSurvey& survey, const ParticleWishes& wishes, Page& 
       particles.frames.push_back(writer.add(frame));
     particles.radius = writer.radius() > 0 ? writer.radius() : 1;
     page.particles = particles;
-    constexpr Real words = 800;  // names of the fields, notes
+    constexpr Real words = 800;  // bytes for names of fields and notes
     const Real bytes = static_cast<Real>(page.block_bytes() + to_json(page).size() - bytes_before) + words;
     if (bytes <= wishes.budget)
       break;
-    constexpr Real a_little_less = 0.99;  // what was measured on three frames was not enough
+    constexpr Real a_little_less = 0.99;  // the measurement on three frames was too low
     constexpr int most_attempts = 6;
     if (attempt == most_attempts)
       throw Error(fmt::format("--size: too small: {} times of {} fields do not fit", plan.frames.size(), plan.fields));

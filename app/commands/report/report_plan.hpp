@@ -1,36 +1,36 @@
 #pragma once
-// How much of a run goes into a page of a given size.
+// Choice of the contents of a page of a given size.
 #include <vector>
 
 #include "core/types.hpp"
 
 namespace talus {
 
-/// What one particle takes in the page, and what a frame does [B].
+/// The size of one particle and one frame in the page [B].
 struct ParticleCost {
-  Real once = 0;             ///< in the page: its number and its body
-  Real place = 0;            ///< in a frame
-  std::vector<Real> fields;  ///< in a frame, each
-  Real frame = 0;            ///< of a frame, whatever is in it
+  Real once = 0;             ///< once per page: its number and its body
+  Real place = 0;            ///< position, per frame
+  std::vector<Real> fields;  ///< values of each field, per frame
+  Real frame = 0;            ///< per frame, independent of particles
 };
 
 struct PagePlan {
-  std::vector<std::size_t> frames;  ///< which, ascending
-  std::size_t fields = 0;           ///< the first ones
-  Real share = 1;                   ///< of the particles
-  Real bytes = 0;                   ///< expected
+  std::vector<std::size_t> frames;  ///< numbers of the frames, ascending
+  std::size_t fields = 0;           ///< number of fields, from the first
+  Real share = 1;                   ///< fraction of the particles
+  Real bytes = 0;                   ///< expected size [B]
 };
 
-/// What the reader of the page has asked for is kept, whatever it takes.
+/// Requests of the reader that are kept whatever their size.
 struct KeptAnyway {
   bool frames = false, fields = false;
 };
 
-/// Everything, if `budget` [B] allows; else fewer frames, evenly spread from the first to the last, but not fewer than 12; then fewer fields,
-/// but not fewer than 3; then fewer particles.  Error: so few that nothing could be seen.
+/// Plans everything if `budget` [B] allows; otherwise fewer frames, evenly spread from the first to the last, but at least 12; then fewer
+/// fields, but at least 3; then fewer particles.  Throws Error if too few remain.
 PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway saved);
 
-/// `n` of so many numbers from zero, evenly spread, the first and the last among them.
+/// `n` evenly spread numbers in [0, of), including the first and the last.
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t of);
 
 }  // namespace talus

@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 Vec3 place(std::span<const Real> places, std::size_t p) { return Eigen::Map<const Vec3>(places.data() + 3 * p); }
 
-/// What is looked at in a frame.
+/// The data of a frame for the survey.
 struct Looked {
   std::span<const Real> places;
   const StoredField *velocity, *displacement;
@@ -66,7 +66,7 @@ std::optional<MovedMass> moved_mass(const std::vector<Way>& ways, const ReachRul
   return moved;
 }
 
-/// Of the rows that belong to body `b`, or of all.
+/// The survey of the rows of body `b`, or of all.
 MassSurvey survey_of(const Looked& looked, const Pairs& common, const RunSurvey& run, std::optional<std::size_t> b, const SurveyTask& task)
 {
   const auto belongs = [&](std::size_t row) { return !b || (row < looked.body.size() && looked.body[row] == static_cast<Real>(*b)); };
@@ -108,7 +108,7 @@ MassSurvey survey_of(const Looked& looked, const Pairs& common, const RunSurvey&
   return mass;
 }
 
-/// Volumes of the first frame, or even shares where the files have none, times the density of their bodies, where that is known.
+/// Volumes of the first frame, or equal volumes if the files have none, times the density of their bodies if it is known.
 std::vector<Real> masses_of(const StoredParticles& particles, const SurveyTask& task)
 {
   const StoredField* volume = stored_field(particles, "volume");
@@ -143,7 +143,7 @@ void begin(const StoredParticles& particles, const SurveyTask& task, RunSurvey& 
   survey.masses = masses_of(particles, task);
 }
 
-/// Fields have the components that they had at first; velocities and displacements three, bodies and volumes one.
+/// Throws unless fields have as many components as in the first frame; velocities and displacements three, bodies and volumes one.
 void require_components(const StoredParticles& particles, const fs::path& file, const RunSurvey& survey)
 {
   const auto require = [&](std::string_view name, int components) {
@@ -206,7 +206,7 @@ void look_over(const fs::path& folder, const SurveyTask& task, RunSurvey& survey
   if (known.empty() || listed.empty() || known.front().file != listed.front().second ||
       known.front().state != state_of(known.front().file)) {
     std::vector<std::string> left_out = std::move(survey.left_out);
-    survey = {};  // another run than before
+    survey = {};  // results of another run
     survey.left_out = std::move(left_out);
     known.clear();
   }

@@ -1,5 +1,5 @@
 #pragma once
-// What is known of each frame of a run's particles after all of them have been looked at once, one frame at a time.
+// The survey of a run's particles: what is known of each frame after all have been read once, one at a time.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,66 +11,65 @@
 namespace talus {
 
 struct ValueRange {
-  Real low, high;  ///< finite
+  Real low, high;  ///< range of finite values
 };
 
-/// Of the particles that have moved, as the rule says: from where they were when displacements were last reset, or in the first frame where
-/// displacements were not written.
+/// The particles that have moved according to the rule: relative to their positions at the last reset of displacements, or in the first
+/// frame if displacements were not written.
 struct MovedMass {
   std::int64_t count = 0;
-  Vec3 low, high;       ///< of where they are [m]
-  Real height, length;  ///< from the crown to the front, down and on the level [m]
+  Vec3 low, high;       ///< corners of the bounding box of their present positions [m]
+  Real height, length;  ///< from the crown to the front, vertical and horizontal [m]
 };
 
-/// Of one body, or of all.
+/// The survey of one body, or of all.
 struct MassSurvey {
   std::int64_t count = 0;
-  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< [m]
-  Real crest = 0;                                ///< highest point, along `up` [m]
-  std::optional<Real> speed, displacement;       ///< largest [m/s], [m]
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< corners of the bounding box [m]
+  Real crest = 0;                                ///< highest position along `up` [m]
+  std::optional<Real> speed, displacement;       ///< largest values [m/s], [m]
   std::optional<MovedMass> moved;
 };
 
 struct FrameSurvey {
-  Real time;  ///< s
+  Real time;  ///< time of the frame [s]
   std::filesystem::path file;
-  std::string state;  ///< size and time of the file: another one has been written since where they differ
+  std::string state;  ///< size and time of the file, to detect that it was replaced
   std::int64_t count = 0;
-  std::vector<std::optional<ValueRange>> fields;  ///< nothing where no value is finite, or the field is not there
-  std::vector<MassSurvey> masses;                 ///< of all bodies, then of each where there are several
+  std::vector<std::optional<ValueRange>> fields;  ///< nothing if no value is finite or the field is missing
+  std::vector<MassSurvey> masses;                 ///< for all bodies, then for each if there are several
 };
 
-/// What does not change while a run goes on.
+/// The constant parameters of a survey.
 struct SurveyTask {
   Vec3 up;
   std::size_t bodies = 1;
-  std::vector<std::string> fields;  ///< asked for
+  std::vector<std::string> fields;  ///< requested fields
   std::string of_picture;
   ReachRule rule;
-  std::vector<bool> runs_out;  ///< whether a body counts in what all of them do
-  std::vector<Real> mass;      ///< of each body at the start [kg]; empty where it is not known
+  std::vector<bool> runs_out;  ///< whether a body is included in the totals
+  std::vector<Real> mass;      ///< mass of each body at the start [kg]; empty if unknown
 };
 
 struct RunSurvey {
-  bool begun = false;  ///< what follows is known from the first frame
+  bool begun = false;  ///< whether the members below are known from the first frame
   std::vector<ViewedField> fields;
-  std::vector<std::string> labels, units;  ///< of these
-  std::vector<int> components;             ///< of these
+  std::vector<std::string> labels, units;  ///< labels and units of the fields
+  std::vector<int> components;             ///< components of the fields
   std::vector<FrameSurvey> frames;
-  std::vector<std::string> left_out;  ///< frames that could not be read, in words
-  std::vector<std::int64_t> ids;      ///< of the first frame
-  std::vector<Real> places;           ///< there, 3 numbers a particle [m]
-  std::vector<Real> masses;           ///< of these [kg], or in another unit that is the same for all
+  std::vector<std::string> left_out;  ///< descriptions of frames that could not be read
+  std::vector<std::int64_t> ids;      ///< ids in the first frame
+  std::vector<Real> places;           ///< positions in the first frame, 3 numbers per particle [m]
+  std::vector<Real> masses;           ///< masses in the first frame [kg], or in another common unit
 };
 
-/// Looks at the frames that particles.pvd of a run names and that are not known yet; one that cannot be read is left out.  Error: see
-/// fields_to_show().
+/// Reads the new frames of particles.pvd; unreadable frames are left out.  Throws Error, see fields_to_show().
 void look_over(const std::filesystem::path& folder, const SurveyTask& task, RunSurvey& survey);
 
-/// Low and high of a field over all frames.
+/// The range of a field over all frames.
 ValueRange range_over_frames(const RunSurvey& survey, std::size_t field);
 
-/// Size and time of change of a file, as one word; empty if it is not there.
+/// The size and modification time of a file as one word; empty if it does not exist.
 std::string state_of(const std::filesystem::path& file);
 
 }  // namespace talus

@@ -1,4 +1,4 @@
-// Where in a scene a warning belongs.
+// The line of a scene that a warning concerns.
 #include <charconv>
 #include <filesystem>
 #include <regex>
@@ -10,7 +10,7 @@ namespace talus {
 
 namespace {
 
-/// "slope.yaml:12:5: ...": 12.
+/// The line in "slope.yaml:12:5: ...", here 12.
 std::optional<int> line_named(const std::string& warning, const std::string& scene_file)
 {
   const std::string name = std::filesystem::path(scene_file).filename().string() + ':';
@@ -23,7 +23,7 @@ std::optional<int> line_named(const std::string& warning, const std::string& sce
   return failed == std::errc{} && line > 0 ? std::optional(line) : std::nullopt;
 }
 
-/// Whether a line of YAML gives this key, in a block or in braces.
+/// Whether a line of YAML contains this key, in a block or in braces.
 bool gives(std::string_view line, const std::string& key)
 {
   for (auto at = line.find(key + ':'); at != line.npos; at = line.find(key + ':', at + 1))
@@ -32,7 +32,7 @@ bool gives(std::string_view line, const std::string& key)
   return false;
 }
 
-/// Of "watch.speed": the first line below that of `watch` that gives `speed`.
+/// The line of "watch.speed": the first one below `watch` that contains `speed`.
 std::optional<int> line_of_key(const std::string& group, const std::string& key, const std::string& scene_text)
 {
   int number = 0;

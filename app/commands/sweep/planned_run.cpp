@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Time that the newest checkpoint of this run has reached [s]; nothing where there is none.
+/// The time of the newest checkpoint of this run [s]; nothing if there is none.
 std::optional<Real> time_kept(const PlannedRun& run, bool quick)
 {
   try {
@@ -50,7 +50,7 @@ std::vector<std::string> split_at_blanks(const std::string& text)
 
 fs::path log_of(const PlannedRun& run) { return run.folder.string() + ".log"; }
 
-/// The end of what a run has said.
+/// The end of the output of a run.
 std::string last_lines(const fs::path& log)
 {
   constexpr std::ptrdiff_t most = 12;

@@ -1,5 +1,5 @@
 #pragma once
-// Runs that another command starts, each a process of its own: what they are made from, how far they have come, those at work now.
+// Runs started by another command, each in its own process: their input, their state, and those in progress.
 #include <array>
 #include <chrono>
 #include <filesystem>
@@ -12,52 +12,52 @@
 
 namespace talus {
 
-/// A scene with changes, and the folder for its results.
+/// A scene with changes, and the results folder.
 struct PlannedRun {
-  std::vector<std::string> changes;  ///< as --set takes them
+  std::vector<std::string> changes;  ///< changes as for --set
   std::filesystem::path folder;
-  std::string scene_digest, mesh_digest;  ///< what it would be made from now; that of the mesh empty where nobody asked for it
+  std::string scene_digest, mesh_digest;  ///< digests of the present scene and mesh; the latter is empty if it was not computed
 };
 
 enum class CaseState : std::uint8_t { to_run, not_ended, stopped, failed, done };
 constexpr std::array<std::string_view, 5> enum_names(CaseState) { return {"to be run", "not ended", "stopped", "failed", "done"}; }
 
-/// What the folder of a run says of it.
+/// The state of a run according to its folder.
 struct CaseStatus {
   CaseState state = CaseState::to_run;
-  std::string why;                   ///< results there are not of this run; or it failed with this message
+  std::string why;                   ///< why existing results do not count; or the message of a failed run
   std::optional<Real> goes_on_from;  ///< time of the newest checkpoint of this run [s]
-  SummaryBack summary;               ///< of this run only
+  SummaryBack summary;               ///< only if it belongs to this run
 };
 
-/// Results that were made from another text, other changes or another mesh (where its digest is known) are not those of the run.
+/// The state of a run.  Results of another text, other changes or another mesh (if its digest is known) do not belong to it.
 CaseStatus status_of(const PlannedRun& run, bool quick);
 
-/// Another process is writing there now, as far as the file system knows.
+/// Whether another process is writing to the folder, as far as the file system supports locks.
 bool is_at_work(const PlannedRun& run);
 
-/// "materials[0].cohesion=20e3, mesh.size=0.1"
+/// The changes as text: "materials[0].cohesion=20e3, mesh.size=0.1".
 std::string in_words(const PlannedRun& run);
 
-/// The command that makes it, for people: in the folder from which the paths count.
+/// The command of the run for the user, relative to the present folder.
 std::string command_of(const std::filesystem::path& scene, const PlannedRun& run, bool quick);
 
-/// How many runs are made side by side, and with how many threads each.
+/// The number of simultaneous runs, and of threads for each.
 struct SideBySide {
   std::size_t jobs;
-  std::optional<int> threads;  ///< nothing: the launcher's business
+  std::optional<int> threads;  ///< nothing: left to the launcher
 };
-/// What is not asked for is the cores over what is.
+/// Divides the cores; values that are not given follow from those that are.
 SideBySide divide_cores(std::optional<int> jobs, std::optional<int> threads, bool has_launcher, std::size_t n_runs);
 
-/// Runs at work.  What they say stands beside their folder, in FOLDER.log.
+/// The runs in progress.  Their output is in FOLDER.log beside their folder.
 class ChildRuns {
  public:
   ChildRuns(std::optional<std::string> launcher, std::optional<int> threads, bool quick)
       : launcher_(std::move(launcher)), threads_(threads), quick_(quick)
   {}
 
-  /// Begins, or goes on where `status` says so.  EnvironmentError.
+  /// Starts a run, or resumes it according to `status`.  Throws EnvironmentError.
   void start(std::size_t number, const std::filesystem::path& scene, const PlannedRun& run, const CaseStatus& status);
 
   struct Ended {
@@ -65,17 +65,17 @@ class ChildRuns {
     int code;
     Real seconds;
   };
-  /// Waits a little; tells those that have ended.
+  /// Waits a little; returns the runs that have ended.
   std::vector<Ended> look();
 
-  /// They leave checkpoints and end.
+  /// Asks the runs to write checkpoints and end.
   void ask_to_end();
-  /// Whether a run that ended with this code was told to before there was anything to keep.
+  /// Whether a run with this exit code was stopped before it had anything to save.
   bool ended_before_its_first_step(int code) const noexcept;
 
   std::size_t count() const noexcept { return running_.size(); }
 
-  /// Why one ended that is not done.
+  /// The reason why a run ended without being done.
   std::string why(const PlannedRun& run, int code, const CaseStatus& status) const;
 
  private:
@@ -91,7 +91,7 @@ class ChildRuns {
   bool told_to_end_ = false;
 };
 
-/// Exit code of a run that was told to stop, and of one that failed at its own physics.
+/// Exit codes of a run that was told to stop, and of one that failed by its physics.
 inline constexpr int run_was_stopped = 4, run_failed = 1;
 
 }  // namespace talus

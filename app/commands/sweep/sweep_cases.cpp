@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What is wrong with scenes, each thing once: at the value of the study that made it so; or in the scene, with the first case that has it unless
-/// all do.
+/// Errors of the scenes of cases, each reported once: at the value in the study that causes it, or in the scene with the first affected
+/// case unless all are affected.
 class CaseErrors {
  public:
   void add(const SweepCase& one, const SceneErrors& errors)
@@ -41,7 +41,7 @@ class CaseErrors {
       all_[found->second].cases.push_back(one.number);
     }
   }
-  /// SceneErrors, if there are any.
+  /// Throws SceneErrors if there are any.
   void throw_if_any(std::size_t n_cases) const
   {
     std::vector<SceneError> problems;
@@ -65,9 +65,9 @@ class CaseErrors {
     SceneError problem;
     bool of_value;
     std::vector<int> cases;
-    SweepCase first;  // of them
+    SweepCase first;  // of the affected ones
   };
-  /// The one change of what the problem is about, or of a part of it.
+  /// The only change that concerns the key of the error, or a part of it.
   static std::optional<std::size_t> only_change_within(const Entry& entry)
   {
     std::string path;  // without the names of entries: bodies[0] "block".shape
@@ -94,7 +94,7 @@ class CaseErrors {
   std::map<std::string, std::size_t> number_of_;
 };
 
-/// The changes that the mesh depends on.
+/// The changes that affect the mesh.
 std::string mesh_changes(const SweepCase& one)
 {
   std::string text;
@@ -113,7 +113,7 @@ Scene scene_of_case(const SweepPlan& plan, const SweepCase& one)
   return scene;
 }
 
-/// Of cases that have their mesh in common.
+/// Checks cases with a common mesh.
 template <int D>
 void check_on_mesh(const SweepPlan& plan, const std::vector<SweepCase*>& cases, CheckDepth depth, CaseErrors& errors)
 {
@@ -131,7 +131,7 @@ void check_on_mesh(const SweepPlan& plan, const std::vector<SweepCase*>& cases, 
     one->mesh_digest = mesh_digest;
     const CaseStatus status = status_of(*one, plan.quick);
     if (depth == CheckDepth::mesh || status.state == CaseState::done || status.goes_on_from)
-      continue;  // it was checked when it began
+      continue;  // it was checked when it started
     try {
       const Scene scene = scene_of_case(plan, *one);
       estimate<D>(scene, *mesh, set_up(scene, *mesh));

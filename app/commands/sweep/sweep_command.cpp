@@ -20,21 +20,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// runs/<name>: of the file, or of the folder of a study.yaml.
+/// runs/<name>, with the name of the file, or of the folder of a study.yaml.
 fs::path default_sweep_folder(const fs::path& study)
 {
   const fs::path folder = fs::absolute(study).lexically_normal().parent_path().filename();
   return fs::path("runs") / (study.filename() == "study.yaml" && !folder.empty() ? folder.string() + "_study" : study.stem().string());
 }
 
-/// Cases on their way from "to be run" to their end.
+/// Runs the cases.
 class Sweep {
  public:
   Sweep(const SweepOptions& options, const SweepPlan& plan, const SideBySide& side, SweepTable& table)
       : options_(options), plan_(plan), jobs_(side.jobs), table_(table), runs_(options.launcher, side.threads, plan.quick)
   {}
 
-  /// Until all have ended, or a signal asks for the end.
+  /// Runs until all have ended, or a signal asks for the end.
   void operator()(const std::vector<std::size_t>& chosen)
   {
     std::deque<std::size_t> waiting;
@@ -69,7 +69,7 @@ class Sweep {
   void start(std::size_t i)
   {
     const SweepCase& one = plan_.cases[i];
-    const CaseStatus status = status_of(one, plan_.quick);  // another process may have been here meanwhile
+    const CaseStatus status = status_of(one, plan_.quick);  // another process may have run it in the meantime
     if (status.state == CaseState::done)
       return say(i, "is done");
     if (status.state == CaseState::not_ended && is_at_work(one))
@@ -78,7 +78,7 @@ class Sweep {
     say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins",
                        in_words(one), remark(status)));
   }
-  /// Why what is there does not count.
+  /// The reason why existing results do not count.
   static std::string remark(const CaseStatus& status)
   {
     const bool without = !status.goes_on_from && (status.state == CaseState::stopped || status.state == CaseState::not_ended);
@@ -87,7 +87,7 @@ class Sweep {
     return status.state == CaseState::to_run && !status.why.empty() ? "; " + status.why : "";
   }
 
-  /// Waits a little; sees to those that have ended.
+  /// Waits a little; handles runs that have ended.
   void look_after()
   {
     for (const ChildRuns::Ended& ended : runs_.look()) {
@@ -119,7 +119,7 @@ class Sweep {
   std::string signal_;
 };
 
-/// The cases that the words ask for.
+/// The cases selected by the options.
 std::vector<std::size_t> chosen_cases(const SweepOptions& options, const SweepPlan& plan)
 {
   const auto n = static_cast<int>(plan.cases.size());
@@ -130,7 +130,7 @@ std::vector<std::size_t> chosen_cases(const SweepOptions& options, const SweepPl
   return chosen;
 }
 
-/// What the reader of the table has to know besides.
+/// Prints remarks below the table.
 void print_remarks(const SweepPlan& plan, const SweepTable& table)
 {
   std::map<std::string, std::vector<int>> by_other_commit;
@@ -162,7 +162,7 @@ void list_cases(const SweepPlan& plan, const SweepTable& table)
   }
 }
 
-/// RunError, Stopped: not all chosen cases are done.
+/// Throws RunError or Stopped unless all selected cases are done.
 void conclude(const SweepPlan& plan, const Sweep& sweep, const SweepTable& table, const std::vector<std::size_t>& chosen)
 {
   const auto count = [&](CaseState state) {

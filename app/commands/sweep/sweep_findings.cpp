@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Ranks from 1, the mean of those that equal values take.
+/// The ranks from 1; equal values share the mean of their ranks.
 std::vector<Real> ranks_of(std::span<const Real> values)
 {
   std::vector<std::size_t> order(values.size());
@@ -35,7 +35,7 @@ std::vector<Real> ranks_of(std::span<const Real> values)
   return ranks;
 }
 
-/// Of a heading "max(kinetic) [J]" the part of a file's name: max_kinetic.
+/// The part of a file name for a heading: max_kinetic for "max(kinetic) [J]".
 std::string file_word(const std::string& heading)
 {
   std::string word;
@@ -49,7 +49,7 @@ std::string file_word(const std::string& heading)
   return word;
 }
 
-/// The heading without what a chart would take for the end of a column's name.
+/// The heading without text that a chart would take for a unit.
 std::string as_column(const std::string& heading) { return heading.find(" [") == heading.npos ? heading + " [-]" : heading; }
 
 class Findings {
@@ -88,16 +88,16 @@ class Findings {
     try {
       launch_render(words);
       say(picture);
-    } catch (const Error& e) {  // the tables are there
+    } catch (const Error& e) {  // the tables exist
       warnings_.push_back(fmt::format("{} is not drawn: {}", picture.string(), e.what()));
       pictures_ = false;
     }
   }
 
-  /// A number of the cases that have it, and what was varied in them.
+  /// The values of a number in the cases that have it, and of the varied keys.
   struct Sample {
     std::vector<Real> numbers;
-    std::vector<std::vector<Real>> keys;  ///< [key][case]
+    std::vector<std::vector<Real>> keys;  ///< indices [key][case]
   };
   Sample sample_of(std::size_t k) const
   {
@@ -141,7 +141,7 @@ class Findings {
     say(plan_.folder / "correlation.csv");
   }
 
-  /// Share of the cases in which a number is as large or larger.
+  /// Writes the fraction of cases in which a number is equal or larger, over the number.
   void exceedance(std::size_t k)
   {
     std::vector<Real> values = sample_of(k).numbers;
@@ -165,7 +165,7 @@ class Findings {
     Real low, high;
     Real span() const { return std::abs(high - low); }
   };
-  /// What a number is in the low and in the high case of each key, those first that change it most.
+  /// Writes a number in the low and in the high case of each key, sorted by the effect.
   void tornado(std::size_t k)
   {
     const auto base = table_.number(0, k);
@@ -231,7 +231,7 @@ class Findings {
         return warn(fmt::format("the maps of case {} and case {} lie on different grids: give outputs.runout.cell, and all cases one mesh",
                                 plan_.cases[done_.front()].number, plan_.cases[i].number));
       for (std::size_t c = 0; c < map->values.size(); ++c)
-        share->values[c] += map->values[c] > exceed.above ? 1 : 0;  // not where there is no value
+        share->values[c] += map->values[c] > exceed.above ? 1 : 0;  // NaN compares as false
       ++count;
     }
     if (!share)

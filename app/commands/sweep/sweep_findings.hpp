@@ -1,5 +1,5 @@
 #pragma once
-// What the cases of a study say together: which key matters how much, how likely a number is exceeded, and where on the map.
+// Statistics over the cases of a study: influence of keys, probability of exceedance, and maps of it.
 #include <span>
 #include <string>
 #include <vector>
@@ -8,12 +8,12 @@
 
 namespace talus {
 
-/// Spearman's correlation of the ranks of two columns [-]; equal values share their mean rank.  NaN where one of them does not vary.
+/// Spearman's rank correlation of two columns [-]; equal values share their mean rank.  NaN if one of them does not vary.
 Real rank_correlation(std::span<const Real> a, std::span<const Real> b);
 
-/// Writes what the way in which values were combined allows, from the cases that are done: of samples DIR/correlation.csv and
-/// DIR/exceedance_<number>.csv, of one key at a time DIR/tornado_<number>.csv, of maps DIR/exceedance_<map>.tif.  With `pictures` draws the curves and
-/// bars beside them.  Returns words for people; what keeps something from being made is added to `warnings`.  EnvironmentError.
+/// Writes the statistics of the completed cases that the combination of values allows: for samples DIR/correlation.csv and
+/// DIR/exceedance_<number>.csv, for one key at a time DIR/tornado_<number>.csv, for maps DIR/exceedance_<map>.tif.  With `pictures` draws
+/// charts beside them.  Returns text for the user; reasons for missing results are added to `warnings`.  Throws EnvironmentError.
 std::string write_findings(const SweepPlan& plan, const SweepTable& table, bool pictures, std::vector<std::string>& warnings);
 
 }  // namespace talus

@@ -19,11 +19,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Behind the fronts.
+/// Default numbers, after the fronts.
 constexpr std::array usual_numbers{"kinetic", "plastic", "friction",       "energy.closure", "mass.removed",
                                    "fastest", "steps",   "simulated_time", "cost.wall"};
 
-/// One process at a time in a folder, where the file system knows locks; others wait.
+/// A lock that allows one process at a time in a folder, where the file system supports locks; others wait.
 class OneAtATime {
  public:
   explicit OneAtATime(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
@@ -43,10 +43,10 @@ class OneAtATime {
   int handle_;
 };
 
-/// What is told of a column of a history.
+/// The statistic of a column of a history.
 enum class Of : std::uint8_t { last, max, min };
 
-/// "max(toe)" -> max of toe; a name alone is its last entry.
+/// Parses "max(toe)" as the maximum of toe; a name alone means its last entry.
 std::pair<Of, std::string> column_asked(const std::string& name)
 {
   for (const auto& [word, of] : {std::pair("last(", Of::last), std::pair("max(", Of::max), std::pair("min(", Of::min)})
@@ -55,7 +55,7 @@ std::pair<Of, std::string> column_asked(const std::string& name)
   return {Of::last, name};
 }
 
-/// Entries that are there count: "no value" is NaN.
+/// The value from a history; NaN, which means "no value", is ignored.
 std::optional<NamedValue> of_history(const HistoryTable& history, const std::string& name)
 {
   const auto [of, column] = column_asked(name);

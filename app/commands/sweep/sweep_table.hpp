@@ -1,5 +1,5 @@
 #pragma once
-// sweep.csv: a row for each case with its values, how far it is, and numbers of those that are done.
+// sweep.csv: a row for each case with its values, its state, and numbers of completed cases.
 #include <optional>
 
 #include "app/commands/sweep/sweep_cases.hpp"
@@ -11,22 +11,22 @@ class SweepTable {
  public:
   explicit SweepTable(const SweepPlan& plan);
 
-  /// Looks at all cases that were not done when it looked before, and writes DIR/sweep.csv as a whole.  Other processes may do so too.
-  /// EnvironmentError.
+  /// Reads all cases that were not done at the last call, and rewrites DIR/sweep.csv atomically.  Other processes may do so at the same
+  /// time.  Throws EnvironmentError.
   void update();
   const CaseStatus& status(std::size_t i) const { return status_[i]; }
-  /// Headings of the numbers, "toe [m]"; and one of them of a case, nothing where it is not known.
+  /// The headings of the numbers, such as "toe [m]"; and one number of a case, nothing if it is unknown.
   std::vector<std::string> number_headings() const;
   std::optional<Real> number(std::size_t i, std::size_t k) const;
-  /// Lines of columns for people.
+  /// The table as text.
   std::string print() const;
-  /// Names of `collect` that no case knows of those that are done, with what was probably meant.
+  /// The names in `collect` that no completed case has, with suggestions.
   std::vector<std::string> unknown_names() const;
 
  private:
   struct Row {
     std::vector<std::optional<NamedValue>> numbers;
-    std::vector<std::string> known;  ///< names that there are, where one was not found
+    std::vector<std::string> known;  ///< existing names, if one was not found
   };
   Row row_of(std::size_t i) const;
   std::vector<CsvColumn> columns() const;

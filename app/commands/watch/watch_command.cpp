@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int run_failed = 1, run_stopped = 4;  // as of `talus run`
+constexpr int run_failed = 1, run_stopped = 4;  // exit codes of `talus run`
 
 struct Terminal {
   bool is_there = ::isatty(STDOUT_FILENO) == 1;
@@ -30,7 +30,7 @@ struct Terminal {
   }
 };
 
-/// The first `most` letters of a line; a line that goes over would spoil what is counted back.
+/// The first `most` characters of a line; a wrapped line would spoil the count of lines to overwrite.
 std::string cut(const std::string& line, int most)
 {
   std::size_t end = 0;
@@ -54,7 +54,7 @@ class Follower {
       try {
         serve();
       } catch (const EnvironmentError& error) {
-        if (options_.page || pages_)  // asked for by name; the port
+        if (options_.page || pages_)  // the page or the port was requested
           throw;
         fmt::print(stderr, "note: no page for the browser: {}\n", error.what());
       }
@@ -102,7 +102,7 @@ class Follower {
     }
   }
 
-  /// A browser that shows the page sees how the run ended before the server goes.
+  /// Waits until a browser that shows the page has received the final state.
   void give_last_page()
   {
     constexpr std::chrono::milliseconds between(50);
@@ -112,7 +112,7 @@ class Follower {
       std::this_thread::sleep_for(between);
   }
 
-  /// A run that is begun again in the folder takes its summary away for a moment.
+  /// Reads the present state.  The summary is missing for a moment when a run is restarted in the folder.
   void look()
   {
     const std::scoped_lock lock(readers_);
@@ -128,7 +128,7 @@ class Follower {
     }
   }
 
-  /// On a terminal in the place of what was shown before.
+  /// Prints the state; on a terminal in place of the previous one.
   void show_all()
   {
     const Terminal now;

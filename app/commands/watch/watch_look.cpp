@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 constexpr int bar_letters = 40;
 constexpr std::size_t shown_pictures = 3;
 
-/// PNG files of pictures/, the newest first.
+/// The PNG files of pictures/, the newest first.
 std::vector<fs::path> pictures_in(const fs::path& folder)
 {
   std::vector<std::pair<fs::file_time_type, fs::path>> found;
@@ -45,14 +45,14 @@ std::string state_in_words(RunState state)
   return "killed";
 }
 
-/// Last value of a column that there may be.
+/// The last value of a column, if it exists.
 std::optional<Real> last_of(const HistoryTable& history, std::string_view column)
 {
   const auto values = history[column];
   return values && !values->empty() ? std::optional(values->back()) : std::nullopt;
 }
 
-/// Where the run is: from what it tells while it is at work, else from its outputs.
+/// The progress of a run: from progress.json while it is at work, otherwise from its outputs.
 std::string how_far(const RunLook& look)
 {
   if (const auto& p = look.progress) {
@@ -77,7 +77,7 @@ std::string pace(const RunLook& look)
   return "";
 }
 
-/// Energy terms that are not zero, and what of them is not accounted for.
+/// The energy terms that are not zero, and the relative error of the balance.
 std::string energies(const HistoryTable& history)
 {
   std::string text;

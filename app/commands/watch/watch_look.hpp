@@ -1,13 +1,13 @@
 #pragma once
-// What is to be seen of a run in its folder at one moment, in words.
+// The state of a run according to its folder, as text.
 #include "app/commands/report/report.hpp"
 #include "io/output/progress_json.hpp"
 
 namespace talus {
 
-/// Files of a run that are there so far.
+/// The present files of a run.
 struct RunFiles {
-  std::vector<std::pair<Real, std::filesystem::path>> frames;  ///< of the particles, with their times [s]
+  std::vector<std::pair<Real, std::filesystem::path>> frames;  ///< particle files with their times [s]
   std::vector<std::filesystem::path> pictures;                 ///< the newest first
 };
 
@@ -16,16 +16,16 @@ struct RunLook {
   std::optional<RunProgress> progress;
   HistoryTable history;
   RunFiles files;
-  std::vector<std::string> left_out;  ///< files that cannot be read, each with the reason
-  std::string marks;                  ///< changes when any of the files does
+  std::vector<std::string> left_out;  ///< unreadable files with the reason
+  std::string marks;                  ///< changes when any of the files changes
 };
 
-/// Looks at the folder; what has not changed since `before` is taken from there.
+/// Reads the state from the folder; data that have not changed are taken from `before`.
 RunLook look_at(const RunFolder& run, const RunLook& before);
 
-/// Title, how far it is, balances so far, files: lines without colours.
+/// Title, progress, balances, files: lines without colours.
 std::vector<std::string> described(const RunFolder& run, const RunLook& look);
-/// One line, for logs.
+/// The state on one line, for logs.
 std::string in_one_line(const RunFolder& run, const RunLook& look);
 
 }  // namespace talus

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr Real live_megabytes = 8;
 constexpr std::size_t live_rows = 1500;
-constexpr int rests_per_page = 10;  // a page that takes long to make is not made often: a tenth of the time goes into it
+constexpr int rests_per_page = 10;  // a page is made at most so often that it takes a tenth of the time
 
 std::optional<HttpAnswer> text_answer(const char* type, std::string text)
 {
@@ -57,7 +57,7 @@ std::optional<HttpAnswer> WatchPages::answer(const std::string& path)
 
 bool WatchPages::is_waited_for()
 {
-  constexpr int questions = 3;  // not heard of for so long: the browser is closed
+  constexpr int questions = 3;  // number of intervals without a request after which the browser counts as closed
   const std::scoped_lock lock(readers_);
   return asked_at_ && !last_is_given_ && Watch::now() - *asked_at_ < std::chrono::duration<Real>(questions * interval_ + 1);
 }
@@ -68,7 +68,7 @@ std::string WatchPages::stamp()
     stamped_at_ = now;
     outputs_ = state_of(folder_ / "particles.pvd") + ' ' + state_of(folder_ / "history.csv");
   }
-  stamp_ = state_of(folder_ / "summary.json") + ' ' + outputs_;  // that the run has ended is told at once
+  stamp_ = state_of(folder_ / "summary.json") + ' ' + outputs_;  // the end of the run is reported at once
   return stamp_;
 }
 

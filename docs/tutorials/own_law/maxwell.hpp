@@ -51,21 +51,21 @@ struct Maxwell : Elasticity {
     if (!all_of(J > 0 && isfinite(volume)))
       return no_answer_somewhere(*this, in, state, c);
     const Sym3Of<T> shear = scale_and_shift(0.5, twice_strain, -volume / 3);
-    const Real saved = in.elastic ? 1 : 1 / (1 + in.dt / relaxation_time);
-    put(state, &State::elastic_left, saved < 1 ? expm1(scale_and_shift(2 * saved, shear, volume * (2.0 / 3))) : trial);
-    const T work = 2 * c.shear * saved * (1 - saved) * squared_norm(shear);  // stress at the end times what relaxed
+    const Real remaining = in.elastic ? 1 : 1 / (1 + in.dt / relaxation_time);
+    put(state, &State::elastic_left, remaining < 1 ? expm1(scale_and_shift(2 * remaining, shear, volume * (2.0 / 3))) : trial);
+    const T work = 2 * c.shear * remaining * (1 - remaining) * squared_norm(shear);  // final stress times relaxed strain
     put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
-    return unpack(scale_and_shift(2 * c.shear * saved / J, shear, c.bulk * volume / J));
+    return unpack(scale_and_shift(2 * c.shear * remaining / J, shear, c.bulk * volume / J));
   }
 
-  /// Makes `stress` [Pa] that of the state at F = I: what a law remembers its stress by.
+  /// Sets the history so that the stress at F = I is `stress` [Pa].
   void prestress(const Mat3& stress, State& state) const noexcept
   {
     const Moduli elastic = moduli();
     state.elastic_left = expm1(add_diagonal(pack(dev(stress) / elastic.shear), 2 * stress.trace() / (9 * elastic.bulk)));
   }
 
-  /// rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, the compression taken as that of uniaxial strain with the same volume.
+  /// From rho_0 c^2 = lambda + 2 mu - (Kirchhoff stress)_nn, with the compression of uniaxial strain of the same volume.
   template <class T>
   T wave_speed(const Mat3Of<T>& F, const Constants& c) const noexcept
   {

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The raster itself must be there for what is drawn; `ground` for what it is drawn on.
+/// The raster of that name; throws if it does not exist.
 Raster read_map(const fs::path& folder, std::string_view name) { return read_raster(folder / "maps" / (std::string(name) + ".tif")); }
 
 bool has_map(const fs::path& folder, std::string_view name) { return fs::exists(folder / "maps" / (std::string(name) + ".tif")); }
@@ -39,7 +39,7 @@ std::vector<fs::path> sections_in(const fs::path& folder)
   return files;
 }
 
-/// In the order of their numbers.
+/// The files of frames in the order of their numbers.
 std::vector<fs::path> frames_in(const fs::path& folder)
 {
   std::vector<fs::path> files;
@@ -51,7 +51,7 @@ std::vector<fs::path> frames_in(const fs::path& folder)
   }
 }
 
-/// As the table of the run tells.
+/// The times of frames from the table of the run.
 std::vector<Real> times_of_frames(const fs::path& folder, std::size_t n)
 {
   const HistoryTable table = read_history(folder / "runout.csv");
@@ -64,7 +64,7 @@ std::vector<Real> times_of_frames(const fs::path& folder, std::size_t n)
   return times;
 }
 
-/// What never was as thick as the threshold is left out: single particles far out would make it seem more than it is.
+/// Removes cells that were never as thick as the threshold, so that single distant particles do not exaggerate the affected area.
 void leave_out_unreached(const std::vector<Real>& arrival, Raster& raster)
 {
   for (std::size_t c = 0; c < std::min(arrival.size(), raster.values.size()); ++c)

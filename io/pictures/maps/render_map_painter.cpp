@@ -21,10 +21,10 @@ namespace fs = std::filesystem;
 
 constexpr int wanted_contours = 20;
 
-/// A colour in doubles while it is mixed.
+/// A mixture of two colours, in doubles.
 Vec3 mixed(const Vec3& a, const Vec3& b, Real share) { return a + share * (b - a); }
 
-/// Every fifth contour is stronger.
+/// Paints the shaded ground with contours; every fifth contour is stronger.
 PaintedPanel paint_ground(const PixelField& elevation, const PixelField& light, Real step)
 {
   PaintedPanel paper{elevation.width(), elevation.height(), {}};
@@ -45,7 +45,7 @@ PaintedPanel paint_ground(const PixelField& elevation, const PixelField& light, 
   return paper;
 }
 
-/// What lies on the ground shows its shape; a dark line runs around it, thin ones at the ticks of the colour bar.
+/// Paints values, shaded by the ground, with a dark outline and thin lines at the ticks of the colour bar.
 void paint_values(const PixelField& values, const PixelField& light, const Scale& scale, const std::vector<Tick>& levels,
                   PaintedPanel& paper)
 {
@@ -89,7 +89,7 @@ void put(vtkRenderer* renderer, const PaintedPanel& paper, const Place& place)
   renderer->AddActor2D(actor);
 }
 
-/// An arrow to where north is on a map: up.
+/// Adds an arrow to the north, which is upwards on a map.
 void add_north(Sheet& sheet, const Place& place)
 {
   const Real x = place.right - 1.6 * sheet.letter(), y = place.top - 3.6 * sheet.letter(), h = 1.6 * sheet.letter();

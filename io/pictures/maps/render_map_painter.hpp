@@ -1,5 +1,5 @@
 #pragma once
-// Maps are painted pixel by pixel, ground first, then what flowed over it.
+// Paints maps pixel by pixel: first the ground, then the values on it.
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace talus::render {
 
-/// Values at every pixel of a panel.
+/// The value at every pixel of a panel.
 class PixelField {
  public:
   PixelField(const Raster& raster, const std::vector<Real>& values, const Shown& shown, int width, int height)
@@ -32,7 +32,7 @@ class PixelField {
                column = static_cast<std::size_t>(std::clamp(i, 0, width_ - 1));
     return at_[row * static_cast<std::size_t>(width_) + column];
   }
-  /// Whether f, of a value, changes beside this pixel: a line is there.
+  /// Whether f(value) differs between this pixel and its neighbours, so that a line passes here.
   template <class F>
   bool changes(int i, int j, F&& f) const
   {
@@ -53,7 +53,7 @@ struct PaintedPanel {
   Vec3& at(int i, int j) { return colour[static_cast<std::size_t>(j) * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)]; }
 };
 
-/// All maps of one run lie on the same ground.
+/// Paints all maps of one run, which have the same ground.
 class MapPainter {
  public:
   explicit MapPainter(const MapSettings& settings);

@@ -9,8 +9,9 @@ namespace talus::render {
 
 namespace {
 
-constexpr int map_width = 1280, lowest_map = 420, highest_map = 1100;                            // pixels
-constexpr Real left_letters = 6.5, below_letters = 3.6, above_letters = 2.6, right_letters = 9;  // around the panel
+constexpr int map_width = 1280, lowest_map = 420, highest_map = 1100;  // in pixels
+// space around the panel, in letter heights
+constexpr Real left_letters = 6.5, below_letters = 3.6, above_letters = 2.6, right_letters = 9;
 
 }  // namespace
 

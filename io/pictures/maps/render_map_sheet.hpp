@@ -1,5 +1,5 @@
 #pragma once
-// The sheet that a map or a section is drawn on: its size, the place of the panel, words around it.
+// The sheet of a map or a section: size, position of the panel, texts.
 #include <vtkNew.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
@@ -16,14 +16,14 @@ namespace talus::render {
 
 std::array<Real, 2> range_of(const std::vector<Real>& values);
 
-/// A place on the sheet for so wide a panel over so high a one, and the size of the picture around it.
+/// The position of a panel with the given width over height, and the size of the picture around it.
 struct MapLayout {
-  std::array<int, 2> size;  ///< pixels of the picture
+  std::array<int, 2> size;  ///< size of the picture [pixels]
   Place place;
 };
 MapLayout layout_for(Real aspect, const std::optional<std::array<int, 2>>& wanted);
 
-/// A window with one renderer, words and a place for the panel.
+/// A window with one renderer, texts and a panel.
 template <class Draw>
 void on_sheet(const MapLayout& layout, const std::filesystem::path& png, Draw&& draw)
 {

@@ -31,7 +31,7 @@ void draw_section(const MapSettings& settings, const fs::path& file, const fs::p
   const auto [low, high] = render::range_of(heights);
   const Real margin = 0.06 * (high - low);
   const Shown shown{{along.front(), low - margin}, {along.back(), high + margin}};
-  // Not exaggerated where that leaves enough to see.
+  // Without vertical exaggeration if the section is then high enough to be readable.
   const Real aspect = (shown.high[0] - shown.low[0]) / (shown.high[1] - shown.low[1]);
   constexpr Real flattest = 3.5;
   const MapLayout layout = layout_for(std::min(aspect, flattest), settings.size);

@@ -6,7 +6,7 @@
 
 namespace talus::render {
 
-/// A line per surface; what lies between the ground before and the surface after is filled.
+/// Draws a line for each surface, and fills the area between the ground before and the surface after.
 void draw_section(const MapSettings& settings, const std::filesystem::path& file, const std::filesystem::path& png);
 
 }  // namespace talus::render

@@ -1,4 +1,4 @@
-// What talus-render says, taken apart.
+// Starts talus-render and parses its output.
 #include "io/pictures/settings/launch_render.hpp"
 
 #include <fmt/format.h>
@@ -20,9 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// How talus-render announces a file, and what there is to say of it; xvfb-run may merge its two outputs.
+// Prefixes with which talus-render announces a file and lines about it; xvfb-run may merge its two outputs.
 constexpr std::string_view file_mark = "file: ", said_mark = "said: ";
-constexpr int refused = 2;  // its exit code for arguments that do not fit the results
+constexpr int refused = 2;  // exit code of talus-render for arguments that do not fit the results
 
 bool has_display()
 {
@@ -49,7 +49,7 @@ std::vector<std::string> command_line(const fs::path& talus_render, const std::v
   return words;
 }
 
-/// An abort shows as a signal, or as 128 + its number when a shell (xvfb-run) stands between.
+/// Throws the error of a failed talus-render.  An abort appears as a signal, or as 128 + its number if a shell (xvfb-run) started it.
 [[noreturn]] void explain(const fs::path& talus_render, int code, const std::string& messages)
 {
   if (code == refused)

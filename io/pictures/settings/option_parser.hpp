@@ -1,5 +1,5 @@
 #pragma once
-// Options of pictures as rows of a table, and their way to CLI11: of `talus render` and its relatives, and of talus-render.
+// Options of pictures as rows of a table, and their use with CLI11: for `talus render` and similar commands, and for talus-render.
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
@@ -14,7 +14,7 @@
 
 namespace talus::render {
 
-/// Error: the word is not a finite number.
+/// Converts a word to a value.  Throws Error if it is not a finite number.
 template <class T>
 T number(const std::string& word, const std::string& option)
 {
@@ -27,7 +27,7 @@ T number(const std::string& word, const std::string& option)
 
 enum class Offered : std::uint8_t { to_users, all };
 
-/// Adds options to a command.  take(option, words) is called for those that were given, in the order of the table.
+/// Adds options to a command.  take(option, words) is called for the options that were given, in the order of the table.
 template <class S, class Take>
 void add_options(CLI::App& command, std::span<const Option<S>> options, Take take, Offered offered = Offered::all)
 {
@@ -50,8 +50,7 @@ void add_options(CLI::App& command, std::span<const Option<S>> options, Take tak
   }
 }
 
-/// Parses the words by CLI11.  Words that belong to no option and options that are not known are added to `problems`, as is what CLI11
-/// finds wrong.
+/// Parses the words with CLI11.  Unknown words and options, and errors of CLI11, are added to `problems`.
 inline void parse_words(CLI::App& app, std::span<const std::string> words, std::vector<std::string>& problems)
 {
   app.allow_extras();

@@ -1,4 +1,4 @@
-// Settings beside what the run has.
+// Checks of settings against the data of a run.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -83,7 +83,7 @@ void require_none(const std::vector<std::string>& problems)
 
 std::vector<std::size_t> chosen(const Frames& frames, std::size_t n_frames)
 {
-  const std::size_t step = std::min(frames.step, n_frames);  // a sum of any two numbers might begin anew from zero
+  const std::size_t step = std::min(frames.step, n_frames);  // a larger step could overflow
   std::vector<std::size_t> list;
   for (std::size_t f = frames.first.value_or(n_frames - 1); f <= frames.last.value_or(n_frames - 1) && f < n_frames; f += step)
     list.push_back(f);

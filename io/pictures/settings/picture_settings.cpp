@@ -1,4 +1,4 @@
-// The options of pictures, surfaces and maps: a table of each, and how their words are read.
+// The options of pictures, surfaces and maps as tables, and the conversion of their words.
 #include "io/pictures/settings/picture_settings.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +14,7 @@ namespace talus::render {
 
 namespace {
 
-constexpr int smallest = 200, largest = 10000;  // pixels
+constexpr int smallest = 200, largest = 10000;  // in pixels
 using Values = std::vector<std::string>;
 
 template <class Enum>
@@ -73,7 +73,7 @@ std::array<int, 2> picture_size(const std::string& word)
   return size;
 }
 
-/// "FROM:TO" or "FROM:TO:STEP"; an end left out is that of the run.
+/// Parses "FROM:TO" or "FROM:TO:STEP"; a missing end is that of the run.
 Frames series(const std::string& word, const std::string& option)
 {
   const auto colon = word.find(':'), second = word.find(':', colon + 1);

@@ -1,5 +1,5 @@
 #pragma once
-// What formulas in scenes and templates may use: for the manual.  A test holds it against what reads them (app/setup/expression.hpp).
+// Functions and constants of formulas in scenes, for the manual.  A test compares them with the parser (app/setup/expression.hpp).
 #include <array>
 #include <string_view>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The reference of scene files, written out of the field lists that also read them.
+// The reference of scene files, generated from the field lists that also read them.
 #include <string>
 
 namespace talus {
@@ -7,14 +7,14 @@ namespace talus {
 /// Every key of a scene with type, unit, range, default and meaning, and every law, as Markdown (docs/reference/scene.md).
 std::string scene_manual();
 
-/// The same of one key, law, kernel, type, output field, column, history variable or word, for a terminal: "friction_angle", "materials.cohesion", "mohr_coulomb".
-/// Error: there is none.
+/// The entry for one key, law, kernel, type, output field, column, history variable or word, for a terminal: "friction_angle",
+/// "materials.cohesion", "mohr_coulomb".  Throws Error if there is none.
 std::string manual_of(const std::string& word);
 
-/// What formulas in a scene may use, in Markdown.
+/// The functions and constants of formulas in a scene, as Markdown.
 std::string formula_manual();
 
-/// The same as JSON Schema (draft 7), for editors that complete keys and mark mistakes while one writes.
+/// The reference as JSON Schema (draft 7), for editors that complete keys and mark errors.
 std::string scene_schema();
 
 }  // namespace talus

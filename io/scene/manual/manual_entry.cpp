@@ -1,4 +1,4 @@
-// What the manual has on one word.
+// The entry of the manual for one word.
 #include <fmt/ranges.h>
 
 #include <set>
@@ -15,7 +15,7 @@ namespace talus {
 
 namespace {
 
-/// As `talus manual` says it of a word: of a function, or of formulas as a whole.
+/// The entry for a function of formulas, or for formulas in general.
 std::string manual_of_formula(std::string_view word)
 {
   for (const FormulaFunction& function : formula_functions)
@@ -24,7 +24,7 @@ std::string manual_of_formula(std::string_view word)
   return word == "formula" || word == "formulas" ? formula_manual() : "";
 }
 
-/// Links and code of Markdown as they are read: "list of [bodies](#bodies)" is a list of bodies.
+/// Markdown without links and code marks: "list of [bodies](#bodies)" becomes "list of bodies".
 std::string without_markup(std::string_view markdown)
 {
   std::string text;
@@ -37,7 +37,7 @@ std::string without_markup(std::string_view markdown)
   return text;
 }
 
-/// "materials[0].cohesion" -> materials, cohesion
+/// Splits "materials[0].cohesion" into materials, cohesion.
 std::vector<std::string> words_of_path(std::string_view path)
 {
   std::vector<std::string> words(1);
@@ -52,7 +52,7 @@ std::vector<std::string> words_of_path(std::string_view path)
   return words;
 }
 
-/// Whether `asked` are words of `chain` in their order, the last ones the same.
+/// Whether `asked` are words of `chain` in the same order, with the same last word.
 bool leads_to(const std::vector<std::string>& asked, const std::vector<std::string>& chain)
 {
   if (asked.back() != chain.back())
@@ -67,7 +67,7 @@ bool leads_to(const std::vector<std::string>& asked, const std::vector<std::stri
   return true;
 }
 
-/// Keys that lead to a mapping, and the word that it was chosen by.
+/// The keys that lead to a mapping, and the word that chooses it.
 std::vector<std::string> chain_of(const ManualPart& part)
 {
   std::vector<std::string> chain = part.path.empty() ? std::vector<std::string>{} : words_of_path(part.path);
@@ -76,7 +76,7 @@ std::vector<std::string> chain_of(const ManualPart& part)
   return chain;
 }
 
-/// What the manual has on a word.
+/// The entry for a word.
 class Entry {
  public:
   Entry(const std::vector<ManualPart>& manual, const std::string& asked) : manual_(manual), asked_(words_of_path(asked))
@@ -87,7 +87,7 @@ class Entry {
       add_keys_that_take(asked_.back());
   }
 
-  /// Empty if it has nothing.
+  /// The text; empty if the manual does not contain the word.
   std::string text() const
   {
     std::vector<std::string> entries;
@@ -112,7 +112,7 @@ class Entry {
   static constexpr std::size_t type = 1, unit = 2, range = 3, fallback = 4, meaning = 5;  // columns of a row
   static constexpr std::size_t most_in_full = 4;
 
-  /// A key, once for all mappings in which it means the same.
+  /// A key, listed once for all mappings in which it has the same meaning.
   struct Key {
     ManualRow row;
     std::vector<std::string> places;
@@ -161,7 +161,7 @@ class Entry {
     return part.chosen.empty() ? part.path : fmt::format("{} ({})", part.path, part.title);
   }
 
-  /// "number [m]; > 0; default 3"
+  /// The kind of a value, such as "number [m]; > 0; default 3".
   static std::string kind_of(const ManualRow& row)
   {
     const bool has_unit = !row[unit].empty() && row[unit] != "-";
@@ -196,7 +196,7 @@ class Entry {
     return text;
   }
 
-  /// What a mapping chooses from, and mappings in it.
+  /// The choices of a mapping, and the mappings in it.
   std::vector<std::string> inside_of(const ManualPart& part) const
   {
     std::vector<std::string> inside;
@@ -214,7 +214,7 @@ class Entry {
   std::vector<const ManualPart*> parts_;
 };
 
-/// All that can be asked for by one word.
+/// All words that have an entry.
 std::vector<std::string> words_of_manual(const std::vector<ManualPart>& manual)
 {
   std::set<std::string> words;

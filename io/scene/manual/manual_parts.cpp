@@ -21,7 +21,7 @@ namespace talus {
 
 namespace {
 
-/// Not of each kind of field anew: there are some hundred.
+/// Makes a row; not a template, because there are some hundred kinds of fields.
 ManualRow row_of(std::string_view key, std::string type, std::string_view unit, std::string range, std::string fallback,
                  std::string_view meaning)
 {
@@ -47,7 +47,7 @@ class Manual {
       const auto next = std::move(manual.waiting_.front());
       manual.waiting_.erase(manual.waiting_.begin());
       const auto later = std::exchange(manual.waiting_, {});
-      next();  // what it mentions comes right behind it
+      next();  // a type that it mentions follows directly
       manual.waiting_.insert(manual.waiting_.end(), later.begin(), later.end());
     }
     return std::move(manual.parts_);
@@ -59,7 +59,7 @@ class Manual {
   std::string link(const std::string& path)
   {
     if constexpr (std::same_as<T, SimpleShape>)
-      return link<Shape>(path);  // the same but for those that are put together, as the meaning of the key says
+      return link<Shape>(path);  // equal except for combined shapes, as the meaning of the key says
     const std::string own = std::same_as<T, Shape>         ? "shape"
                             : std::same_as<T, Box>         ? "box"
                             : std::same_as<T, SurfaceSpec> ? "surface"
@@ -91,7 +91,7 @@ class Manual {
     add_each_alternative("type", path, path, std::type_identity<Variant>{});
   }
 
-  /// Keys of a mapping at `path`; `prefix` is what their own mappings are called after, if not after the word that chooses.
+  /// Adds the keys of a mapping at `path`; `prefix` replaces the choosing word in the names of its own mappings.
   template <class... T>
   void add_each_alternative(std::string_view key, const std::string& path, const std::string& prefix,
                             std::type_identity<std::variant<T...>>)
@@ -132,7 +132,7 @@ class Manual {
     part.outputs.push_back(std::move(fields));
   }
 
-  /// `owner` stands for the name of what the columns belong to.
+  /// Adds columns; `owner` stands for the name of their subject.
   template <class Table>
   static void add_columns(std::string heading, const Table& table, std::string_view owner, ManualPart& part)
   {
@@ -170,7 +170,7 @@ class Manual {
     }
   }
 
-  /// Parts of the structs that a key of a mapping chooses from.
+  /// Adds the parts of the structs that a key of a mapping chooses from.
   template <class Field>
   void add_alternatives_of(const Field&, const std::string&)
   {}

@@ -1,5 +1,6 @@
 #pragma once
-// The manual in parts: one for each mapping of a scene and each word that one chooses from, out of the field lists that also read the file.
+// The parts of the manual: one for each mapping of a scene and each word that chooses a mapping, generated from the field lists that also
+// read the file.
 #include <array>
 #include <string>
 #include <string_view>
@@ -7,36 +8,36 @@
 
 namespace talus {
 
-/// Of a key: itself, type, unit, range, default, meaning; in Markdown.
+/// A row of the table of keys: key, type, unit, range, default, meaning; in Markdown.
 using ManualRow = std::array<std::string, 6>;
 
-/// What a run writes: a history variable of a law, an output field, columns of history.csv.
+/// An output of a run: a history variable of a law, an output field, or columns of history.csv.
 struct ManualOutput {
-  std::vector<std::string> names;  ///< of columns one for each component
+  std::vector<std::string> names;  ///< one name for each component
   int components;
   std::string unit, meaning;
 };
 struct ManualOutputs {
-  std::string heading, kind;  ///< "Fields:", "field, for outputs.mesh.fields"
+  std::string heading, kind;  ///< for example "Fields:" and "field, for outputs.mesh.fields"
   std::vector<ManualOutput> rows;
 };
 
-/// The keys of a mapping, or what a key chooses from.
+/// The keys of a mapping, or the choices of a key.
 struct ManualPart {
   std::string title;
-  std::string path;                      ///< of the mapping in a scene; of a list for an entry of it
-  std::string chosen{};                  ///< the word that makes the mapping have these keys: a law, a type
-  std::string text{};                    ///< before the keys
-  std::vector<ManualRow> rows{};         ///< keys
-  std::vector<ManualOutputs> outputs{};  ///< what there is to write
+  std::string path;                      ///< path of the mapping in a scene; for a list, of its entries
+  std::string chosen{};                  ///< the word that chooses these keys: a law, a type
+  std::string text{};                    ///< text before the keys
+  std::vector<ManualRow> rows{};         ///< table of keys
+  std::vector<ManualOutputs> outputs{};  ///< outputs
 };
 
-/// What the mapping that is the whole scene is called.
+/// The name of the mapping that is the whole scene.
 inline constexpr std::string_view title_of_scene = "the scene";
 
 std::vector<ManualPart> manual_parts();
 
-/// Name and summary of every kernel.
+/// The name and summary of every kernel.
 std::vector<std::array<std::string_view, 2>> kernel_summaries();
 
 }  // namespace talus

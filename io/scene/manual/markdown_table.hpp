@@ -12,7 +12,7 @@ namespace talus {
 
 inline std::string code(std::string_view text) { return fmt::format("`{}`", text); }
 
-/// Columns padded, so that the text reads well as it is; the last one is as long as it likes.
+/// A table with padded columns, so that the source text is readable; the last column is not padded.
 template <std::size_t N>
 std::string to_table(const std::array<std::string, N>& head, const std::vector<std::array<std::string, N>>& rows)
 {

@@ -1,4 +1,4 @@
-// JSON Schema of scene files, out of their field lists.
+// The JSON Schema of scene files, generated from their field lists.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -71,15 +71,15 @@ constexpr std::string_view summary_of()
     return "";
 }
 
-/// A struct that a key can name.  What is known of all structs and keys alike is plain data, so that the code that writes it is compiled once.
+/// A struct that a key can name.  Data that all structs and keys have in common are not templates, so that the code is compiled once.
 struct Struct {
   std::string_view name;
   std::string_view summary;
   void (*add_keys)(Json& schema);
 };
 
-/// The mapping `base` with the key `name` that names one of `structs`, which decides what other keys there are.  Editors offer, and complain
-/// of, those of the struct that is named, and before it is named only those of `base`.
+/// The mapping `base` with the key `name`, which names one of `structs` and so determines the other keys.  Editors then offer and check the
+/// keys of the named struct, and those of `base` while it is not named.
 Json one_of(const Json& base, const std::string& name, std::string_view meaning, std::span<const Struct> structs)
 {
   Json schema = base;
@@ -90,7 +90,7 @@ Json one_of(const Json& base, const std::string& name, std::string_view meaning,
     if (!each.summary.empty())
       summaries.push_back(each.summary);
     Json chosen = base;
-    chosen["title"] = each.name;  // what editors call a whole entry of this kind
+    chosen["title"] = each.name;  // name of an entry of this kind in editors
     chosen["properties"][name] = {{"const", each.name}, {"description", each.summary.empty() ? meaning : each.summary}};
     chosen["required"].push_back(name);
     each.add_keys(chosen);
@@ -121,7 +121,7 @@ Json schema_of(const Range& range)
   } else if constexpr (std::same_as<T, Real>) {
     return number("number", range);
   } else if constexpr (std::same_as<T, std::string>) {
-    return {{"type", Json::array({"string", "number"})}};  // YAML takes `name: 12` for a number
+    return {{"type", Json::array({"string", "number"})}};  // YAML reads `name: 12` as a number
   } else if constexpr (std::is_enum_v<T>) {
     return {{"enum", enum_names(T{})}};
   } else if constexpr (std::same_as<T, Table>) {
@@ -149,7 +149,7 @@ constexpr bool is_optional = requires(const Value& value)
   value.has_value();
 };
 
-/// The default as an editor would insert it; null for what has none or is no scalar.
+/// The default as an editor inserts it; null without a default or if it is not a scalar.
 template <class T>
 Json default_value(const T& value, const Range& range)
 {
@@ -165,7 +165,7 @@ Json default_value(const T& value, const Range& range)
     return {};
 }
 
-/// What a field list says of a key, and the schema of what it holds.
+/// The description of a key in a field list, and the schema of its value.
 struct Key {
   std::string_view name;
   std::string_view meaning;
@@ -173,12 +173,12 @@ struct Key {
   Range range;
   Need need;
   bool is_mapping;
-  std::string fallback;  ///< the default as the manual has it
-  Json inserted;         ///< the default as an editor would insert it
+  std::string fallback;  ///< default as in the manual
+  Json inserted;         ///< default as an editor inserts it
   Json schema;
 };
 
-/// With what the manual says of it: "mass density at rest [kg/m^3] (required; range > 0)".
+/// Adds the description of the manual: "mass density at rest [kg/m^3] (required; range > 0)".
 void describe(Key& key)
 {
   const bool needed = key.need == Need::required;
@@ -255,7 +255,7 @@ void add_key(Json& schema, const Alternative<T, Value>& field)
   schema = one_of(schema, std::string(field.key), field.meaning, structs_of(std::type_identity<ChoicesOf<Value>>{}));
 }
 
-/// Alternatives come last in a field list: they multiply what was there before.
+/// Alternatives come last in a field list, because they multiply the keys before them.
 template <class T>
 void add_keys(Json& schema)
 {
