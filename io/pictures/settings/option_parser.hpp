@@ -46,7 +46,7 @@ void add_options(CLI::App& command, std::span<const Option<S>> options, Take tak
              option.repeated)
       added->type_size(option.most)->trigger_on_parse();
     else
-      added->expected(option.least, option.most);
+      added->expected(option.least, option.most)->allow_extra_args(!option.internal);  // too many words are told; a title is one word
   }
 }
 

@@ -78,6 +78,27 @@ TEST(PictureSettings, EverythingWrongIsSaidAtOnce)
                                     HasSubstr("unknown option --zom — did you mean \"--zoom\"?")));
 }
 
+TEST(PictureSettings, WordsOfTheSceneAreTakenAsTheyAre)
+{
+  for (const std::string word : {"[a, b]", "{}", "--log", "a = b", ""}) {
+    std::vector<std::string> problems;
+    const std::vector<std::string> picture{"run", "--title", word, "--size", "300x200"},
+        surface{"run", "--out", "a.ply", "--body", "0", word, "--body", "1", "b"};
+    EXPECT_EQ(parse_picture(picture, problems).title, word);
+    const auto bodies = render::parse_surface(surface, problems).bodies;
+    ASSERT_EQ(bodies.size(), 2U) << word;
+    EXPECT_EQ(bodies[0].name, word);
+    EXPECT_EQ(bodies[1].number, 1);
+    EXPECT_THAT(problems, IsEmpty()) << word;
+  }
+}
+
+TEST(PictureSettings, TooManyWordsAreToldWithTheirOption)
+{
+  EXPECT_THAT(problems_of({"--window", "0", "0", "1", "1", "5"}), ElementsAre(HasSubstr("--window: At Most 4 required but received 5")));
+  EXPECT_THAT(problems_of({"--map", "viridis", "cividis"}), ElementsAre(HasSubstr("--map: At Most 1 required")));
+}
+
 TEST(PictureSettings, WhatTheRunDoesNotHaveIsRefused)
 {
   EXPECT_THAT(problems_of({"--view", "front"}), ElementsAre(HasSubstr("--view: the run is 2-D")));
