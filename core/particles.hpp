@@ -74,15 +74,16 @@ struct Particles {
  private:
   /// Calls plain(name, unit, column) for columns of fixed precision, and the other function for those whose precision the scene chooses.
   template <class Self, class Plain, class Kept>
-  static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& saved)
+  static void for_each_kind_of_column(Self& self, Plain&& plain, Kept&& variable_precision)
   {
-    plain("id", "-", self.id), plain("cell", "-", self.cell), plain("position", "m", self.x), saved("velocity", "m/s", self.v),
-        saved("velocity_gradient", "1/s", self.L);
-    saved("deformation_gradient", "-", self.F), saved("stress", "Pa", self.stress), saved("mass", "kg", self.mass),
-        plain("volume0", "m^D", self.volume0), plain("volume", "m^D", self.volume);
-    saved("affine", "1/s", self.C), plain("start", "m", self.x0), saved("applied", "N", self.applied),
+    plain("id", "-", self.id), plain("cell", "-", self.cell), plain("position", "m", self.x), variable_precision("velocity", "m/s", self.v),
+        variable_precision("velocity_gradient", "1/s", self.L);
+    variable_precision("deformation_gradient", "-", self.F), variable_precision("stress", "Pa", self.stress),
+        variable_precision("mass", "kg", self.mass), plain("volume0", "m^D", self.volume0), plain("volume", "m^D", self.volume);
+    variable_precision("affine", "1/s", self.C), plain("start", "m", self.x0), variable_precision("applied", "N", self.applied),
         plain("applied_at", "J", self.applied_at);
-    plain("volume_ratio", "-", self.volume_ratio), saved("viscous_pressure", "Pa", self.viscous), saved("pore_pressure", "Pa", self.pore);
+    plain("volume_ratio", "-", self.volume_ratio), variable_precision("viscous_pressure", "Pa", self.viscous),
+        variable_precision("pore_pressure", "Pa", self.pore);
   }
 };
 

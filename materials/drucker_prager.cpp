@@ -155,9 +155,9 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   const ReturnMap<T> map{c, plastic_strain};
   const Point<T> end = map(trial, where(closing, T(0), T(c.cutoff)));
 
-  const T saved = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // avoids 0 / 0 in lanes without shear
+  const T remaining = where(trial.tau > 0, end.tau / where(trial.tau > 0, trial.tau, 1), 0);  // avoids 0 / 0 in lanes without shear
   if (const auto changed = closing || end.multiplier > 0 || end.opening > 0; any_of(changed)) {
-    const Sym3Of<T> left = expm1(scale_and_shift(2 * saved, shear_strain, end.mean * (2 / (3 * c.bulk))));
+    const Sym3Of<T> left = expm1(scale_and_shift(2 * remaining, shear_strain, end.mean * (2 / (3 * c.bulk))));
     put(state, &State::elastic_left, where(changed, left, b));
     put(state, &State::plastic_strain, T(plastic_strain + end.multiplier * (1 / sqrt3)));
     const T work = end.tau * end.multiplier + end.mean * (c.q_psi * end.multiplier + end.opening);
@@ -167,7 +167,7 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   } else {
     put(state, &State::elastic_left, b);
   }
-  return unpack(scale_and_shift(2 * c.shear * saved * per_volume, shear_strain, end.mean * per_volume));
+  return unpack(scale_and_shift(2 * c.shear * remaining * per_volume, shear_strain, end.mean * per_volume));
 }
 template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> DruckerPrager::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;

@@ -224,10 +224,10 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
   if (step)
     memory.energy = step->energy(pressure);
 
-  const T saved = where(mises > 0, flow.mises / above_nothing(mises), 1);
-  const auto changed = saved < 1;
-  memory.elastic_left = any_of(changed) ? where(changed, trial.left_with(saved), trial.left) : trial.left;
-  return unpack(scale_and_shift(2 * c.shear * saved / J, trial.shear_strain, -pressure));
+  const T remaining = where(mises > 0, flow.mises / above_nothing(mises), 1);
+  const auto changed = remaining < 1;
+  memory.elastic_left = any_of(changed) ? where(changed, trial.left_with(remaining), trial.left) : trial.left;
+  return unpack(scale_and_shift(2 * c.shear * remaining / J, trial.shear_strain, -pressure));
 }
 template std::optional<Mat3> JohnsonCookMetal::update(const Increment&, Memory<Real>&, const Constants&) const noexcept;
 template std::optional<Mat3Of<SimdReal>> JohnsonCookMetal::update(const IncrementOf<SimdReal>&, Memory<SimdReal>&,

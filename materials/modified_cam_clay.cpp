@@ -104,16 +104,16 @@ Mat3 ModifiedCamClay::update(const Increment& in, State& state, const Constants&
   const bool yields = !(end.p <= start && q_trial * q_trial <= c.slope * c.slope * end.p * (start - end.p));
   if (yields)
     end = EllipseReturn{c, compression, q_trial, start}();
-  const Real saved = q_trial > 0 ? end.q / q_trial : 0;
+  const Real remaining = q_trial > 0 ? end.q / q_trial : 0;
   if (yields || was_open)
-    state.elastic_left = expm1(scale_and_shift(2 * saved, trial.shear_strain, -2 * (compression - end.compaction) / 3));
+    state.elastic_left = expm1(scale_and_shift(2 * remaining, trial.shear_strain, -2 * (compression - end.compaction) / 3));
   else
     state.elastic_left = trial.left;
   const Real sheared = (q_trial - end.q) / (3 * c.shear);
   state.plastic_volume -= end.compaction;
   state.plastic_strain += sheared;
   state.plastic_work += std::max(end.p * end.compaction + end.q * sheared, Real{0});  // p pc times the multiplier, up to round-off
-  return unpack(scale_and_shift(2 * c.shear * saved / J, trial.shear_strain, -end.p / J));
+  return unpack(scale_and_shift(2 * c.shear * remaining / J, trial.shear_strain, -end.p / J));
 }
 
 void ModifiedCamClay::prestress(const Mat3& stress, State& state) const noexcept

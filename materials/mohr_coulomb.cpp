@@ -135,9 +135,9 @@ struct SofteningReturn {
     if (!closing || end.stress.sum() <= 0)
       return end;
     const Vec3 flat = trial.array() - trial.mean();
-    StressReturn saved = Surface{0, c.shear, strength, c.sin_psi, c.cutoff}(flat);
-    saved.opens = true;
-    return saved;
+    StressReturn opened = Surface{0, c.shear, strength, c.sin_psi, c.cutoff}(flat);
+    opened.opens = true;
+    return opened;
   }
 
   /// The equivalent plastic strain sqrt(2/3 e:e).

@@ -53,14 +53,14 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
     m = where(flows, where(far, 2 * excess * a / where(far, linear + root, 1), (root - linear) / (2 * c.shear)), 0);
   }
   const auto slid = m > 0;
-  const T saved = where(slid, max(T(1 - c.shear * m / where(slid, tau, 1)), T(0)), 1);
+  const T remaining = where(slid, max(T(1 - c.shear * m / where(slid, tau, 1)), T(0)), 1);
   Sym3Of<T> left = b;
   if (const auto changed = m > 0 || closing || p == 0; any_of(changed))
-    left = where(changed, expm1(scale_and_shift(2 * saved, shear_strain, p * (-2 / (3 * c.bulk)))), b);
+    left = where(changed, expm1(scale_and_shift(2 * remaining, shear_strain, p * (-2 / (3 * c.bulk)))), b);
   put(state, &State::elastic_left, left);
   put(state, &State::plastic_strain, T(get(state, &State::plastic_strain) + m * std::numbers::inv_sqrt3));
-  put(state, &State::plastic_work, T(get(state, &State::plastic_work) + saved * tau * m));
-  return unpack(scale_and_shift(2 * c.shear * saved / J, shear_strain, -p / J));
+  put(state, &State::plastic_work, T(get(state, &State::plastic_work) + remaining * tau * m));
+  return unpack(scale_and_shift(2 * c.shear * remaining / J, shear_strain, -p / J));
 }
 template Mat3 MuI::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> MuI::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;

@@ -33,7 +33,10 @@ struct ElasticTrial {
     return isfinite(T(volume_strain + shear));
   }
   /// The elastic left Cauchy-Green tensor minus identity, with the given fraction of the shear strain.
-  Sym3Of<T> left_with(const T& saved) const noexcept { return expm1(scale_and_shift(2 * saved, shear_strain, volume_strain * (2.0 / 3))); }
+  Sym3Of<T> left_with(const T& remaining) const noexcept
+  {
+    return expm1(scale_and_shift(2 * remaining, shear_strain, volume_strain * (2.0 / 3)));
+  }
 };
 
 /// The elastic left Cauchy-Green tensor minus identity for the Kirchhoff stress deviator `s` and a logarithmic volume strain.

@@ -69,9 +69,9 @@ struct VonMisesReturn {
 
 /// The Cauchy stress with the given fraction of the shear strain.
 template <class T>
-Mat3Of<T> stress_with(const ElasticTrial<T>& trial, const T& J, const T& saved, const VonMises::Constants& c) noexcept
+Mat3Of<T> stress_with(const ElasticTrial<T>& trial, const T& J, const T& remaining, const VonMises::Constants& c) noexcept
 {
-  return unpack(scale_and_shift(2 * c.shear * saved / J, trial.shear_strain, c.bulk * trial.volume_strain / J));
+  return unpack(scale_and_shift(2 * c.shear * remaining / J, trial.shear_strain, c.bulk * trial.volume_strain / J));
 }
 
 }  // namespace
@@ -120,14 +120,14 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
   }
   const VonMisesReturn<T> map{*this, slow, start, mises, stiffness, plastic_strain, c.rate_inverse / in.dt, c.rate_power};
   const T root = c.closed_form ? T((mises - start.value) / (stiffness + hardening_modulus)) : map.plastic_increment(in.stress, yields);
-  const T x = where(yields, root, 0), end = mises - stiffness * x, saved = where(yields, end / above_nothing(mises), 1);
-  put(state, &State::elastic_left, where(yields, trial.left_with(saved), trial.left));
+  const T x = where(yields, root, 0), end = mises - stiffness * x, remaining = where(yields, end / above_nothing(mises), 1);
+  put(state, &State::elastic_left, where(yields, trial.left_with(remaining), trial.left));
   put(state, &State::plastic_strain, T(plastic_strain + x));
   // Plastic work by the trapezoidal rule in the Kirchhoff stress, exact for linear hardening: strength before and after the step, at the
   // rate of the step.
   const T work = 0.5 * x * J * (map.rate_factor(x).value * start.value / growth_of(in) + end);
   put(state, &State::plastic_work, T(get(state, &State::plastic_work) + work));
-  return stress_with(trial, J, saved, c);
+  return stress_with(trial, J, remaining, c);
 }
 template Mat3 VonMises::update(const Increment&, State&, const Constants&) const noexcept;
 template Mat3Of<SimdReal> VonMises::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;

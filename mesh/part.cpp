@@ -105,7 +105,7 @@ Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, 
 template <int D>
 std::vector<int> rings_from_own(const Part<D>& part)
 {
-  return rings_from(part.mesh, part.share.rank_of_block, part.share.rank, out_of_reach - 1);
+  return rings_from(part.mesh, part.subdomain.rank_of_block, part.subdomain.rank, out_of_reach - 1);
 }
 
 template Part<2> cut<2>(const Mesh<2>&, std::span<const int>, int, int);

@@ -38,7 +38,7 @@ struct Subdomain {
 template <int D>
 struct Part {
   Mesh<D> mesh;
-  Subdomain share;
+  Subdomain subdomain;
 };
 
 /// Holds the blocks of `rank` and every block with a cell within `rings` rings of one of their cells: ring 1 shares a node with them,

@@ -17,7 +17,7 @@ void locate_particles(Model<D>& m)
   Workspace<D>& work = m.work;
   bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
                           work.sums, work.health);
-  changed |= work.migration(problem.share, state.bodies, state.materials, state.particles, work.order);
+  changed |= work.migration(problem.subdomain, state.bodies, state.materials, state.particles, work.order);
   changed |= sort_by_cell(state.bodies, state.materials, state.particles, work.order);
   if (changed)
     update_tracked_rows(m);
@@ -164,7 +164,7 @@ void update_stress_bodies(Model<D>& m, Real dt)
     Material& material = state.materials[static_cast<std::size_t>(body)];
     if (material.averages_volume) {
       if (!averages_with_earlier(m, body, work.averaged_bodies))
-        average_volume(problem.mesh, work.order, work.averaged_bodies, dt, state.particles, *work.stars, work.averaged);
+        average_volume(problem.mesh, work.order, work.averaged_bodies, dt, state.particles, *work.patch_sums, work.averaged);
       parallel_for_uneven(work.order.blocks, [&](Index block) { update_stress_block(m, body, block, dt); });
     }
     if (work.heat)

@@ -84,8 +84,9 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;
   soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, m.state.particles);
   if (!stage.start_stress.empty())
-    set_start_stress(m.problem.mesh, m.problem.share, *m.problem.ranks, m.problem.loads.gravity(time, ramp), std::span(stage.start_stress),
-                     m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials, m.state.particles);
+    set_start_stress(m.problem.mesh, m.problem.subdomain, *m.problem.ranks, m.problem.loads.gravity(time, ramp),
+                     std::span(stage.start_stress), m.work.order, only_bodies(stage.start_stress_bodies, m.state.bodies), m.state.materials,
+                     m.state.particles);
   const Real kinetic = totals(m).kinetic;
   m.state.energy = {.loads = m.state.energy.loads_ahead,
                     .internal = m.state.energy.internal_ahead,

@@ -71,7 +71,8 @@ void ResultCommands::add_watch(CLI::App& app)
   constexpr int most_port = 65535;
   CLI::App* watch = app.add_subcommand("watch", "follow a run in the terminal and in the browser until it ends");
   watch->add_option("folder", watch_.folder, "where a run leaves its results")->type_name(folder_value)->required();
-  watch->add_option("--interval", watch_.interval, "seconds between looks; default 2")->check(number_within(0.1, 3600.0));
+  watch->add_option("--interval", watch_.interval, "seconds between two reads of the results; default 2")
+      ->check(number_within(0.1, 3600.0));
   watch->add_option("--port", watch_.port, "of the page, on this machine only; default any that is free")
       ->check(number_within(0, most_port));
   watch->add_flag("!--no-serve", watch_.serve, "no page, only the terminal");

@@ -316,7 +316,7 @@ class Run {
     Real steps = 0;
     watch_.lap(steps);
     RunSummary summary = summary_;
-    summary.threads = thread_choice_.saved();
+    summary.threads = thread_choice_.chosen();
     summary.status = status;
     summary.message = message;
     summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};

@@ -261,7 +261,7 @@ void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Re
   ExactSums<Touched<D>> sum;
   for (std::size_t i = 0; i < on_nodes.node.size(); ++i) {
     const Index n = on_nodes.node[i];
-    const bool counted = view.problem.share.alone() || view.problem.share.owns_node(n);
+    const bool counted = view.problem.subdomain.alone() || view.problem.subdomain.owns_node(n);
     if (counted && view.nodes.active[static_cast<std::size_t>(n)] != 0)
       sum.add({on_nodes.area[i], on_nodes.measure[i] * view.problem.mesh.node(n), on_nodes.measure[i]});
   }

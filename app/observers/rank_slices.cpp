@@ -91,7 +91,8 @@ std::vector<T> dealt(Communicator& ranks, const Slices& slices, std::span<const 
 template <int D>
 Slices slices_of_nodes(const RunView<D>& view, std::int64_t piece)
 {
-  return {view.problem.share.alone() ? view.problem.mesh.n_nodes() : view.problem.share.whole_nodes, view.problem.ranks->size(), piece};
+  return {view.problem.subdomain.alone() ? view.problem.mesh.n_nodes() : view.problem.subdomain.whole_nodes, view.problem.ranks->size(),
+          piece};
 }
 
 }  // namespace
@@ -117,9 +118,9 @@ ParticleSlice<D> slice_of_particles(const RunView<D>& view, std::int64_t piece)
     rank_of_row.push_back(slices.rank_of(n));
 
   ParticleSlice<D> slice{view.state, view.state.bodies, slices.of(ranks.rank())};
-  if (!view.problem.share.alone())
+  if (!view.problem.subdomain.alone())
     for (Index& cell : slice.state.particles.cell)
-      cell = view.problem.share.whole_cell(cell);
+      cell = view.problem.subdomain.whole_cell(cell);
   redistribute(ranks, rank_of_row, slice.state.bodies, slice.state.materials, slice.state.particles);
   std::vector<std::int64_t> sizes;
   for (const Body& body : view.state.bodies)
@@ -137,15 +138,15 @@ template <int D>
 MeshSlice slice_of_mesh(const RunView<D>& view, std::int64_t piece)
 {
   Communicator& ranks = *view.problem.ranks;
-  const Subdomain& share = view.problem.share;
+  const Subdomain& subdomain = view.problem.subdomain;
   const Mesh<D>& mesh = view.problem.mesh;
   const Slices nodes = slices_of_nodes(view, piece);
-  const Slices cells{share.alone() ? mesh.n_cells() : share.whole_cells, ranks.size(), piece};
+  const Slices cells{subdomain.alone() ? mesh.n_cells() : subdomain.whole_cells, ranks.size(), piece};
   std::vector<Index> number;
   std::vector<Real> positions;
   for (Index n = 0; n < mesh.n_nodes(); ++n)
-    if (share.alone() || share.owns_node(n)) {
-      number.push_back(share.alone() ? n : share.node[static_cast<std::size_t>(n)]);
+    if (subdomain.alone() || subdomain.owns_node(n)) {
+      number.push_back(subdomain.alone() ? n : subdomain.node[static_cast<std::size_t>(n)]);
       for (int d = 0; d < 3; ++d)
         positions.push_back(d < D ? mesh.node(n)[std::min(d, D - 1)] : 0.0);
     }
@@ -153,10 +154,10 @@ MeshSlice slice_of_mesh(const RunView<D>& view, std::int64_t piece)
   number.clear();
   std::vector<Index> corners;
   for (Index c = 0; c < mesh.n_cells(); ++c)
-    if (share.alone() || share.owns_cell(c)) {
-      number.push_back(share.alone() ? c : share.whole_cell(c));
+    if (subdomain.alone() || subdomain.owns_cell(c)) {
+      number.push_back(subdomain.alone() ? c : subdomain.whole_cell(c));
       for (const Index n : mesh.cell(c))
-        corners.push_back(share.alone() ? n : share.node[static_cast<std::size_t>(n)]);
+        corners.push_back(subdomain.alone() ? n : subdomain.node[static_cast<std::size_t>(n)]);
     }
   slice.corners = dealt<Index>(ranks, cells, number, corners, D + 1);
   return slice;
@@ -165,14 +166,14 @@ MeshSlice slice_of_mesh(const RunView<D>& view, std::int64_t piece)
 template <int D>
 Column slice_of_column(const RunView<D>& view, Column held, std::int64_t piece)
 {
-  if (view.problem.share.alone())
+  if (view.problem.subdomain.alone())
     return held;
   const auto width = static_cast<std::size_t>(held.components);
   std::vector<Index> number;
   std::vector<float> own;
   for (Index n = 0; n < view.problem.mesh.n_nodes(); ++n)
-    if (view.problem.share.owns_node(n)) {
-      number.push_back(view.problem.share.node[static_cast<std::size_t>(n)]);
+    if (view.problem.subdomain.owns_node(n)) {
+      number.push_back(view.problem.subdomain.node[static_cast<std::size_t>(n)]);
       const auto values = std::span(held.values).subspan(static_cast<std::size_t>(n) * width, width);
       own.insert(own.end(), values.begin(), values.end());
     }

@@ -69,7 +69,7 @@ RanksSummary ranks_of(const RunView<D>& view, const Traffic& begin, std::int64_t
   const auto a_step = [&](std::int64_t from, std::int64_t to) { return ranks.max(static_cast<Real>(to - from) / steps); };
   Index own = 0;
   for (Index c = 0; c < view.problem.mesh.n_cells(); ++c)
-    own += view.problem.share.owns_cell(c) ? 1 : 0;
+    own += view.problem.subdomain.owns_cell(c) ? 1 : 0;
   const std::int64_t here = view.state.particles.size(), all = std::max(ranks.sum(here), std::int64_t{1});
   summary.imbalance = static_cast<Real>(ranks.max(here)) * ranks.size() / static_cast<Real>(all);
   summary.cells_held = ranks.max(own > 0 ? static_cast<Real>(view.problem.mesh.n_cells()) / own : Real{1});

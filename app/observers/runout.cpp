@@ -33,7 +33,7 @@ Real mean_size(const RunView<D>& view)
 {
   ExactSums<NodeSizes> sum;
   for (Index n = 0; n < view.problem.mesh.n_nodes(); ++n)
-    if (view.problem.share.alone() || view.problem.share.owns_node(n))
+    if (view.problem.subdomain.alone() || view.problem.subdomain.owns_node(n))
       sum.add({view.problem.mesh.node_size(n), 1});
   view.problem.ranks->sum(sum);
   const NodeSizes all = sum.value();

@@ -48,12 +48,12 @@ void for_each_runout_column(bool erodes, F&& f)
 
 std::vector<std::string> RunoutPlan::axis_names() const
 {
-  constexpr std::string_view letters = "xyz";
+  constexpr std::string_view messages = "xyz";
   if (map)
     return {"east", "north"};
-  std::vector<std::string> names{std::string(1, letters[static_cast<std::size_t>(axes.plan[0])])};
+  std::vector<std::string> names{std::string(1, messages[static_cast<std::size_t>(axes.plan[0])])};
   if (dimension == 3)
-    names.emplace_back(1, letters[static_cast<std::size_t>(axes.plan[1])]);
+    names.emplace_back(1, messages[static_cast<std::size_t>(axes.plan[1])]);
   return names;
 }
 

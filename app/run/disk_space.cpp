@@ -41,8 +41,8 @@ FileSizes file_sizes(const RunView<D>& view, const OutputSpec& outputs)
 {
   FileSizes sizes;
   const auto particles = static_cast<Real>(view.problem.ranks->sum(static_cast<std::int64_t>(view.state.particles.size())));
-  const Index n_nodes = view.problem.share.alone() ? view.problem.mesh.n_nodes() : view.problem.share.whole_nodes;
-  const Index n_cells = view.problem.share.alone() ? view.problem.mesh.n_cells() : view.problem.share.whole_cells;
+  const Index n_nodes = view.problem.subdomain.alone() ? view.problem.mesh.n_nodes() : view.problem.subdomain.whole_nodes;
+  const Index n_cells = view.problem.subdomain.alone() ? view.problem.mesh.n_cells() : view.problem.subdomain.whole_cells;
   if (outputs.particles) {
     const Real fields =
         bytes_of_fields(particle_fields_of(outputs), [&](const auto& name) { return particle_column(view.state, {}, name); });

@@ -206,7 +206,7 @@ FolderLock NewResults::commit()
   for (const std::string& name : old ? old->names() : std::vector<std::string>())
     if (std::find(names.begin(), names.end(), name) == names.end() && !(keeps_scene_ && name == scene_file) && old->proves(name))
       gone.push_back(name);
-  const std::string saved = keeps_scene_ && old && old->proves(scene_file) ? old->lines_of(scene_file) : "";
+  const std::string scene_lines = keeps_scene_ && old && old->proves(scene_file) ? old->lines_of(scene_file) : "";
   naming("the results in " + folder_.string() + " cannot be replaced", [&] {
     // The list always contains all files: a run that is killed here leaves no unlisted file.
     replace_manifest(folder_, (old ? old->text() : "") + fresh.text());
@@ -225,7 +225,7 @@ FolderLock NewResults::commit()
     for (const std::string_view name : {checkpoint_folder, map_folder, section_folder, picture_folder})
       if (fs::is_directory(fs::symlink_status(folder_ / name, not_empty)))
         fs::remove(folder_ / name, not_empty);
-    replace_manifest(folder_, saved + fresh.text());
+    replace_manifest(folder_, scene_lines + fresh.text());
   });
   done_ = true;
   return std::move(lock_);

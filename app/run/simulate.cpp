@@ -51,8 +51,8 @@ Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup)
     }
   }));
   Model<D> m(std::move(part.mesh), std::move(transfer));
-  if (!part.share.alone())
-    m.join(world(), std::move(part.share));
+  if (!part.subdomain.alone())
+    m.join(world(), std::move(part.subdomain));
   m.state = std::move(setup.state);
   static_cast<SceneConditions<D>&>(m.problem) = std::move(setup.conditions);
   m.state.energy.largest_seen = m.problem.limits.least_energy * least_energy_factor;
@@ -68,8 +68,8 @@ Model<D> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   if (!world().alone()) {
     State<D>& state = setup.state;
     part = part_of(part.mesh, particles_in_blocks(state.particles.cell, part.mesh.n_cells()));
-    receive_owned_particles(world(), part.share, state.bodies, state.materials, state.particles);
-    restrict_to(part.share, setup);
+    receive_owned_particles(world(), part.subdomain, state.bodies, state.materials, state.particles);
+    restrict_to(part.subdomain, setup);
   }
   return build(scene, std::move(part), std::move(setup));
 }
@@ -218,7 +218,7 @@ class Simulation {
     looked_at_ = step, seconds_then_ = seconds_in_steps();
     own_cells_ = 0;
     for (Index c = 0; c < model_->problem.mesh.n_cells(); ++c)
-      own_cells_ += model_->problem.share.owns_cell(c) ? 1 : 0;
+      own_cells_ += model_->problem.subdomain.owns_cell(c) ? 1 : 0;
   }
 
   /// Every rank asks, and has the same answer.
@@ -236,15 +236,17 @@ class Simulation {
     const Real busiest_over_mean = static_cast<Real>(most) * world().size() / static_cast<Real>(all);
     if (!rule_->has_lost_enough(step, world().max(here), busiest_over_mean))
       return false;
-    const auto costs = costs_of_blocks(particles_in_blocks(whole_cells(), m.problem.share.whole_cells), m.problem.share.whole_cells);
-    return rule_->gains(imbalance(costs, m.problem.share.rank_of_whole_block, world().size()), imbalance_in_reach(costs, world().size()));
+    const auto costs =
+        costs_of_blocks(particles_in_blocks(whole_cells(), m.problem.subdomain.whole_cells), m.problem.subdomain.whole_cells);
+    return rule_->gains(imbalance(costs, m.problem.subdomain.rank_of_whole_block, world().size()),
+                        imbalance_in_reach(costs, world().size()));
   }
 
   std::vector<Index> whole_cells() const
   {
     std::vector<Index> cells;
     for (const Index cell : model_->state.particles.cell)
-      cells.push_back(model_->problem.share.whole_cell(cell));
+      cells.push_back(model_->problem.subdomain.whole_cell(cell));
     return cells;
   }
 
@@ -254,7 +256,7 @@ class Simulation {
     StopWatch watch;
     Real seconds = 0;
     model_->state.particles.cell = whole_cells();
-    const auto weights = particles_in_blocks(model_->state.particles.cell, model_->problem.share.whole_cells);
+    const auto weights = particles_in_blocks(model_->state.particles.cell, model_->problem.subdomain.whole_cells);
     std::optional<Part<D>> made;
     try {
       world().agree(Communicator::caught([&] { made = part_of(moves_.whole_mesh(), weights); }));
@@ -264,15 +266,15 @@ class Simulation {
       return stay("not enough memory");
     }
     Part<D>& part = *made;
-    const auto costs = costs_of_blocks(weights, part.share.whole_cells);
+    const auto costs = costs_of_blocks(weights, part.subdomain.whole_cells);
     Rebalanced told{.clock = model_->state.clock,
-                    .before = imbalance(costs, model_->problem.share.rank_of_whole_block, world().size()),
-                    .after = imbalance(costs, part.share.rank_of_whole_block, world().size())};
+                    .before = imbalance(costs, model_->problem.subdomain.rank_of_whole_block, world().size()),
+                    .after = imbalance(costs, part.subdomain.rank_of_whole_block, world().size())};
     const std::int64_t migrated = model_->work.migration.moved();
     State<D> state = std::move(model_->state);
     model_.reset();
     Setup<D> setup = rest_;
-    restrict_to(part.share, setup);
+    restrict_to(part.subdomain, setup);
     model_.emplace(build(scene_, std::move(part), std::move(setup)));
     BoundaryConditions<D> walls = std::move(model_->state.walls);  // those of the new part of the mesh
     walls.continue_from(state.walls);
@@ -290,7 +292,7 @@ class Simulation {
   void stay(const std::string& why)
   {
     for (Index& cell : model_->state.particles.cell)
-      cell = model_->problem.share.local_cell(cell);
+      cell = model_->problem.subdomain.local_cell(cell);
     rule_->abort_run();
     moves_.stayed(why);
   }

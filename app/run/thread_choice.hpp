@@ -24,7 +24,7 @@ class ThreadChoice {
   ThreadChoice();
   /// `first` at the beginning; at least `least`, at most `most`.
   ThreadChoice(int first, int least, int most);
-  int saved() const noexcept { return kept_; }
+  int chosen() const noexcept { return kept_; }
   /// The number for the next step.
   int next() const noexcept { return trying_ ? tried_[turn_ % tried_.size()] : kept_; }
   /// Records the duration of a step [s].

@@ -16,7 +16,7 @@ template <int D>
 class BoundaryBuilder {
  public:
   BoundaryBuilder(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
-                  const std::string& stage, bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& all)
+                  const std::string& stage, bool first, SceneErrorCollector& errors, Setup<D>& setup, BoundaryConditions<D>& all)
       : folder_(folder_of(scene)),
         mesh_(mesh),
         has_particles_(has_particles),
@@ -24,7 +24,7 @@ class BoundaryBuilder {
         first_(first),
         up_(upright_of(scene).head<D>()),
         ranks_(ranks),
-        complaints_(complaints),
+        errors_(errors),
         setup_(setup),
         all_(all)
   {}
@@ -56,7 +56,7 @@ class BoundaryBuilder {
       if (const auto facets = mesh_.facet_set(options.on))
         add_on_facets<C>(name, options, *facets, made_from);
       else
-        complaints_.unknown_group(options.where, "on", "facet", options.on, mesh_.facet_set_names());
+        errors_.unknown_group(options.where, "on", "facet", options.on, mesh_.facet_set_names());
     } else if (const auto nodes = mesh_.node_set(options.on)) {
       BoundaryCondition<D> condition{.name = name, .kind = C::make(options, made_from)};
       if (options.acts_in(stage_))
@@ -64,7 +64,7 @@ class BoundaryBuilder {
       else
         all_.add(std::move(condition));
     } else {
-      complaints_.unknown_group(options.where, "on", "node, facet or cell", options.on, mesh_.node_set_names());
+      errors_.unknown_group(options.where, "on", "node, facet or cell", options.on, mesh_.node_set_names());
     }
   }
   template <class C>
@@ -89,7 +89,7 @@ class BoundaryBuilder {
             C::Options::name));
     all_.add({.name = name, .kind = std::move(kind)}, mesh_, facets);
   } catch (const std::invalid_argument& e) {
-    complaints_.add(options.where, "on", e.what());
+    errors_.add(options.where, "on", e.what());
   }
 
   std::optional<Record> record_of(const SourceLocation& where, const RecordOptions& options)
@@ -98,7 +98,7 @@ class BoundaryBuilder {
     try {
       record = read_record((folder_ / options.file).lexically_normal(), options);
     } catch (const SceneErrors& e) {
-      complaints_.add(where, "record.file", e);
+      errors_.add(where, "record.file", e);
     }
     if (!record || !first_)
       return record;
@@ -118,7 +118,7 @@ class BoundaryBuilder {
   bool first_;
   Vec<D> up_;
   Communicator& ranks_;
-  SceneErrorCollector& complaints_;
+  SceneErrorCollector& errors_;
   Setup<D>& setup_;
   BoundaryConditions<D>& all_;
 };
@@ -127,9 +127,9 @@ class BoundaryBuilder {
 
 template <int D>
 void add_boundaries(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
-                    const std::string& stage, bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& all)
+                    const std::string& stage, bool first, SceneErrorCollector& errors, Setup<D>& setup, BoundaryConditions<D>& all)
 {
-  BoundaryBuilder<D>(scene, mesh, has_particles, ranks, stage, first, complaints, setup, all).add(scene.boundaries);
+  BoundaryBuilder<D>(scene, mesh, has_particles, ranks, stage, first, errors, setup, all).add(scene.boundaries);
 }
 
 template void add_boundaries<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, Communicator&, const std::string&, bool,

@@ -9,7 +9,7 @@ namespace talus {
 /// Adds the conditions of the stage with that name.  For the `first` stage notes and warnings go to `setup`.  Every rank has to call.
 template <int D>
 void add_boundaries(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
-                    const std::string& stage, bool first, SceneErrorCollector& complaints, Setup<D>& setup, BoundaryConditions<D>& all);
+                    const std::string& stage, bool first, SceneErrorCollector& errors, Setup<D>& setup, BoundaryConditions<D>& all);
 
 extern template void add_boundaries<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, Communicator&, const std::string&, bool,
                                        SceneErrorCollector&, Setup<2>&, BoundaryConditions<2>&);

@@ -30,7 +30,7 @@ Index number_of(const std::string& name, const std::vector<std::string>& names)
 
 /// Which body there becomes which body of the scene.
 std::vector<Index> match_bodies(const Scene& scene, const std::vector<std::string>& there, const std::string& run,
-                                SceneErrorCollector& complaints)
+                                SceneErrorCollector& errors)
 {
   std::vector<Index> source(scene.bodies.size(), none);
   const auto mine = names_of(scene.bodies);
@@ -39,8 +39,8 @@ std::vector<Index> match_bodies(const Scene& scene, const std::vector<std::strin
     const Index from = number_of(name, there);
     source[static_cast<std::size_t>(number_of(taken.body, mine))] = from;
     if (from == none)
-      complaints.add(taken.where, taken.from.empty() ? "body" : "from",
-                     fmt::format("there is no body \"{}\" in {}{}", name, run, suggestion(name, there)));
+      errors.add(taken.where, taken.from.empty() ? "body" : "from",
+                 fmt::format("there is no body \"{}\" in {}{}", name, run, suggestion(name, there)));
   }
   if (!scene.initial->bodies.empty())
     return source;
@@ -48,20 +48,20 @@ std::vector<Index> match_bodies(const Scene& scene, const std::vector<std::strin
     const BodySpec& body = scene.bodies[b];
     source[b] = number_of(body.name, there);
     if (source[b] == none && !body.fills())
-      complaints.add(body.where, "",
-                     fmt::format("one of region or shape is needed, or a source in initial.bodies: there is no body \"{}\" in {}{}",
-                                 body.name, run, suggestion(body.name, there)));
+      errors.add(body.where, "",
+                 fmt::format("one of region or shape is needed, or a source in initial.bodies: there is no body \"{}\" in {}{}", body.name,
+                             run, suggestion(body.name, there)));
     if (source[b] != none && body.fills())
-      complaints.add(body.where, body.shape ? "shape" : "region",
-                     fmt::format("body \"{}\" takes its particles from the one of its name in {}: leave this out, or list in "
-                                 "initial.bodies those that do",
-                                 body.name, run));
+      errors.add(body.where, body.shape ? "shape" : "region",
+                 fmt::format("body \"{}\" takes its particles from the one of its name in {}: leave this out, or list in "
+                             "initial.bodies those that do",
+                             body.name, run));
   }
   if (std::all_of(source.begin(), source.end(), [](Index from) { return from == none; }) &&
       std::all_of(scene.bodies.begin(), scene.bodies.end(), [](const BodySpec& body) { return body.fills(); }))
-    complaints.add(scene.initial->where, "from",
-                   fmt::format("no body of this scene has the name of one in {}, which has {}; say in initial.bodies which takes which",
-                               run, or_list(there)));
+    errors.add(scene.initial->where, "from",
+               fmt::format("no body of this scene has the name of one in {}, which has {}; say in initial.bodies which takes which", run,
+                           or_list(there)));
   return source;
 }
 
@@ -115,7 +115,7 @@ void warn(const Scene& scene, const RunIdentity& identity, const CheckpointList:
 }  // namespace
 
 template <int D>
-std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& complaints, std::vector<std::string>& warnings)
+std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& errors, std::vector<std::string>& warnings)
 {
   if (!scene.initial)
     return std::nullopt;
@@ -125,14 +125,14 @@ std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneError
     const RunIdentity& identity = list.identity();
     const Scene other = scene_of(identity);
     if (other.dimension != D) {
-      complaints.add(where, "from", fmt::format("the bodies there are of {} dimensions, this scene has {}", other.dimension, D));
+      errors.add(where, "from", fmt::format("the bodies there are of {} dimensions, this scene has {}", other.dimension, D));
       return std::nullopt;
     }
     InitialState<D> state;
     state.there = bodies_of<D>(other);
     const CheckpointList::Read read = list.read(state.there);
     warn(scene, identity, read, state.there, warnings);
-    state.source = match_bodies(scene, names_of(other.bodies), read.file.string(), complaints);
+    state.source = match_bodies(scene, names_of(other.bodies), read.file.string(), errors);
     state.origin = {.file = fs::absolute(read.file).string(),
                     .title = other.title,
                     .scene_file = identity.scene_file,
@@ -144,7 +144,7 @@ std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneError
                     .bodies = {}};
     return state;
   } catch (const EnvironmentError& e) {
-    complaints.add(where, "from", e.what());
+    errors.add(where, "from", e.what());
     return std::nullopt;
   }
 }

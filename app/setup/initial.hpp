@@ -15,7 +15,7 @@ struct InitialState {
 /// Nothing if the scene takes none, or if something is wrong with what it takes.  Complains about a run that is not there or cannot be read,
 /// another dimension, and bodies that are not there or are filled besides; warns of what may not be meant.
 template <int D>
-std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& complaints, std::vector<std::string>& warnings);
+std::optional<InitialState<D>> find_initial_state(const Scene& scene, SceneErrorCollector& errors, std::vector<std::string>& warnings);
 
 /// What two laws both remember: rows of one history become the history of the other.
 void carry_history(const Material& from, std::span<const Index> rows, Material& to);

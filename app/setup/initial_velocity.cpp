@@ -10,7 +10,7 @@
 namespace talus {
 
 template <int D>
-void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks, Index begin, Index end, SceneErrorCollector& complaints,
+void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks, Index begin, Index end, SceneErrorCollector& errors,
                   Particles<D>& particles)
 {
   if (spec.velocity.empty())
@@ -40,7 +40,7 @@ void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks
       wrong = e.what();
     }
     if (wrong = ranks.first(wrong); !wrong.empty())
-      complaints.add(spec.where, fmt::format("velocity[{}]", d), wrong);
+      errors.add(spec.where, fmt::format("velocity[{}]", d), wrong);
   }
 }
 

@@ -11,7 +11,7 @@ namespace talus {
 /// Velocity and its gradient of the particles [begin, end): without the latter, affine schemes would begin with particles that do not turn.
 /// Complains about formulas.  Every rank has to ask.
 template <int D>
-void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks, Index begin, Index end, SceneErrorCollector& complaints,
+void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks, Index begin, Index end, SceneErrorCollector& errors,
                   Particles<D>& particles);
 
 extern template void set_velocity<2>(const BodySpec&, const Mesh<2>&, Communicator&, Index, Index, SceneErrorCollector&, Particles<2>&);

@@ -46,7 +46,7 @@ Mat3 matrix_of(const UniformStressSpec& s)
 
 }  // namespace
 
-std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, SceneErrorCollector& complaints)
+std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, SceneErrorCollector& errors)
 {
   std::vector<StartStress> all;
   for (const BodySpec& body : scene.bodies) {
@@ -66,9 +66,9 @@ std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene&
     if (sine)
       table = constant(from_friction(*sine, rule.ocr));
     else
-      complaints.add(spec.where, "from_friction",
-                     fmt::format("the law of body \"{}\" has no angle of friction; of the laws {} have one", body.name,
-                                 or_list(laws_with_friction())));
+      errors.add(spec.where, "from_friction",
+                 fmt::format("the law of body \"{}\" has no angle of friction; of the laws {} have one", body.name,
+                             or_list(laws_with_friction())));
   }
   return all;
 }

@@ -6,6 +6,6 @@
 namespace talus {
 
 /// Of the bodies of the scene, in their order.  Complains of laws without an angle of friction where it asks for one.
-std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, SceneErrorCollector& complaints);
+std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, SceneErrorCollector& errors);
 
 }  // namespace talus

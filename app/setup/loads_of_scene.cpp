@@ -46,8 +46,8 @@ template <int D>
 class LoadBuilder {
  public:
   LoadBuilder(const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start, Communicator& ranks,
-              SceneErrorCollector& complaints, Setup<D>& setup)
-      : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), complaints_(complaints), setup_(setup)
+              SceneErrorCollector& errors, Setup<D>& setup)
+      : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), errors_(errors), setup_(setup)
   {}
 
   void operator()(const GravitySpec& spec) { setup_.conditions.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
@@ -58,7 +58,7 @@ class LoadBuilder {
       try {
         formulas.emplace_back(spec.acceleration[d]);
       } catch (const std::invalid_argument& e) {
-        complaints_.add(spec.where, fmt::format("acceleration[{}]", d), e.what());
+        errors_.add(spec.where, fmt::format("acceleration[{}]", d), e.what());
       }
     if (formulas.size() < D)
       return;
@@ -81,7 +81,7 @@ class LoadBuilder {
   {
     const auto found = mesh_.facet_set(spec.on);
     if (!found)
-      return complaints_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+      return errors_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
     const std::vector<Facet> facets = at_start_.orient_facets(*found);
     Real area = 0, loaded = 0;
     for (const Facet& facet : facets) {
@@ -89,8 +89,7 @@ class LoadBuilder {
       loaded += has_particles_(facet.cell) ? mesh_.area_vector(facet).norm() : 0;
     }
     if (loaded == 0)
-      return complaints_.add(spec.where, "on",
-                             fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
+      return errors_.add(spec.where, "on", fmt::format("there are no particles behind the facets of \"{}\" to carry the load", spec.on));
     if (loaded < area * (1 - 1e-9))  // sums of the same areas differ by round-off only
       setup_.warnings.push_back(fmt::format("{}: {:.3g} % of the area of \"{}\" has no particles behind it and carries no load",
                                             to_string(spec.where), 100 * (1 - loaded / area), spec.on));
@@ -117,7 +116,7 @@ class LoadBuilder {
   const Mesh<D>& mesh_;
   const CellOccupancy<D>&has_particles_, &at_start_;
   Communicator& ranks_;
-  SceneErrorCollector& complaints_;
+  SceneErrorCollector& errors_;
   Setup<D>& setup_;
 };
 
@@ -125,9 +124,9 @@ class LoadBuilder {
 
 template <int D>
 void add_loads(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start,
-               Communicator& ranks, SceneErrorCollector& complaints, Setup<D>& setup)
+               Communicator& ranks, SceneErrorCollector& errors, Setup<D>& setup)
 {
-  LoadBuilder<D> builder(mesh, has_particles, at_start, ranks, complaints, setup);
+  LoadBuilder<D> builder(mesh, has_particles, at_start, ranks, errors, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(builder, load);
 }

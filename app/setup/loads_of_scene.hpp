@@ -9,7 +9,7 @@ namespace talus {
 /// `has_particles`: of all bodies, those as well that appear later; `at_start`: of the others.  Every rank has to ask.
 template <int D>
 void add_loads(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start,
-               Communicator& ranks, SceneErrorCollector& complaints, Setup<D>& setup);
+               Communicator& ranks, SceneErrorCollector& errors, Setup<D>& setup);
 
 extern template void add_loads<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, const CellOccupancy<2>&, Communicator&,
                                   SceneErrorCollector&, Setup<2>&);

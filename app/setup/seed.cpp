@@ -43,8 +43,8 @@ Standing standing_of(std::int64_t here, Communicator& ranks)
 template <int D>
 class Seeder {
  public:
-  Seeder(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& complaints)
-      : scene_(scene), mesh_(mesh), ranks_(ranks), mine_(cells_to_fill(mesh, ranks)), complaints_(complaints)
+  Seeder(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& errors)
+      : scene_(scene), mesh_(mesh), ranks_(ranks), mine_(cells_to_fill(mesh, ranks)), errors_(errors)
   {
     seeds_.particles.keep_in(scene.precision);  // while they are none: never more memory than the run needs
   }
@@ -62,17 +62,17 @@ class Seeder {
     const std::vector<std::int64_t> first = count(*cells, *points, spec);
     const Standing standing = standing_of(first.back() - begin, ranks_);
     if (const std::string why = too_many_particles(standing.all, material->law); !why.empty())
-      return complaints_.add(spec.where, "particles_per_cell", why);
+      return errors_.add(spec.where, "particles_per_cell", why);
     fill(*cells, *points, spec, density_of(*material), first, seeds_.n_particles + standing.before);
     seeds_.n_particles += static_cast<Index>(standing.all);
     const Index end = seeds_.particles.size();
     if (standing.all == 0)
-      complaints_.add(spec.where, "",
-                      fmt::format("the body has no particles: {}",
-                                  spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
+      errors_.add(spec.where, "",
+                  fmt::format("the body has no particles: {}",
+                              spec.shape ? "its shape contains no particle centre of the mesh" : "its group has no cells"));
     seeds_.bodies.push_back({spec.name, begin, end, spec.where});
     seeds_.materials.push_back(first_law(spec, begin, end));
-    set_velocity(spec, mesh_, ranks_, begin, end, complaints_, seeds_.particles);
+    set_velocity(spec, mesh_, ranks_, begin, end, errors_, seeds_.particles);
   }
 
   /// The body begins as the one of that number there.
@@ -86,7 +86,7 @@ class Seeder {
     const std::vector<Index> rows = rows_by_id(initial.there.particles, source);
     const Index begin = seeds_.particles.size(), end = begin + source.size();
     if (begin == end)
-      complaints_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
+      errors_.add(spec.where, "", fmt::format("body \"{}\" has no particles left in {}", source.name, initial.origin.file));
     const Body body{spec.name, begin, end, spec.where};
     Material material_here = first_law(spec, begin, end);
     copy(initial.there.particles, rows, density_of(*material) / there.law().density(), begin, seeds_.n_particles);
@@ -98,9 +98,9 @@ class Seeder {
         row -= source.begin;
       carry_history(there, of_body, material_here);
     } else if (!material_here.law().starts_from_stress()) {
-      complaints_.add(spec.where, "material",
-                      fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
-                                  there.law().name(), material_here.law().name(), or_list(laws_that_start_from_stress())));
+      errors_.add(spec.where, "material",
+                  fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
+                              there.law().name(), material_here.law().name(), or_list(laws_that_start_from_stress())));
     }
     taken_.push_back({seeds_.bodies.size(), std::string(there.law().name()), rows});
     initial.origin.bodies.push_back({spec.name, source.name, source.size()});
@@ -141,9 +141,9 @@ class Seeder {
     std::vector<std::string> known;
     for (const int n : seeding_counts<D>())
       known.push_back(std::to_string(n));
-    complaints_.add(spec.where, "particles_per_cell",
-                    fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell.value(),
-                                D == 2 ? "triangle" : "tetrahedron", or_list(known)));
+    errors_.add(spec.where, "particles_per_cell",
+                fmt::format("there is no symmetric set of {} points in a {}; there is {}", spec.particles_per_cell.value(),
+                            D == 2 ? "triangle" : "tetrahedron", or_list(known)));
   }
 
   bool is_mine(Index cell) const noexcept { return mine_.begin <= cell && cell < mine_.end; }
@@ -158,7 +158,7 @@ class Seeder {
     }
     auto cells = mesh_.cell_set(spec.region);
     if (!cells)
-      complaints_.unknown_group(spec.where, "region", "cell", spec.region, mesh_.cell_set_names());
+      errors_.unknown_group(spec.where, "region", "cell", spec.region, mesh_.cell_set_names());
     else
       std::erase_if(*cells, [&](Index c) { return !is_mine(c); });
     return cells;
@@ -289,9 +289,9 @@ class Seeder {
     if (outside == last)
       return;
     const Vec<D>& x = p.x[static_cast<std::size_t>(outside - p.cell.begin())];
-    complaints_.add(scene_.initial->where, "from",
-                    fmt::format("{} of the {} particles of body \"{}\" there lie outside the mesh of this scene, the first at ({:.6g})",
-                                std::count(outside, last, none), body.size(), source.name, fmt::join(x.begin(), x.end(), ", ")));
+    errors_.add(scene_.initial->where, "from",
+                fmt::format("{} of the {} particles of body \"{}\" there lie outside the mesh of this scene, the first at ({:.6g})",
+                            std::count(outside, last, none), body.size(), source.name, fmt::join(x.begin(), x.end(), ", ")));
     std::replace(outside, last, none, Index{0});  // the scene is refused, but looked at to its end
   }
 
@@ -310,7 +310,7 @@ class Seeder {
         for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.C.set(row, from.C[there]); });
     }
     if (scene_.initial->displacement == Carried::keep && from.x0.empty()) {
-      complaints_.add(scene_.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
+      errors_.add(scene_.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
     } else if (scene_.initial->displacement == Carried::keep) {
       p.x0 = p.x;
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0[row] = from.x0[there]; });
@@ -353,7 +353,7 @@ class Seeder {
   const Mesh<D>& mesh_;
   Communicator& ranks_;
   IndexRange mine_;  // cells
-  SceneErrorCollector& complaints_;
+  SceneErrorCollector& errors_;
   Seeds<D> seeds_;
   std::vector<Taken> taken_;
 };
@@ -371,11 +371,10 @@ IndexRange cells_to_fill(const Mesh<D>& mesh, const Communicator& ranks)
 }
 
 template <int D>
-Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& complaints,
-              std::vector<std::string>& warnings)
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& errors, std::vector<std::string>& warnings)
 {
-  Seeder<D> seeder(scene, mesh, ranks, complaints);
-  auto initial = find_initial_state<D>(scene, complaints, warnings);
+  Seeder<D> seeder(scene, mesh, ranks, errors);
+  auto initial = find_initial_state<D>(scene, errors, warnings);
   for (std::size_t b = 0; b < scene.bodies.size(); ++b)
     if (initial && initial->source[b] != none)
       seeder.add(scene.bodies[b], *initial, initial->source[b]);
@@ -383,7 +382,7 @@ Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, Scen
       seeder.add(scene.bodies[b]);
   if (initial)
     seeder.settle(*initial, warnings);
-  find_groups_filled_twice(scene, complaints);
+  find_groups_filled_twice(scene, errors);
   Seeds<D> seeds = seeder.take();
   warn_of_shared_cells(scene, seeds.bodies, seeds.particles.cell, mesh.n_cells(), ranks, warnings);
   return seeds;

@@ -30,7 +30,7 @@ IndexRange cells_to_fill(const Mesh<D>& mesh, const Communicator& ranks);
 /// Every rank has to ask, with the same scene and mesh: each gets the particles in its cells_to_fill(), with the ids that they would have if one
 /// rank filled all, and complains and warns in the same words.
 template <int D>
-Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& complaints,
+Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& errors,
               std::vector<std::string>& warnings);
 
 extern template IndexRange cells_to_fill<2>(const Mesh<2>&, const Communicator&);

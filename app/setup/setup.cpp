@@ -80,12 +80,12 @@ void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
 
 /// Sections that leave the mesh, walls of the history that have no area.
 template <int D>
-void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, SceneErrorCollector& complaints)
+void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, SceneErrorCollector& errors)
 {
   if (const auto& history = scene.outputs.history)
     for (const WallSpec& wall : history->walls)
       if (!facets_of_wall(mesh, wall.on))
-        complaints.add(wall.where, "on", fmt::format("wall \"{}\" is on nodes, not on facets: it has no area", wall.on));
+        errors.add(wall.where, "on", fmt::format("wall \"{}\" is on nodes, not on facets: it has no area", wall.on));
   if (D == 2 || !scene.outputs.runout)
     return;
   const PlanAxes axes = plan_axes<D>(gravity);
@@ -95,7 +95,7 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
         const Real shift = mesh.map() ? mesh.map()->origin[d] : 0;
         const Real low = mesh.low()[axes.plan[d]] + shift, high = mesh.high()[axes.plan[d]] + shift;
         if (const Real x = section.along[i][d]; !(low <= x && x <= high))
-          complaints.add(
+          errors.add(
               section.where, "along",
               fmt::format("corner {} is outside of the mesh: {:.10g} m does not lie between {:.10g} and {:.10g} m", i + 1, x, low, high));
       }
@@ -106,10 +106,10 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
 template <int D>
 Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
 {
-  SceneErrorCollector complaints(scene);
+  SceneErrorCollector errors(scene);
   Setup<D> setup;
   setup.warnings = mesh.notes();
-  Seeds<D> seeds = seed(scene, mesh, ranks, complaints, setup.warnings);
+  Seeds<D> seeds = seed(scene, mesh, ranks, errors, setup.warnings);
   setup.state.particles = std::move(seeds.particles);
   setup.n_particles = seeds.n_particles;
   setup.state.bodies = std::move(seeds.bodies);
@@ -121,18 +121,18 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
-  add_boundaries(scene, mesh, at_start, ranks, first_stage, true, complaints, setup, setup.state.walls);
-  add_loads(scene, mesh, has_particles, at_start, ranks, complaints, setup);
-  set_stages(scene, complaints, setup);
+  add_boundaries(scene, mesh, at_start, ranks, first_stage, true, errors, setup, setup.state.walls);
+  add_loads(scene, mesh, has_particles, at_start, ranks, errors, setup);
+  set_stages(scene, errors, setup);
   setup.conditions.water = water_of(
-      scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, complaints, setup.warnings);
+      scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, errors, setup.warnings);
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);
   if (setup.conditions.water.any())
     warn_if_dry(mesh, ranks, setup);
-  check_laws(scene, complaints);
-  check_room(scene, mesh, setup, ranks, complaints);
-  check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, complaints);
-  ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
+  check_laws(scene, errors);
+  check_room(scene, mesh, setup, ranks, errors);
+  check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, errors);
+  ranks.agree(Communicator::caught([&] { errors.throw_if_any(); }));
 
   setup.conditions.transfer = scene.transfer.with_default_damping();
   setup.conditions.exits.policy = scene.on_exit;
@@ -151,12 +151,12 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
 }
 
 template <int D>
-void restrict_to(const Subdomain& share, Setup<D>& setup)
+void restrict_to(const Subdomain& subdomain, Setup<D>& setup)
 {
-  setup.state.walls.restrict_to(share);
-  restrict_to(share, setup.conditions.water);
+  setup.state.walls.restrict_to(subdomain);
+  restrict_to(subdomain, setup.conditions.water);
   for (MeshTraction<D>& load : setup.conditions.loads.on_mesh)
-    restrict_to(share, load);
+    restrict_to(subdomain, load);
 }
 
 template void restrict_to<2>(const Subdomain&, Setup<2>&);

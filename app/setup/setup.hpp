@@ -34,7 +34,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks = o
 
 /// Leaves what concerns the cells and nodes of one of several ranks, in the numbers of its part.  Particles are not looked at.
 template <int D>
-void restrict_to(const Subdomain& share, Setup<D>& setup);
+void restrict_to(const Subdomain& subdomain, Setup<D>& setup);
 
 /// Numbers of a scene as a vector; zero where there are none.
 template <int D>

@@ -56,8 +56,8 @@ void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<
 template <int D>
 void take_walls(Model<D>& m, BoundaryConditions<D> walls)
 {
-  if (!m.problem.share.alone())
-    walls.restrict_to(m.problem.share);
+  if (!m.problem.subdomain.alone())
+    walls.restrict_to(m.problem.subdomain);
   walls.continue_from(m.state.walls);
   m.state.walls = std::move(walls);
   bind_boundary_conditions(m);
@@ -67,7 +67,7 @@ void take_walls(Model<D>& m, BoundaryConditions<D> walls)
 template <int D>
 void take_table(Model<D>& m, const std::vector<Real>& table)
 {
-  m.problem.water.table = m.problem.share.alone() ? table : part_of_table(m.problem.share, table);
+  m.problem.water.table = m.problem.subdomain.alone() ? table : part_of_table(m.problem.subdomain, table);
 }
 
 /// Does all that the stage changes, between two steps, before the stage begins.  What comes is moved out of `change`.
@@ -83,8 +83,8 @@ StageReport enter(Model<D>& m, StageChange<D>& change, std::span<const Material>
     renew(change.renew, laws, m.state, *m.problem.ranks, news);
   if (!change.appear.empty()) {
     ParticleSet<D> coming = std::exchange(change.coming, {});
-    if (!m.problem.share.alone())
-      receive_owned_particles(*m.problem.ranks, m.problem.share, coming.bodies, coming.materials, coming.particles);
+    if (!m.problem.subdomain.alone())
+      receive_owned_particles(*m.problem.ranks, m.problem.subdomain, coming.bodies, coming.materials, coming.particles);
     fill_columns(m.problem.columns, coming.particles);
     appear(change.appear, std::move(coming), m.problem.mesh, m.work.order, stage, m.state, *m.problem.ranks, news);
     update_rows(m);

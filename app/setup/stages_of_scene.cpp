@@ -75,7 +75,7 @@ std::string moved_table(const Mesh<D>& mesh, const std::vector<Real>& before, co
 }  // namespace
 
 template <int D>
-void set_stages(const Scene& scene, SceneErrorCollector& complaints, Setup<D>& setup)
+void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup)
 {
   if (scene.stages.empty())
     setup.stages.push_back({.name = "run", .duration = scene.time.end, .where = scene.time.where});
@@ -86,21 +86,20 @@ void set_stages(const Scene& scene, SceneErrorCollector& complaints, Setup<D>& s
     const auto* spec = std::get_if<GeostaticSpec>(&scene.stages[s]);
     if (spec == nullptr || !spec->initial_stress)
       continue;
-    stage.start_stress = start_stress_of_bodies(*spec->initial_stress, scene, complaints);
+    stage.start_stress = start_stress_of_bodies(*spec->initial_stress, scene, errors);
     if (s > 0)
       stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.state.bodies);
     for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
       const Index from = presence_of(setup.state.bodies[b].name, scene.stages).from;
       if (std::cmp_equal(from, s) && !setup.state.materials[b].law().starts_from_stress())
-        complaints.add(
-            stage.where, "initial_stress",
-            fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
-                        setup.state.materials[b].law().name(), setup.state.bodies[b].name));
+        errors.add(stage.where, "initial_stress",
+                   fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
+                               setup.state.materials[b].law().name(), setup.state.bodies[b].name));
     }
   }
 }
 
-void check_laws(const Scene& scene, SceneErrorCollector& complaints)
+void check_laws(const Scene& scene, SceneErrorCollector& errors)
 {
   const auto body_of = [&](const std::string& name) {
     return std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) { return body.name == name; });
@@ -113,9 +112,9 @@ void check_laws(const Scene& scene, SceneErrorCollector& complaints)
       const auto name = [](const MaterialSpec& material) { return material.law.name(); };
       const auto can = laws_that_start_from_stress();
       if (name(before) != name(after) && std::find(can.begin(), can.end(), name(after)) == can.end())
-        complaints.add(change.where, "material",
-                       fmt::format("the body comes from law \"{}\", and law \"{}\" cannot start from its stress; of other laws {} can",
-                                   name(before), name(after), or_list(can)));
+        errors.add(change.where, "material",
+                   fmt::format("the body comes from law \"{}\", and law \"{}\" cannot start from its stress; of other laws {} can",
+                               name(before), name(after), or_list(can)));
     }
     for (const WeakenSpec& weaken : changes_of(scene.stages[s]).weaken) {
       const bool found = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) {
@@ -123,15 +122,15 @@ void check_laws(const Scene& scene, SceneErrorCollector& complaints)
                has_strength(*material_of(scene, body, stage));
       });
       if (!found)
-        complaints.add(weaken.where, weaken.body.empty() ? "" : "body",
-                       weaken.body.empty() ? std::string("no body of this stage has a law with shear strength")
-                                           : fmt::format("the law of body \"{}\" has no shear strength", weaken.body));
+        errors.add(weaken.where, weaken.body.empty() ? "" : "body",
+                   weaken.body.empty() ? std::string("no body of this stage has a law with shear strength")
+                                       : fmt::format("the law of body \"{}\" has no shear strength", weaken.body));
     }
   }
 }
 
 template <int D>
-void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks, SceneErrorCollector& complaints)
+void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks, SceneErrorCollector& errors)
 {
   CellOrder order;
   for (std::size_t s = 1; s < scene.stages.size(); ++s)
@@ -146,7 +145,7 @@ void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, 
       const auto there =
           volumes([&](const std::string& body) { return body != name && presence_of(body, scene.stages).in(static_cast<Index>(s)); });
       if (const Overlap<D> taken = overlap<D>(mesh, there, its, ranks); taken.share() > most_overlap)
-        complaints.add(where_of(scene.stages[s]), "appear", fmt::format("body \"{}\" cannot appear: {}", name, describe(taken)));
+        errors.add(where_of(scene.stages[s]), "appear", fmt::format("body \"{}\" cannot appear: {}", name, describe(taken)));
     }
 }
 
@@ -166,7 +165,7 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   const bool tables_differ =
       std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
   const auto names = wall_names(scene.boundaries);
-  SceneErrorCollector complaints(scene);
+  SceneErrorCollector errors(scene);
   for (std::size_t s = 1; s < n; ++s) {
     StageChange<D>& change = setup.changes[s];
     change.appear = numbers_of(said(s).appear, setup.state.bodies);
@@ -182,14 +181,14 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
     const CellOccupancy<D> filled(mesh, setup.state.particles, setup.state.bodies, ranks, there);
     if (said(s).water) {
       change.table = table_of_stage(
-          scene, *said(s).water, mesh, [&](Index cell) { return filled(cell); }, complaints, setup.warnings);
+          scene, *said(s).water, mesh, [&](Index cell) { return filled(cell); }, errors, setup.warnings);
       change.told.push_back(
           moved_table(mesh, setup.changes[s - 1].table ? *setup.changes[s - 1].table : setup.conditions.water.table, *change.table));
     }
     if (!walls_differ)
       continue;
     change.walls.emplace();
-    add_boundaries(scene, mesh, filled, ranks, said(s).label, false, complaints, setup, *change.walls);
+    add_boundaries(scene, mesh, filled, ranks, said(s).label, false, errors, setup, *change.walls);
     for (std::size_t w = 0; w < names.size(); ++w) {
       const bool acted = common_of(scene.boundaries[w]).acts_in(said(s - 1).label),
                  acts = common_of(scene.boundaries[w]).acts_in(said(s).label);
@@ -197,7 +196,7 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
         change.told.push_back(fmt::format("wall \"{}\" {}", names[w], acts ? "acts from here on" : "is gone"));
     }
   }
-  ranks.agree(Communicator::caught([&] { complaints.throw_if_any(); }));
+  ranks.agree(Communicator::caught([&] { errors.throw_if_any(); }));
   for (std::size_t s = 1; s < n; ++s)
     if (!setup.changes[s].appear.empty()) {
       Water water = setup.conditions.water;

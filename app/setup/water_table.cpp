@@ -20,7 +20,7 @@ constexpr Real steepest_axes = 0.87;
 
 /// A table that is not given by its depth, over places on the map where there is one; none if something is wrong with it.
 template <int D>
-Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, SceneErrorCollector& complaints,
+Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, SceneErrorCollector& errors,
                    std::vector<std::string>& warnings)
 {
   const bool on_map = D == 3 || (scene.mesh.terrain && scene.mesh.terrain->section);
@@ -31,10 +31,10 @@ Surface surface_of(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& m
   try {
     read = read_surface(spec, plan, problems, repairs);
   } catch (const EnvironmentError& e) {
-    complaints.add(spec.where, "file", e.what());
+    errors.add(spec.where, "file", e.what());
   }
   for (const SceneError& problem : problems)
-    complaints.add(problem.where, "", problem.message);
+    errors.add(problem.where, "", problem.message);
   for (const std::string& repair : repairs)
     warnings.push_back(fmt::format("{}: {}", to_string(spec.where), repair));
   return read ? read->at : Surface();
@@ -78,8 +78,7 @@ WaterAboveGround<D> flood_of(const Ground<D>& ground, const Table_& table)
 
 /// Complains, or warns, of a table above the ground.
 template <int D>
-void judge(const WaterAboveGround<D>& flood, const SourceLocation& where, SceneErrorCollector& complaints,
-           std::vector<std::string>& warnings)
+void judge(const WaterAboveGround<D>& flood, const SourceLocation& where, SceneErrorCollector& errors, std::vector<std::string>& warnings)
 {
   if (flood.flooded == 0)
     return;
@@ -89,34 +88,34 @@ void judge(const WaterAboveGround<D>& flood, const SourceLocation& where, SceneE
       fmt::format("the water table lies above the ground over {:.3g} {} of {:.3g} {} of its plan, by up to {:.3g} m at {}", flood.flooded,
                   unit, flood.area, unit, flood.most, in_words<D>(flood.deepest));
   if (share > most_cut)
-    complaints.add(where, "",
-                   fmt::format("{}: open water has no weight here, and a table is cut at the ground for up to {:.0f} % of it only; bring "
-                               "the table down to the ground (depth: 0 is a table at the ground everywhere)",
-                               found, 100 * most_cut));
+    errors.add(where, "",
+               fmt::format("{}: open water has no weight here, and a table is cut at the ground for up to {:.0f} % of it only; bring "
+                           "the table down to the ground (depth: 0 is a table at the ground everywhere)",
+                           found, 100 * most_cut));
   else
     warnings.push_back(fmt::format("{}: {}: it is cut at the ground there, and the water above has no weight", to_string(where), found));
 }
 
 template <int D>
-void check_gravity(const Scene& scene, SceneErrorCollector& complaints)
+void check_gravity(const Scene& scene, SceneErrorCollector& errors)
 {
   for (const LoadSpec& load : scene.loads)
     if (const auto* gravity = std::get_if<GravitySpec>(&load); gravity != nullptr && gravity->acceleration.size() == D) {
       const Vec<D> g = Eigen::Map<const Vec<D>>(gravity->acceleration.data());
       if (const Vec<D> level = g - g[D - 1] * Vec<D>::Unit(D - 1); g[D - 1] >= 0 || level.norm() > steepest_axes * g.norm())
-        complaints.add(scene.water->where, "",
-                       fmt::format("elevations are measured along {}, and gravity does not point down that way: {}", D == 2 ? "y" : "z",
-                                   in_words<D>(g)));
+        errors.add(scene.water->where, "",
+                   fmt::format("elevations are measured along {}, and gravity does not point down that way: {}", D == 2 ? "y" : "z",
+                               in_words<D>(g)));
     }
 }
 
 /// The table at the nodes; none if something is wrong with it.
 template <int D>
 std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, const Mesh<D>& mesh, const std::function<bool(Index)>& filled,
-                                 SceneErrorCollector& complaints, std::vector<std::string>& warnings)
+                                 SceneErrorCollector& errors, std::vector<std::string>& warnings)
 {
   const Ground<D> ground(mesh, filled);
-  const Surface given = spec.depth ? Surface() : surface_of(scene, spec, mesh, complaints, warnings);
+  const Surface given = spec.depth ? Surface() : surface_of(scene, spec, mesh, errors, warnings);
   if (!given && !spec.depth)
     return {};
   const auto table = [&](const Vec<D>& x) {
@@ -125,7 +124,7 @@ std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, co
       return ground(place) - *spec.depth;
     return given(mesh.map() ? mesh.map()->to_map(place[0], place[1]) : place);
   };
-  judge(flood_of<D>(ground, table), spec.where, complaints, warnings);
+  judge(flood_of<D>(ground, table), spec.where, errors, warnings);
 
   std::vector<Real> at_nodes(static_cast<std::size_t>(mesh.n_nodes()));
   parallel_for(mesh.n_nodes(), [&](Index n) {
@@ -145,7 +144,7 @@ std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, co
       at_nodes[n] = mesh.low()[D - 1];
     }
   if (unknown_in_material != none)
-    complaints.add(
+    errors.add(
         spec.where, "",
         fmt::format("the water table is not known everywhere above the bodies: not at {}", in_words<D>(mesh.node(unknown_in_material))));
   else if (unknown > 0)
@@ -160,26 +159,25 @@ std::vector<Real> table_at_nodes(const Scene& scene, const SurfaceSpec& spec, co
 
 template <int D>
 Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>& bodies, const std::function<bool(Index)>& filled,
-               SceneErrorCollector& complaints, std::vector<std::string>& warnings)
+               SceneErrorCollector& errors, std::vector<std::string>& warnings)
 {
   Water water;
   if (!scene.water)
     return water;
   const WaterSpec& spec = *scene.water;
-  check_gravity<D>(scene, complaints);
+  check_gravity<D>(scene, errors);
   water.unit_weight = spec.unit_weight, water.suction = spec.suction;
   for (const Body& body : bodies)
     water.drained.push_back(is_drained(spec, body.name) ? 1 : 0);
-  water.table = table_at_nodes(scene, spec.table, mesh, filled, complaints, warnings);
+  water.table = table_at_nodes(scene, spec.table, mesh, filled, errors, warnings);
   return water;
 }
 
 template <int D>
 std::vector<Real> table_of_stage(const Scene& scene, const StageWaterSpec& spec, const Mesh<D>& mesh,
-                                 const std::function<bool(Index)>& filled, SceneErrorCollector& complaints,
-                                 std::vector<std::string>& warnings)
+                                 const std::function<bool(Index)>& filled, SceneErrorCollector& errors, std::vector<std::string>& warnings)
 {
-  return table_at_nodes(scene, spec.table, mesh, filled, complaints, warnings);
+  return table_at_nodes(scene, spec.table, mesh, filled, errors, warnings);
 }
 
 template <int D>

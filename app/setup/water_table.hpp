@@ -10,13 +10,12 @@ namespace talus {
 /// known where there is material or lies above most of the ground, and of gravity that does not point down; warns of what is cut.
 template <int D>
 Water water_of(const Scene& scene, const Mesh<D>& mesh, const std::vector<Body>& bodies, const std::function<bool(Index)>& filled,
-               SceneErrorCollector& complaints, std::vector<std::string>& warnings);
+               SceneErrorCollector& errors, std::vector<std::string>& warnings);
 
 /// The elevation of the table of a later stage at each node, found in the same way with the cells that are filled then.
 template <int D>
 std::vector<Real> table_of_stage(const Scene& scene, const StageWaterSpec& spec, const Mesh<D>& mesh,
-                                 const std::function<bool(Index)>& filled, SceneErrorCollector& complaints,
-                                 std::vector<std::string>& warnings);
+                                 const std::function<bool(Index)>& filled, SceneErrorCollector& errors, std::vector<std::string>& warnings);
 
 /// Of the bodies that are there from the stage of that number on: the mass of particles below the table becomes that of their body's saturated
 /// density, where it has one.

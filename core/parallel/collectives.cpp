@@ -161,9 +161,9 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::span<const std::by
   for (int r = 0; r < static_cast<int>(all.size()); ++r)
     in.push_back({r, all[static_cast<std::size_t>(r)]});
   const Message mine{0, {const_cast<std::byte*>(bytes.data()), bytes.size()}};  // read only
-  PendingMessages talk;
-  post({&mine, 1}, in, gather_tag, talk);
-  talk.wait();
+  PendingMessages pending;
+  post({&mine, 1}, in, gather_tag, pending);
+  pending.wait();
   return all;
 }
 
@@ -185,9 +185,9 @@ std::vector<std::vector<std::byte>> Communicator::all_to_all(const std::vector<s
     parcels_out.push_back({r, {const_cast<std::byte*>(out[i].data()), out[i].size()}});  // read only
     parcels_in.push_back({r, in[i]});
   }
-  PendingMessages talk;
-  post(parcels_out, parcels_in, all_to_all_tag, talk);
-  talk.wait();
+  PendingMessages pending;
+  post(parcels_out, parcels_in, all_to_all_tag, pending);
+  pending.wait();
   return in;
 }
 

@@ -163,7 +163,7 @@ class Communicator {
   /// them in the same order.  The bytes must stay valid until wait().  Messages with different tags, in [0, tags), do not mix, and those of
   /// one tag arrive in the order in which they were sent, so each kind of message can use one tag in all steps.  On one rank alone out[i]
   /// is copied to in[i].
-  void start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk);
+  void start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& pending);
   static constexpr int tags = 1000;
 
   /// Sends out[i] to ranks[i] and returns the messages from these ranks, in the order of `ranks`, for lengths that the receiver does not
@@ -227,7 +227,7 @@ class Communicator {
   template <class Bytes>
   void spread(Bytes& bytes, int from);
   void count(int tag, int bytes) noexcept;
-  void post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk);
+  void post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& pending);
 
   std::unique_ptr<Group> group_;  ///< MPI's communicator; may be null on a single rank
   int rank_ = 0, size_ = 1;
@@ -238,10 +238,10 @@ class Communicator {
 
 /// Bytes viewed as rows of T, a plain struct of numbers.
 template <class T>
-std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& letters)
+std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& outgoing)
 {
   std::vector<std::vector<T>> rows;
-  for (const std::vector<std::byte>& bytes : letters) {
+  for (const std::vector<std::byte>& bytes : outgoing) {
     rows.emplace_back(bytes.size() / sizeof(T));
     if (!bytes.empty())
       std::memcpy(static_cast<void*>(rows.back().data()), bytes.data(), bytes.size());
@@ -259,12 +259,12 @@ std::vector<std::vector<T>> gather_rows(Communicator& ranks, std::span<const T> 
 template <class T>
 std::vector<std::vector<T>> exchange_rows(Communicator& ranks, const std::vector<std::vector<T>>& out)
 {
-  std::vector<std::vector<std::byte>> letters;
+  std::vector<std::vector<std::byte>> outgoing;
   for (const std::vector<T>& rows : out) {
     const auto bytes = std::as_bytes(std::span(rows));
-    letters.emplace_back(bytes.begin(), bytes.end());
+    outgoing.emplace_back(bytes.begin(), bytes.end());
   }
-  return rows_of<T>(ranks.all_to_all(letters));
+  return rows_of<T>(ranks.all_to_all(outgoing));
 }
 
 /// The numbers of all ranks in the order of ranks, on all ranks.  Collective.

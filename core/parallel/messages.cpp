@@ -69,13 +69,13 @@ void Communicator::count(int tag, int bytes) noexcept
   traffic_.bytes += bytes;
 }
 
-void Communicator::start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk)
+void Communicator::start(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& pending)
 {
   assert(tag >= 0 && tag < tags);
-  post(out, in, tag, talk);
+  post(out, in, tag, pending);
 }
 
-void Communicator::post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& talk)
+void Communicator::post(std::span<const Message> out, std::span<const Message> in, int tag, PendingMessages& pending)
 {
   if (alone()) {
     for (std::size_t i = 0; i < std::max(out.size(), in.size()); ++i) {
@@ -85,9 +85,9 @@ void Communicator::post(std::span<const Message> out, std::span<const Message> i
     }
     return;
   }
-  if (!talk.requests_)
-    talk.requests_ = std::make_unique<PendingMessages::Requests>();
-  PendingMessages::Requests& requests = *talk.requests_;
+  if (!pending.requests_)
+    pending.requests_ = std::make_unique<PendingMessages::Requests>();
+  PendingMessages::Requests& requests = *pending.requests_;
   assert(requests.request.empty());  // or it was not followed by wait()
   requests.expected.clear();
   requests.torn = &group_->torn;
@@ -95,19 +95,20 @@ void Communicator::post(std::span<const Message> out, std::span<const Message> i
     for (; !bytes.empty(); bytes = bytes.subspan(std::min(piece_, bytes.size())))
       f(bytes.first(std::min(piece_, bytes.size())));
   };
-  for (const Message& parcel : in)
-    if (parcel.at_most && parcel.bytes.size() > piece_)
-      throw EnvironmentError(fmt::format("a message of up to {} bytes from rank {} is too long", parcel.bytes.size(), parcel.rank));
-  for (const Message& parcel : in)
-    in_pieces(parcel.bytes, [&, rank = parcel.rank, at_most = parcel.at_most](std::span<std::byte> piece) {
+  for (const Message& one_message : in)
+    if (one_message.at_most && one_message.bytes.size() > piece_)
+      throw EnvironmentError(
+          fmt::format("a message of up to {} bytes from rank {} is too long", one_message.bytes.size(), one_message.rank));
+  for (const Message& one_message : in)
+    in_pieces(one_message.bytes, [&, rank = one_message.rank, at_most = one_message.at_most](std::span<std::byte> piece) {
       const int bytes = static_cast<int>(piece.size());
       MPI_Request one = MPI_REQUEST_NULL;
       check_mpi(MPI_Irecv(piece.data(), bytes, MPI_BYTE, rank, tag, group_->comm, &one), "MPI_Irecv");
       requests.request.push_back(one);
       requests.expected.push_back({rank, bytes, at_most});
     });
-  for (const Message& parcel : out)
-    in_pieces(parcel.bytes, [&, rank = parcel.rank](std::span<std::byte> piece) {
+  for (const Message& one_message : out)
+    in_pieces(one_message.bytes, [&, rank = one_message.rank](std::span<std::byte> piece) {
       const int bytes = static_cast<int>(piece.size());
       MPI_Request one = MPI_REQUEST_NULL;
       check_mpi(MPI_Isend(piece.data(), bytes, MPI_BYTE, rank, tag, group_->comm, &one), "MPI_Isend");
@@ -126,15 +127,15 @@ std::vector<std::vector<std::byte>> Communicator::neighbours(std::span<const int
     return out;
   }
   // A message of exactly one full piece is followed by another one, which may be empty.
-  PendingMessages talk;
-  talk.requests_ = std::make_unique<PendingMessages::Requests>();
-  talk.requests_->torn = &group_->torn;
+  PendingMessages pending;
+  pending.requests_ = std::make_unique<PendingMessages::Requests>();
+  pending.requests_->torn = &group_->torn;
   for (std::size_t i = 0; i < ranks.size(); ++i)
     for (std::size_t begin = 0; begin <= out[i].size(); begin += piece_) {
       const int bytes = static_cast<int>(std::min(piece_, out[i].size() - begin));
       MPI_Request one = MPI_REQUEST_NULL;
       check_mpi(MPI_Isend(out[i].data() + begin, bytes, MPI_BYTE, ranks[i], tag, group_->comm, &one), "MPI_Isend");
-      talk.requests_->request.push_back(one);
+      pending.requests_->request.push_back(one);
       count(tag, bytes);
     }
   std::vector<std::vector<std::byte>> in(ranks.size());
@@ -148,7 +149,7 @@ std::vector<std::vector<std::byte>> Communicator::neighbours(std::span<const int
       in[i].resize(begin + static_cast<std::size_t>(bytes));
       check_mpi(MPI_Mrecv(in[i].data() + begin, bytes, MPI_BYTE, &message, MPI_STATUS_IGNORE), "MPI_Mrecv");
     }
-  talk.wait();
+  pending.wait();
   return in;
 }
 

@@ -30,11 +30,11 @@ struct Pieces {
   /// The words to be stored: the digest of each piece; if there are several pieces, preceded by their size and lead.
   std::vector<std::uint64_t> words() const
   {
-    std::vector<std::uint64_t> saved;
+    std::vector<std::uint64_t> stored;
     if (digests.size() > 1)
-      saved = {static_cast<std::uint64_t>(all.piece), static_cast<std::uint64_t>(all.lead)};
-    saved.insert(saved.end(), digests.begin(), digests.end());
-    return saved;
+      stored = {static_cast<std::uint64_t>(all.piece), static_cast<std::uint64_t>(all.lead)};
+    stored.insert(stored.end(), digests.begin(), digests.end());
+    return stored;
   }
   std::uint64_t digest(std::uint64_t meaning) const { return digest_of(std::as_bytes(std::span<const std::uint64_t>(words())), meaning); }
 };

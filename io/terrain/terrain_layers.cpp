@@ -10,7 +10,7 @@ namespace talus {
 namespace {
 
 /// Sums over columns, for messages.
-struct StepSums {
+struct ColumnSums {
   Index columns = 0;
   Real extent = 0;   ///< plan area of the columns, in 2-D length [m^(D-1)]
   Real volume = 0;   ///< volume [m^D]
@@ -23,7 +23,7 @@ struct StepSums {
 
 /// The treatment of the columns of a layer.
 struct LayerCells {
-  StepSums saved, blank, crossed, closed;  ///< blank: bottom unknown; crossed: bottom above the surface over it; closed: too thin
+  ColumnSums filled, blank, crossed, closed;  ///< blank: bottom unknown; crossed: bottom above the surface over it; closed: too thin
 };
 
 /// The bottom of layer l below a surface, and the treatment of its columns.
@@ -40,11 +40,11 @@ std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& a
     const bool is_kept = thickness >= thinnest * cell;
     if (is_kept)
       bottom[n] = here;
-    StepSums* const fate = is_kept                        ? &fates.saved
-                           : std::isnan(here)             ? &fates.blank
-                           : thickness < -touching * cell ? &fates.crossed
-                           : thickness > touching * cell  ? &fates.closed
-                                                          : nullptr;
+    ColumnSums* const fate = is_kept                        ? &fates.filled
+                             : std::isnan(here)             ? &fates.blank
+                             : thickness < -touching * cell ? &fates.crossed
+                             : thickness > touching * cell  ? &fates.closed
+                                                            : nullptr;
     if (own[n] != 0 && fate != nullptr)
       fate->add(plan.extent[n], std::isnan(here) ? 0 : std::abs(thickness));
   }
@@ -55,7 +55,7 @@ std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& a
 std::string in_words(const LayerCells& fates, const std::string& upper, std::string_view unit)
 {
   std::string text;
-  const auto add = [&](const StepSums& tally, const std::string& what) {
+  const auto add = [&](const ColumnSums& tally, const std::string& what) {
     if (tally.columns > 0)
       text += fmt::format("{}{} over {:.4g} {}", text.empty() ? "" : ", ", what, tally.extent, unit);
   };
@@ -72,7 +72,7 @@ void tell(const LayerSpec& layer, const LayerCells& fates, const std::string& up
   const auto note = [&](const std::string& what) {
     notes.push_back(fmt::format("{}: layer \"{}\" {}", to_string(layer.where), layer.name, what));
   };
-  const auto& [saved, blank, crossed, closed] = fates;
+  const auto& [filled, blank, crossed, closed] = fates;
   if (blank.columns > 0)
     note(fmt::format("has no thickness where its bottom is not known, over {:.4g} {} of the plan", blank.extent, of_plan));
   if (crossed.columns > 0)
@@ -81,7 +81,7 @@ void tell(const LayerSpec& layer, const LayerCells& fates, const std::string& up
   if (closed.columns > 0)
     note(fmt::format(
         "was closed where it is thinner than a quarter of a cell: {} columns, {:.4g} m at most, {:.3g} {} or {:.2g} % of its volume",
-        closed.columns, closed.largest, closed.volume, of_layer, 100 * closed.volume / (closed.volume + saved.volume)));
+        closed.columns, closed.largest, closed.volume, of_layer, 100 * closed.volume / (closed.volume + filled.volume)));
 }
 
 }  // namespace
@@ -102,7 +102,7 @@ TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainI
     auto [bottom, fates] = bottom_below(above, input.bottoms[l], layer, plan, own);
     if (std::find(own.begin(), own.end(), 1) == own.end())
       complain(layer.where, fmt::format("has no part within what is meshed, {}", domain_in_words(input)));
-    else if (fates.saved.columns == 0)
+    else if (fates.filled.columns == 0)
       complain(layer.bottom.where, fmt::format("has no thickness anywhere in what is meshed, {}: its bottom is {}", domain_in_words(input),
                                                in_words(fates, upper, D == 2 ? "m" : "m2")));
     else

@@ -85,19 +85,19 @@ void BoundaryConditions<D>::add_planes(Index condition, bool two_sided, const Me
 }
 
 template <int D>
-void BoundaryConditions<D>::restrict_to(const Subdomain& share)
+void BoundaryConditions<D>::restrict_to(const Subdomain& subdomain)
 {
   std::erase_if(rules_, [&](NodeRule& rule) {
-    rule.node = share.local_node(rule.node);
-    rule.counted = rule.node != none && share.owns_node(rule.node);
+    rule.node = subdomain.local_node(rule.node);
+    rule.counted = rule.node != none && subdomain.owns_node(rule.node);
     return rule.node == none;
   });
-  dashpots_.restrict_to(share);
+  dashpots_.restrict_to(subdomain);
   std::erase_if(facets_, [&](Facet& facet) {
-    facet.cell = share.local_cell(facet.cell);
+    facet.cell = subdomain.local_cell(facet.cell);
     return facet.cell == none;
   });
-  rule_of_node_.assign(share.node.size(), none);
+  rule_of_node_.assign(subdomain.node.size(), none);
 }
 
 template <int D>

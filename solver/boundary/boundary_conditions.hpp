@@ -35,7 +35,7 @@ class BoundaryConditions {
   /// surface); others stay separate planes (an edge).
   void add(BoundaryCondition<D> condition, const Mesh<D>& mesh, std::span<const Facet> facets);
   /// Keeps the conditions on nodes and cells in the part of the mesh on this rank, with its local numbers.
-  void restrict_to(const Subdomain& share);
+  void restrict_to(const Subdomain& subdomain);
   /// To be called once after the last add() or restrict_to().
   void finalize();
 

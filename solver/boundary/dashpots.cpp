@@ -21,11 +21,11 @@ void Dashpots<D>::add(const Mesh<D>& mesh, Index condition, DashpotsOfNodes<D> d
 }
 
 template <int D>
-void Dashpots<D>::restrict_to(const Subdomain& share)
+void Dashpots<D>::restrict_to(const Subdomain& subdomain)
 {
   std::erase_if(nodes_, [&](DashpotNode& at) {
-    at.node = share.local_node(at.node);
-    at.counted = at.node != none && share.owns_node(at.node);
+    at.node = subdomain.local_node(at.node);
+    at.counted = at.node != none && subdomain.owns_node(at.node);
     return at.node == none;
   });
 }

@@ -25,7 +25,7 @@ template <int D>
 class Dashpots {
  public:
   void add(const Mesh<D>& mesh, Index condition, DashpotsOfNodes<D> dashpots);
-  void restrict_to(const Subdomain& share);
+  void restrict_to(const Subdomain& subdomain);
   /// Returns to the state before the dynamic phase.
   void reset() { reactions_known_ = false, reaction_.clear(); }
   /// Applies the dashpots to the nodes.  In the first step the reaction that keeps each node in equilibrium is computed; it acts from then

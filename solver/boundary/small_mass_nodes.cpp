@@ -32,8 +32,8 @@ bool takes_part(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 }  // namespace
 
 template <int D>
-SmallMassNodes<D>::SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const OwnNodes& own)
-    : near_(copies_of_nodes(ranks, share, MessageTag::small_mass_nodes, spread_by_rings(mesh, own.owned, 2)))
+SmallMassNodes<D>::SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own)
+    : near_(copies_of_nodes(ranks, subdomain, MessageTag::small_mass_nodes, spread_by_rings(mesh, own.owned, 2)))
 {}
 
 template <int D>

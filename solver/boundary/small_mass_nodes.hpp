@@ -19,7 +19,7 @@ class SmallMassNodes {
   /// Construction for a single rank.
   SmallMassNodes() = default;
   /// Construction for one of several ranks.  Collective.
-  SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const OwnNodes& own);
+  SmallMassNodes(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const OwnNodes& own);
 
   /// Finds the nodes of small mass, sets the active flags of own nodes, and gives mass, momentum and force to the hosts.
   void lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>& nodes);

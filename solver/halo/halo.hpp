@@ -12,7 +12,7 @@ namespace talus {
 
 /// Messages from blocks to the owners of nodes: rows of own blocks on nodes of other ranks, by block and node.  Collective.
 template <int D, class Sum>
-std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share,
+std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain,
                                             const BlockRows<D, Sum>& blocks)
 {
   const auto z = [](Index i) { return static_cast<std::size_t>(i); };
@@ -27,10 +27,10 @@ std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& 
       rows.emplace_back(node_of_row[z(r)], r);
     std::sort(rows.begin(), rows.end());
     for (const auto& [node, row] : rows) {
-      const int of_block = share.rank_of_block[z(b)], of_node = share.rank_of_node[z(node)];
-      if (of_block == share.rank && of_node != share.rank)
+      const int of_block = subdomain.rank_of_block[z(b)], of_node = subdomain.rank_of_node[z(node)];
+      if (of_block == subdomain.rank && of_node != subdomain.rank)
         all[static_cast<std::size_t>(of_node)].out.push_back(row);
-      if (of_block != share.rank && of_node == share.rank)
+      if (of_block != subdomain.rank && of_node == subdomain.rank)
         all[static_cast<std::size_t>(of_block)].in.push_back(row);
     }
   }
@@ -38,7 +38,7 @@ std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& 
   const auto names = [&](const std::vector<Index>& rows) {
     std::vector<Index> named;
     for (const Index r : rows)
-      named.insert(named.end(), {share.block[z(blocks.block_of_row[z(r)])], share.node[z(node_of_row[z(r)])]});
+      named.insert(named.end(), {subdomain.block[z(blocks.block_of_row[z(r)])], subdomain.node[z(node_of_row[z(r)])]});
     return named;
   };
   std::vector<std::vector<Index>> sent;
@@ -65,15 +65,15 @@ class Halo {
   /// The exchange of a single rank: all blocks are inner blocks.
   explicit Halo(Index blocks) : inner_(static_cast<std::size_t>(blocks)) { std::iota(inner_.begin(), inner_.end(), 0); }
   template <int D>
-  Halo(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share, const BlockRows<D, Sum>& blocks)
-      : letters_(ranks, MessageTag::rows, find_row_borders(ranks, mesh, share, blocks))
+  Halo(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const BlockRows<D, Sum>& blocks)
+      : messages_(ranks, MessageTag::rows, find_row_borders(ranks, mesh, subdomain, blocks))
   {
     std::vector<std::uint8_t> outer(static_cast<std::size_t>(blocks.size()), 0);
-    for (const NeighbourRank& border : letters_.borders())
+    for (const NeighbourRank& border : messages_.borders())
       for (const Index r : border.out)
         outer[static_cast<std::size_t>(blocks.block_of_row[static_cast<std::size_t>(r)])] = 1;
     for (Index b = 0; b < blocks.size(); ++b)
-      if (share.owns_block(b))
+      if (subdomain.owns_block(b))
         (outer[static_cast<std::size_t>(b)] != 0 ? outer_ : inner_).push_back(b);
       else
         foreign_.push_back(b);
@@ -87,30 +87,30 @@ class Halo {
   template <class What, int D>
   void send_rows(const BlockRows<D, Sum>& blocks)
   {
-    letters_.send(blocks.row, What{});
+    messages_.send(blocks.row, What{});
   }
   /// Receives rows of other ranks on own nodes.
   template <class What, int D>
   void take_rows(BlockRows<D, Sum>& blocks)
   {
-    letters_.take(blocks.row, What{});
+    messages_.take(blocks.row, What{});
     for (const Index b : foreign_)
       blocks.occupied[static_cast<std::size_t>(b)] = 1;
   }
 
  private:
-  HaloExchange letters_;
+  HaloExchange messages_;
   std::vector<Index> outer_, inner_, foreign_;
 };
 
 /// Marks the nodes that particles in own blocks use.
 template <int D, class Sum>
-std::vector<std::uint8_t> nodes_read(const Subdomain& share, const BlockRows<D, Sum>& blocks)
+std::vector<std::uint8_t> nodes_read(const Subdomain& subdomain, const BlockRows<D, Sum>& blocks)
 {
   std::vector<std::uint8_t> read(static_cast<std::size_t>(blocks.rows_of_node.size()), 0);
   for (Index n = 0; n < blocks.rows_of_node.size(); ++n)
     for (const Index r : blocks.rows_of_node[n])
-      if (share.owns_block(blocks.block_of_row[static_cast<std::size_t>(r)]))
+      if (subdomain.owns_block(blocks.block_of_row[static_cast<std::size_t>(r)]))
         read[static_cast<std::size_t>(n)] = 1;
   return read;
 }

@@ -169,7 +169,7 @@ class HaloExchange {
       if (!border.out.empty() && to(q))
         parcels_out_.push_back({border.rank, sheets_out_[q].fill(border.out, rows, what)});
     }
-    ranks_->start(parcels_out_, parcels_in_, static_cast<int>(topic_), talk_);
+    ranks_->start(parcels_out_, parcels_in_, static_cast<int>(topic_), pending_);
   }
   template <class What, class Rows>
   void send(Rows& rows, const What& what)
@@ -183,7 +183,7 @@ class HaloExchange {
   {
     if (borders_.empty())
       return;
-    talk_.wait();
+    pending_.wait();
     for (const std::size_t q : expected_)
       sheets_in_[q].take(borders_[q].in, rows, what);
     expected_.clear();
@@ -196,7 +196,7 @@ class HaloExchange {
   std::vector<Sheet> sheets_out_, sheets_in_;  // by neighbour
   std::vector<Message> parcels_out_, parcels_in_;
   std::vector<std::size_t> expected_;  // numbers of neighbours
-  PendingMessages talk_;
+  PendingMessages pending_;
 };
 
 /// The nodes within `rings` rings of the nodes in `marked`.
@@ -214,22 +214,22 @@ std::vector<std::uint8_t> spread_by_rings(const Mesh<D>& mesh, std::vector<std::
 }
 
 /// The exchange from owners of nodes to the ranks that need their values; `wanted` marks the needed nodes, own ones included.  Collective.
-inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& share, MessageTag topic, std::span<const std::uint8_t> wanted)
+inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& subdomain, MessageTag topic, std::span<const std::uint8_t> wanted)
 {
   std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
   std::vector<std::vector<Index>> asked(all.size());  // numbers in the whole mesh
   for (std::size_t n = 0; n < wanted.size(); ++n)
-    if (wanted[n] != 0 && !share.owns_node(static_cast<Index>(n))) {
-      const auto owner = static_cast<std::size_t>(share.rank_of_node[n]);
+    if (wanted[n] != 0 && !subdomain.owns_node(static_cast<Index>(n))) {
+      const auto owner = static_cast<std::size_t>(subdomain.rank_of_node[n]);
       all[owner].in.push_back(static_cast<Index>(n));
-      asked[owner].push_back(share.node[n]);
+      asked[owner].push_back(subdomain.node[n]);
     }
   asked = exchange_rows(ranks, asked);
   std::vector<NeighbourRank> borders;
   for (std::size_t q = 0; q < all.size(); ++q) {
     all[q].rank = static_cast<int>(q);
     for (const Index whole : asked[q])
-      all[q].out.push_back(share.local_node(whole));
+      all[q].out.push_back(subdomain.local_node(whole));
     if (!all[q].out.empty() || !all[q].in.empty())
       borders.push_back(std::move(all[q]));
   }
@@ -237,10 +237,10 @@ inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& share,
 }
 
 /// Marks all nodes that are sent to any rank.
-inline std::vector<std::uint8_t> nodes_out(const HaloExchange& letters, std::size_t n_nodes)
+inline std::vector<std::uint8_t> nodes_out(const HaloExchange& messages, std::size_t n_nodes)
 {
-  std::vector<std::uint8_t> out(letters.borders().empty() ? 0 : n_nodes, 0);
-  for (const NeighbourRank& border : letters.borders())
+  std::vector<std::uint8_t> out(messages.borders().empty() ? 0 : n_nodes, 0);
+  for (const NeighbourRank& border : messages.borders())
     for (const Index n : border.out)
       out[static_cast<std::size_t>(n)] = 1;
   return out;

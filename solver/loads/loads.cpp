@@ -16,16 +16,16 @@ ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Fa
     if (const auto found = in_cell.find(particles.cell[static_cast<std::size_t>(p)]); found != in_cell.end())
       found->second.push_back(p);
 
-  std::map<std::int64_t, Vec<D>> share;  // by id, so that a particle behind several facets has one entry
+  std::map<std::int64_t, Vec<D>> subdomain;  // by id, so that a particle behind several facets has one entry
   for (const Facet facet : facets) {
     const auto& behind = in_cell[facet.cell];
     for (const Index p : behind) {
-      auto& area = share.try_emplace(particles.id[static_cast<std::size_t>(p)], Vec<D>::Zero()).first->second;
+      auto& area = subdomain.try_emplace(particles.id[static_cast<std::size_t>(p)], Vec<D>::Zero()).first->second;
       area += mesh.area_vector(facet) / static_cast<Real>(behind.size());
     }
   }
   ParticleTraction<D> load;
-  for (const auto& [id, area] : share) {
+  for (const auto& [id, area] : subdomain) {
     load.id.push_back(id);
     load.area.push_back(area);
   }
@@ -35,17 +35,17 @@ ParticleTraction<D> carried_by_particles(const Mesh<D>& mesh, std::span<const Fa
 template <int D>
 MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> facets)
 {
-  std::map<Index, std::pair<Vec<D>, Real>> share;
+  std::map<Index, std::pair<Vec<D>, Real>> subdomain;
   for (const Facet facet : facets) {
     const Vec<D> area = mesh.area_vector(facet);
     for (const Index n : mesh.nodes_of(facet)) {
-      auto& [sum, measure] = share.try_emplace(n, Vec<D>::Zero(), 0.0).first->second;
+      auto& [sum, measure] = subdomain.try_emplace(n, Vec<D>::Zero(), 0.0).first->second;
       sum += area / D;
       measure += area.norm() / D;
     }
   }
   MeshTraction<D> load;
-  for (const auto& [node, both] : share) {
+  for (const auto& [node, both] : subdomain) {
     load.node.push_back(node);
     load.area.push_back(both.first);
     load.measure.push_back(both.second);
@@ -54,16 +54,16 @@ MeshTraction<D> carried_by_mesh(const Mesh<D>& mesh, std::span<const Facet> face
 }
 
 template <int D>
-void restrict_to(const Subdomain& share, MeshTraction<D>& load)
+void restrict_to(const Subdomain& subdomain, MeshTraction<D>& load)
 {
-  std::size_t saved = 0;
+  std::size_t count = 0;
   for (std::size_t k = 0; k < load.node.size(); ++k)
-    if (const Index node = share.local_node(load.node[k]); node != none) {
-      load.node[saved] = node;
-      load.area[saved] = load.area[k];
-      load.measure[saved++] = load.measure[k];
+    if (const Index node = subdomain.local_node(load.node[k]); node != none) {
+      load.node[count] = node;
+      load.area[count] = load.area[k];
+      load.measure[count++] = load.measure[k];
     }
-  load.node.resize(saved), load.area.resize(saved), load.measure.resize(saved);
+  load.node.resize(count), load.area.resize(count), load.measure.resize(count);
 }
 
 template <int D>

@@ -67,7 +67,7 @@ struct Loads {
 
 /// The part of a mesh traction on this rank, with local numbers of nodes.
 template <int D>
-void restrict_to(const Subdomain& share, MeshTraction<D>& load);
+void restrict_to(const Subdomain& subdomain, MeshTraction<D>& load);
 
 /// Divides the facets' area among the particles of the cells behind them.  Facets without a particle behind them are left out; the caller
 /// may compare the areas.

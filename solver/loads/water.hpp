@@ -61,18 +61,18 @@ void soak(const Mesh<D>& mesh, const PoreWater& now, const std::vector<Body>& bo
 }
 
 /// The part of a water table on one of several ranks.
-inline std::vector<Real> part_of_table(const Subdomain& share, const std::vector<Real>& table)
+inline std::vector<Real> part_of_table(const Subdomain& subdomain, const std::vector<Real>& table)
 {
   std::vector<Real> held;
-  held.reserve(share.node.size());
-  for (const Index node : share.node)
+  held.reserve(subdomain.node.size());
+  for (const Index node : subdomain.node)
     held.push_back(table[static_cast<std::size_t>(node)]);
   return held;
 }
-inline void restrict_to(const Subdomain& share, Water& water)
+inline void restrict_to(const Subdomain& subdomain, Water& water)
 {
   if (water.any())
-    water.table = part_of_table(share, water.table);
+    water.table = part_of_table(subdomain, water.table);
 }
 
 }  // namespace talus

@@ -10,10 +10,10 @@ template <int D>
 void Model<D>::join(Communicator& others, Subdomain part)
 {
   problem.ranks = &others;
-  problem.share = std::move(part);
-  problem.own = own_nodes(problem.mesh, problem.share);
-  work.migration = Migration<D>(others, problem.share);
-  work.small_mass_nodes = SmallMassNodes<D>(others, problem.mesh, problem.share, problem.own);
+  problem.subdomain = std::move(part);
+  problem.own = own_nodes(problem.mesh, problem.subdomain);
+  work.migration = Migration<D>(others, problem.subdomain);
+  work.small_mass_nodes = SmallMassNodes<D>(others, problem.mesh, problem.subdomain, problem.own);
   transfer->join(problem);
 }
 
@@ -37,7 +37,7 @@ template <int D>
 void update_tracked_rows(Model<D>& m)
 {
   m.work.averaged_bodies.reserve(m.state.bodies.size());
-  if (m.work.stars)
+  if (m.work.patch_sums)
     m.work.averaged.resize(m.state.particles.id.size());
   if (!m.state.particles.pore.empty())
     m.work.pore_after.resize(m.state.particles.id.size());
@@ -49,15 +49,15 @@ void update_rows(Model<D>& m)
 {
   sort_by_cell(m.state.particles.cell, m.state.particles.id, m.state.bodies, m.problem.mesh.n_cells(), m.work.order);
   update_tracked_rows(m);
-  if (!m.problem.share.alone())
+  if (!m.problem.subdomain.alone())
     m.work.migration.agree_on_columns(m.state.particles);
 }
 
 template <int D>
 void adopt_state(Model<D>& m)
 {
-  if (!m.problem.share.alone())
-    receive_owned_particles(*m.problem.ranks, m.problem.share, m.state.bodies, m.state.materials, m.state.particles);
+  if (!m.problem.subdomain.alone())
+    receive_owned_particles(*m.problem.ranks, m.problem.subdomain, m.state.bodies, m.state.materials, m.state.particles);
   update_rows(m);
 }
 
@@ -95,11 +95,11 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
                      .viscous = any_material([](const Material& material) { return material.viscosity.has_value(); }),
                      .pore = problem.water.any()};
   fill_columns(problem.columns, state.particles);
-  const bool alone = problem.share.alone();
+  const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
-    alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.share);
+    alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.subdomain);
   if (problem.columns.volume_ratio)
-    alone ? work.stars.emplace(problem.mesh) : work.stars.emplace(*problem.ranks, problem.mesh, problem.share);
+    alone ? work.patch_sums.emplace(problem.mesh) : work.patch_sums.emplace(*problem.ranks, problem.mesh, problem.subdomain);
   transfer.prepare(problem.transfer);
   work.followed = FollowedRows(ids_of(problem.loads.on_particles));
   bind_boundary_conditions(m);

@@ -38,7 +38,7 @@ struct Problem : SceneConditions<D> {
   Mesh<D> mesh;
   Locator<D> locator;
   Communicator* ranks = &one_rank();  ///< communicator of the run
-  Subdomain share;                    ///< part of the mesh on this rank
+  Subdomain subdomain;                ///< part of the mesh on this rank
   OwnNodes own;
   WantedColumns columns;
 

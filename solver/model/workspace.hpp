@@ -27,11 +27,11 @@ struct Workspace {
   StepSums<D> sums;                     ///< sums of the present step
   std::vector<StressSums> stress_sums;  ///< sums over the particles of each body in each block
 
-  std::optional<StarSums<D, 2>> stars;  ///< used if a body averages its volume
-  std::vector<Real> averaged;           ///< volume ratios of average_volume()
-  std::vector<Real> pore_after;         ///< pore pressure of each particle at the end of the step [Pa]
-  std::vector<Index> averaged_bodies;   ///< bodies that average_volume() treats as one
-  std::optional<HeatSums<D>> heat;      ///< used if a body conducts heat
+  std::optional<NodePatchSums<D, 2>> patch_sums;  ///< used if a body averages its volume
+  std::vector<Real> averaged;                ///< volume ratios of average_volume()
+  std::vector<Real> pore_after;              ///< pore pressure of each particle at the end of the step [Pa]
+  std::vector<Index> averaged_bodies;        ///< bodies that average_volume() treats as one
+  std::optional<HeatSums<D>> heat;           ///< used if a body conducts heat
 
   explicit Workspace(Index n_nodes)
   {

@@ -91,15 +91,15 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
 }  // namespace
 
 template <int D>
-Migration<D>::Migration(Communicator& ranks, const Subdomain& share) : ranks_(&ranks), border_of_block_(share.block.size(), none)
+Migration<D>::Migration(Communicator& ranks, const Subdomain& subdomain) : ranks_(&ranks), border_of_block_(subdomain.block.size(), none)
 {
-  for (const int rank : share.rank_of_block)
-    if (rank != share.rank)
+  for (const int rank : subdomain.rank_of_block)
+    if (rank != subdomain.rank)
       neighbours_.push_back(rank);
   std::sort(neighbours_.begin(), neighbours_.end());
   neighbours_.erase(std::unique(neighbours_.begin(), neighbours_.end()), neighbours_.end());
-  for (std::size_t b = 0; b < share.block.size(); ++b)
-    if (const int rank = share.rank_of_block[b]; rank != share.rank) {
+  for (std::size_t b = 0; b < subdomain.block.size(); ++b)
+    if (const int rank = subdomain.rank_of_block[b]; rank != subdomain.rank) {
       foreign_.push_back(static_cast<Index>(b));
       border_of_block_[b] = static_cast<Index>(std::lower_bound(neighbours_.begin(), neighbours_.end(), rank) - neighbours_.begin());
     }
@@ -113,24 +113,24 @@ void Migration<D>::agree_on_columns(const Particles<D>& particles)
 }
 
 template <int D>
-bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
-                              CellOrder& order)
+bool Migration<D>::operator()(const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials,
+                              Particles<D>& particles, CellOrder& order)
 {
   if (neighbours_.empty())
     return false;
   std::vector<Turnover> turnovers(bodies.size());
-  for (auto& letters : out_)
-    letters.clear();
+  for (auto& messages : out_)
+    messages.clear();
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     for (const Index block : foreign_)
       for (const Index row : order.rows(static_cast<Index>(b), block)) {
         const auto p = static_cast<std::size_t>(row);
-        auto& letter = out_[static_cast<std::size_t>(border_of_block_[static_cast<std::size_t>(block)])];
-        append_bytes(static_cast<Index>(b), letter);
-        append_bytes(share.whole_cell(particles.cell[p]), letter);
-        for_each_kept_column(particles, keepers_, [&](auto& column) { append_bytes(column[p], letter); });
+        auto& message = out_[static_cast<std::size_t>(border_of_block_[static_cast<std::size_t>(block)])];
+        append_bytes(static_cast<Index>(b), message);
+        append_bytes(subdomain.whole_cell(particles.cell[p]), message);
+        for_each_kept_column(particles, keepers_, [&](auto& column) { append_bytes(column[p], message); });
         const auto history = std::as_const(materials[b].history).bytes_of_row(row - materials[b].begin);
-        letter.insert(letter.end(), history.begin(), history.end());
+        message.insert(message.end(), history.begin(), history.end());
         turnovers[b].leaving.push_back(row);
       }
     std::sort(turnovers[b].leaving.begin(), turnovers[b].leaving.end());
@@ -142,13 +142,13 @@ bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies,
   for_each_kept_column(particles, keepers_, [&](auto& column) { columns += sizeof(column[0]); });
   std::vector<std::vector<std::span<const std::byte>>> records(bodies.size());
   bool busy = false;
-  for (std::span<const std::byte> letter : in)
-    while (!letter.empty()) {
+  for (std::span<const std::byte> message : in)
+    while (!message.empty()) {
       Index body{};
-      std::memcpy(&body, letter.data(), sizeof(Index));
+      std::memcpy(&body, message.data(), sizeof(Index));
       const std::size_t bytes = columns + materials[static_cast<std::size_t>(body)].history.row_bytes();
-      records[static_cast<std::size_t>(body)].push_back(letter.first(bytes));
-      letter = letter.subspan(bytes);
+      records[static_cast<std::size_t>(body)].push_back(message.first(bytes));
+      message = message.subspan(bytes);
     }
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     turnovers[b].arriving = static_cast<Index>(records[b].size());
@@ -169,7 +169,7 @@ bool Migration<D>::operator()(const Subdomain& share, std::vector<Body>& bodies,
       take_bytes(record, body), take_bytes(record, cell);
       for_each_kept_column(particles, keepers_, [&](auto& column) { take_bytes(record, column[p]); });
       std::ranges::copy(record, materials[b].history.bytes_of_row(row - materials[b].begin).begin());
-      particles.cell[p] = share.local_cell(cell);
+      particles.cell[p] = subdomain.local_cell(cell);
       arrived.push_back(row++);
     }
   }

@@ -12,13 +12,13 @@ template <int D>
 class Migration {
  public:
   Migration() = default;
-  Migration(Communicator& ranks, const Subdomain& share);
+  Migration(Communicator& ranks, const Subdomain& subdomain);
 
   /// Columns that some rank keeps are kept by all: one that has no particles yet cannot tell.  Once, every rank has to.
   void agree_on_columns(const Particles<D>& particles);
   /// `order` is that of the cells, those of other ranks included; so it is afterwards, without them.  Neighbours have to ask alike.
   /// True if rows changed place.
-  bool operator()(const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
+  bool operator()(const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
                   CellOrder& order);
   /// Particles that came or went so far.
   std::int64_t moved() const noexcept { return moved_; }

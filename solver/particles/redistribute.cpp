@@ -121,16 +121,16 @@ void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::ve
 }
 
 template <int D>
-void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials,
+void receive_owned_particles(Communicator& ranks, const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials,
                              Particles<D>& particles)
 {
   std::vector<int> rank_of_row;
   rank_of_row.reserve(particles.cell.size());
   for (const Index cell : particles.cell)
-    rank_of_row.push_back(share.rank_of_whole_block[static_cast<std::size_t>(cell / block_cells)]);
+    rank_of_row.push_back(subdomain.rank_of_whole_block[static_cast<std::size_t>(cell / block_cells)]);
   redistribute(ranks, rank_of_row, bodies, materials, particles);
   for (Index& cell : particles.cell)
-    cell = share.local_cell(cell);
+    cell = subdomain.local_cell(cell);
 }
 
 template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);

@@ -16,7 +16,7 @@ void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::ve
 
 /// Gives each row, of a cell of the whole mesh, to the rank whose cell it is, and to the cell of its part.  As above.
 template <int D>
-void receive_owned_particles(Communicator& ranks, const Subdomain& share, std::vector<Body>& bodies, std::vector<Material>& materials,
+void receive_owned_particles(Communicator& ranks, const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials,
                              Particles<D>& particles);
 
 extern template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);

@@ -37,11 +37,11 @@ OwnNodes all_nodes(const Mesh<D>& mesh)
 
 /// The own nodes of one of several ranks.
 template <int D>
-OwnNodes own_nodes(const Mesh<D>& mesh, const Subdomain& share)
+OwnNodes own_nodes(const Mesh<D>& mesh, const Subdomain& subdomain)
 {
   OwnNodes all = all_nodes(mesh), own{{}, std::move(all.owned)};
   for (Index n = 0; n < mesh.n_nodes(); ++n)
-    own.owned[static_cast<std::size_t>(n)] = share.owns_node(n) ? 1 : 0;
+    own.owned[static_cast<std::size_t>(n)] = subdomain.owns_node(n) ? 1 : 0;
   for (const IndexRange& range : all.of_block)
     if (own.has(range.begin))
       own.of_block.push_back(range);

@@ -1,17 +1,19 @@
 #pragma once
 // Heat between the particles of bodies whose law conducts it.
 #include "materials/interface/material.hpp"
-#include "solver/stress/star_sums.hpp"
+#include "solver/stress/node_patch_sums.hpp"
 
 namespace talus {
 
 /// Sums at nodes: heat capacity and heat content, then the heat that flows in.
 template <int D>
 struct HeatSums {
-  StarSums<D, 2> content;
-  StarSums<D, 1> flow;
+  NodePatchSums<D, 2> content;
+  NodePatchSums<D, 1> flow;
   explicit HeatSums(const Mesh<D>& mesh) : content(mesh), flow(mesh) {}
-  HeatSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share) : content(ranks, mesh, share), flow(ranks, mesh, share) {}
+  HeatSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain)
+      : content(ranks, mesh, subdomain), flow(ranks, mesh, subdomain)
+  {}
 };
 
 /// One explicit step of  rho c dT/dt = div(k grad T)  on the linear shape functions of the mesh, insulated at every surface and between bodies:

@@ -53,10 +53,10 @@ void follow(const Mesh<D>& mesh, std::span<const Real> density, const Vec<D>& up
 
 /// What is above each particle.  Rays that leave the blocks of a rank go on at the next one's.
 template <int D>
-std::vector<Above> look_up(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, std::span<const Real> density,
+std::vector<Above> look_up(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, std::span<const Real> density,
                            const Vec<D>& up, const Particles<D>& particles)
 {
-  const auto owns = [&](Index cell) { return share.alone() || share.owns_cell(cell); };
+  const auto owns = [&](Index cell) { return subdomain.alone() || subdomain.owns_cell(cell); };
   const auto n_ranks = static_cast<std::size_t>(ranks.size());
   std::vector<Above> above(particles.id.size());
   std::vector<Ray<D>> here;
@@ -70,8 +70,8 @@ std::vector<Above> look_up(const Mesh<D>& mesh, const Subdomain& share, Communic
       if (ray.cell == none) {
         home[static_cast<std::size_t>(ray.rank)].push_back(ray);
       } else {
-        const int next = share.rank_of_block[static_cast<std::size_t>(ray.cell / block_cells)];
-        ray.cell = share.whole_cell(ray.cell);
+        const int next = subdomain.rank_of_block[static_cast<std::size_t>(ray.cell / block_cells)];
+        ray.cell = subdomain.whole_cell(ray.cell);
         out[static_cast<std::size_t>(next)].push_back(ray);
       }
     }
@@ -79,7 +79,7 @@ std::vector<Above> look_up(const Mesh<D>& mesh, const Subdomain& share, Communic
     for (const std::vector<Ray<D>>& from : exchange_rows(ranks, out))
       here.insert(here.end(), from.begin(), from.end());
     for (Ray<D>& ray : here)
-      ray.cell = share.local_cell(ray.cell);
+      ray.cell = subdomain.local_cell(ray.cell);
     travelling = ranks.sum(static_cast<std::int64_t>(here.size()));
   }
   for (const std::vector<Ray<D>>& back : exchange_rows(ranks, home))
@@ -97,7 +97,7 @@ Real beside_law(const Particles<D>& particles, std::size_t p) noexcept
 
 /// What lies above each particle; nothing where none of them asks, or nothing has a weight.
 template <int D>
-std::vector<Above> weight_above(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
+std::vector<Above> weight_above(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const Vec<D>& gravity,
                                 std::span<const StartStress> start, const CellOrder& order, const Particles<D>& particles)
 {
   const Real g = gravity.norm();
@@ -109,18 +109,18 @@ std::vector<Above> weight_above(const Mesh<D>& mesh, const Subdomain& share, Com
     const auto p = static_cast<std::size_t>(row);
     density[static_cast<std::size_t>(particles.cell[p])] += particles.mass[p] / mesh.volume(particles.cell[p]);
   }
-  return look_up(mesh, share, ranks, density, up, particles);
+  return look_up(mesh, subdomain, ranks, density, up, particles);
 }
 
 }  // namespace
 
 template <int D>
-void set_start_stress(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
+void set_start_stress(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const Vec<D>& gravity,
                       std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
                       std::vector<Material>& materials, Particles<D>& particles)
 {
   const Real g = gravity.norm();
-  const std::vector<Above> above = weight_above(mesh, share, ranks, gravity, start, order, particles);
+  const std::vector<Above> above = weight_above(mesh, subdomain, ranks, gravity, start, order, particles);
   Vec3 up3 = Vec3::Zero();
   if (g > 0)
     up3.head<D>() = -gravity / g;

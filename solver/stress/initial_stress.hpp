@@ -26,7 +26,7 @@ struct StartStress {
 /// and any layering is right.  To a stress that is given the pore pressure comes as well.  Throws SceneErrors, with the place of the body, if
 /// its law cannot start from a stress.  Every rank has to ask; `order` is that of the particles.
 template <int D>
-void set_start_stress(const Mesh<D>& mesh, const Subdomain& share, Communicator& ranks, const Vec<D>& gravity,
+void set_start_stress(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const Vec<D>& gravity,
                       std::span<const StartStress> start, const CellOrder& order, const std::vector<Body>& bodies,
                       std::vector<Material>& materials, Particles<D>& particles);
 

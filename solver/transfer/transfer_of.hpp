@@ -36,11 +36,11 @@ class TransferOf final : public Transfer<D> {
   void join(const Problem<D>& problem) override
   {
     Communicator& ranks = *problem.ranks;
-    rows_.halo = Halo(ranks, problem.mesh, problem.share, rows_.blocks);
+    rows_.halo = Halo(ranks, problem.mesh, problem.subdomain, rows_.blocks);
     const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
-      return copies_of_nodes(ranks, problem.share, topic, wanted);
+      return copies_of_nodes(ranks, problem.subdomain, topic, wanted);
     };
-    std::vector<std::uint8_t> read = nodes_read(problem.share, rows_.blocks);
+    std::vector<std::uint8_t> read = nodes_read(problem.subdomain, rows_.blocks);
     if constexpr (Rows::projects) {
       std::vector<std::uint8_t> collected = spread_by_rings(problem.mesh, problem.own.owned, 1);
       for (std::size_t n = 0; n < read.size(); ++n)

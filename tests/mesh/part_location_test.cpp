@@ -24,7 +24,7 @@ TYPED_TEST(LocationInPart, PointsAreWhereTheyAreInTheWhole)
       for (const Index hint : {none, static_cast<Index>(random() % z(part.mesh.n_cells()))}) {
         const auto found = locate(part.mesh, x, hint);
         ASSERT_TRUE(found);
-        EXPECT_EQ(part.share.whole_cell(*found), *expected);
+        EXPECT_EQ(part.subdomain.whole_cell(*found), *expected);
       }
     };
     for (Index c = 0; c < part.mesh.n_cells(); ++c) {
@@ -47,7 +47,7 @@ TYPED_TEST(LocationInPart, PointsAreWhereTheyAreInTheWhole)
     }
     int outside = 0;
     for (Index c = 0; c < shared.whole.n_cells(); ++c)
-      if (part.share.local_cell(c) == none)
+      if (part.subdomain.local_cell(c) == none)
         for (const Index hint : {none, static_cast<Index>(random() % z(part.mesh.n_cells()))}) {
           EXPECT_FALSE(locate(part.mesh, centroid<D>(shared.whole.corners(c)), hint));
           ++outside;
@@ -65,7 +65,7 @@ TYPED_TEST(LocationInPart, NearestPointsOfTheBoundaryAreThoseOfTheWhole)
     const Locator<D> locate(part.mesh);
     int tried = 0;
     for (const Facet f : part.mesh.boundary_facets()) {
-      if (!part.share.owns_cell(f.cell))
+      if (!part.subdomain.owns_cell(f.cell))
         continue;
       const Vec<D> out = part.mesh.area_vector(f).normalized();
       for (const Index n : part.mesh.nodes_of(f))
@@ -76,7 +76,7 @@ TYPED_TEST(LocationInPart, NearestPointsOfTheBoundaryAreThoseOfTheWhole)
           const auto expected = locate_in_whole.nearest(shared.whole, x), found = locate.nearest(part.mesh, x);
           EXPECT_FALSE(locate(part.mesh, x, f.cell));
           EXPECT_EQ(found.x, expected.x);
-          EXPECT_EQ(part.share.whole_cell(found.cell), expected.cell);
+          EXPECT_EQ(part.subdomain.whole_cell(found.cell), expected.cell);
           EXPECT_EQ(found.facet, (Facet{found.cell, expected.facet.local}));
           ++tried;
         }

@@ -15,17 +15,17 @@ TYPED_TEST(PartOf, EveryBlockCellAndNodeHasOneOwner)
   const Shared<D> shared;
   std::vector<int> block_owners(shared.ranks.size(), 0), node_owners(z(shared.whole.n_nodes()), 0);
   for (const Part<D>& part : shared.parts) {
-    EXPECT_EQ(part.share.whole_cells, shared.whole.n_cells());
-    EXPECT_EQ(part.share.whole_nodes, shared.whole.n_nodes());
-    EXPECT_EQ(part.share.rank_of_whole_block, shared.ranks);
-    for (Index b = 0; b < static_cast<Index>(part.share.block.size()); ++b) {
-      EXPECT_EQ(part.share.rank_of_block[z(b)], shared.ranks[z(part.share.block[z(b)])]);
-      block_owners[z(part.share.block[z(b)])] += part.share.owns_block(b) ? 1 : 0;
+    EXPECT_EQ(part.subdomain.whole_cells, shared.whole.n_cells());
+    EXPECT_EQ(part.subdomain.whole_nodes, shared.whole.n_nodes());
+    EXPECT_EQ(part.subdomain.rank_of_whole_block, shared.ranks);
+    for (Index b = 0; b < static_cast<Index>(part.subdomain.block.size()); ++b) {
+      EXPECT_EQ(part.subdomain.rank_of_block[z(b)], shared.ranks[z(part.subdomain.block[z(b)])]);
+      block_owners[z(part.subdomain.block[z(b)])] += part.subdomain.owns_block(b) ? 1 : 0;
     }
     for (Index n = 0; n < part.mesh.n_nodes(); ++n) {
-      const Index lowest = shared.whole.cells_of_node()[part.share.node[z(n)]].front();
-      EXPECT_EQ(part.share.rank_of_node[z(n)], shared.ranks[z(lowest / block_cells)]);
-      node_owners[z(part.share.node[z(n)])] += part.share.owns_node(n) ? 1 : 0;
+      const Index lowest = shared.whole.cells_of_node()[part.subdomain.node[z(n)]].front();
+      EXPECT_EQ(part.subdomain.rank_of_node[z(n)], shared.ranks[z(lowest / block_cells)]);
+      node_owners[z(part.subdomain.node[z(n)])] += part.subdomain.owns_node(n) ? 1 : 0;
     }
   }
   EXPECT_EQ(block_owners, std::vector<int>(shared.ranks.size(), 1));
@@ -37,27 +37,27 @@ TYPED_TEST(PartOf, LocalNumbersAreInTheOrderOfTheWholeAndBlocksStayBlocks)
   constexpr int D = TypeParam::value;
   const Shared<D> shared;
   for (const Part<D>& part : shared.parts) {
-    EXPECT_EQ(blocks_of(part.mesh.n_cells()), static_cast<Index>(part.share.block.size()));
+    EXPECT_EQ(blocks_of(part.mesh.n_cells()), static_cast<Index>(part.subdomain.block.size()));
     Index before = none, held = 0;
     for (Index c = 0; c < part.mesh.n_cells(); ++c) {
-      const Index whole = part.share.whole_cell(c);
+      const Index whole = part.subdomain.whole_cell(c);
       EXPECT_LT(before, whole);
-      EXPECT_EQ(whole / block_cells, part.share.block[z(c / block_cells)]);
-      EXPECT_EQ(part.share.owns_cell(c), shared.ranks[z(whole / block_cells)] == part.share.rank);
+      EXPECT_EQ(whole / block_cells, part.subdomain.block[z(c / block_cells)]);
+      EXPECT_EQ(part.subdomain.owns_cell(c), shared.ranks[z(whole / block_cells)] == part.subdomain.rank);
       EXPECT_THAT(whole_nodes(part, part.mesh.cell(c)), ElementsAreArray(shared.whole.cell(whole)));
       before = whole;
     }
     for (Index c = 0; c < shared.whole.n_cells(); ++c)
-      if (const Index local = part.share.local_cell(c); local != none) {
-        EXPECT_EQ(part.share.whole_cell(local), c);
+      if (const Index local = part.subdomain.local_cell(c); local != none) {
+        EXPECT_EQ(part.subdomain.whole_cell(local), c);
         ++held;
       }
     EXPECT_EQ(held, part.mesh.n_cells());
-    EXPECT_TRUE(std::is_sorted(part.share.node.begin(), part.share.node.end()));
+    EXPECT_TRUE(std::is_sorted(part.subdomain.node.begin(), part.subdomain.node.end()));
     held = 0;
     for (Index n = 0; n < shared.whole.n_nodes(); ++n)
-      if (const Index local = part.share.local_node(n); local != none) {
-        EXPECT_EQ(part.share.node[z(local)], n);
+      if (const Index local = part.subdomain.local_node(n); local != none) {
+        EXPECT_EQ(part.subdomain.node[z(local)], n);
         ++held;
       }
     EXPECT_EQ(held, part.mesh.n_nodes());
@@ -74,13 +74,13 @@ TYPED_TEST(PartOf, MeasuresAreThoseOfTheWholeToTheLastBit)
     EXPECT_EQ(part.mesh.high(), shared.whole.high());
     EXPECT_EQ(part.mesh.largest_edge(), shared.whole.largest_edge());
     for (Index c = 0; c < part.mesh.n_cells(); ++c) {
-      const Index whole = part.share.whole_cell(c);
+      const Index whole = part.subdomain.whole_cell(c);
       EXPECT_EQ(part.mesh.volume(c), shared.whole.volume(whole));
       EXPECT_EQ(part.mesh.altitude(c), shared.whole.altitude(whole));
       EXPECT_EQ(part.mesh.gradients(c), shared.whole.gradients(whole));
     }
     for (Index n = 0; n < part.mesh.n_nodes(); ++n) {
-      const Index whole = part.share.node[z(n)];
+      const Index whole = part.subdomain.node[z(n)];
       EXPECT_EQ(part.mesh.node(n), shared.whole.node(whole));
       EXPECT_EQ(part.mesh.node_size(n), shared.whole.node_size(whole));
       EXPECT_EQ(part.mesh.on_boundary(n), shared.whole.on_boundary(whole));
@@ -95,9 +95,9 @@ TYPED_TEST(PartOf, WhereTheMeshWasCutIsNoBoundary)
   for (const Part<D>& part : shared.parts) {
     Index n_cut = 0, n_boundary = 0;
     for (Index c = 0; c < part.mesh.n_cells(); ++c) {
-      const auto& across = shared.whole.neighbours(part.share.whole_cell(c));
+      const auto& across = shared.whole.neighbours(part.subdomain.whole_cell(c));
       for (Index a = 0; a <= D; ++a) {
-        const Index held = across[z(a)] == none ? none : part.share.local_cell(across[z(a)]);
+        const Index held = across[z(a)] == none ? none : part.subdomain.local_cell(across[z(a)]);
         EXPECT_EQ(part.mesh.neighbours(c)[z(a)], held);
         n_boundary += across[z(a)] == none ? 1 : 0;
         n_cut += across[z(a)] != none && held == none ? 1 : 0;
@@ -106,7 +106,7 @@ TYPED_TEST(PartOf, WhereTheMeshWasCutIsNoBoundary)
     EXPECT_GT(n_cut, 0);
     std::vector<Facet> expected;
     for (const Facet f : shared.whole.boundary_facets())
-      if (const Index c = part.share.local_cell(f.cell); c != none)
+      if (const Index c = part.subdomain.local_cell(f.cell); c != none)
         expected.push_back({c, f.local});
     EXPECT_EQ(static_cast<Index>(expected.size()), n_boundary);
     EXPECT_THAT(part.mesh.boundary_facets(), ElementsAreArray(expected));
@@ -146,9 +146,9 @@ TYPED_TEST(PartOf, RingsAreDeepEnoughAndNoBlockIsHeldInVain)
           wanted[z(c / block_cells)] = 1;
       }
       for (Index b = 0; b < static_cast<Index>(wanted.size()); ++b)
-        EXPECT_EQ(std::count(part.share.block.begin(), part.share.block.end(), b), wanted[z(b)]);
+        EXPECT_EQ(std::count(part.subdomain.block.begin(), part.subdomain.block.end(), b), wanted[z(b)]);
       for (Index n = 0; n < shared.whole.n_nodes(); ++n) {
-        const Index local = part.share.local_node(n);
+        const Index local = part.subdomain.local_node(n);
         if (expected[z(n)] <= rings) {
           ASSERT_NE(local, none);
           EXPECT_EQ(distance[z(local)], expected[z(n)]);
@@ -184,12 +184,12 @@ TYPED_TEST(PartOf, SetsAreThoseOfTheWholeAsFarAsTheyAreHeld)
     EXPECT_EQ(mesh.cell_set_names(), whole.cell_set_names());
     for (const auto& name : whole.node_set_names()) {
       std::vector<Index> expected = *whole.node_set(name);
-      std::transform(expected.begin(), expected.end(), expected.begin(), [&](Index n) { return part.share.local_node(n); });
+      std::transform(expected.begin(), expected.end(), expected.begin(), [&](Index n) { return part.subdomain.local_node(n); });
       EXPECT_EQ(*mesh.node_set(name), members(expected)) << name;
     }
     for (const auto& name : whole.cell_set_names()) {
       std::vector<Index> expected = *whole.cell_set(name);
-      std::transform(expected.begin(), expected.end(), expected.begin(), [&](Index c) { return part.share.local_cell(c); });
+      std::transform(expected.begin(), expected.end(), expected.begin(), [&](Index c) { return part.subdomain.local_cell(c); });
       EXPECT_EQ(*mesh.cell_set(name), members(expected)) << name;
     }
     for (const auto& name : whole.facet_set_names()) {
@@ -201,12 +201,12 @@ TYPED_TEST(PartOf, SetsAreThoseOfTheWholeAsFarAsTheyAreHeld)
       std::set<std::set<Index>> expected, seen;
       for (const Facet f : of_all) {
         const Index across = whole.neighbours(f.cell)[z(f.local)];
-        if (part.share.local_cell(f.cell) != none || (across != none && part.share.local_cell(across) != none))
+        if (part.subdomain.local_cell(f.cell) != none || (across != none && part.subdomain.local_cell(across) != none))
           expected.insert(nodes_of(f));
       }
       std::tuple<bool, Index, Index> before{false, none, none};
       for (const Facet f : facets) {
-        const Facet of_whole{part.share.whole_cell(f.cell), f.local};
+        const Facet of_whole{part.subdomain.whole_cell(f.cell), f.local};
         EXPECT_TRUE(seen.insert(nodes_of(of_whole)).second) << "twice in " << name;
         EXPECT_TRUE(mesh.neighbours(f.cell)[z(f.local)] == none || mesh.neighbours(f.cell)[z(f.local)] > f.cell);
         const std::tuple key(whole.neighbours(of_whole.cell)[z(f.local)] != none, f.cell, f.local);
@@ -247,8 +247,8 @@ TYPED_TEST(PartOf, ARankWithoutBlocksHoldsNothing)
   EXPECT_TRUE(idle.mesh.boundary_facets().empty());
   EXPECT_EQ(idle.mesh.facet_set("x_min"), std::vector<Facet>());
   EXPECT_EQ(idle.mesh.node_set("x_min"), std::vector<Index>());
-  EXPECT_EQ(idle.share.local_cell(0), none);
-  EXPECT_EQ(idle.share.local_node(0), none);
+  EXPECT_EQ(idle.subdomain.local_cell(0), none);
+  EXPECT_EQ(idle.subdomain.local_node(0), none);
   EXPECT_TRUE(rings_from_own(idle).empty());
   const Locator<D> locate(idle.mesh);
   EXPECT_FALSE(locate(idle.mesh, shared.whole.node(0), none));
@@ -265,7 +265,7 @@ TYPED_TEST(PartOf, APartCanBeCutAgain)
   std::vector<Index> some, of_whole;
   for (Index c = 1; c < part.mesh.n_cells(); c += 3) {
     some.push_back(c);
-    of_whole.push_back(part.share.whole_cell(c));
+    of_whole.push_back(part.subdomain.whole_cell(c));
   }
   const Mesh<D> twice(part.mesh, some), once(shared.whole, of_whole);
   EXPECT_EQ(digest(twice), digest(once));

@@ -41,7 +41,7 @@ inline std::vector<Index> whole_cells(const Part<D>& part, std::span<const Index
 {
   std::vector<Index> result;
   for (const Index c : local)
-    result.push_back(c == none ? none : part.share.whole_cell(c));
+    result.push_back(c == none ? none : part.subdomain.whole_cell(c));
   return result;
 }
 template <int D>
@@ -49,7 +49,7 @@ inline std::vector<Index> whole_nodes(const Part<D>& part, std::span<const Index
 {
   std::vector<Index> result;
   for (const Index n : local)
-    result.push_back(part.share.node[z(n)]);
+    result.push_back(part.subdomain.node[z(n)]);
   return result;
 }
 

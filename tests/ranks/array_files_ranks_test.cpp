@@ -119,11 +119,11 @@ TEST_F(Files, ACheckpointIsTakenOverInSlicesAndRefusedByAllWhereOneOfThemIsDamag
   const Slices slices{n, ranks.size()};
   EXPECT_EQ(other.state.particles.size(), static_cast<Index>(slices.size(ranks.rank())));
   if (!ranks.alone()) {
-    receive_owned_particles(ranks, other.problem.share, other.state.bodies, other.state.materials, other.state.particles);
+    receive_owned_particles(ranks, other.problem.subdomain, other.state.bodies, other.state.materials, other.state.particles);
     for (const Index cell : other.state.particles.cell)
-      ASSERT_TRUE(other.problem.share.owns_cell(cell));
+      ASSERT_TRUE(other.problem.subdomain.owns_cell(cell));
     for (Index& cell : other.state.particles.cell)
-      cell = other.problem.share.whole_cell(cell);
+      cell = other.problem.subdomain.whole_cell(cell);
     std::vector<std::int64_t> ids = run.state.particles.id;
     std::sort(ids.begin(), ids.end());
     other.make.expect({other.state.particles, other.state.bodies, other.state.materials}, ids);

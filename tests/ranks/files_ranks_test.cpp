@@ -95,7 +95,7 @@ TEST_F(Files, MeshesAreWrittenAsByOneRank)
   const RankOfRun run(10);
   Column held{"number", 1, {}, "m"};
   for (Index n = 0; n < run.problem.mesh.n_nodes(); ++n)
-    held.values.push_back(static_cast<float>(ranks.alone() ? n : run.problem.share.node[static_cast<std::size_t>(n)]));
+    held.values.push_back(static_cast<float>(ranks.alone() ? n : run.problem.subdomain.node[static_cast<std::size_t>(n)]));
   Column column = slice_of_column(run.view(), held, small_piece);
   write_mesh(ranks, folder / "all.vtu", 0.5, slice_of_mesh(run.view(), small_piece), std::vector<Column>{column}, {});
   if (!ranks.is_root())

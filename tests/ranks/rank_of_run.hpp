@@ -133,9 +133,9 @@ struct RankOfRun {
       return;
     Part<2> part = cut<2>(whole, rank_of_block, ranks.rank(), 1);
     problem.mesh = std::move(part.mesh);
-    problem.share = std::move(part.share);
+    problem.subdomain = std::move(part.subdomain);
     for (Index& cell : state.particles.cell)
-      cell = problem.share.local_cell(cell);
+      cell = problem.subdomain.local_cell(cell);
   }
   void take(Cloud cloud)
   {

@@ -102,12 +102,12 @@ TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)
   for (const Index cell : whole.state.particles.cell)
     ++weights[z(cell / block_cells)];
   const Part<2> here = cut(mesh, partition(mesh, weights, ranks.size()), ranks.rank(), 2);
-  receive_owned_particles(ranks, here.share, part.state.bodies, part.state.materials, part.state.particles);
+  receive_owned_particles(ranks, here.subdomain, part.state.bodies, part.state.materials, part.state.particles);
   expect_rows_of_the_whole();
   for (std::size_t p = 0; p < part.state.particles.cell.size(); ++p) {
     const Index cell = part.state.particles.cell[p];
-    EXPECT_TRUE(cell != none && here.share.owns_cell(cell));
-    EXPECT_EQ(here.share.whole_cell(cell), whole.state.particles.cell[z(part.state.particles.id[p])]);
+    EXPECT_TRUE(cell != none && here.subdomain.owns_cell(cell));
+    EXPECT_EQ(here.subdomain.whole_cell(cell), whole.state.particles.cell[z(part.state.particles.id[p])]);
   }
 }
 

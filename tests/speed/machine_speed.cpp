@@ -40,13 +40,13 @@ void multiply_adds(benchmark::State& state, int n_threads)
 {
   constexpr int chains = 12, rounds = 2'000'000;  // enough chains to hide a latency of 4 or 5 cycles with two units
   set_threads(n_threads);
-  std::vector<Real> saved(static_cast<std::size_t>(n_threads));
+  std::vector<Real> results(static_cast<std::size_t>(n_threads));
   for (auto _ : state)
     parallel_for(n_threads, [&](Index thread) {
       Pack sums[chains];
       for (int i = 0; i < chains; ++i)
         sums[i] = Pack{1, 2, 3, 4} + static_cast<Real>(i);
-      const Pack factor = Pack{0.5, 0.5, 0.5, 0.5} + saved[static_cast<std::size_t>(thread)] * 1e-300;
+      const Pack factor = Pack{0.5, 0.5, 0.5, 0.5} + results[static_cast<std::size_t>(thread)] * 1e-300;
       const Pack summand = 1 - factor;
       for (int round = 0; round < rounds; ++round)
         for (Pack& x : sums)
@@ -54,7 +54,7 @@ void multiply_adds(benchmark::State& state, int n_threads)
       Pack total = sums[0];
       for (int i = 1; i < chains; ++i)
         total += sums[i];
-      saved[static_cast<std::size_t>(thread)] = sum(total);
+      results[static_cast<std::size_t>(thread)] = sum(total);
     });
   state.SetItemsProcessed(state.iterations() * std::int64_t{chains} * rounds * pack_size * n_threads);
 }

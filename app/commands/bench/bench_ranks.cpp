@@ -49,13 +49,13 @@ std::vector<Real> seconds_between(const RankMark& from, const RankMark& to, int 
 template <int D>
 std::vector<Real> holdings(const RunView<D>& view, const RankMark& from, const RankMark& to, int steps, const Estimate& memory)
 {
-  const bool alone = view.problem.share.alone();
-  const auto owns_cell = [&](Index c) { return alone || view.problem.share.owns_cell(c); };
+  const bool alone = view.problem.subdomain.alone();
+  const auto owns_cell = [&](Index c) { return alone || view.problem.subdomain.owns_cell(c); };
   Index cells = 0, nodes = 0, shared = 0;
   for (Index c = 0; c < view.problem.mesh.n_cells(); ++c)
     cells += owns_cell(c) ? 1 : 0;
   for (Index n = 0; n < view.problem.mesh.n_nodes(); ++n) {
-    nodes += alone || view.problem.share.owns_node(n) ? 1 : 0;
+    nodes += alone || view.problem.subdomain.owns_node(n) ? 1 : 0;
     const auto around = view.problem.mesh.cells_of_node()[n];
     shared += std::any_of(around.begin(), around.end(), owns_cell) && !std::all_of(around.begin(), around.end(), owns_cell) ? 1 : 0;
   }

@@ -61,17 +61,17 @@ std::vector<Real> renumber(std::span<const Real> nodes, MeshEdges& edges)
   for (const Edge& edge : edges.all)
     for (const Index n : edge)
       number[static_cast<std::size_t>(n)] = 0;
-  std::vector<Real> saved;
+  std::vector<Real> used;
   for (std::size_t n = 0; n < number.size(); ++n)
     if (number[n] != none) {
-      number[n] = static_cast<Index>(saved.size() / 3);
-      saved.insert(saved.end(), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
+      number[n] = static_cast<Index>(used.size() / 3);
+      used.insert(used.end(), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n), nodes.begin() + static_cast<std::ptrdiff_t>(3 * n + 3));
     }
   for (std::vector<Edge>* list : {&edges.all, &edges.outline})
     for (Edge& edge : *list)
       for (Index& n : edge)
         n = number[static_cast<std::size_t>(n)];
-  return saved;
+  return used;
 }
 
 PagePlaces places_of(std::span<const Real> nodes, Page& page)

@@ -30,13 +30,13 @@ std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t of)
   return numbers;
 }
 
-PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway saved)
+PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway requested)
 {
   std::size_t n = frames, fields = cost.fields.size();
   const auto too_large = [&] { return bytes_of(particles, n, fields, cost) > budget; };
-  while (!saved.frames && too_large() && n > fewest_frames)
+  while (!requested.frames && too_large() && n > fewest_frames)
     --n;
-  while (!saved.fields && too_large() && fields > fewest_fields)
+  while (!requested.fields && too_large() && fields > fewest_fields)
     --fields;
   PagePlan plan{evenly_spread(n, frames), fields, 1, bytes_of(particles, n, fields, cost)};
   if (plan.bytes <= budget)

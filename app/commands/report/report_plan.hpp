@@ -28,7 +28,7 @@ struct KeptAnyway {
 
 /// Plans everything if `budget` [B] allows; otherwise fewer frames, evenly spread from the first to the last, but at least 12; then fewer
 /// fields, but at least 3; then fewer particles.  Throws Error if too few remain.
-PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway saved);
+PagePlan plan_page(std::int64_t particles, std::size_t frames, const ParticleCost& cost, Real budget, KeptAnyway requested);
 
 /// `n` evenly spread numbers in [0, of), including the first and the last.
 std::vector<std::size_t> evenly_spread(std::size_t n, std::size_t of);

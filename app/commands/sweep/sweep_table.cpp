@@ -213,7 +213,7 @@ std::string SweepTable::print() const
 
 std::vector<std::string> SweepTable::unknown_names() const
 {
-  std::vector<std::string> complaints;
+  std::vector<std::string> errors;
   for (std::size_t k = 0; k < plan_.study.collect.size(); ++k) {
     bool found = false;
     const std::vector<std::string>* known = nullptr;
@@ -226,11 +226,11 @@ std::vector<std::string> SweepTable::unknown_names() const
       continue;
     const SourceLocation& where = plan_.study.collect[k].at.where;
     const auto near = closest_match(column_asked(names_[k]).second, *known);
-    complaints.push_back(fmt::format("{}: {}: no case has a number \"{}\"{}", to_string(where), where.path, names_[k],
-                                     near ? fmt::format(" — did you mean \"{}\"?", *near)
-                                          : "; names are the keys of summary.json, joined by points, and the columns of history.csv"));
+    errors.push_back(fmt::format("{}: {}: no case has a number \"{}\"{}", to_string(where), where.path, names_[k],
+                                 near ? fmt::format(" — did you mean \"{}\"?", *near)
+                                      : "; names are the keys of summary.json, joined by points, and the columns of history.csv"));
   }
-  return complaints;
+  return errors;
 }
 
 }  // namespace talus

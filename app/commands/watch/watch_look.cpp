@@ -148,7 +148,7 @@ std::vector<std::string> described(const RunFolder& run, const RunLook& look)
   if (look.state != RunState::at_work && look.state != RunState::killed)
     add("", run.summary.message);
   if (look.state == RunState::killed)
-    add("", "its process has gone without a word");
+    add("", "its process has ended without a message");
   add("", pace(look));
   add("energy [J]", energies(look.history));
   add("momentum [kg m/s]", momentum(look.history));

@@ -45,7 +45,7 @@ void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, s
     warnings.push_back(fmt::format("{} more pairs of bodies share cells at the start", pairs - most));
 }
 
-void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& complaints)
+void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& errors)
 {
   std::map<std::string, std::vector<const BodySpec*>> filled;
   for (const BodySpec& body : scene.bodies) {
@@ -55,7 +55,7 @@ void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& complaint
     const auto at_once =
         std::find_if(before.begin(), before.end(), [&](const BodySpec* other) { return meet(scene, body.name, other->name); });
     if (at_once != before.end())
-      complaints.add(body.where, "region", fmt::format("body \"{}\" fills the cell group \"{}\" already", (*at_once)->name, body.region));
+      errors.add(body.where, "region", fmt::format("body \"{}\" fills the cell group \"{}\" already", (*at_once)->name, body.region));
     before.push_back(&body);
   }
 }

@@ -17,6 +17,6 @@ void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, s
                           Communicator& ranks, std::vector<std::string>& warnings);
 
 /// A group of cells is filled by one body at a time.  Of several that fill it before a body, the first is named.
-void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& complaints);
+void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& errors);
 
 }  // namespace talus

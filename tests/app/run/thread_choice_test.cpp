@@ -28,12 +28,12 @@ TEST(Threads, NeverMoreThanThereAre)
 template <class F>
 std::vector<int> kept_by(ThreadChoice choice, int steps, F&& f)
 {
-  std::vector<int> saved;
+  std::vector<int> chosen;
   for (int step = 0; step < steps; ++step) {
     choice.took(f(choice.next(), step));
-    saved.push_back(choice.saved());
+    chosen.push_back(choice.chosen());
   }
-  return saved;
+  return chosen;
 }
 
 TEST(ThreadChoice, KeepsTheNumberWithWhichStepsTakeTheLeastTime)
@@ -48,11 +48,11 @@ TEST(ThreadChoice, KeepsTheNumberWithWhichStepsTakeTheLeastTime)
 
 TEST(ThreadChoice, FollowsWhatElseTheMachineDoes)
 {
-  const auto saved = kept_by(ThreadChoice(1, 1, 2), 1500, [](int threads, int step) {
+  const auto chosen = kept_by(ThreadChoice(1, 1, 2), 1500, [](int threads, int step) {
     return (step < 700) == (threads == 2) ? 1 : 1.5;  // free cores at first, busy ones later
   });
-  EXPECT_EQ(saved[600], 2);
-  EXPECT_EQ(saved[1400], 1);
+  EXPECT_EQ(chosen[600], 2);
+  EXPECT_EQ(chosen[1400], 1);
 }
 
 TEST(ThreadChoice, TriesOthersOnlyNowAndThen)
@@ -69,8 +69,8 @@ TEST(ThreadChoice, TriesOthersOnlyNowAndThen)
 
 TEST(ThreadChoice, OneStepThatTakesLongDecidesNothing)
 {
-  const auto saved = kept_by(ThreadChoice(1, 1, 2), 1000, [](int threads, int step) { return step % 7 == 0 ? 100.0 : threads; });
-  EXPECT_EQ(*std::max_element(saved.begin(), saved.end()), 1);
+  const auto chosen = kept_by(ThreadChoice(1, 1, 2), 1000, [](int threads, int step) { return step % 7 == 0 ? 100.0 : threads; });
+  EXPECT_EQ(*std::max_element(chosen.begin(), chosen.end()), 1);
 }
 
 class ThreadsOfRuns : public Program {

@@ -225,10 +225,10 @@ TYPED_TEST(ConditionContract, RanksTogetherPushAsOneDoes)
     for (int rank = 0; rank < 2; ++rank) {
       const Part<2>& part = parts.emplace_back(cut<2>(whole.mesh, rank_of_block, rank, 2));
       auto mine = MovingNodes::with<TypeParam>();
-      mine.conditions.restrict_to(part.share);
+      mine.conditions.restrict_to(part.subdomain);
       mine.begin(dynamic);
       mine.nodes.sum.clear(), mine.nodes.motion.clear();
-      for (const Index n : part.share.node) {
+      for (const Index n : part.subdomain.node) {
         mine.nodes.sum.push_back(whole.nodes.sum[static_cast<std::size_t>(n)]);
         mine.nodes.motion.push_back(whole.nodes.motion[static_cast<std::size_t>(n)]);
       }
@@ -242,7 +242,7 @@ TYPED_TEST(ConditionContract, RanksTogetherPushAsOneDoes)
     EXPECT_LT((impulse - whole.impulse()).norm(), rounding * whole.impulse().norm());
     for (std::size_t rank = 0; rank < 2; ++rank)
       for (std::size_t n = 0; n < velocity[rank].size(); ++n)
-        EXPECT_EQ(velocity[rank][n], whole.nodes.motion[static_cast<std::size_t>(parts[rank].share.node[n])].v);
+        EXPECT_EQ(velocity[rank][n], whole.nodes.motion[static_cast<std::size_t>(parts[rank].subdomain.node[n])].v);
   }
 }
 

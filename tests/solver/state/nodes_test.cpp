@@ -311,7 +311,7 @@ TEST(InitialStress, CarriesTheWeightAbove)
   soil.poisson_ratio = 0.3;
   add_body<2>(m, "soil", soil, 3, [](const Vec<2>&) { return true; });
   make_ready(m);
-  set_start_stress<2>(m.problem.mesh, m.problem.share, *m.problem.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}},
+  set_start_stress<2>(m.problem.mesh, m.problem.subdomain, *m.problem.ranks, {0, -10}, std::vector{StartStress{.k0 = {{{0, 0.5}}}}},
                       m.work.order, m.state.bodies, m.state.materials, m.state.particles);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     const Real weight = 2000 * 10 * (1 - m.state.particles.x[p][1]);

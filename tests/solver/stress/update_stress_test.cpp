@@ -1,4 +1,4 @@
-// What is averaged or conducted over the stars of nodes, and artificial viscosity: the additions to the stress of the last step.
+// What is averaged or conducted over the patches of cells around nodes, and artificial viscosity.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +65,7 @@ void averages_volumes()
   auto m = block<D>(rubber(1e5, 0.3, 1000), 4);
   m.state.particles.volume = m.state.particles.volume0;
   sort(m);
-  StarSums<D, 2> sums(m.problem.mesh);
+  NodePatchSums<D, 2> sums(m.problem.mesh);
   std::vector<Real> averaged(m.state.particles.id.size());
   constexpr Real dt = 1e-3;
 
@@ -132,7 +132,7 @@ void averages_as_one()
     std::uniform_real_distribution<Real> any_rate(-20, 20);
     for (const std::size_t p : by_place(m.state.particles))
       m.state.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
-    StarSums<D, 2> sums(m.problem.mesh);
+    NodePatchSums<D, 2> sums(m.problem.mesh);
     std::vector<Real> averaged(m.state.particles.id.size()), in_order;
     std::vector<Index> together(static_cast<std::size_t>(bodies));
     std::iota(together.begin(), together.end(), 0);
@@ -187,7 +187,7 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
     std::uniform_real_distribution<Real> any_rate(-10, 10);
     for (int step = 0; step < 5; ++step) {
       set_each(m.state.particles.L, [&](std::size_t) { return Mat<2>(Mat<2>::NullaryExpr([&] { return any_rate(bits); })); });
-      average_volume(m.problem.mesh, m.work.order, only_body, 1e-3, m.state.particles, *m.work.stars, m.work.averaged);
+      average_volume(m.problem.mesh, m.work.order, only_body, 1e-3, m.state.particles, *m.work.patch_sums, m.work.averaged);
       update_all(m, 1e-3);
     }
     return m.state.particles.stress;

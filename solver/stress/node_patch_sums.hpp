@@ -24,7 +24,7 @@ std::array<Real, D + 1> barycentric_inside(const Mesh<D>& mesh, Index c, const V
 
 /// K sums at a node.
 template <int K>
-struct StarRow {
+struct NodePatchRow {
   std::array<Real, K> sum{};
   Real& operator[](std::size_t k) noexcept { return sum[k]; }
   const Real& operator[](std::size_t k) const noexcept { return sum[k]; }
@@ -37,7 +37,7 @@ struct StarRow {
   {
     return std::tie(row.sum);
   }
-  StarRow& operator+=(const StarRow& other) noexcept
+  NodePatchRow& operator+=(const NodePatchRow& other) noexcept
   {
     for (std::size_t k = 0; k < K; ++k)
       sum[k] += other.sum[k];
@@ -48,16 +48,16 @@ struct StarRow {
 /// K sums per node.  Blocks keep rows of their own, which are then added up as those of momentum are: the bits depend neither on threads nor
 /// on ranks.
 template <int D, int K>
-class StarSums {
+class NodePatchSums {
  public:
-  using Row = StarRow<K>;
+  using Row = NodePatchRow<K>;
 
   /// Of a rank that is alone.
-  explicit StarSums(const Mesh<D>& mesh) : StarSums(mesh, all_nodes(mesh)) { halo_ = Halo<Row>(blocks_.size()); }
-  StarSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& share) : StarSums(mesh, own_nodes(mesh, share))
+  explicit NodePatchSums(const Mesh<D>& mesh) : NodePatchSums(mesh, all_nodes(mesh)) { halo_ = Halo<Row>(blocks_.size()); }
+  NodePatchSums(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain) : NodePatchSums(mesh, own_nodes(mesh, subdomain))
   {
-    halo_ = Halo<Row>(ranks, mesh, share, blocks_);
-    copies_ = copies_of_nodes(ranks, share, MessageTag::sums, nodes_read(share, blocks_));
+    halo_ = Halo<Row>(ranks, mesh, subdomain, blocks_);
+    copies_ = copies_of_nodes(ranks, subdomain, MessageTag::sums, nodes_read(subdomain, blocks_));
   }
 
   /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
@@ -90,7 +90,7 @@ class StarSums {
   const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
 
  private:
-  StarSums(const Mesh<D>& mesh, OwnNodes own)
+  NodePatchSums(const Mesh<D>& mesh, OwnNodes own)
       : blocks_(make_block_rows<Row>(mesh, [&](Index c) { return std::span(mesh.cell(c)); })),
         own_(std::move(own)),
         of_node_(static_cast<std::size_t>(mesh.n_nodes()))
