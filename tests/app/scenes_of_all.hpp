@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "kernels/kernels.hpp"
 #include "materials/law_examples.hpp"
 
 namespace talus {
@@ -94,9 +95,11 @@ inline std::vector<SceneCase> scenes_of_all()
       metal_law + ", damage: {d1: 0.01, d2: 0.1, d3: -1.5, d4: 0, d5: 0}, mie_gruneisen: {c0: 60, s: 1.5, gamma: 2}");
   law("johnson_cook_heat", metal_law + ", conductivity: 300, initial_temperature: 300");
 
-  for (const std::string kernel : {"umls", "linear"})
+  for_each_type(Kernels<2>{}, [&]<class K>() {
     for (const std::string scheme : {"apic", "aflip"})
-      all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
+      if (const std::string kernel(K::name); kernel != "projected")
+        all.push_back({kernel + "_" + scheme, {.more = "kernel: " + kernel + "\ntransfer: {scheme: " + scheme + "}\n"}});
+  });
   for (const std::string scheme : {"flip", "tpic"})
     all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
   all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});

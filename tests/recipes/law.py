@@ -1,4 +1,4 @@
-"""The law of docs/tutorials/own_law: one file, one line in materials/laws.hpp, one test with a sample of it."""
+"""The law of docs/tutorials/own_law: one file, one line in materials/laws.hpp, an example of its parameters, and one test."""
 from recipe import SOURCE, Built, Recipe, Tree
 
 PARTS = SOURCE / "docs/tutorials/own_law"
@@ -9,8 +9,8 @@ def apply(tree: Tree) -> None:
     tree.insert_behind('#include "materials/johnson_cook.hpp"\n', "materials/laws.hpp", '#include "materials/maxwell.hpp"\n')
     tree.insert_behind("using Laws = TypeList<", "materials/laws.hpp", "\n    Maxwell,")
     tree.write("tests/materials/maxwell_test.cpp", (PARTS / "maxwell_test.cpp").read_text(encoding="utf-8"))
-    sample = (PARTS / "sample.hpp").read_text(encoding="utf-8")
-    tree.write("tests/materials/samples.hpp", tree.read("tests/materials/samples.hpp") + sample[sample.index("\nnamespace"):])
+    example = (PARTS / "example.hpp").read_text(encoding="utf-8")
+    tree.insert_behind("}  // namespace detail\n", "materials/law_examples.hpp", example[example.index("\ntemplate"):example.index("\n}  // namespace")])
 
 
 def works(built: Built) -> None:
@@ -20,4 +20,4 @@ def works(built: Built) -> None:
     assert "time in which the shear stress falls" in built.run("manual", "relaxation_time")
 
 
-RECIPE = Recipe(apply, works, most_files=2, test_targets=("talus_materials_tests",))
+RECIPE = Recipe(apply, works, most_files=3, test_targets=("talus_materials_tests",))

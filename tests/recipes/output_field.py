@@ -29,7 +29,7 @@ def works(built: Built) -> None:
     assert all("speed" in outputs_of[block]["properties"]["fields"]["items"]["enum"] for block in ("particles", "mesh"))
     built.write("misspelt.yaml", BLOCK + outputs.replace("[speed", "[sped"))
     told = built.run("check", "misspelt.yaml", code=2)
-    assert 'misspelt.yaml:11:35: error: outputs.particles.fields[0]: there is no field "sped" — did you mean "speed"?' in told, told
+    assert 'misspelt.yaml:10:37: error: outputs.particles.fields[0]: there is no field "sped" — did you mean "speed"?' in told, told
 
 
 RECIPE = Recipe(apply, works, most_files=1)

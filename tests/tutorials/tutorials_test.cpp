@@ -4,7 +4,7 @@
 
 #include "docs/tutorials/own_kernel/cell_mean.hpp"
 #include "docs/tutorials/own_law/maxwell.hpp"
-#include "docs/tutorials/own_law/sample.hpp"
+#include "docs/tutorials/own_law/example.hpp"
 #include "kernels/kernels.hpp"
 #include "materials/interface/constitutive_law_of.hpp"
 
