@@ -31,7 +31,9 @@ template std::shared_ptr<const ConstitutiveLaw> constitutive_law_of_all_kinds(co
 }  // namespace talus
 ]] @ONLY)
     target_sources(${target} PRIVATE ${source})
-    set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    if(NOT CMAKE_UNITY_BUILD)   # as in the preset lint, which reads all sources of a folder at once
+      set_source_files_properties(${source} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+    endif()
     if(CMAKE_CXX_FLAGS MATCHES -fsanitize)   # with all calls inlined and each of them checked gcc does not come to an end
       set_property(SOURCE ${source} APPEND PROPERTY COMPILE_OPTIONS -fno-inline)
     endif()

@@ -28,10 +28,10 @@ struct Workspace {
   std::vector<StressSums> stress_sums;  ///< sums over the particles of each body in each block
 
   std::optional<NodePatchSums<D, 2>> patch_sums;  ///< used if a body averages its volume
-  std::vector<Real> averaged;                ///< volume ratios of average_volume()
-  std::vector<Real> pore_after;              ///< pore pressure of each particle at the end of the step [Pa]
-  std::vector<Index> averaged_bodies;        ///< bodies that average_volume() treats as one
-  std::optional<HeatSums<D>> heat;           ///< used if a body conducts heat
+  std::vector<Real> averaged;                     ///< volume ratios of average_volume()
+  std::vector<Real> pore_after;                   ///< pore pressure of each particle at the end of the step [Pa]
+  std::vector<Index> averaged_bodies;             ///< bodies that average_volume() treats as one
+  std::optional<HeatSums<D>> heat;                ///< used if a body conducts heat
 
   explicit Workspace(Index n_nodes)
   {

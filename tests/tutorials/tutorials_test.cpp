@@ -4,9 +4,11 @@
 
 #include "docs/tutorials/own_kernel/cell_mean.hpp"
 #include "docs/tutorials/own_law/maxwell.hpp"
-#include "docs/tutorials/own_law/example.hpp"
 #include "kernels/kernels.hpp"
 #include "materials/interface/constitutive_law_of.hpp"
+
+// Below the law, as in materials/law_examples.hpp.
+#include "docs/tutorials/own_law/example.hpp"
 
 // The contracts are typed over lists; the names here are found before those of `talus`.
 namespace talus::law_contract_test {
