@@ -21,9 +21,4 @@ MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directo
 template <int D>
 Mesh<D> load_mesh(const MeshSpec& spec, const std::filesystem::path& directory);
 
-extern template MeshData<2> make_mesh<2>(const MeshSpec&, const std::filesystem::path&);
-extern template MeshData<3> make_mesh<3>(const MeshSpec&, const std::filesystem::path&);
-extern template Mesh<2> load_mesh<2>(const MeshSpec&, const std::filesystem::path&);
-extern template Mesh<3> load_mesh<3>(const MeshSpec&, const std::filesystem::path&);
-
 }  // namespace talus

@@ -10,7 +10,7 @@ template <int D>
 class Linear {
  public:
   static constexpr std::string_view name = "linear";
-  static constexpr std::string_view summary = "piecewise linear hats; cheapest, gradient jumps between cells";
+  static constexpr std::string_view summary = "piecewise linear shape functions; cheapest, gradient jumps between cells";
   static constexpr int max_nodes = padded(D + 1);
 
   /// The origin is the centroid, so w_a = 1 / (D + 1) + G_a . (x - origin).

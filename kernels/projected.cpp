@@ -9,7 +9,7 @@ Projected<D>::Projected(const Mesh<D>& mesh, const Options& options) : Projected
 
 template <int D>
 Projected<D>::Projected(const Mesh<D>& mesh, MaxentValues rows)
-    : hats_(mesh), as_corners_(std::move(rows.as_corners)), node_part_(mesh, std::move(rows.S), averaged_gradients(mesh))
+    : linear_(mesh), as_corners_(std::move(rows.as_corners)), node_part_(mesh, std::move(rows.S), averaged_gradients(mesh))
 {}
 
 template class Projected<2>;

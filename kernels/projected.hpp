@@ -21,7 +21,8 @@ template <int D>
 class Projected {
  public:
   static constexpr std::string_view name = "projected";
-  static constexpr std::string_view summary = "hats with averaged nodal gradient and values; continuous gradient, exact for uniform stress";
+  static constexpr std::string_view summary =
+      "linear shape functions with averaged nodal gradient and values; continuous gradient, exact for uniform stress";
   static constexpr int max_nodes = Linear<D>::max_nodes;
   using Cell = typename Linear<D>::Cell;
   using Options = ProjectedOptions;
@@ -40,11 +41,11 @@ class Projected {
             .closed_walls = false};
   }
   /// The cell part: linear shape functions.
-  std::span<const Index> stencil(const Mesh<D>& mesh, Index c) const noexcept { return hats_.stencil(mesh, c); }
-  void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept { hats_.open(mesh, c, cell); }
+  std::span<const Index> stencil(const Mesh<D>& mesh, Index c) const noexcept { return linear_.stencil(mesh, c); }
+  void open(const Mesh<D>& mesh, Index c, Cell& cell) const noexcept { linear_.open(mesh, c, cell); }
   void evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<D, max_nodes>& out) const noexcept
   {
-    hats_.evaluate(cell, x, count, out);
+    linear_.evaluate(cell, x, count, out);
   }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
   /// Nodes without positive weights that are exact for linear fields, ascending; they are treated as corners.
@@ -53,7 +54,7 @@ class Projected {
  private:
   Projected(const Mesh<D>& mesh, MaxentValues rows);
 
-  Linear<D> hats_;
+  Linear<D> linear_;
   std::vector<Index> as_corners_;
   NodeOperators<D> node_part_;
 };

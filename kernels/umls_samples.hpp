@@ -8,17 +8,17 @@ namespace talus {
 /// The position of a particle in its cell.
 template <int D>
 struct Place {
-  Real x[D];  ///< relative to the origin of the cell [m]
-  Pack hat;   ///< barycentric coordinates, one vertex per lane
+  Real x[D];         ///< relative to the origin of the cell [m]
+  Pack coordinates;  ///< barycentric coordinates, one vertex per lane
 };
 template <int D>
 [[gnu::always_inline]] inline Place<D> place_of(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane) noexcept
 {
   Place<D> at;
-  at.hat = D == 2 ? Pack{1, 1, 1, 0} / 3 : broadcast(0.25);
+  at.coordinates = D == 2 ? Pack{1, 1, 1, 0} / 3 : broadcast(0.25);
   for (int d = 0; d < D; ++d) {
     at.x[d] = x[d][lane] - cell.origin[d];
-    at.hat += at.x[d] * load(cell.slope[d]);
+    at.coordinates += at.x[d] * load(cell.slope[d]);
   }
   return at;
 }
@@ -50,13 +50,13 @@ template <int D>
 {
   const Real radius = radius_at<D>(cell, at);
   for (int i = 0; i < cell.padded_size; i += pack_size) {
-    Pack r2{}, eta = at.hat[0] * load(cell.adjacent[0] + i);
+    Pack r2{}, eta = at.coordinates[0] * load(cell.adjacent[0] + i);
     for (int d = 0; d < D; ++d) {
       const Pack r = load(cell.x[d] + i) - at.x[d];
       r2 = d == 0 ? r * r : r2 + r * r;
     }
     for (int a = 1; a <= D; ++a)
-      eta += at.hat[a] * load(cell.adjacent[a] + i);
+      eta += at.coordinates[a] * load(cell.adjacent[a] + i);
     store(weight + i, eta * Profile(square_root(r2), radius).value());
   }
 }
@@ -72,7 +72,7 @@ void sample_slope(const typename Umls<D>::Cell& cell, const Place<D>& at, Real r
   }
   for (int a = 0; a <= D; ++a) {
     const Pack adjacent = load(cell.adjacent[a] + i);
-    eta += at.hat[a] * adjacent;
+    eta += at.coordinates[a] * adjacent;
     for (int d = 0; d < D; ++d)
       eta_slope[d] += cell.slope[d][a] * adjacent;
   }

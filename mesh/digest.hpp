@@ -18,7 +18,4 @@ std::uint64_t digest(std::string_view text);
 /// The digest of the bits of numbers.
 std::uint64_t digest(std::span<const Real> numbers);
 
-extern template std::uint64_t digest<2>(const Mesh<2>&);
-extern template std::uint64_t digest<3>(const Mesh<3>&);
-
 }  // namespace talus

@@ -28,9 +28,4 @@ std::optional<OverlappingCells> find_overlap(const Mesh<D>& mesh);
 template <int D>
 std::vector<std::vector<Index>> unjoined_nodes(const MeshData<D>& data);
 
-extern template std::optional<OverlappingCells> find_overlap<2>(const Mesh<2>&);
-extern template std::optional<OverlappingCells> find_overlap<3>(const Mesh<3>&);
-extern template std::vector<std::vector<Index>> unjoined_nodes<2>(const MeshData<2>&);
-extern template std::vector<std::vector<Index>> unjoined_nodes<3>(const MeshData<3>&);
-
 }  // namespace talus

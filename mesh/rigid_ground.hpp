@@ -22,7 +22,4 @@ struct RigidGround {
 template <int D>
 std::optional<RigidGround> rigid_ground_of(const MeshData<D>& data);
 
-extern template std::optional<RigidGround> rigid_ground_of<2>(const MeshData<2>&);
-extern template std::optional<RigidGround> rigid_ground_of<3>(const MeshData<3>&);
-
 }  // namespace talus

@@ -16,7 +16,7 @@ void locate_particles(Model<D>& m)
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
   bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
-                          work.sums, work.health);
+                          work.sums, work.errors);
   changed |= work.migration(problem.subdomain, state.bodies, state.materials, state.particles, work.order);
   changed |= sort_by_cell(state.bodies, state.materials, state.particles, work.order);
   if (changed)
@@ -27,11 +27,11 @@ void locate_particles(Model<D>& m)
 template <int D>
 bool particles_valid(Model<D>& m)
 {
-  m.work.health.take(m.problem.ranks->min(m.work.health.word()));
-  if (!m.work.health.worst())
+  m.work.errors.take(m.problem.ranks->min(m.work.errors.word()));
+  if (!m.work.errors.worst())
     return true;
-  m.problem.ranks->sum(m.work.sums.departed);
-  record_removed(m.work.sums.departed.value(), m.state.mass, m.state.energy);
+  m.problem.ranks->sum(m.work.sums.removed);
+  record_removed(m.work.sums.removed.value(), m.state.mass, m.state.energy);
   return false;
 }
 
@@ -63,8 +63,8 @@ void integrate_momentum(Model<D>& m, Real dt)
 template <int D>
 void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
 {
-  m.state.walls.apply_dashpots(kick.to, dt, *m.problem.ranks, m.work.nodes);
-  m.state.walls.apply(kick, m.work.nodes, m.work.sums.at_nodes);
+  m.state.boundary.apply_dashpots(kick.to, dt, *m.problem.ranks, m.work.nodes);
+  m.state.boundary.apply(kick, m.work.nodes, m.work.sums.at_nodes);
 }
 
 /// Applies local damping in stages that seek equilibrium, from the net acceleration that acts on particles.
@@ -83,7 +83,7 @@ void apply_local_damping(Model<D>& m)
 template <int D>
 void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
-  m.work.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.walls, m.work.nodes.motion, m.work.sums.beyond_nodes);
+  m.work.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, m.work.nodes.motion, m.work.sums.beyond_nodes);
   m.transfer->send_motion(m);
 }
 
@@ -124,7 +124,7 @@ void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
                                    .averaged = work.averaged,
                                    .pore_after = water ? std::span<const Real>(work.pore_after) : std::span<const Real>(),
                                    .particles = particles,
-                                   .health = work.health});
+                                   .errors = work.errors});
 }
 
 /// Updates the stress as above, unless the law needs data of other blocks first.
@@ -176,7 +176,7 @@ void update_stress_bodies(Model<D>& m, Real dt)
     most.take_extremes(sums);
   }
   state.crossing = most.crossing;
-  state.watched.speed = most.speed;
+  state.monitor.speed = most.speed;
   state.timings.stress += most.seconds / threads();
   state.timings.gather -= most.seconds / threads();
 }
@@ -191,16 +191,15 @@ void update_balances(Model<D>& m)
   StepSums<D>& sums = work.sums;
   add_work(work.order, state.particles, sums.work_on_particles);
   sums.particles.add(static_cast<Real>(state.particles.size()));
-  problem.ranks->sum(sums.digits, sums.departed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes,
-                     sums.balance, sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles,
-                     state.walls.pushed());
-  state.walls.keep_impulses();
-  std::array<Real, 3> extremes{state.crossing, -state.watched.speed, -sums.largest_set_back};
-  std::int64_t health = work.health.word();
-  problem.ranks->least(extremes, health);
-  work.health.take(health);
+  problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
+                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed());
+  state.boundary.keep_impulses();
+  std::array<Real, 3> extremes{state.crossing, -state.monitor.speed, -sums.largest_set_back};
+  std::int64_t errors = work.errors.word();
+  problem.ranks->least(extremes, errors);
+  work.errors.take(errors);
   state.crossing = extremes[0];
-  state.watched.speed = -extremes[1];
+  state.monitor.speed = -extremes[1];
   state.mass.largest_set_back = std::max(state.mass.largest_set_back, -extremes[2]);
   add_step(sums, work.nodes.gravity, work.nodes.kick, state.mass, state.momentum, state.energy);
   state.timings.particle_steps += sums.particles.value();

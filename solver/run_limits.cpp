@@ -46,7 +46,7 @@ std::optional<std::string> exceeded_limit(Model<D>& m, Look look)
   if (m.state.clock.step == m.state.stage.first_step)
     return std::nullopt;  // no step yet: it was looked at when the stage before ended
   const RunLimits& limit = m.problem.limits;
-  LimitMonitor& seen = m.state.watched;
+  LimitMonitor& seen = m.state.monitor;
   seen.fastest = std::max(seen.fastest, seen.speed);
   if (seen.speed > limit.speed) {
     ++seen.speeding;

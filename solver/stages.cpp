@@ -38,19 +38,19 @@ std::string describe(const Model<D>& m, const ParticleErrors::Finding& finding)
 template <int D>
 void stop_if_invalid(Model<D>& m, bool step_is_done)
 {
-  const auto finding = m.work.health.worst();
+  const auto finding = m.work.errors.worst();
   if (!finding)
     return;
   std::string what = m.problem.ranks->first(describe(m, *finding));
   const bool may_go = step_is_done && m.problem.limits.failed > 0;
   if (may_go) {
-    ExactSums<RemovedParticles<D>> departed;
-    remove_failed(m.problem.mesh, m.state.bodies, m.state.materials, m.state.particles, m.work.order, departed);
-    m.problem.ranks->sum(departed);
-    record_removed(departed.value(), m.state.mass, m.state.energy);
+    ExactSums<RemovedParticles<D>> removed;
+    remove_failed(m.problem.mesh, m.state.bodies, m.state.materials, m.state.particles, m.work.order, removed);
+    m.problem.ranks->sum(removed);
+    record_removed(removed.value(), m.state.mass, m.state.energy);
     update_tracked_rows(m);
-    m.work.health.clear();
-    m.state.watched.failure = what;
+    m.work.errors.clear();
+    m.state.monitor.failure = what;
     if (m.state.mass.failed <= m.problem.limits.failed * m.state.mass.start)
       return;
     what += fmt::format("; {} particles have failed and were deleted, {:.3g} of the mass, beyond watch.failed_mass = {:.3g}",
@@ -79,7 +79,7 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
                    .ramp_shape = stage.ramp_shape,
                    .elastic = stage.elastic,
                    .seeks_rest = stage.residual || stage.damping > 0};
-  m.state.walls.begin_stage(stage.residual.has_value(), m.state.clock.time);
+  m.state.boundary.begin_stage(stage.residual.has_value(), m.state.clock.time);
   // Under a stress of the start all of gravity acts, however it grows afterwards.
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;
   soak(m.problem.mesh, {m.problem.water, ramp * m.problem.loads.gravity.table(time)}, m.state.bodies, m.state.particles);
@@ -129,7 +129,7 @@ std::optional<std::string> reason_to_stop(Model<D>& m, const StepLimits& limits)
 template <int D>
 [[noreturn]] void abort_run(Model<D>& m, const LimitMonitor& before, const Watch<D>& watch, const std::string& why)
 {
-  m.state.watched = before;
+  m.state.monitor = before;
   watch(m, RunEvent::given_up);
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.state.clock.step, m.state.clock.time, why));
 }
@@ -171,7 +171,7 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
   const Real begin = m.state.stage.begin, end = begin + stage.duration;
   while (m.state.clock.time < end * (1 - 1e-14) && m.state.stage.balanced < steps_in_balance) {
     watch(m, RunEvent::step_begins);
-    const LimitMonitor before = m.state.watched;
+    const LimitMonitor before = m.state.monitor;
     if (const auto why = reason_to_stop(m, limits))
       abort_run(m, before, watch, *why);
     const Real wanted = wanted_step(m, limits), left = end - m.state.clock.time;
@@ -186,7 +186,7 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
     m.state.stage.balanced = may_rest && rest_conditions(m, stage).met() ? m.state.stage.balanced + 1 : 0;
     watch(m, RunEvent::step_done);
   }
-  const LimitMonitor before = m.state.watched;
+  const LimitMonitor before = m.state.monitor;
   if (const auto why = exceeded_limit(m, Look::at_end_of_stage))
     abort_run(m, before, watch, *why);
   const Totals<D> now = totals(m);

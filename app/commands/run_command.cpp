@@ -87,34 +87,34 @@ class Run {
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
     StopWatch of_step;
-    RunCallbacks<D> audience{[&](const RunView<D>& view, RunEvent moment) {
-                               Real seconds = 0;
-                               of_step.lap(seconds);
-                               if (moment == RunEvent::step_done)
-                                 thread_choice_.took(seconds);
-                               recorder.watch(view, moment);
-                               if (moment == RunEvent::step_begins) {
-                                 checkpoints.see(view, recorder);
-                                 set_threads(thread_choice_.next());
-                                 of_step = {};
-                               }
-                               if (moment == RunEvent::given_up)
-                                 checkpoints.write(view, recorder);
-                             },
-                             [&](const RunView<D>& view, const StageResult& result) {
-                               recorder.stage_done(result);
-                               checkpoints.see_end_of_stage(view, recorder, static_cast<Index>(stages_.size()));
-                             }};
+    RunCallbacks<D> callbacks{[&](const RunView<D>& view, RunEvent event) {
+                                Real seconds = 0;
+                                of_step.lap(seconds);
+                                if (event == RunEvent::step_done)
+                                  thread_choice_.took(seconds);
+                                recorder.watch(view, event);
+                                if (event == RunEvent::step_begins) {
+                                  checkpoints.see(view, recorder);
+                                  set_threads(thread_choice_.next());
+                                  of_step = {};
+                                }
+                                if (event == RunEvent::given_up)
+                                  checkpoints.write(view, recorder);
+                              },
+                              [&](const RunView<D>& view, const StageResult& result) {
+                                recorder.stage_done(result);
+                                checkpoints.see_end_of_stage(view, recorder, static_cast<Index>(stages_.size()));
+                              }};
     fs::path taken;
     const auto laws = setup.laws;
     const StateLimits limits{mesh.n_cells(), static_cast<Index>(stages_.size()), setup.n_particles, laws};
-    audience.changed = [&](const RunView<D>& view, const Stage& stage, const StageReport& news) {
+    callbacks.changed = [&](const RunView<D>& view, const Stage& stage, const StageReport& news) {
       recorder.changed(tell_changes(view.state.clock.time, stage.name, news, options_.quiet, summary_.warnings));
     };
     if (from_)
-      audience.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
+      callbacks.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
     // Only now: errors of the kernel, lack of memory and unreadable input are found before existing results are replaced.
-    audience.ready = [&](const RunView<D>& view) {
+    callbacks.ready = [&](const RunView<D>& view) {
       summary_.nodes_as_corners = world().sum(view.nodes_as_corners);
       check_disk_space(folder_, view, scene_.outputs, time_left(view));
       world().together([&] { prepare(view); });
@@ -142,7 +142,7 @@ class Run {
     const StopRequests requests;  // until the summary is written
     try {
       std::optional<FloatingPointTraps> traps(std::in_place);
-      simulate(scene_, std::move(mesh), std::move(setup), audience, load_balancing_of(mesh_digest, traps));
+      simulate(scene_, std::move(mesh), std::move(setup), callbacks, load_balancing_of(mesh_digest, traps));
       finish(recorder, RunStatus::done, "");
     } catch (const Stopped& e) {
       const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), shell_word(folder_));

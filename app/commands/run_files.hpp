@@ -18,9 +18,4 @@ template <int D>
 void write_first_files(const std::filesystem::path& place, const RunSummary& summary, const Mesh<D>& mesh,
                        const std::optional<std::filesystem::path>& initial);
 
-extern template void write_first_files<2>(const std::filesystem::path&, const RunSummary&, const Mesh<2>&,
-                                          const std::optional<std::filesystem::path>&);
-extern template void write_first_files<3>(const std::filesystem::path&, const RunSummary&, const Mesh<3>&,
-                                          const std::optional<std::filesystem::path>&);
-
 }  // namespace talus

@@ -46,9 +46,9 @@ Real MomentumNow<D>::angular_loss() const noexcept
 }
 
 template <int D>
-void BalanceHistory<D>::see(const RunView<D>& view, RunEvent moment)
+void BalanceHistory<D>::see(const RunView<D>& view, RunEvent event)
 {
-  if (moment == RunEvent::stage_begins) {
+  if (event == RunEvent::stage_begins) {
     if (!begun_) {
       kinetic_begin_ = totals(view).kinetic;
       plastic_begin_ = view.state.energy.plastic_start;
@@ -68,7 +68,7 @@ void BalanceHistory<D>::see(const RunView<D>& view, RunEvent moment)
     begun_ = true;
     taken_out_ = 0;
   }
-  if (moment == RunEvent::stage_done) {
+  if (event == RunEvent::stage_done) {
     taken_out_ = view.state.energy.set_to_rest;
     kinetic_end_ = totals(view).kinetic + taken_out_;
     plastic_end_ = plastic_work(view);
@@ -104,7 +104,7 @@ MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& view) const
 {
   const MomentumLedger<D>& given = view.state.momentum;
   ForceAndMoment<D> in_steps = given.loads + given.damping;
-  for (const BoundaryCondition<D>& wall : view.state.walls.conditions())
+  for (const BoundaryCondition<D>& wall : view.state.boundary.conditions())
     in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
   MomentumNow<D> now{start_, momentum_of(view), in_steps + given.rest + given.changes + -1 * view.state.mass.carried_away};
   if (view.state.particles.precision() == Precision::single)

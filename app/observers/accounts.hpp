@@ -69,7 +69,7 @@ struct MomentumNow {
 template <int D>
 class BalanceHistory {
  public:
-  void see(const RunView<D>& view, RunEvent moment);
+  void see(const RunView<D>& view, RunEvent event);
 
   EnergyNow energy(const RunView<D>& view) const;
   MomentumNow<D> momentum(const RunView<D>& view) const;

@@ -24,15 +24,15 @@ BodySums<D> sums_of_body(const RunView<D>& view, Index body)
 }  // namespace
 
 template <int D>
-void BodyForces<D>::see(const RunView<D>& view, RunEvent moment)
+void BodyForces<D>::see(const RunView<D>& view, RunEvent event)
 {
-  if (!wanted_ || moment == RunEvent::step_begins || moment == RunEvent::given_up)
+  if (!wanted_ || event == RunEvent::step_begins || event == RunEvent::given_up)
     return;
   std::vector<BodySums<D>> now;
   for (std::size_t b = 0; b < view.state.bodies.size(); ++b)
     now.push_back(sums_of_body(view, static_cast<Index>(b)));
   impulses_.resize(now.size());
-  if (moment == RunEvent::step_done)
+  if (event == RunEvent::step_done)
     add_step(view, now);
   sums_ = std::move(now);
   deleted_ = view.state.mass.carried_away.linear;

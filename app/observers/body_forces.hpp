@@ -46,7 +46,7 @@ class BodyForces {
  public:
   explicit BodyForces(bool wanted) noexcept : wanted_(wanted) {}
   /// To be called at every event of a run, on every rank.
-  void see(const RunView<D>& view, RunEvent moment);
+  void see(const RunView<D>& view, RunEvent event);
 
   /// The sums of each body at the last event.
   const std::vector<BodySums<D>>& sums() const noexcept { return sums_; }

@@ -320,7 +320,7 @@ fs::path CheckpointList::take_over(State<D>& state, Recorder<D>& recorder, const
   const auto columns = filled_columns(state.particles);
   const auto read_all = [&](const ArrayReader& arrays) {
     check_count(arrays, "bodies", state.bodies.size(), "bodies");
-    check_count(arrays, "walls/wall", state.walls.conditions().size(), "walls");
+    check_count(arrays, "walls/wall", state.boundary.conditions().size(), "walls");
     for_each_part(state, [&](const std::string& name, auto& part) {
       using Part = std::decay_t<decltype(part)>;
       if constexpr (!std::is_same_v<Part, std::vector<Body>> && !is_of_particles<Part>)
@@ -336,7 +336,7 @@ fs::path CheckpointList::take_over(State<D>& state, Recorder<D>& recorder, const
     find_invalid(state.particles, state.bodies, state.materials, faults);
     refuse_if_any(faults);
     load(arrays, "recorder", recorder);
-    if (!state.walls.fits() || !recorder.fits(state.walls.conditions().size(), state.bodies.size(), limits.particles))
+    if (!state.boundary.fits() || !recorder.fits(state.boundary.conditions().size(), state.bodies.size(), limits.particles))
       throw EnvironmentError("the walls, bodies or points of the checkpoint do not fit the scene");
   };
   const auto [from, reasons] = newest([&](const fs::path& file) {

@@ -129,9 +129,5 @@ std::vector<std::filesystem::path> set_aside_newer(const std::filesystem::path& 
 
 extern template class Checkpoints<2>;
 extern template class Checkpoints<3>;
-extern template std::filesystem::path CheckpointList::take_over<2>(State<2>&, Recorder<2>&, const StateLimits&) const;
-extern template std::filesystem::path CheckpointList::take_over<3>(State<3>&, Recorder<3>&, const StateLimits&) const;
-extern template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;
-extern template CheckpointList::Read CheckpointList::read<3>(KeptBodies<3>&) const;
 
 }  // namespace talus

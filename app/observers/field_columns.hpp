@@ -26,13 +26,4 @@ std::vector<Index> rows_by_id(const Particles<D>& particles);
 template <int D>
 std::vector<Real> positions(const Particles<D>& particles, std::span<const Index> rows);
 
-extern template Column particle_column<2>(const State<2>&, std::span<const Index>, std::string_view);
-extern template Column particle_column<3>(const State<3>&, std::span<const Index>, std::string_view);
-extern template Column node_column<2>(const RunView<2>&, std::string_view);
-extern template Column node_column<3>(const RunView<3>&, std::string_view);
-extern template std::vector<Index> rows_by_id<2>(const Particles<2>&);
-extern template std::vector<Index> rows_by_id<3>(const Particles<3>&);
-extern template std::vector<Real> positions<2>(const Particles<2>&, std::span<const Index>);
-extern template std::vector<Real> positions<3>(const Particles<3>&, std::span<const Index>);
-
 }  // namespace talus

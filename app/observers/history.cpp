@@ -163,7 +163,7 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     all.insert(all.end(), more.begin(), more.end());
   };
   add(run_columns(), "");
-  for (const BoundaryCondition<D>& wall : start.state.walls.conditions())
+  for (const BoundaryCondition<D>& wall : start.state.boundary.conditions())
     add(reaction_columns(), wall.name);
   for (const PointSpec& point : spec.points)
     add(point_columns(), point.name);
@@ -182,8 +182,8 @@ template <int D>
 HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutputSpec spec, const RunView<D>& start) : spec_(std::move(spec))
 {
   start.problem.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
-  state_.impulse.assign(start.state.walls.conditions().size(), Vec<D>::Zero());
-  state_.angular.assign(start.state.walls.conditions().size(), Vec3::Zero());
+  state_.impulse.assign(start.state.boundary.conditions().size(), Vec<D>::Zero());
+  state_.angular.assign(start.state.boundary.conditions().size(), Vec3::Zero());
   state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
     state_.followed.push_back(nearest_particle(point, start.state.bodies, start.state.particles, *start.problem.ranks));
@@ -205,7 +205,7 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   put_all<D>(run_columns(), RunNow<D>{view, sums, centre, accounts.energy(view)}, row);
   const Real elapsed = view.state.clock.time - state_.time;
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
-    const Vec<D>& impulse = view.state.walls.conditions()[w].impulse;
+    const Vec<D>& impulse = view.state.boundary.conditions()[w].impulse;
     const Vec<D> reaction = elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero());
     put_all<D>(reaction_columns(), ReactionNow<D>{reaction}, row);
   }
@@ -218,8 +218,8 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
   for (const WallSpec& spec : spec_.walls)
     add_wall(view, spec, elapsed, row);
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
-    state_.impulse[w] = view.state.walls.conditions()[w].impulse;
-    state_.angular[w] = view.state.walls.conditions()[w].angular;
+    state_.impulse[w] = view.state.boundary.conditions()[w].impulse;
+    state_.angular[w] = view.state.boundary.conditions()[w].angular;
   }
   for (const MovedSpec& spec : spec_.moved)
     put_all<D>(moved_columns(), moved(spec, view.state.bodies, view.state.particles, *view.problem.ranks), row);
@@ -253,7 +253,7 @@ void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& for
 template <int D>
 void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
 {
-  const auto walls = view.state.walls.conditions();
+  const auto walls = view.state.boundary.conditions();
   const auto wall = std::find_if(walls.begin(), walls.end(), [&](const BoundaryCondition<D>& one) { return one.name == spec.on; });
   const auto w = static_cast<std::size_t>(wall - walls.begin());
   const MeshTraction<D> on_nodes =

@@ -68,8 +68,6 @@ class HistoryWriter {
   std::optional<HistoryFile> file_;
 };
 
-extern template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
-extern template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
 extern template class HistoryWriter<2>;
 extern template class HistoryWriter<3>;
 

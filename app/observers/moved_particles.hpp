@@ -25,9 +25,4 @@ std::vector<MovedParticle<D>> gather_moved(const RunView<D>& view, const RunoutS
 template <int D>
 void count_altogether(const std::vector<MovedParticle<D>>& moved, const Vec3& up, Real mass_share, RunoutNumbers& sums);
 
-extern template std::vector<MovedParticle<2>> gather_moved<2>(const RunView<2>&, const RunoutSpec&, Real);
-extern template std::vector<MovedParticle<3>> gather_moved<3>(const RunView<3>&, const RunoutSpec&, Real);
-extern template void count_altogether<2>(const std::vector<MovedParticle<2>>&, const Vec3&, Real, RunoutNumbers&);
-extern template void count_altogether<3>(const std::vector<MovedParticle<3>>&, const Vec3&, Real, RunoutNumbers&);
-
 }  // namespace talus

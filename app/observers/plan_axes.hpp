@@ -62,7 +62,4 @@ void for_each_cell_of(const Mesh<D>& mesh, Facet facet, const PlanGrid& grid, co
     }
 }
 
-extern template PlanAxes plan_axes<2>(const Vec<2>&);
-extern template PlanAxes plan_axes<3>(const Vec<3>&);
-
 }  // namespace talus

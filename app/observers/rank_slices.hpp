@@ -40,11 +40,4 @@ Column slice_of_column(const RunView<D>& view, Column held, std::int64_t piece =
 /// The smallest number that occurs in more than one row of all ranks.  Collective.
 std::optional<std::int64_t> doubled_id(Communicator& ranks, std::span<const std::int64_t> ids);
 
-extern template ParticleSlice<2> slice_of_particles<2>(const RunView<2>&, std::int64_t);
-extern template ParticleSlice<3> slice_of_particles<3>(const RunView<3>&, std::int64_t);
-extern template MeshSlice slice_of_mesh<2>(const RunView<2>&, std::int64_t);
-extern template MeshSlice slice_of_mesh<3>(const RunView<3>&, std::int64_t);
-extern template Column slice_of_column<2>(const RunView<2>&, Column, std::int64_t);
-extern template Column slice_of_column<3>(const RunView<3>&, Column, std::int64_t);
-
 }  // namespace talus

@@ -225,40 +225,40 @@ void Recorder<D>::flush() const
 }
 
 template <int D>
-void Recorder<D>::watch(const RunView<D>& view, RunEvent moment)
+void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
 {
-  if (moment == RunEvent::step_begins || moment == RunEvent::given_up)
+  if (event == RunEvent::step_begins || event == RunEvent::given_up)
     return;
-  accounts_.see(view, moment);
-  body_forces_.see(view, moment);
-  const bool first = moment == RunEvent::stage_begins && view.state.stage.number == 0;
+  accounts_.see(view, event);
+  body_forces_.see(view, event);
+  const bool first = event == RunEvent::stage_begins && view.state.stage.number == 0;
   if (first)
     open(view);
-  else if (moment == RunEvent::stage_begins)
+  else if (event == RunEvent::stage_begins)
     welcome(view);
-  if (moment == RunEvent::stage_begins)
+  if (event == RunEvent::stage_begins)
     stage_start_ = view.state.clock.time;
-  if (moment == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_name != "geostatic") {
+  if (event == RunEvent::stage_begins && outputs_.runout && !runout_.has_begun() && view.stage_name != "geostatic") {
     runout_.begin(view);
     name("runout.csv");
   }
-  if (moment == RunEvent::step_done)
+  if (event == RunEvent::step_done)
     progress_.step(done_before_ + view.state.clock.time - stage_start_,
                    done_before_ + total(std::span<const Stage>(stage_list_).subspan(static_cast<std::size_t>(view.state.stage.number))),
                    view.state.clock, view.stage_name, view.state.timings.particle_steps);
 
   StopWatch watch;
-  if (first || moment != RunEvent::stage_begins)  // the beginning of a later stage is the end of the previous one
-    write(view, moment == RunEvent::stage_done);
-  write_runout(view, moment == RunEvent::stage_done);
+  if (first || event != RunEvent::stage_begins)  // the beginning of a later stage is the end of the previous one
+    write(view, event == RunEvent::stage_done);
+  write_runout(view, event == RunEvent::stage_done);
   watch.lap(output_seconds_);
 
   warn(view);
   last_.clock = view.state.clock;
   last_.timings = view.state.timings;
   last_.mass = view.state.mass;
-  last_.watched = view.state.watched;
-  if (moment != RunEvent::stage_done)
+  last_.monitor = view.state.monitor;
+  if (event != RunEvent::stage_done)
     return;
   done_before_ += view.state.clock.time - stage_start_;  // a stage that seeks equilibrium may end early
   last_.mass_there = totals(view).mass;
@@ -273,7 +273,7 @@ void Recorder<D>::warn(const RunView<D>& view) const
 {
   if (!view.problem.ranks->is_root())
     return;
-  const LimitMonitor &now = view.state.watched, &before = last_.watched;
+  const LimitMonitor &now = view.state.monitor, &before = last_.monitor;
   const auto warning = [&](const std::string& what) {
     say(stderr, "warning: step {}, t = {:.6g} s: {}\n", view.state.clock.step, view.state.clock.time, what);
   };

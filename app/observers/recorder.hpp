@@ -20,13 +20,13 @@ struct LastSeen {
   Timings timings;
   MassLedger<D> mass;
   Real mass_there{};  ///< mass of the particles [kg]
-  LimitMonitor watched;
+  LimitMonitor monitor;
   EnergyNow energy;
   MomentumNow<D> momentum;
   static constexpr auto fields()
   {
     return std::tuple{saved("clock", &LastSeen::clock),           saved("timings", &LastSeen::timings), saved("mass", &LastSeen::mass),
-                      saved("mass_there", &LastSeen::mass_there), saved("watched", &LastSeen::watched), saved("energy", &LastSeen::energy),
+                      saved("mass_there", &LastSeen::mass_there), saved("watched", &LastSeen::monitor), saved("energy", &LastSeen::energy),
                       saved("momentum", &LastSeen::momentum)};
   }
 };
@@ -49,7 +49,7 @@ class Recorder {
   /// `outputs` and the stages must outlive the recorder.  `made_by` is written into each file for ParaView.
   Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet, std::string made_by);
 
-  void watch(const RunView<D>& view, RunEvent moment);
+  void watch(const RunView<D>& view, RunEvent event);
   /// Continues the files of a run whose state, including fields() of this recorder, has been read: entries after the time of the view are
   /// dropped.  Returns descriptions of missing files, on the root.
   std::vector<std::string> resume(const RunView<D>& view);

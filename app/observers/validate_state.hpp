@@ -18,9 +18,4 @@ template <int D>
 void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies, const std::vector<Material>& materials,
                   std::vector<std::string>& faults);
 
-extern template void find_invalid<2>(const Particles<2>&, const std::vector<Body>&, const std::vector<Material>&,
-                                     std::vector<std::string>&);
-extern template void find_invalid<3>(const Particles<3>&, const std::vector<Body>&, const std::vector<Material>&,
-                                     std::vector<std::string>&);
-
 }  // namespace talus

@@ -43,22 +43,22 @@ std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> se
   }
   std::vector<Timed> timed(whole.size());
   StopWatch watch;
-  RunCallbacks<D> audience{[&](const RunView<D>& view, RunEvent moment) {
-                             if (moment != RunEvent::step_done && moment != RunEvent::step_begins)
-                               return;
-                             Real seconds = 0;
-                             watch.lap(seconds);
-                             const bool counts = view.state.clock.step - view.state.stage.first_step > trial_warm_up;
-                             if (moment == RunEvent::step_begins || !counts)
-                               return;
-                             Timed& stage = timed[static_cast<std::size_t>(view.state.stage.number)];
-                             stage.seconds.push_back(seconds);
-                             stage.time += view.state.clock.dt;
-                           },
-                           [](const RunView<D>&, const StageResult&) {}};
+  RunCallbacks<D> callbacks{[&](const RunView<D>& view, RunEvent event) {
+                              if (event != RunEvent::step_done && event != RunEvent::step_begins)
+                                return;
+                              Real seconds = 0;
+                              watch.lap(seconds);
+                              const bool counts = view.state.clock.step - view.state.stage.first_step > trial_warm_up;
+                              if (event == RunEvent::step_begins || !counts)
+                                return;
+                              Timed& stage = timed[static_cast<std::size_t>(view.state.stage.number)];
+                              stage.seconds.push_back(seconds);
+                              stage.time += view.state.clock.dt;
+                            },
+                            [](const RunView<D>&, const StageResult&) {}};
   std::optional<std::string> trouble;
   try {
-    simulate(scene, std::move(mesh), std::move(setup), audience);
+    simulate(scene, std::move(mesh), std::move(setup), callbacks);
   } catch (const RunError& e) {
     trouble = e.what();
   }

@@ -18,7 +18,4 @@ struct StageTrial {
 template <int D>
 std::vector<StageTrial> try_stages(const Scene& scene, Mesh<D> mesh, Setup<D> setup);
 
-extern template std::vector<StageTrial> try_stages<2>(const Scene&, Mesh<2>, Setup<2>);
-extern template std::vector<StageTrial> try_stages<3>(const Scene&, Mesh<3>, Setup<3>);
-
 }  // namespace talus

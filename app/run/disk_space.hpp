@@ -27,9 +27,4 @@ DiskUse disk_use(const FileSizes& one, const OutputSpec& outputs, Real time);
 template <int D>
 void check_disk_space(const std::filesystem::path& folder, const RunView<D>& view, const OutputSpec& outputs, Real time_left);
 
-extern template FileSizes file_sizes<2>(const RunView<2>&, const OutputSpec&);
-extern template FileSizes file_sizes<3>(const RunView<3>&, const OutputSpec&);
-extern template void check_disk_space<2>(const std::filesystem::path&, const RunView<2>&, const OutputSpec&, Real);
-extern template void check_disk_space<3>(const std::filesystem::path&, const RunView<3>&, const OutputSpec&, Real);
-
 }  // namespace talus

@@ -109,9 +109,9 @@ struct RebalanceRequest {};
 template <int D>
 class Simulation {
  public:
-  Simulation(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves)
+  Simulation(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& callbacks, const LoadBalancing<D>& moves)
       : scene_(scene),
-        audience_(audience),
+        callbacks_(callbacks),
         moves_(moves),
         stages_(setup.stages),
         changes_(std::exchange(setup.changes, {})),
@@ -127,14 +127,14 @@ class Simulation {
 
   void operator()()
   {
-    if (audience_.take_over) {
-      audience_.take_over(model_->state);
+    if (callbacks_.take_over) {
+      callbacks_.take_over(model_->state);
       adopt();
     }
-    audience_.ready(view());
+    callbacks_.ready(view());
     begin_shares(world().max(moves_.mesh_seconds + build_seconds_));
     Index number = 0;
-    if (audience_.take_over) {
+    if (callbacks_.take_over) {
       if (!model_->state.stage.done)
         run_on({});
       number = model_->state.stage.number + 1;
@@ -157,7 +157,7 @@ class Simulation {
     if (n >= changes_.size() || !changes_[n].any())
       return;
     const StageReport news = talus::enter(*model_, changes_[n], laws_[n], stages_[n]);
-    audience_.changed(view(), stages_[n], news);
+    callbacks_.changed(view(), stages_[n], news);
   }
 
   /// A state that has been put into the model, which was built for the first stage.
@@ -165,8 +165,8 @@ class Simulation {
   {
     adopt_state(*model_);
     const auto n = static_cast<std::size_t>(model_->state.stage.number);
-    if (n < changes_.size() && changes_[n].walls)
-      take_walls(*model_, *changes_[n].walls);
+    if (n < changes_.size() && changes_[n].boundary)
+      take_boundary(*model_, *changes_[n].boundary);
     if (n < changes_.size() && changes_[n].table)
       take_table(*model_, *changes_[n].table);
   }
@@ -179,15 +179,15 @@ class Simulation {
       move_shares();
       result = run_until_shares_move({});
     }
-    audience_.stage_done(view(), *result);
+    callbacks_.stage_done(view(), *result);
   }
 
   std::optional<StageResult> run_until_shares_move(std::optional<Index> begins)
   {
-    const auto watch = [&](const Model<D>&, RunEvent moment) {
-      if (moment == RunEvent::step_begins && should_move())
+    const auto watch = [&](const Model<D>&, RunEvent event) {
+      if (event == RunEvent::step_begins && should_move())
         throw RebalanceRequest();
-      audience_.watch(view(), moment);
+      callbacks_.watch(view(), event);
     };
     try {
       if (begins)
@@ -276,9 +276,9 @@ class Simulation {
     Setup<D> setup = rest_;
     restrict_to(part.subdomain, setup);
     model_.emplace(build(scene_, std::move(part), std::move(setup)));
-    BoundaryConditions<D> walls = std::move(model_->state.walls);  // those of the new part of the mesh
-    walls.continue_from(state.walls);
-    state.walls = std::move(walls);
+    BoundaryConditions<D> boundary = std::move(model_->state.boundary);  // those of the new part of the mesh
+    boundary.continue_from(state.boundary);
+    state.boundary = std::move(boundary);
     model_->state = std::move(state);
     adopt();
     model_->work.migration.count_from(migrated);
@@ -298,7 +298,7 @@ class Simulation {
   }
 
   const Scene& scene_;
-  const RunCallbacks<D>& audience_;
+  const RunCallbacks<D>& callbacks_;
   const LoadBalancing<D>& moves_;
   std::vector<Stage> stages_;
   std::vector<StageChange<D>> changes_;
@@ -316,9 +316,9 @@ class Simulation {
 }  // namespace
 
 template <int D>
-void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves)
+void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& callbacks, const LoadBalancing<D>& moves)
 {
-  Simulation<D>(scene, std::move(mesh), std::move(setup), audience, moves)();
+  Simulation<D>(scene, std::move(mesh), std::move(setup), callbacks, moves)();
 }
 
 template <int D>

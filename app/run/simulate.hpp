@@ -65,17 +65,10 @@ Real first_step(const Mesh<D>& mesh, const Setup<D>& setup);
 /// Runs all stages, or the remaining ones.  Throws SceneErrors if the kernel refuses the mesh, RunError if a stage failed; the callbacks
 /// have received the state before.
 template <int D>
-void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& audience, const LoadBalancing<D>& moves = {});
+void simulate(const Scene& scene, Mesh<D> mesh, Setup<D> setup, const RunCallbacks<D>& callbacks, const LoadBalancing<D>& moves = {});
 
 /// Builds the model and destroys it.
 template <int D>
 Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup);
-
-extern template Real first_step<2>(const Mesh<2>&, const Setup<2>&);
-extern template Real first_step<3>(const Mesh<3>&, const Setup<3>&);
-extern template void simulate<2>(const Scene&, Mesh<2>, Setup<2>, const RunCallbacks<2>&, const LoadBalancing<2>&);
-extern template void simulate<3>(const Scene&, Mesh<3>, Setup<3>, const RunCallbacks<3>&, const LoadBalancing<3>&);
-extern template Estimate estimate<2>(const Scene&, Mesh<2>, Setup<2>);
-extern template Estimate estimate<3>(const Scene&, Mesh<3>, Setup<3>);
 
 }  // namespace talus

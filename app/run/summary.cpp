@@ -239,18 +239,18 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
     s.angular_momentum = angular_audit(last.momentum);
   }
   s.mass = audit(last.mass, last.mass_there);
-  s.watch.fastest = last.watched.fastest, s.watch.gain = last.watched.gain;
-  s.watch.speeding = last.watched.speeding, s.watch.gaining = last.watched.gaining;
-  if (last.watched.speeding > 0)
+  s.watch.fastest = last.monitor.fastest, s.watch.gain = last.monitor.gain;
+  s.watch.speeding = last.monitor.speeding, s.watch.gaining = last.monitor.gaining;
+  if (last.monitor.speeding > 0)
     s.warnings.push_back(fmt::format("particles moved at up to {:.4g} m/s, beyond watch.speed = {:.4g} m/s, in {} steps",
-                                     last.watched.fastest, s.watch.speed_limit, last.watched.speeding));
-  if (last.watched.gaining > 0)
+                                     last.monitor.fastest, s.watch.speed_limit, last.monitor.speeding));
+  if (last.monitor.gaining > 0)
     s.warnings.push_back(
         fmt::format("the energy grew by what nothing did work for, up to {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}",
-                    last.watched.gain, s.watch.gain_limit));
+                    last.monitor.gain, s.watch.gain_limit));
   if (last.mass.failed_count > 0)
     s.warnings.push_back(fmt::format("{} particles of {:.3g} kg failed and were deleted; the last: {}", last.mass.failed_count,
-                                     last.mass.failed, last.watched.failure));
+                                     last.mass.failed, last.monitor.failure));
   if (last.mass.held_count > 0)
     s.warnings.push_back(fmt::format("particles were set back onto closed walls {} times, by at most {:.3g} m", last.mass.held_count,
                                      last.mass.largest_set_back));

@@ -25,11 +25,4 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& summary);
 template <int D>
 std::string table(const Recorder<D>& recorder);
 
-extern template RunSummary begin_summary<2>(const Scene&, const Mesh<2>&, std::uint64_t, const Setup<2>&);
-extern template RunSummary begin_summary<3>(const Scene&, const Mesh<3>&, std::uint64_t, const Setup<3>&);
-extern template void complete<2>(const Recorder<2>&, bool, RunSummary&);
-extern template void complete<3>(const Recorder<3>&, bool, RunSummary&);
-extern template std::string table<2>(const Recorder<2>&);
-extern template std::string table<3>(const Recorder<3>&);
-
 }  // namespace talus

@@ -11,9 +11,4 @@ template <int D>
 void add_boundaries(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Communicator& ranks,
                     const std::string& stage, bool first, SceneErrorCollector& errors, Setup<D>& setup, BoundaryConditions<D>& all);
 
-extern template void add_boundaries<2>(const Scene&, const Mesh<2>&, const CellOccupancy<2>&, Communicator&, const std::string&, bool,
-                                       SceneErrorCollector&, Setup<2>&, BoundaryConditions<2>&);
-extern template void add_boundaries<3>(const Scene&, const Mesh<3>&, const CellOccupancy<3>&, Communicator&, const std::string&, bool,
-                                       SceneErrorCollector&, Setup<3>&, BoundaryConditions<3>&);
-
 }  // namespace talus

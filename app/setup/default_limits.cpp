@@ -40,7 +40,7 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
     return std::numeric_limits<Real>::infinity();
   const Real size = (mesh.high() - mesh.low()).norm();
   Real speed = 0;
-  for (const BoundaryCondition<D>& condition : setup.state.walls.conditions())
+  for (const BoundaryCondition<D>& condition : setup.state.boundary.conditions())
     speed = std::max(speed, condition.peak_speed());
   speed +=
       std::sqrt(2 * setup.conditions.loads.gravity.acceleration.norm() * setup.conditions.loads.gravity.table.largest_magnitude() * size);

@@ -9,7 +9,4 @@ namespace talus {
 template <int D>
 RunLimits run_limits_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks);
 
-extern template RunLimits run_limits_of<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&);
-extern template RunLimits run_limits_of<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&);
-
 }  // namespace talus

@@ -26,9 +26,4 @@ void carry_history(const Material& from, std::span<const Index> rows, Material& 
 template <int D>
 Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, Material& material, Particles<D>& particles);
 
-extern template Real settle_stress<2>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<2>&);
-extern template Real settle_stress<3>(const Body&, std::string_view, Real, Communicator&, Material&, Particles<3>&);
-extern template std::optional<InitialState<2>> find_initial_state<2>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
-extern template std::optional<InitialState<3>> find_initial_state<3>(const Scene&, SceneErrorCollector&, std::vector<std::string>&);
-
 }  // namespace talus

@@ -14,7 +14,4 @@ template <int D>
 void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks, Index begin, Index end, SceneErrorCollector& errors,
                   Particles<D>& particles);
 
-extern template void set_velocity<2>(const BodySpec&, const Mesh<2>&, Communicator&, Index, Index, SceneErrorCollector&, Particles<2>&);
-extern template void set_velocity<3>(const BodySpec&, const Mesh<3>&, Communicator&, Index, Index, SceneErrorCollector&, Particles<3>&);
-
 }  // namespace talus

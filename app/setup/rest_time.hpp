@@ -17,7 +17,4 @@ Real passage_time(const Setup<D>& setup, const Vec<D>& up);
 /// ends are that time until the residual is left of the whole, times what was measured.
 RestTime time_to_rest(const Stage& stage, Real passage);
 
-extern template Real passage_time<2>(const Setup<2>&, const Vec<2>&);
-extern template Real passage_time<3>(const Setup<3>&, const Vec<3>&);
-
 }  // namespace talus

@@ -33,9 +33,4 @@ template <int D>
 Seeds<D> seed(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& errors,
               std::vector<std::string>& warnings);
 
-extern template IndexRange cells_to_fill<2>(const Mesh<2>&, const Communicator&);
-extern template IndexRange cells_to_fill<3>(const Mesh<3>&, const Communicator&);
-extern template Seeds<2> seed<2>(const Scene&, const Mesh<2>&, Communicator&, SceneErrorCollector&, std::vector<std::string>&);
-extern template Seeds<3> seed<3>(const Scene&, const Mesh<3>&, Communicator&, SceneErrorCollector&, std::vector<std::string>&);
-
 }  // namespace talus

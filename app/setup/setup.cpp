@@ -46,7 +46,7 @@ std::uint64_t digest_of_files(const Setup<D>& setup)
   for (const StageChange<D>& change : setup.changes)
     if (change.table)
       numbers.insert(numbers.end(), change.table->begin(), change.table->end());
-  for (const BoundaryCondition<D>& condition : setup.state.walls.conditions())
+  for (const BoundaryCondition<D>& condition : setup.state.boundary.conditions())
     if (const Record* record = condition.record())
       for (const std::vector<Real>* part : {&record->time, &record->velocity, &record->acceleration})
         numbers.insert(numbers.end(), part->begin(), part->end());
@@ -121,7 +121,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
-  add_boundaries(scene, mesh, at_start, ranks, first_stage, true, errors, setup, setup.state.walls);
+  add_boundaries(scene, mesh, at_start, ranks, first_stage, true, errors, setup, setup.state.boundary);
   add_loads(scene, mesh, has_particles, at_start, ranks, errors, setup);
   set_stages(scene, errors, setup);
   setup.conditions.water = water_of(
@@ -153,7 +153,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
 template <int D>
 void restrict_to(const Subdomain& subdomain, Setup<D>& setup)
 {
-  setup.state.walls.restrict_to(subdomain);
+  setup.state.boundary.restrict_to(subdomain);
   restrict_to(subdomain, setup.conditions.water);
   for (MeshTraction<D>& load : setup.conditions.loads.on_mesh)
     restrict_to(subdomain, load);

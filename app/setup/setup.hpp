@@ -52,9 +52,4 @@ void take_threads(std::optional<int> asked, const Scene& scene);
 /// Folder of relative paths in the scene.
 std::filesystem::path folder_of(const Scene& scene);
 
-extern template void restrict_to<2>(const Subdomain&, Setup<2>&);
-extern template void restrict_to<3>(const Subdomain&, Setup<3>&);
-extern template Setup<2> set_up<2>(const Scene&, const Mesh<2>&, Communicator&);
-extern template Setup<3> set_up<3>(const Scene&, const Mesh<3>&, Communicator&);
-
 }  // namespace talus

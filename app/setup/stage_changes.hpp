@@ -1,5 +1,5 @@
 #pragma once
-// What stages of a scene change between two steps: bodies appear, vanish and become another material, other walls act, the water table moves.
+// What stages of a scene change between two steps: bodies appear, vanish and become another material, other boundary conditions act, the water table moves.
 #include "solver/model/model.hpp"
 #include "solver/particles/redistribute.hpp"
 #include "solver/particles/staged_bodies.hpp"
@@ -19,10 +19,10 @@ struct StageChange {
   std::vector<Index> appear, vanish;  ///< bodies
   ParticleSet<D> coming;              ///< particles of those that appear, in cells of the whole mesh: a share of them on each rank
   std::vector<Renewal> renew;
-  std::optional<BoundaryConditions<D>> walls;  ///< that act from here on, of the whole mesh; none: those of the stage before
+  std::optional<BoundaryConditions<D>> boundary;  ///< conditions from here on, of the whole mesh; none: those of the stage before
   std::optional<std::vector<Real>> table;  ///< of the water from here on, at the nodes of the whole mesh; none: that of the stage before
-  std::vector<std::string> told;           ///< of walls and water, in words
-  bool any() const noexcept { return !appear.empty() || !vanish.empty() || !renew.empty() || walls || table; }
+  std::vector<std::string> told;           ///< changes of boundary conditions and water, in words
+  bool any() const noexcept { return !appear.empty() || !vanish.empty() || !renew.empty() || boundary || table; }
 };
 
 /// What has been done, a line for each body.
@@ -52,14 +52,14 @@ template <int D>
 void appear(const std::vector<Index>& bodies, ParticleSet<D> coming, const Mesh<D>& mesh, const CellOrder& order, const Stage& stage,
             State<D>& state, Communicator& ranks, StageReport& news);
 
-/// The walls of a stage, of the whole mesh, take the place of those that acted; what is kept of these stays.
+/// The boundary conditions of a stage, of the whole mesh, replace those that acted before and continue their sums.
 template <int D>
-void take_walls(Model<D>& m, BoundaryConditions<D> walls)
+void take_boundary(Model<D>& m, BoundaryConditions<D> boundary)
 {
   if (!m.problem.subdomain.alone())
-    walls.restrict_to(m.problem.subdomain);
-  walls.continue_from(m.state.walls);
-  m.state.walls = std::move(walls);
+    boundary.restrict_to(m.problem.subdomain);
+  boundary.continue_from(m.state.boundary);
+  m.state.boundary = std::move(boundary);
   bind_boundary_conditions(m);
 }
 
@@ -89,20 +89,11 @@ StageReport enter(Model<D>& m, StageChange<D>& change, std::span<const Material>
     appear(change.appear, std::move(coming), m.problem.mesh, m.work.order, stage, m.state, *m.problem.ranks, news);
     update_rows(m);
   }
-  if (change.walls)
-    take_walls(m, *change.walls);
+  if (change.boundary)
+    take_boundary(m, *change.boundary);
   if (change.table)
     take_table(m, *change.table);
   return news;
 }
-
-extern template void vanish<2>(const std::vector<Index>&, State<2>&, Communicator&, StageReport&);
-extern template void vanish<3>(const std::vector<Index>&, State<3>&, Communicator&, StageReport&);
-extern template void renew<2>(const std::vector<Renewal>&, std::span<const Material>, State<2>&, Communicator&, StageReport&);
-extern template void renew<3>(const std::vector<Renewal>&, std::span<const Material>, State<3>&, Communicator&, StageReport&);
-extern template void appear<2>(const std::vector<Index>&, ParticleSet<2>, const Mesh<2>&, const CellOrder&, const Stage&, State<2>&,
-                               Communicator&, StageReport&);
-extern template void appear<3>(const std::vector<Index>&, ParticleSet<3>, const Mesh<3>&, const CellOrder&, const Stage&, State<3>&,
-                               Communicator&, StageReport&);
 
 }  // namespace talus

@@ -187,8 +187,8 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
     }
     if (!walls_differ)
       continue;
-    change.walls.emplace();
-    add_boundaries(scene, mesh, filled, ranks, said(s).label, false, errors, setup, *change.walls);
+    change.boundary.emplace();
+    add_boundaries(scene, mesh, filled, ranks, said(s).label, false, errors, setup, *change.boundary);
     for (std::size_t w = 0; w < names.size(); ++w) {
       const bool acted = common_of(scene.boundaries[w]).acts_in(said(s - 1).label),
                  acts = common_of(scene.boundaries[w]).acts_in(said(s).label);

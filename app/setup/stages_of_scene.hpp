@@ -21,11 +21,4 @@ void check_room(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, 
 template <int D>
 void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup);
 
-extern template void set_stages<2>(const Scene&, SceneErrorCollector&, Setup<2>&);
-extern template void set_stages<3>(const Scene&, SceneErrorCollector&, Setup<3>&);
-extern template void check_room<2>(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&, SceneErrorCollector&);
-extern template void check_room<3>(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&, SceneErrorCollector&);
-extern template void set_changes<2>(const Scene&, const Mesh<2>&, Communicator&, Setup<2>&);
-extern template void set_changes<3>(const Scene&, const Mesh<3>&, Communicator&, Setup<3>&);
-
 }  // namespace talus

@@ -13,7 +13,4 @@ inline constexpr Real most_cells = 1e8;
 template <int D>
 void check_cells(Real cells, const std::string& key, const MeshSpec& spec);
 
-extern template void check_cells<2>(Real, const std::string&, const MeshSpec&);
-extern template void check_cells<3>(Real, const std::string&, const MeshSpec&);
-
 }  // namespace talus

@@ -23,7 +23,4 @@ const GmshPart& gmsh();
 template <int D>
 const GmshFunctions<D>& gmsh();
 
-extern template const GmshFunctions<2>& gmsh<2>();
-extern template const GmshFunctions<3>& gmsh<3>();
-
 }  // namespace talus

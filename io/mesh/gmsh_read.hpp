@@ -13,7 +13,4 @@ namespace talus {
 template <int D>
 MeshData<D> read_msh(const std::filesystem::path& file, const SourceLocation& asked_by);
 
-extern template MeshData<2> read_msh<2>(const std::filesystem::path&, const SourceLocation&);
-extern template MeshData<3> read_msh<3>(const std::filesystem::path&, const SourceLocation&);
-
 }  // namespace talus

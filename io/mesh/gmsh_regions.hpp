@@ -21,9 +21,4 @@ MeshData<D> mesh_regions(const MeshSpec& spec);
 MeshData<2> mesh_plan(const std::vector<Polygon>& polygons, const std::function<Real(const Vec<2>&)>& size, Real largest,
                       const SourceLocation& where);
 
-extern template MeshData<2> mesh_geometry<2>(const MeshSpec&, const std::filesystem::path&);
-extern template MeshData<3> mesh_geometry<3>(const MeshSpec&, const std::filesystem::path&);
-extern template MeshData<2> mesh_regions<2>(const MeshSpec&);
-extern template MeshData<3> mesh_regions<3>(const MeshSpec&);
-
 }  // namespace talus

@@ -57,9 +57,4 @@ class GmshSession {
   int threads_;  ///< threads of the program: gmsh changes the number for the whole process
 };
 
-extern template void GmshSession::set_sizes<2>(const MeshSpec&, bool);
-extern template void GmshSession::set_sizes<3>(const MeshSpec&, bool);
-extern template MeshData<2> GmshSession::take<2>();
-extern template MeshData<3> GmshSession::take<3>();
-
 }  // namespace talus

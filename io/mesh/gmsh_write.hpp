@@ -14,7 +14,4 @@ enum class MshKind : std::uint8_t { ascii, binary };
 template <int D>
 void write_msh(const std::filesystem::path& file, const Mesh<D>& mesh, MshKind kind = MshKind::binary);
 
-extern template void write_msh<2>(const std::filesystem::path&, const Mesh<2>&, MshKind);
-extern template void write_msh<3>(const std::filesystem::path&, const Mesh<3>&, MshKind);
-
 }  // namespace talus

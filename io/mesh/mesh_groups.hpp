@@ -24,11 +24,4 @@ void add_side_groups(MeshData<D>& data, std::span<const RegionSpec> regions);
 template <int D>
 void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups);
 
-extern template void add_automatic_groups<2>(MeshData<2>&);
-extern template void add_automatic_groups<3>(MeshData<3>&);
-extern template void add_side_groups<2>(MeshData<2>&, std::span<const RegionSpec>);
-extern template void add_side_groups<3>(MeshData<3>&, std::span<const RegionSpec>);
-extern template void add_groups<2>(MeshData<2>&, std::span<const GroupSpec>);
-extern template void add_groups<3>(MeshData<3>&, std::span<const GroupSpec>);
-
 }  // namespace talus

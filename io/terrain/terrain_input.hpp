@@ -31,7 +31,4 @@ struct TerrainInput {
 template <int D>
 TerrainInput read_terrain(const TerrainSpec& spec, const std::filesystem::path& directory);
 
-extern template TerrainInput read_terrain<2>(const TerrainSpec&, const std::filesystem::path&);
-extern template TerrainInput read_terrain<3>(const TerrainSpec&, const std::filesystem::path&);
-
 }  // namespace talus

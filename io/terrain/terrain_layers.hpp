@@ -22,7 +22,4 @@ TerrainLayers lay(const TerrainSpec& spec, const SurveyedPlan<D>& plan, TerrainI
 /// The meshed region as text, "512000 to 512060 east, 5180000 to 5180030 north".
 std::string domain_in_words(const TerrainInput& input);
 
-extern template TerrainLayers lay<2>(const TerrainSpec&, const SurveyedPlan<2>&, TerrainInput&, std::vector<SceneError>&);
-extern template TerrainLayers lay<3>(const TerrainSpec&, const SurveyedPlan<3>&, TerrainInput&, std::vector<SceneError>&);
-
 }  // namespace talus

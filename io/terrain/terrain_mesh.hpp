@@ -18,9 +18,4 @@ MeshData<D> make_terrain(const MeshSpec& spec, const std::filesystem::path& dire
 template <int D>
 std::string terrain_in_words(const Mesh<D>& mesh, std::string_view margin);
 
-extern template MeshData<2> make_terrain<2>(const MeshSpec&, const std::filesystem::path&);
-extern template MeshData<3> make_terrain<3>(const MeshSpec&, const std::filesystem::path&);
-extern template std::string terrain_in_words<2>(const Mesh<2>&, std::string_view);
-extern template std::string terrain_in_words<3>(const Mesh<3>&, std::string_view);
-
 }  // namespace talus

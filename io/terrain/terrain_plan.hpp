@@ -62,11 +62,5 @@ Marks cells_in(const Area& area, const SurveyedPlan<D>& plan);
 
 extern template struct SurveyedPlan<2>;
 extern template struct SurveyedPlan<3>;
-extern template SurveyedPlan<2> survey<2>(Plan<2>, const TerrainInput&, const PlanSizes&);
-extern template SurveyedPlan<3> survey<3>(Plan<3>, const TerrainInput&, const PlanSizes&);
-extern template Marks cells_in<2>(const Area&, const SurveyedPlan<2>&);
-extern template Marks cells_in<3>(const Area&, const SurveyedPlan<3>&);
-extern template Plan<2> make_plan<2>(const TerrainInput&, const PlanSizes&, const SourceLocation&);
-extern template Plan<3> make_plan<3>(const TerrainInput&, const PlanSizes&, const SourceLocation&);
 
 }  // namespace talus

@@ -217,7 +217,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
     if (!all_of(good))
       for (int lane = 0; lane < pack.count; ++lane)
         if (!good[lane])
-          block.health.report(particles.id[pack.p[lane]], std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+          block.errors.report(particles.id[pack.p[lane]], std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
     const SimdReal volume_before = pack.load(particles.volume), volume = J * pack.load(particles.volume0);
     pack.store(volume, particles.volume);
     const SimdReal shrinking = max(-SimdReal(rate.trace()), 0);
@@ -258,7 +258,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
     if (!all_of(answered))
       for (int lane = 0; lane < pack.count; ++lane)
         if (good[lane] && !answered[lane])
-          block.health.report(particles.id[pack.p[lane]], Trouble::no_answer);
+          block.errors.report(particles.id[pack.p[lane]], Trouble::no_answer);
     pack.store(stress, particles.stress);
 
     const SimdReal work =

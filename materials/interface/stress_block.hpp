@@ -32,7 +32,7 @@ struct StressBlock {
   std::span<const Real> averaged;    ///< averaged volume ratio of each particle [-], of a body that averages it
   std::span<const Real> pore_after;  ///< pore pressure of each particle at the end of the step [Pa]; empty where there is none
   Particles<D>& particles;
-  ParticleErrors& health;
+  ParticleErrors& errors;
 };
 
 }  // namespace talus

@@ -68,9 +68,4 @@ Real cells_of(const Stack<D>& stack);
 template <int D>
 Columns<D> fill_columns(const Stack<D>& stack);
 
-extern template Real cells_of<2>(const Stack<2>&);
-extern template Real cells_of<3>(const Stack<3>&);
-extern template Columns<2> fill_columns<2>(const Stack<2>&);
-extern template Columns<3> fill_columns<3>(const Stack<3>&);
-
 }  // namespace talus

@@ -189,7 +189,7 @@ void SmallMassNodes<D>::give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, 
 }
 
 template <int D>
-void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& walls,
+void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions,
                                     std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work)
 {
   send_from_hosts(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, may_host_});
@@ -201,13 +201,13 @@ void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, co
       mean.v += share * motion[static_cast<std::size_t>(host)].v;
       mean.change += share * motion[static_cast<std::size_t>(host)].change;
     });
-    walls.apply(small_mass_node.node, kick, small_mass_node.mass, mean, work);
+    conditions.apply(small_mass_node.node, kick, small_mass_node.mass, mean, work);
     motion[static_cast<std::size_t>(small_mass_node.node)] = mean;
   }
 }
 
 template <int D>
-void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& walls, Real mid,
+void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid,
                                              std::vector<NodeMotion<D>>& motion)
 {
   send_from_hosts(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, may_host_});
@@ -216,7 +216,7 @@ void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes
       continue;
     Vec<D> mean = Vec<D>::Zero();
     for_each_host(mesh, small_mass_node.node, [&](Index host, Real share) { mean += share * motion[static_cast<std::size_t>(host)].v; });
-    motion[static_cast<std::size_t>(small_mass_node.node)].v = walls.held(small_mass_node.node, mid, mean);
+    motion[static_cast<std::size_t>(small_mass_node.node)].v = conditions.held(small_mass_node.node, mid, mean);
   }
 }
 

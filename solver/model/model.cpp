@@ -67,12 +67,12 @@ void bind_boundary_conditions(Model<D>& m)
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
-  state.walls.finalize();
+  state.boundary.finalize();
   work.nodes.bound.resize(work.nodes.sum.size());
   for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
-    work.nodes.bound[static_cast<std::size_t>(node)] = state.walls.binds(node) ? 1 : 0;
+    work.nodes.bound[static_cast<std::size_t>(node)] = state.boundary.binds(node) ? 1 : 0;
   problem.exits.closed.assign(static_cast<std::size_t>(problem.mesh.n_cells()), 0);
-  for (const Facet facet : state.walls.closed_facets(problem.mesh))
+  for (const Facet facet : state.boundary.closed_facets(problem.mesh))
     problem.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
 }
 

@@ -100,11 +100,11 @@ struct State {
   EnergyLedger energy;  ///< balance since the beginning of the stage
   MassLedger<D> mass;
   MomentumLedger<D> momentum;
-  LimitMonitor watched;
+  LimitMonitor monitor;
   Timings timings;
   Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
   Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is proportional to it
-  BoundaryConditions<D> walls;
+  BoundaryConditions<D> boundary;
   std::vector<Body> bodies;
   std::vector<Material> materials;  ///< one for each body, with the same rows
   Particles<D> particles;
@@ -112,9 +112,9 @@ struct State {
   static constexpr auto parts()
   {
     return std::tuple{saved("clock", &State::clock),        saved("stage", &State::stage),       saved("energy", &State::energy),
-                      saved("mass", &State::mass),          saved("momentum", &State::momentum), saved("watched", &State::watched),
+                      saved("mass", &State::mass),          saved("momentum", &State::momentum), saved("watched", &State::monitor),
                       saved("timings", &State::timings),    saved("residual", &State::residual), saved("crossing", &State::crossing),
-                      saved("walls", &State::walls),        saved("bodies", &State::bodies),     saved("laws", &State::materials),
+                      saved("walls", &State::boundary),     saved("bodies", &State::bodies),     saved("laws", &State::materials),
                       saved("particles", &State::particles)};
   }
 };

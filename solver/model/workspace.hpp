@@ -20,7 +20,7 @@ struct Workspace {
   CellOrder order;
   FollowedRows followed;  ///< rows of particles that carry tractions
   Migration<D> migration;
-  ParticleErrors health;
+  ParticleErrors errors;
 
   Nodes<D> nodes;
   SmallMassNodes<D> small_mass_nodes;

@@ -19,9 +19,4 @@ template <int D>
 void receive_owned_particles(Communicator& ranks, const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials,
                              Particles<D>& particles);
 
-extern template void redistribute<2>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
-extern template void redistribute<3>(Communicator&, std::span<const int>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
-extern template void receive_owned_particles<2>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
-extern template void receive_owned_particles<3>(Communicator&, const Subdomain&, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
-
 }  // namespace talus

@@ -102,7 +102,7 @@ RemovedParticles<D> mark_deleted(const std::vector<Body>& bodies, const std::vec
 
 template <int D>
 void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
-                   CellOrder& order, ExactSums<RemovedParticles<D>>& departed)
+                   CellOrder& order, ExactSums<RemovedParticles<D>>& removed)
 {
   for (Index row = 0; row < particles.size(); ++row) {
     const std::size_t p = z(row);
@@ -111,7 +111,7 @@ void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<M
       continue;
     RemovedParticles<D> gone = mark_deleted(bodies, materials, particles, row);
     gone.failed = gone.mass, gone.failed_count = 1;
-    departed.add(gone);
+    removed.add(gone);
   }
   drop_lost(bodies, materials, particles);
   sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
@@ -119,13 +119,13 @@ void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<M
 
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health)
+              std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& errors)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
   const auto find = [&](std::size_t p) {
     if (!particles.x[p].allFinite()) {
-      health.report(particles.id[p], Trouble::not_finite);
+      errors.report(particles.id[p], Trouble::not_finite);
       return;
     }
     const Index cell = locator(mesh, particles.x[p], particles.cell[p]).value_or(none);
@@ -167,14 +167,14 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
           centre += mesh.node(n) / (D + 1);
         particles.x[p] = nearest.x + inset * (centre - nearest.x);
         particles.cell[p] = locator(mesh, particles.x[p], nearest.cell).value_or(nearest.cell);
-        sums.departed.add({.held_count = 1});
+        sums.removed.add({.held_count = 1});
         sums.largest_set_back = std::max(sums.largest_set_back, distance);
         moved = true;
       } else if (exits.policy == OnExit::remove) {
-        sums.departed.add(mark_deleted(bodies, materials, particles, row));
+        sums.removed.add(mark_deleted(bodies, materials, particles, row));
         deleted = true;
       } else {
-        health.report(particles.id[p], Trouble::lost);
+        errors.report(particles.id[p], Trouble::lost);
       }
     }
     if (deleted)

@@ -21,7 +21,7 @@ struct Exits {
 /// True if rows changed place.
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
-              std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& health);
+              std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& errors);
 
 /// Drops the particles whose cell is `none`.
 template <int D>
@@ -39,21 +39,6 @@ RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vecto
 /// Deletes the particles that no step can go on from: position, velocity, deformation or stress not finite, or turned inside out.
 template <int D>
 void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
-                   CellOrder& order, ExactSums<RemovedParticles<D>>& departed);
-
-extern template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<Material>&, const Particles<2>&, Index);
-extern template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<Material>&, const Particles<3>&, Index);
-extern template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<2>&,
-                                 CellOrder&, StepSums<2>&, ParticleErrors&);
-extern template bool relocate<3>(const Mesh<3>&, const Locator<3>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<3>&,
-                                 CellOrder&, StepSums<3>&, ParticleErrors&);
-extern template void drop_lost<2>(std::vector<Body>&, std::vector<Material>&, Particles<2>&);
-extern template void drop_lost<3>(std::vector<Body>&, std::vector<Material>&, Particles<3>&);
-extern template bool sort_by_cell<2>(const std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&);
-extern template bool sort_by_cell<3>(const std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&);
-extern template void remove_failed<2>(const Mesh<2>&, std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&,
-                                      ExactSums<RemovedParticles<2>>&);
-extern template void remove_failed<3>(const Mesh<3>&, std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&,
-                                      ExactSums<RemovedParticles<3>>&);
+                   CellOrder& order, ExactSums<RemovedParticles<D>>& removed);
 
 }  // namespace talus

@@ -57,14 +57,14 @@ ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bo
 }
 
 template <int D>
-void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles)
+void insert_particles(ParticleSet<D> arriving, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles)
 {
-  assert(crowd.bodies.size() == bodies.size());
-  const std::size_t come = crowd.particles.id.size(), n = particles.id.size() + come;
+  assert(arriving.bodies.size() == bodies.size());
+  const std::size_t come = arriving.particles.id.size(), n = particles.id.size() + come;
   if (come == 0)
     return;
   std::vector<Coming> coming;
-  crowd.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
+  arriving.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
     coming.push_back({reinterpret_cast<const std::byte*>(column.data()), column.size()});
   });
   std::size_t number = 0;
@@ -73,14 +73,14 @@ void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vect
     if (more.count == 0)
       return;
     std::decay_t<decltype(column)> all(n);
-    interleave(column, more.rows, bodies, crowd.bodies, all);
+    interleave(column, more.rows, bodies, arriving.bodies, all);
     column = std::move(all);
   });
   Index begin = 0;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (crowd.bodies[b].size() > 0)  // of others the law may have changed since
-      materials[b].history.append(crowd.materials[b].history);
-    const Index size = bodies[b].size() + crowd.bodies[b].size();
+    if (arriving.bodies[b].size() > 0)  // of others the law may have changed since
+      materials[b].history.append(arriving.materials[b].history);
+    const Index size = bodies[b].size() + arriving.bodies[b].size();
     bodies[b].begin = begin, bodies[b].end = begin += size;
     materials[b].set_range(bodies[b]);
   }

@@ -28,7 +28,7 @@ ParticleSet<D> extract_bodies(std::span<const Index> goes, std::vector<Body>& bo
 /// The particles of the crowd stand behind those that their bodies have.  Columns must be the same, but where one side has no particles;
 /// laws of bodies that come must be the same as well.
 template <int D>
-void insert_particles(ParticleSet<D> crowd, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles);
+void insert_particles(ParticleSet<D> arriving, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles);
 
 /// Volume of the particles in each cell [m^D], of those rows in `order` whose body is `chosen`.
 template <int D, class Chosen>
@@ -55,12 +55,5 @@ struct Overlap {
 /// Every rank has to ask; of each cell one rank knows the volumes.
 template <int D>
 Overlap<D> overlap(const Mesh<D>& mesh, std::span<const Real> there, std::span<const Real> coming, Communicator& ranks);
-
-extern template ParticleSet<2> extract_bodies<2>(std::span<const Index>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
-extern template ParticleSet<3> extract_bodies<3>(std::span<const Index>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
-extern template void insert_particles<2>(ParticleSet<2>, std::vector<Body>&, std::vector<Material>&, Particles<2>&);
-extern template void insert_particles<3>(ParticleSet<3>, std::vector<Body>&, std::vector<Material>&, Particles<3>&);
-extern template Overlap<2> overlap<2>(const Mesh<2>&, std::span<const Real>, std::span<const Real>, Communicator&);
-extern template Overlap<3> overlap<3>(const Mesh<3>&, std::span<const Real>, std::span<const Real>, Communicator&);
 
 }  // namespace talus

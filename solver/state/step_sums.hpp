@@ -8,7 +8,7 @@ namespace talus {
 
 template <int D>
 struct StepSums {
-  ExactSums<RemovedParticles<D>> departed;
+  ExactSums<RemovedParticles<D>> removed;
   Real largest_set_back = 0;                           ///< largest distance by which a particle was moved back onto a wall [m]
   ExactSums<ForceAndMoment<D>> on_particles, on_mesh;  ///< forces of loads [N]
   ExactSums<BoundaryWork> at_nodes;                    ///< work of boundary conditions on nodes
@@ -24,7 +24,7 @@ struct StepSums {
   void clear() noexcept
   {
     largest_set_back = 0;
-    departed.clear(), on_particles.clear(), on_mesh.clear(), at_nodes.clear(), beyond_nodes.clear();
+    removed.clear(), on_particles.clear(), on_mesh.clear(), at_nodes.clear(), beyond_nodes.clear();
     nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), remap.clear();
     particles.clear();
   }
@@ -35,7 +35,7 @@ template <int D>
 void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLedger<D>& mass, MomentumLedger<D>& momentum,
               EnergyLedger& energy)
 {
-  record_removed(sums.departed.value(), mass, energy);
+  record_removed(sums.removed.value(), mass, energy);
   const NodeWork<D> nodes = sums.nodes.value();
   const BoundaryWork boundary = sums.at_nodes.value(), beyond = sums.beyond_nodes.value();
   const ForceAndMoment<D> tractions = sums.on_particles.value() + sums.on_mesh.value();

@@ -20,11 +20,11 @@ void average_volume(const Mesh<D>& mesh, const CellOrder& order, std::span<const
   sums.gather(order, bodies, particles, [&](Index c, std::span<const Index> run, auto& corners) {
     for (const Index row : run) {
       const auto p = static_cast<std::size_t>(row);
-      const auto hats = barycentric_inside(mesh, c, particles.x[p]);
+      const auto shape = barycentric_inside(mesh, c, particles.x[p]);
       const Real volume = (Mat<D>::Identity() + dt * particles.L[p]).determinant() * particles.volume[p];
       for (std::size_t a = 0; a <= D; ++a) {
-        corners[a][0] += hats[a] * volume;
-        corners[a][1] += hats[a] * particles.volume0[p];
+        corners[a][0] += shape[a] * volume;
+        corners[a][1] += shape[a] * particles.volume0[p];
       }
     }
   });
@@ -38,10 +38,10 @@ void average_volume(const Mesh<D>& mesh, const CellOrder& order, std::span<const
       runs([&](std::span<const Index> run) {
         for (const Index row : run) {
           const auto p = static_cast<std::size_t>(row);
-          const auto hats = barycentric_inside(mesh, c, particles.x[p]);
+          const auto shape = barycentric_inside(mesh, c, particles.x[p]);
           Real mean = 0;
           for (std::size_t a = 0; a <= D; ++a)
-            mean += hats[a] * ratio[a];
+            mean += shape[a] * ratio[a];
           averaged[p] = mean;
         }
       });

@@ -35,9 +35,9 @@ void conduct_heat(const Mesh<D>& mesh, Material& material, const CellOrder& orde
   sums.content.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
     for (const Index row : run) {
       const auto p = static_cast<std::size_t>(row);
-      const auto hats = barycentric_inside(mesh, c, particles.x[p]);
+      const auto shape = barycentric_inside(mesh, c, particles.x[p]);
       for (std::size_t a = 0; a <= D; ++a) {
-        const Real capacity = particles.mass[p] * specific_heat * hats[a];
+        const Real capacity = particles.mass[p] * specific_heat * shape[a];
         corners[a][0] += capacity;
         corners[a][1] += capacity * temperature(p);
       }
@@ -62,11 +62,11 @@ void conduct_heat(const Mesh<D>& mesh, Material& material, const CellOrder& orde
     for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
       for (const Index row : run) {
         const auto p = static_cast<std::size_t>(row);
-        const auto hats = barycentric_inside(mesh, c, particles.x[p]);
+        const auto shape = barycentric_inside(mesh, c, particles.x[p]);
         for (std::size_t a = 0; a <= D; ++a) {
           const Index n = mesh.cell(c)[a];
           if (const Real capacity = sums.content[n][0]; capacity > 0)
-            temperature(p) += dt * hats[a] * sums.flow[n][0] / capacity;
+            temperature(p) += dt * shape[a] * sums.flow[n][0] / capacity;
         }
       }
     });

@@ -13,13 +13,13 @@ namespace talus {
 template <int D>
 std::array<Real, D + 1> barycentric_inside(const Mesh<D>& mesh, Index c, const Vec<D>& x) noexcept
 {
-  std::array<Real, D + 1> hats = mesh.barycentric(c, x);
+  std::array<Real, D + 1> shape = mesh.barycentric(c, x);
   Real sum = 0;
-  for (Real& hat : hats)
-    sum += hat = std::max(hat, Real{0});
-  for (Real& hat : hats)
-    hat /= sum;
-  return hats;
+  for (Real& shape_value : shape)
+    sum += shape_value = std::max(shape_value, Real{0});
+  for (Real& shape_value : shape)
+    shape_value /= sum;
+  return shape;
 }
 
 /// K sums at a node.

@@ -38,15 +38,15 @@ void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const 
     Real around = 0;
     int ring = 0;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
-      const ProjectedNodeSum<D>& hat = projected[static_cast<std::size_t>(n)];
+      const ProjectedNodeSum<D>& projected_node = projected[static_cast<std::size_t>(n)];
       ++ring;
-      around += hat.mass;
-      if (!hat.is_seen())
+      around += projected_node.mass;
+      if (!projected_node.is_seen())
         return;
-      total.mass += S * hat.mass;
-      total.lightest = std::min(total.lightest, hat.lightest);
-      total.momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
-      total.force += S * hat.force - hat.tension * gradient;
+      total.mass += S * projected_node.mass;
+      total.lightest = std::min(total.lightest, projected_node.lightest);
+      total.momentum += S * projected_node.momentum_about(mesh.node(v) - operators.centre(n));
+      total.force += S * projected_node.force - projected_node.tension * gradient;
     });
     total.gross = static_cast<float>(around / ring);
     return total;
@@ -63,9 +63,9 @@ void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
       return;
     Vec<D> momentum = Vec<D>::Zero();
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
-      const ProjectedNodeSum<D>& hat = projected[static_cast<std::size_t>(n)];
-      if (hat.is_seen())
-        momentum += S * hat.momentum_about(mesh.node(v) - operators.centre(n));
+      const ProjectedNodeSum<D>& projected_node = projected[static_cast<std::size_t>(n)];
+      if (projected_node.is_seen())
+        momentum += S * projected_node.momentum_about(mesh.node(v) - operators.centre(n));
     });
     sum[static_cast<std::size_t>(v)].momentum = momentum;
   });
@@ -96,9 +96,9 @@ template <int D, class Arrive>
 void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, ProjectedNodes<D>& projected,
                          std::vector<Vec<D>>& a)
 {
-  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& hat) {
-    hat.change.setZero();
-    operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { hat.change += S * a[static_cast<std::size_t>(v)]; });
+  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
+    projected_node.change.setZero();
+    operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { projected_node.change += S * a[static_cast<std::size_t>(v)]; });
   });
   for_each_node(std::span(a), [&](Index v) {
     Real mass = 0;
@@ -121,14 +121,14 @@ void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMot
                     ProjectedNodes<D>& projected)
 {
   for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
-    ProjectedNodeMotion<D> hat;
+    ProjectedNodeMotion<D> projected_node;
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
       const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
-      hat.v += S * node.v;
-      hat.change += S * node.change;
-      hat.L += node.v * gradient.transpose();
+      projected_node.v += S * node.v;
+      projected_node.change += S * node.change;
+      projected_node.L += node.v * gradient.transpose();
     });
-    row = hat;
+    row = projected_node;
   });
 }
 
@@ -137,12 +137,12 @@ template <int D, class Arrive>
 void project_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive,
                       ProjectedNodes<D>& projected)
 {
-  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& hat) {
+  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
         n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });
-    hat.change = hat.v;
-    hat.L = L;
+    projected_node.change = projected_node.v;
+    projected_node.L = L;
   });
 }
 

@@ -138,7 +138,7 @@ class TransferOf final : public Transfer<D> {
       project_motion(
           rows_.kernel.node_operators(), m.work.nodes.motion, [&] { rows_.ghosts.motion.take(m.work.nodes.motion, Whole{}); },
           rows_.projected);
-      m.state.walls.apply(kick, rows_.projected.sum, rows_.projected.motion, m.work.sums.beyond_nodes);
+      m.state.boundary.apply(kick, rows_.projected.sum, rows_.projected.motion, m.work.sums.beyond_nodes);
     }
   }
 
@@ -166,8 +166,8 @@ class TransferOf final : public Transfer<D> {
       const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
       remapped[i] = {v, nodes.motion[i].v};
     });
-    state.walls.hold(mid, remapped);
-    work.small_mass_nodes.extrapolate_velocity(mesh, own, state.walls, mid, remapped);
+    state.boundary.hold(mid, remapped);
+    work.small_mass_nodes.extrapolate_velocity(mesh, own, state.boundary, mid, remapped);
     rows_.ghosts.motion.send(remapped, Whole{});
     add_ranges(std::span<const IndexRange>(own.of_block), work.sums.remap, [&](Index n) { return remap_work(nodes, remapped, n); });
     const auto arrive = [&] { rows_.ghosts.motion.take(remapped, Whole{}); };

@@ -7,16 +7,16 @@ namespace {
 
 TEST(ParticleErrors, TellsTheCauseBeforeWhatFollowsFromIt)
 {
-  ParticleErrors health;
-  EXPECT_FALSE(health.worst());
-  health.report(3, Trouble::no_answer);
-  health.report(8, Trouble::inverted);
-  health.report(5, Trouble::inverted);
-  ASSERT_TRUE(health.worst());
-  EXPECT_EQ(health.worst()->id, 5);
-  EXPECT_EQ(health.worst()->trouble, Trouble::inverted);
-  health.clear();
-  EXPECT_FALSE(health.worst());
+  ParticleErrors errors;
+  EXPECT_FALSE(errors.worst());
+  errors.report(3, Trouble::no_answer);
+  errors.report(8, Trouble::inverted);
+  errors.report(5, Trouble::inverted);
+  ASSERT_TRUE(errors.worst());
+  EXPECT_EQ(errors.worst()->id, 5);
+  EXPECT_EQ(errors.worst()->trouble, Trouble::inverted);
+  errors.clear();
+  EXPECT_FALSE(errors.worst());
 }
 
 }  // namespace

@@ -101,7 +101,7 @@ struct SmallRun {
     }
     sort();
     const std::vector<Index> held{0, 1};
-    state.walls.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, held);
+    state.boundary.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, held);
   }
   void sort() { sort_by_cell(state.particles.cell, state.particles.id, state.bodies, problem.mesh.n_cells(), order); }
   RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }

@@ -91,7 +91,7 @@ std::vector<std::array<Real, D + 1>> trial_points(std::uint32_t seed)
 }
 
 /// The weights of one point over the nodes that matter to it.  With a node part these are the rings of the cell's vertices, and the
-/// weights are those of the hats carried on by the operators.
+/// weights are those of the linear shape functions carried on by the operators.
 template <class K, int D>
 class Probe {
  public:
@@ -142,12 +142,12 @@ class Probe {
   }
 
   std::size_t entry(Index v) const { return static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin()); }
-  /// The share `hat` of the rows of n in S and D.
-  void add_row(Index n, Real hat)
+  /// The rows of n, times its linear shape function, in S and D.
+  void add_row(Index n, Real shape_value)
   {
     kernel_.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
-      values_[entry(v)] += hat * S;
-      gradients_[entry(v)] += hat * gradient;
+      values_[entry(v)] += shape_value * S;
+      gradients_[entry(v)] += shape_value * gradient;
     });
   }
 

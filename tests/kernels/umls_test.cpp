@@ -16,14 +16,14 @@ Real spline(Real q) { return q <= 0.5 ? 0.75 - q * q : q <= 1.5 ? 0.5 * (1.5 - q
 template <int D>
 ByNode<D> direct(const Umls<D>& kernel, const Mesh<D>& mesh, Index c, const Vec<D>& x)
 {
-  const auto hat = mesh.barycentric(c, x);
+  const auto coordinates = mesh.barycentric(c, x);
   std::map<Index, Real> eta;
   Real radius = 0;
   for (std::size_t a = 0; a <= D; ++a) {
     const Index n = mesh.cell(c)[a];
-    radius += hat[a] * kernel.radius(n);
+    radius += coordinates[a] * kernel.radius(n);
     for (const Index v : mesh.ring_of_node()[n])
-      eta[v] += hat[a];
+      eta[v] += coordinates[a];
   }
   using Square = Eigen::Matrix<Real, D + 1, D + 1>;
   using Column = Eigen::Matrix<Real, D + 1, 1>;
@@ -135,8 +135,8 @@ TYPED_TEST(UmlsIn, FallsBackOnHatsWhereNoSecondMomentIsUsableAndLinearFieldsStay
   constexpr int D = TypeParam::D;
   const Mesh<D> mesh = pressed<D>(1e-4);
   const Umls<D> kernel(mesh);
-  const Linear<D> hats(mesh);
-  Probe<Linear<D>, D> linear(hats, mesh);
+  const Linear<D> shape(mesh);
+  Probe<Linear<D>, D> linear(shape, mesh);
   int fallen = 0;
   for_each_trial(kernel, mesh, [&](const auto& probe, Index c, const Vec<D>& x) {
     if (kernel.roundness(probe.cell, x) > Umls<D>::unusable_roundness)

@@ -93,7 +93,7 @@ TEST_F(SetUpOnRanks, WhatIsOfAllParticlesIsTheSameOnEachRank)
     EXPECT_EQ(part.conditions.loads.on_particles[k].id, whole.conditions.loads.on_particles[k].id);
     EXPECT_EQ(part.conditions.loads.on_particles[k].area, whole.conditions.loads.on_particles[k].area);
   }
-  EXPECT_EQ(part.state.walls.closed_facets(mesh), whole.state.walls.closed_facets(mesh));
+  EXPECT_EQ(part.state.boundary.closed_facets(mesh), whole.state.boundary.closed_facets(mesh));
 }
 
 TEST_F(SetUpOnRanks, ParticlesGoToTheOwnersOfTheirBlocks)

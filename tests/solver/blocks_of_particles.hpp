@@ -54,7 +54,7 @@ void add_body(
 template <int D>
 StressBlock<D> stress_block(Model<D>& m, std::span<const Index> rows, Real dt)
 {
-  return {rows, dt, false, m.problem.mesh.altitudes(), m.work.averaged, {}, m.state.particles, m.work.health};
+  return {rows, dt, false, m.problem.mesh.altitudes(), m.work.averaged, {}, m.state.particles, m.work.errors};
 }
 
 /// The transfer of a model whose kernel is known.
@@ -111,7 +111,7 @@ void run_until(Model<D>& m, Real end, Real cfl = 0.4)
 template <int D>
 void close_off(Model<D>& m, const std::string& facets, const AnyCondition<D>& kind)
 {
-  m.state.walls.add({.name = facets, .kind = kind}, m.problem.mesh, *m.problem.mesh.facet_set(facets));
+  m.state.boundary.add({.name = facets, .kind = kind}, m.problem.mesh, *m.problem.mesh.facet_set(facets));
 }
 
 inline NeoHookean rubber(Real youngs_modulus, Real poisson_ratio, Real density)

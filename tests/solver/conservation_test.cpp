@@ -103,7 +103,7 @@ TYPED_TEST(EveryKernelAndTransfer, DoInSingleWhatTheyDoInDoubleToItsRounding)
     advance(twofold, dt);
     advance(single, dt);
   }
-  ASSERT_FALSE(single.work.health.worst());
+  ASSERT_FALSE(single.work.errors.worst());
   constexpr Real rounding = 6e-8;  // 2^-24
   Real path = 0, stress = 0, wrong_place = 0, wrong_stress = 0, wrong_F = 0;
   for (std::size_t p = 0; p < twofold.state.particles.id.size(); ++p) {

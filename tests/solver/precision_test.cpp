@@ -29,7 +29,7 @@ TEST(SinglePrecision, CarriesSlowParticlesFarFromTheOrigin)
   const Real dt = 0.4 * shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
   for (int step = 0; step < 200; ++step)
     advance(m, dt);
-  ASSERT_FALSE(m.work.health.worst());
+  ASSERT_FALSE(m.work.errors.worst());
   const Real way = 200 * dt * speed;
   ASSERT_LT(way, 1e-3) << "a millimetre at most";
   for (std::size_t p = 0; p < start.size(); ++p)

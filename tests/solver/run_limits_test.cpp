@@ -23,8 +23,8 @@ M flying_block()
 std::string stopped(M& m, int* shown = nullptr)
 {
   try {
-    finish_stage(m, test_stage(0.2), {}, [&](const M&, RunEvent moment) {
-      if (shown && moment == RunEvent::given_up)
+    finish_stage(m, test_stage(0.2), {}, [&](const M&, RunEvent event) {
+      if (shown && event == RunEvent::given_up)
         ++*shown;
     });
   } catch (const RunError& e) {
@@ -39,9 +39,9 @@ TEST(RunLimits, ASoundRunPasses)
   m.problem.limits.speed = 3, m.problem.limits.gain = 0.01;
   begin_stage(m, test_stage(0.2), 0);
   EXPECT_EQ(stopped(m), "");
-  EXPECT_NEAR(m.state.watched.fastest, std::sqrt(1.25), 1e-6);
-  EXPECT_LT(m.state.watched.mass, 1e-12);
-  EXPECT_LT(m.state.watched.gain, 1e-6);
+  EXPECT_NEAR(m.state.monitor.fastest, std::sqrt(1.25), 1e-6);
+  EXPECT_LT(m.state.monitor.mass, 1e-12);
+  EXPECT_LT(m.state.monitor.gain, 1e-6);
 }
 
 TEST(RunLimits, MassThatIsNotThereIsMissed)
@@ -63,7 +63,7 @@ TEST(RunLimits, EnergyFromNowhereIsSeen)
     for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
       m.state.particles.v.set(p, 1.2 * m.state.particles.v[p]);
     const std::string message = stopped(m);
-    return std::pair{message, m.state.watched};
+    return std::pair{message, m.state.monitor};
   };
   constexpr Real gained = 0.44 / 1.44;
   EXPECT_THAT(with_a_push(0.9 * gained, true).first, HasSubstr("energy grows by what nothing did work for, 0.306 of its largest term"));
@@ -90,16 +90,16 @@ TEST(RunLimits, TheEndOfAStageIsLookedAt)
   fast.problem.limits.speed = 1;
   EXPECT_THAT(short_stage(fast), HasSubstr("beyond watch.speed"));
   EXPECT_EQ(fast.state.clock.step, 1);
-  EXPECT_EQ(fast.state.watched.speeding, 0) << "it is looked at again when the run goes on";
+  EXPECT_EQ(fast.state.monitor.speeding, 0) << "it is looked at again when the run goes on";
   M light = flying_block();
   light.state.mass.start *= 1 + 1e-6;
   EXPECT_THAT(short_stage(light), HasSubstr("the mass does not add up"));
   M sound = flying_block();
   EXPECT_EQ(short_stage(sound), "");
-  EXPECT_NEAR(sound.state.watched.fastest, std::sqrt(1.25), 1e-6);
+  EXPECT_NEAR(sound.state.monitor.fastest, std::sqrt(1.25), 1e-6);
   sound.problem.limits.speed = 1, sound.problem.limits.speed_stops = false;
   EXPECT_EQ(short_stage(sound), "");
-  EXPECT_EQ(sound.state.watched.speeding, 1) << "once for each step, and none for the state that the stage began with";
+  EXPECT_EQ(sound.state.monitor.speeding, 1) << "once for each step, and none for the state that the stage began with";
 }
 
 /// One particle is turned inside out before the first step.
@@ -127,7 +127,7 @@ TEST(RunLimits, AFailedParticleStopsTheRunUnlessItMayGo)
   EXPECT_EQ(without.state.particles.size(), before - 1);
   EXPECT_EQ(without.state.mass.failed_count, 1);
   EXPECT_NEAR(totals(without).mass + without.state.mass.failed, without.state.mass.start, 1e-12 * without.state.mass.start);
-  EXPECT_THAT(without.state.watched.failure, HasSubstr("particle 5"));
+  EXPECT_THAT(without.state.monitor.failure, HasSubstr("particle 5"));
   EXPECT_TRUE(std::isfinite(without.state.energy.internal));
   EXPECT_NEAR(without.state.energy.carried_away, 0.5 * without.state.mass.failed * 1.25, 1e-2 * without.state.mass.failed);
 }

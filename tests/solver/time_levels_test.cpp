@@ -51,7 +51,7 @@ Real way(int steps, const SetUp& set_up)
   const Real from = centre(m)[0];
   for (int k = 0; k < steps; ++k)
     advance(m, end / steps);
-  EXPECT_FALSE(m.work.health.worst());
+  EXPECT_FALSE(m.work.errors.worst());
   return centre(m)[0] - from;
 }
 
@@ -105,7 +105,7 @@ void move_all(Bar& m)
 {
   std::vector<Index> all(static_cast<std::size_t>(m.problem.mesh.n_nodes()));
   std::iota(all.begin(), all.end(), Index{0});
-  m.state.walls.add({.name = "all", .kind = PrescribedVelocity<2>{{Vec<2>(pull * end, 0), swelling()}}}, m.problem.mesh, all);
+  m.state.boundary.add({.name = "all", .kind = PrescribedVelocity<2>{{Vec<2>(pull * end, 0), swelling()}}}, m.problem.mesh, all);
 }
 
 std::vector<Case> cases()
@@ -181,7 +181,7 @@ TEST(TimeLevelsOfAStep, WorkOfAStepIsTheKineticEnergyThatComesOfIt)
                           for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
                             if (std::abs(m.problem.mesh.node(n)[0] - 0.375) < 1e-9 && std::abs(m.problem.mesh.node(n)[1] - 0.5) < 0.2)
                               some.push_back(n);
-                          m.state.walls.add({.name = "some", .kind = PrescribedVelocity<2>{{Vec<2>(0.5, 0.1)}}}, m.problem.mesh, some);
+                          m.state.boundary.add({.name = "some", .kind = PrescribedVelocity<2>{{Vec<2>(0.5, 0.1)}}}, m.problem.mesh, some);
                         }),
             1e-12);
 }

@@ -19,7 +19,7 @@ Model<3> swirl(const TransferOptions& transfer)
       m, "block", rubber(1e5, 0.3, 1000), per_cell, [](const Vec3&) { return true; },
       [](const Vec3& x) { return Vec3(std::sin(M_PI * x[0]) * std::cos(M_PI * x[1]), -std::cos(M_PI * x[0]) * std::sin(M_PI * x[1]), 0); });
   for (const auto& name : m.problem.mesh.facet_set_names()) {
-    m.state.walls.add({.name = name, .kind = Roller<3>{}}, m.problem.mesh, *m.problem.mesh.facet_set(name));
+    m.state.boundary.add({.name = name, .kind = Roller<3>{}}, m.problem.mesh, *m.problem.mesh.facet_set(name));
   }
   make_ready(m);
   return m;
@@ -34,7 +34,7 @@ void steps(benchmark::State& state, const TransferOptions& transfer, int n_threa
   advance(m, dt);  // sorts the particles and sizes all buffers
   for (auto _ : state)
     advance(m, dt);
-  if (m.work.health.worst())
+  if (m.work.errors.worst())
     state.SkipWithError("the state is no longer sound");
   state.SetItemsProcessed(state.iterations() * m.state.particles.size());
 }

@@ -100,7 +100,7 @@ void close_in(const BenchSetting& setting, Real pressure, BenchBlock<D>& block)
       load.pressure = pressure;
       setup.conditions.loads.on_particles.push_back(std::move(load));
     }
-    setup.state.walls.add(wall, block.mesh, facets);
+    setup.state.boundary.add(wall, block.mesh, facets);
   }
   if (setting.option == bench_options::body_force)
     setup.conditions.loads.of_place.push_back({[](std::span<const Vec<D>> places, Real, std::span<Vec<D>> accelerations) {

@@ -32,7 +32,4 @@ inline constexpr Real bench_swirl = 0.08;
 /// Length of a step as a share of the stable one.
 inline constexpr Real bench_cfl = 0.4;
 
-extern template BenchBlock<2> bench_block<2>(const BenchSetting&, Index, int);
-extern template BenchBlock<3> bench_block<3>(const BenchSetting&, Index, int);
-
 }  // namespace talus

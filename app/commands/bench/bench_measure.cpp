@@ -48,14 +48,14 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
   }
   Laps laps(plan);
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),
-              {[&](const RunView<D>& view, RunEvent moment) {
+              {[&](const RunView<D>& view, RunEvent event) {
                  if (recorder)
-                   recorder->watch(view, moment);
-                 if (moment == RunEvent::stage_done) {
+                   recorder->watch(view, event);
+                 if (event == RunEvent::stage_done) {
                    result.bytes_held = bytes_per_particle(view);
                    result.bytes_moved = bytes_moved(view);
                  }
-                 if (moment == RunEvent::step_done)
+                 if (event == RunEvent::step_done)
                    laps.step_done(view.state.timings.particle_steps, phases_of(view.state.timings));
                },
                [](const RunView<D>&, const StageResult&) {}});

@@ -127,8 +127,8 @@ void measure_ranks(const BenchSetting& setting, const BenchPlan& plan, RanksRepo
   std::size_t n_times = 0;
   int done = 0;
   simulate<D>(block.scene, std::move(block.mesh), std::move(block.setup),
-              {[&](const RunView<D>& view, RunEvent moment) {
-                 if (moment != RunEvent::step_done)
+              {[&](const RunView<D>& view, RunEvent event) {
+                 if (event != RunEvent::step_done)
                    return;
                  ++done;
                  if (done >= plan.warm_up && (done - plan.warm_up) % plan.steps == 0)

@@ -31,9 +31,4 @@ std::vector<std::string> warnings_of(const std::vector<SharedNodes>& pairs, cons
 /// One line about all pairs that touch, or nothing.
 std::string contacts_in_words(const std::vector<SharedNodes>& pairs, const std::vector<Body>& bodies);
 
-extern template std::vector<SharedNodes> find_shared_nodes<2>(const Mesh<2>&, const Particles<2>&, const std::vector<Body>&,
-                                                              const NodesOfCell&);
-extern template std::vector<SharedNodes> find_shared_nodes<3>(const Mesh<3>&, const Particles<3>&, const std::vector<Body>&,
-                                                              const NodesOfCell&);
-
 }  // namespace talus

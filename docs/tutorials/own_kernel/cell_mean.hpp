@@ -6,7 +6,7 @@
 
 namespace talus {
 
-/// w_a = 1 / (D+1) wherever the particle is in its cell, G_a the slope of the hat.
+/// w_a = 1 / (D+1) wherever the particle is in its cell, G_a the gradient of the linear shape function.
 template <int D>
 class CellMean {
  public:

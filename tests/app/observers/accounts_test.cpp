@@ -40,7 +40,7 @@ struct Scene {
     m.state.particles.v.set(0, Vec<2>(speed, 0));
     state_of<VonMises>(m.state.materials[0], 0).plastic_work = plastic_work / 2;
   }
-  void see(RunEvent moment) { accounts.see(view_of(m, stage), moment); }
+  void see(RunEvent event) { accounts.see(view_of(m, stage), event); }
   EnergyNow energy() const { return accounts.energy(view_of(m, stage)); }
 };
 
@@ -155,7 +155,7 @@ TEST(AccountsByHand, NameAllThatGaveMomentum)
   s.m.state.momentum.changes = push(64, -128), s.m.state.mass.carried_away = push(256, -512), s.m.state.momentum.on_nodes = {0, 0, 10000};
   BoundaryCondition<2> wall;
   wall.impulse = {1024, 0}, wall.angular = {0, 0, -2048};
-  s.m.state.walls.add(wall);
+  s.m.state.boundary.add(wall);
   const MomentumNow<2> now = s.accounts.momentum(view_of(s.m, s.stage));
   EXPECT_EQ(now.start.linear, Vec<2>(10, 12));
   EXPECT_EQ(now.start.angular, Vec3(0, 0, -3 * 10 - 2 * 12));

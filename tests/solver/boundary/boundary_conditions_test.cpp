@@ -94,7 +94,7 @@ struct Incline {
     auto m = make_model<Umls<2>>(Mesh<2>(std::move(data)));
     add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 4,
                 [&](const Vec<2>& x) { return along(x)[0] > 1 && along(x)[0] < 5 && along(x)[1] < 1; });
-    m.state.walls.add({.name = "floor", .kind = Friction<2>{mu}}, m.problem.mesh, *m.problem.mesh.facet_set("y_min"));
+    m.state.boundary.add({.name = "floor", .kind = Friction<2>{mu}}, m.problem.mesh, *m.problem.mesh.facet_set("y_min"));
     m.problem.loads.gravity.acceleration = {0, -10};
     make_ready(m);
     return m;

@@ -32,7 +32,7 @@ Real largest_term(const Block& m, Real kinetic)
 Real moment_of_internal_forces(const Block& m)
 {
   ForceAndMoment<2> given = m.state.momentum.loads + m.state.momentum.damping;
-  for (const BoundaryCondition<2>& wall : m.state.walls.conditions())
+  for (const BoundaryCondition<2>& wall : m.state.boundary.conditions())
     given += ForceAndMoment<2>::of(wall.impulse, wall.angular);
   return (m.state.momentum.on_nodes - given.angular).norm() / given.turn;
 }
@@ -62,14 +62,14 @@ TEST(EnergyAudit, WallsThatStayWhereTheyAreDoNoWork)
 {
   Block m = with_defaults(8);
   add_body<2>(m, "beam", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 5 && x[1] > 2 && x[1] < 3; });
-  m.state.walls.add({.name = "clamp", .kind = Fixed<2>{}}, m.problem.mesh, *m.problem.mesh.node_set("x_min"));
+  m.state.boundary.add({.name = "clamp", .kind = Fixed<2>{}}, m.problem.mesh, *m.problem.mesh.node_set("x_min"));
   m.problem.loads.gravity.acceleration = Vec<2>(0, -2);
   make_ready(m);
   run_until(m, 0.6);
   const Real kinetic = totals(m).kinetic;
   EXPECT_EQ(m.state.energy.walls, 0);
   EXPECT_LT(m.state.energy.arrival, 0);
-  EXPECT_GT(m.state.walls.conditions()[0].impulse[1], 100);
+  EXPECT_GT(m.state.boundary.conditions()[0].impulse[1], 100);
   EXPECT_LT(moment_of_internal_forces(m), 1e-12);
   EXPECT_LT(std::abs(m.state.energy.at_velocities().defect(kinetic)), 0.03 * largest_term(m, kinetic));
 }
@@ -80,10 +80,10 @@ TEST(EnergyAudit, AMovingWallDoesItsImpulseTimesItsVelocity)
   Block m = with_defaults(8);
   add_body<2>(m, "block", rubber(1e6, 0.3, 1000), 3, [](const Vec<2>& x) { return x[0] < 2 && x[1] > 1 && x[1] < 3; });
   const Vec<2> velocity(0.4, -0.1);
-  m.state.walls.add({.name = "ram", .kind = PrescribedVelocity<2>{{velocity}}}, m.problem.mesh, *m.problem.mesh.node_set("x_min"));
+  m.state.boundary.add({.name = "ram", .kind = PrescribedVelocity<2>{{velocity}}}, m.problem.mesh, *m.problem.mesh.node_set("x_min"));
   make_ready(m);
   run_until(m, 0.1);
-  const Real kinetic = totals(m).kinetic, work = m.state.walls.conditions()[0].impulse.dot(velocity);
+  const Real kinetic = totals(m).kinetic, work = m.state.boundary.conditions()[0].impulse.dot(velocity);
   EXPECT_GT(work, 100);
   EXPECT_NEAR(m.state.energy.walls, work, 1e-12 * work);
   EXPECT_LT(moment_of_internal_forces(m), 1e-12);

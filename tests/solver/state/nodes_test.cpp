@@ -297,7 +297,7 @@ TEST(Exits, AClosedWallKeepsParticlesIn)
   auto m = leaving(OnExit::stop, true);
   m.state.particles.x[0] = {1 + 1e-4, 0.5};  // as weights off the wall may carry it
   advance(m, 1e-4);
-  EXPECT_FALSE(m.work.health.worst());
+  EXPECT_FALSE(m.work.errors.worst());
   EXPECT_EQ(m.state.mass.held_count, 1);
   EXPECT_NEAR(m.state.mass.largest_set_back, 1e-4, 1e-8);
 }

@@ -125,7 +125,7 @@ TYPED_TEST(ExactForceIn, KeepsTheMomentumOfAFreeBlock)
   set_velocity<D>(m, A, Vec<D>::Constant(-0.1));
   const auto before = totals(m);
   run_until(m, 0.2);
-  EXPECT_FALSE(m.work.health.worst());
+  EXPECT_FALSE(m.work.errors.worst());
   EXPECT_LT((totals(m).momentum - before.momentum).norm(), 1e-12 * 0.2 * before.mass);
   EXPECT_LT(totals(m).kinetic, before.kinetic) << "some of it has gone into strain";
 }

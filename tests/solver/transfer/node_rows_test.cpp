@@ -61,26 +61,26 @@ TEST(NodeRows, AreSeenOnceAParticleIsNear)
 
 TEST(NodeRows, OfHatsHaveMomentumIfTheyHaveAnAffineField)
 {
-  ProjectedNodeSum<2> hat, other;
-  EXPECT_FALSE(hat.has_momentum());
+  ProjectedNodeSum<2> shape_value, other;
+  EXPECT_FALSE(shape_value.has_momentum());
   other.momentum = {1, 2};
   EXPECT_TRUE(other.has_momentum());
   other.momentum.setZero();
   other.affine << 1, 2, 3, 4;
   EXPECT_TRUE(other.has_momentum());
   other.momentum = {5, 6};
-  hat.add_momentum(other), hat.add_momentum(other);
-  EXPECT_EQ(hat.momentum, Vec<2>(10, 12));
-  EXPECT_EQ(hat.affine, 2 * other.affine);
-  EXPECT_EQ(hat.momentum_about({1, -1}), Vec<2>(10 - 2, 12 - 2));
+  shape_value.add_momentum(other), shape_value.add_momentum(other);
+  EXPECT_EQ(shape_value.momentum, Vec<2>(10, 12));
+  EXPECT_EQ(shape_value.affine, 2 * other.affine);
+  EXPECT_EQ(shape_value.momentum_about({1, -1}), Vec<2>(10 - 2, 12 - 2));
   other.tension.entry[0] = 7, other.tension.entry[2] = 8;
-  hat += other;
-  hat += other;
-  EXPECT_EQ(hat.affine, 4 * other.affine);
-  EXPECT_EQ(hat.tension.entry[0], 14);
-  EXPECT_EQ(hat.tension.entry[2], 16);
-  hat.clear_momentum();
-  EXPECT_FALSE(hat.has_momentum());
+  shape_value += other;
+  shape_value += other;
+  EXPECT_EQ(shape_value.affine, 4 * other.affine);
+  EXPECT_EQ(shape_value.tension.entry[0], 14);
+  EXPECT_EQ(shape_value.tension.entry[2], 16);
+  shape_value.clear_momentum();
+  EXPECT_FALSE(shape_value.has_momentum());
 }
 
 TEST(Transfer, TheShareOfPicIsTheStepByItsTimeAndAtMostOne)

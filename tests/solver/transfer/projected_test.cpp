@@ -152,7 +152,7 @@ void slide_on_a_rough_floor(Scheme scheme)
         }
   }
   const Totals<2> end = totals(m);
-  const Vec<2> floor_gave = m.state.walls.conditions()[0].impulse,
+  const Vec<2> floor_gave = m.state.boundary.conditions()[0].impulse,
                gravity_gave = end.mass * (m.state.clock.time - m.state.clock.lag) * m.problem.loads.gravity.acceleration;
   EXPECT_LT((end.momentum - start.momentum - floor_gave - gravity_gave).norm(), 1e-10 * start.momentum.norm());
   EXPECT_LT(-floor_gave[0], friction * (1 + 1e-10) * floor_gave[1]);
