@@ -92,7 +92,7 @@ template <int D>
 
 /// The linear shape functions of the cell in one lane, as factors (see Linear).
 template <int D>
-void hats_instead(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane, Weights<D, Umls<D>::max_nodes>& out) noexcept
+void linear_instead(const typename Umls<D>::Cell& cell, const Pack (&x)[D], int lane, Weights<D, Umls<D>::max_nodes>& out) noexcept
 {
   store(out.s[lane], D == 2 ? Pack{1, 1, 1, 0} : broadcast(1));
   out.padded_size[lane] = pack_size;
@@ -254,7 +254,7 @@ void Umls<D>::evaluate(const Cell& cell, const Pack (&x)[D], int count, Weights<
     for (int d = 0; d < D; ++d)
       out.y[lane][d] = cell.x[d];
     if (!(det[lane] > least[lane]))  // true for NaN too
-      hats_instead<D>(cell, x, lane, out);
+      linear_instead<D>(cell, x, lane, out);
   }
 }
 

@@ -171,8 +171,8 @@ template <int D>
 
 /// The motion of the linear shape functions of a cell.
 template <int D>
-std::array<ProjectedNodeMotion<D>, D + 1> hats_of(const std::vector<ProjectedNodeMotion<D>>& projected,
-                                                  std::span<const Index> nodes) noexcept
+std::array<ProjectedNodeMotion<D>, D + 1> motions_of(const std::vector<ProjectedNodeMotion<D>>& projected,
+                                                     std::span<const Index> nodes) noexcept
 {
   std::array<ProjectedNodeMotion<D>, D + 1> here;
   for (std::size_t a = 0; a <= D; ++a)
@@ -218,7 +218,7 @@ class ProjectedTransfer {
     talus::add_to<affine, loaded, forces>(sums_, arms_, rows, slots, lightest);
   }
 
-  void read(const std::vector<ProjectedNodeMotion<D>>& projected) noexcept { motion_ = hats_of(projected, cell_.nodes); }
+  void read(const std::vector<ProjectedNodeMotion<D>>& projected) noexcept { motion_ = motions_of(projected, cell_.nodes); }
   template <bool with_change, bool with_gradient, class S>
   Interpolated<D> see(const ParticlePackOf<S>&) const noexcept
   {

@@ -9,7 +9,7 @@
 
 #include "tests/solver/blocks_of_particles.hpp"
 
-namespace talus::stars_test {
+namespace talus::update_stress_test {
 namespace {
 
 using testing::add_body;
@@ -342,4 +342,4 @@ TEST(Geostatic, TractionsAloneMustBeBalancedBeforeTheStageEnds)
 }
 
 }  // namespace
-}  // namespace talus::stars_test
+}  // namespace talus::update_stress_test
