@@ -26,7 +26,7 @@ function(talus_compile_laws target list)
 namespace talus {
 
 template std::shared_ptr<const ConstitutiveLaw> constitutive_law(const @law@&);
-template std::shared_ptr<const ConstitutiveLaw> constitutive_law_of_all_kinds(const @law@&);
+template const LawDescription& law_description<@law@>() noexcept;
 
 }  // namespace talus
 ]] @ONLY)

@@ -15,8 +15,8 @@ void print_info()
   fmt::print("{}\n", describe(version()));
   fmt::print("threads: {}\n", threads());
   fmt::print("laws:\n");
-  for (const auto& law : known_laws())
-    fmt::print("  {:<20} {}\n", law->name(), law->summary());
+  for (const LawDescription* law : known_laws())
+    fmt::print("  {:<20} {}\n", law->name, law->summary);
   fmt::print("kernels:\n");
   for_each_type(Kernels<2>{}, []<class K>() { fmt::print("  {:<20} {}\n", K::name, K::summary); });
   fmt::print(

@@ -58,8 +58,8 @@ template <int D>
 Column history_column(const State<D>& state, std::span<const Index> rows, std::string_view name)
 {
   Column column{std::string(name), 0, {}, ""};
-  for (const auto& law : known_laws())
-    for (const HistoryVariable& variable : law->variables())
+  for (const LawDescription* law : known_laws())
+    for (const HistoryVariable& variable : law->variables)
       if (variable.key == name)
         column.components = variable.components, column.unit = unit_in(D, variable.unit);
   if (column.components == 0)

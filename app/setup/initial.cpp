@@ -171,7 +171,7 @@ Real settle_stress(const Body& body, std::string_view law_there, Real dt, Commun
   const auto fits = [&](const StressFit& fit) { return fit.apart <= round_off * fit.largest; };
   if (material.law().name() == law_there && fits(compare(false)))
     return 0;
-  if (material.law().starts_from_stress())
+  if (material.law().description().starts_from_stress)
     start_from_stress(body, material, particles);
   const StressFit fit = compare(false);
   if (fits(fit))

@@ -56,7 +56,7 @@ Real weakened_by(const Scene& scene, const BodySpec& body, Index stage)
   return factor;
 }
 
-bool has_strength(const MaterialSpec& material) { return material.law.model()->has_strength(); }
+bool has_strength(const MaterialSpec& material) { return material.law.description().has_strength; }
 
 bool is_renewed(const Scene& scene, const BodySpec& body, Index stage)
 {
@@ -73,7 +73,7 @@ Material law_in_force(const Scene& scene, const BodySpec& body, Index stage)
   if (const Real factor = weakened_by(scene, body, stage); factor != 1)
     material.weaken(factor);
   material.viscosity = spec.bulk_viscosity;
-  material.averages_volume = body.f_bar.value_or(material.law().is_isochoric());
+  material.averages_volume = body.f_bar.value_or(material.law().description().is_isochoric);
   material.group = group_of_averages(scene, body, spec, stage);
   return material;
 }

@@ -97,7 +97,7 @@ class Seeder {
       for (Index& row : of_body)
         row -= source.begin;
       carry_history(there, of_body, material_here);
-    } else if (!material_here.law().starts_from_stress()) {
+    } else if (!material_here.law().description().starts_from_stress) {
       errors_.add(spec.where, "material",
                   fmt::format("the particles come from law \"{}\", and law \"{}\" cannot start from their stress; of other laws {} can",
                               there.law().name(), material_here.law().name(), or_list(laws_that_start_from_stress())));
@@ -208,7 +208,7 @@ class Seeder {
     Particles<D> one;
     one.keep_in(scene_.precision);
     make_room(1, one);
-    std::size_t bytes = sizeof(Real) * static_cast<std::size_t>(law.model_of_all_kinds()->history_width());
+    std::size_t bytes = sizeof(Real) * static_cast<std::size_t>(law.description().history_width);
     one.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
     const Real on_this_machine = static_cast<Real>(std::min(ranks_on_this_machine(), ranks_.size())) / ranks_.size();
     return ranks_.first(too_many(static_cast<Real>(more) * on_this_machine, "particles", static_cast<Real>(bytes)));

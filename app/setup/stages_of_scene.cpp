@@ -91,7 +91,7 @@ void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup
       stage.start_stress_bodies = numbers_of(changes_of(scene.stages[s]).appear, setup.state.bodies);
     for (std::size_t b = 0; b < setup.state.bodies.size(); ++b) {
       const Index from = presence_of(setup.state.bodies[b].name, scene.stages).from;
-      if (std::cmp_equal(from, s) && !setup.state.materials[b].law().starts_from_stress())
+      if (std::cmp_equal(from, s) && !setup.state.materials[b].law().description().starts_from_stress)
         errors.add(stage.where, "initial_stress",
                    fmt::format("law \"{}\" of body \"{}\" cannot start from a stress; leave initial_stress out and let gravity grow (ramp)",
                                setup.state.materials[b].law().name(), setup.state.bodies[b].name));

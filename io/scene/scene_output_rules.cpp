@@ -149,7 +149,7 @@ class OutputRules : private SceneRuleBase {
     const bool misspelt = !std::all_of(used.begin(), used.end(), among(there));  // any of them may be meant
     for (const MaterialSpec& material : scene_.materials)
       if (misspelt || among(used)(material.name))
-        for (const HistoryVariable& variable : material.law.model_of_all_kinds()->variables())
+        for (const HistoryVariable& variable : material.law.description().variables)
           known.push_back({std::string(variable.key), variable.components});
     return known;
   }

@@ -19,20 +19,39 @@ struct HeatConduction {
   int temperature;     ///< its number in the history of a particle
 };
 
+/// What all bodies with a law have in common, whatever its parameters.
+struct LawDescription {
+  std::string_view name, summary;
+  std::span<const HistoryVariable> variables;
+  int history_width;        ///< numbers in the row of a particle
+  bool starts_from_stress;  ///< see prestress()
+  bool has_strength;        ///< see weakened()
+  bool is_isochoric;        ///< its plastic flow keeps the volume, which locks simplices
+  bool is_fluid;            ///< at rest it bears pressure alone
+
+  /// Number of a scalar history variable in the row of a particle; nothing if the law does not have it.
+  std::optional<int> scalar_variable(std::string_view key) const noexcept
+  {
+    for (const HistoryVariable& variable : variables)
+      if (variable.key == key && variable.components == 1)
+        return variable.first;
+    return std::nullopt;
+  }
+};
+
 /// Called once per step and block (update_stress) or outside the time step (everything else).  It does not change after it was made, so
 /// that bodies share it.  `history` is the row of a particle, with the numbers that variables() describes.
 class ConstitutiveLaw {
  public:
-  ConstitutiveLaw() = default;
+  explicit ConstitutiveLaw(const LawDescription& description) noexcept : description_(description) {}
   ConstitutiveLaw(const ConstitutiveLaw&) = delete;
   ConstitutiveLaw& operator=(const ConstitutiveLaw&) = delete;
   virtual ~ConstitutiveLaw() = default;
 
-  virtual std::string_view name() const noexcept = 0;
-  virtual std::string_view summary() const noexcept = 0;
+  const LawDescription& description() const noexcept { return description_; }
+  std::string_view name() const noexcept { return description_.name; }
+  std::span<const HistoryVariable> variables() const noexcept { return description_.variables; }
   virtual Real density() const noexcept = 0;  ///< at rest [kg/m^3]
-  virtual std::span<const HistoryVariable> variables() const noexcept = 0;
-  virtual int history_width() const noexcept = 0;  ///< numbers of a row
   /// The row of a particle at rest.
   virtual void initial_history(Real* history) const noexcept = 0;
 
@@ -48,16 +67,15 @@ class ConstitutiveLaw {
   virtual Real wave_speed(const Mat3& F, const Real* history) const noexcept = 0;
   virtual std::optional<Real> diffusivity() const noexcept = 0;  ///< largest one, of momentum or heat [m^2/s]
 
-  virtual bool starts_from_stress() const noexcept = 0;
   /// Makes `stress` [Pa] the stress at F = I.  False, and no change, if the law cannot start from a stress.
   virtual bool prestress(const Mat3& stress, Real* history) const noexcept = 0;
-  virtual bool has_strength() const noexcept = 0;
   /// This law, its shear strength divided by `factor` > 0; nothing for a law without strength.
   virtual std::shared_ptr<const ConstitutiveLaw> weakened(Real factor) const = 0;
   virtual std::optional<Real> shear_modulus() const noexcept = 0;  ///< elastic one at rest [Pa], of laws that have it
   virtual std::optional<HeatConduction> heat() const noexcept = 0;
-  virtual bool is_isochoric() const noexcept = 0;  ///< its plastic flow keeps the volume, which locks simplices
-  virtual bool is_fluid() const noexcept = 0;      ///< at rest it bears pressure alone
+
+ private:
+  const LawDescription& description_;  ///< constant, of the type of the law
 };
 
 /// The law with its parameters, of the kind that they ask for.  Defined in constitutive_law_of.hpp; each law of the list is compiled in a unit of
@@ -66,15 +84,6 @@ template <class L>
 std::shared_ptr<const ConstitutiveLaw> constitutive_law(const L& law);
 /// The law with all the history that it can have, whatever its parameters ask for.
 template <class L>
-std::shared_ptr<const ConstitutiveLaw> constitutive_law_of_all_kinds(const L& law);
-
-/// Number of a scalar history variable in the row of a particle; nothing if the law does not have it.
-inline std::optional<int> scalar_variable(const ConstitutiveLaw& law, std::string_view key) noexcept
-{
-  for (const HistoryVariable& variable : law.variables())
-    if (variable.key == key && variable.components == 1)
-      return variable.first;
-  return std::nullopt;
-}
+const LawDescription& law_description() noexcept;
 
 }  // namespace talus

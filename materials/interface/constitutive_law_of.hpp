@@ -63,6 +63,22 @@ auto variables_of()
 }  // namespace detail
 
 template <class L>
+const LawDescription& law_description() noexcept
+{
+  using State = typename L::State;
+  static const auto variables = detail::variables_of<State>();
+  static const LawDescription description{.name = L::name,
+                                          .summary = L::summary,
+                                          .variables = variables,
+                                          .history_width = std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(Real)),
+                                          .starts_from_stress = requires(const L& law, State& state){law.prestress(Mat3(), state);
+}
+, .has_strength = HasStrength<L>, .is_isochoric = is_isochoric<L>(), .is_fluid = std::is_base_of_v<WeaklyCompressible, L>
+};  // namespace talus
+return description;
+}
+
+template <class L>
 class ConstitutiveLawOf final : public ConstitutiveLaw {
   static_assert(Law<L>);
 
@@ -71,7 +87,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   static_assert(std::is_trivially_destructible_v<State> && (std::is_empty_v<State> || sizeof(State) % sizeof(Real) == 0),
                 "a history consists of numbers and symmetric tensors");
 
-  explicit ConstitutiveLawOf(const L& law) : law_(law), constants_(law.constants()) {}
+  explicit ConstitutiveLawOf(const L& law) : ConstitutiveLaw(law_description<L>()), law_(law), constants_(law.constants()) {}
 
   const L& parameters() const noexcept { return law_; }
   const typename L::Constants& constants() const noexcept { return constants_; }
@@ -87,15 +103,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
   static const State& state_of(const Real* history) noexcept { return state_of(const_cast<Real*>(history)); }
 
-  std::string_view name() const noexcept override { return L::name; }
-  std::string_view summary() const noexcept override { return L::summary; }
   Real density() const noexcept override { return law_.density; }
-  std::span<const HistoryVariable> variables() const noexcept override
-  {
-    static const auto all = detail::variables_of<State>();
-    return all;
-  }
-  int history_width() const noexcept override { return std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(Real)); }
   void initial_history(Real* history) const noexcept override
   {
     if constexpr (requires { law_.initial_state(); })
@@ -144,14 +152,12 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
       return std::nullopt;
   }
 
-  bool starts_from_stress() const noexcept override { return has_prestress; }
   bool prestress(const Mat3& stress, Real* history) const noexcept override
   {
     if constexpr (has_prestress)
       law_.prestress(stress, state_of(history));
     return has_prestress;
   }
-  bool has_strength() const noexcept override { return HasStrength<L>; }
   std::shared_ptr<const ConstitutiveLaw> weakened(Real factor) const override
   {
     L weaker = law_;
@@ -168,12 +174,10 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   {
     if constexpr (requires { law_.conductivity; })
       if (law_.conductivity)
-        if (const auto temperature = scalar_variable(*this, "temperature"))
+        if (const auto temperature = description().scalar_variable("temperature"))
           return HeatConduction{*law_.conductivity, law_.specific_heat, *temperature};
     return std::nullopt;
   }
-  bool is_isochoric() const noexcept override { return talus::is_isochoric<L>(); }
-  bool is_fluid() const noexcept override { return std::is_base_of_v<WeaklyCompressible, L>; }
 
  private:
   static constexpr bool has_prestress = requires(const L& law, State& state) { law.prestress(Mat3(), state); };
@@ -276,18 +280,16 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
 };
 
 template <class L>
-std::shared_ptr<const ConstitutiveLaw> constitutive_law_of_all_kinds(const L& law)
-{
-  return std::make_shared<const ConstitutiveLawOf<L>>(law);
-}
-
-template <class L>
 std::shared_ptr<const ConstitutiveLaw> constitutive_law(const L& law)
 {
   if constexpr (requires { law.kind(); })
-    return std::visit([](const auto& kind) { return constitutive_law_of_all_kinds(kind); }, law.kind());
+    return std::visit(
+        []<class Kind>(const Kind& kind) -> std::shared_ptr<const ConstitutiveLaw> {
+          return std::make_shared<const ConstitutiveLawOf<Kind>>(kind);
+        },
+        law.kind());
   else
-    return constitutive_law_of_all_kinds(law);
+    return std::make_shared<const ConstitutiveLawOf<L>>(law);
 }
 
 /// The law of a material as the type that it is; nullptr if it is another.

@@ -5,7 +5,7 @@
 namespace talus {
 
 Material::Material(std::shared_ptr<const ConstitutiveLaw> law, Index begin_row, Index end_row, std::string of_name, SourceLocation of_where)
-    : where(std::move(of_where)), name(std::move(of_name)), history(law->history_width()), law_(std::move(law))
+    : where(std::move(of_where)), name(std::move(of_name)), history(law->description().history_width), law_(std::move(law))
 {
   begin_anew(begin_row, end_row, *this);
 }
@@ -22,7 +22,7 @@ bool Material::weaken(Real factor)
   std::shared_ptr<const ConstitutiveLaw> weaker = law_->weakened(factor);
   if (weaker)
     law_ = std::move(weaker);
-  return law_->has_strength();
+  return law_->description().has_strength;
 }
 
 void begin_anew(Index begin, Index end, Material& material)
@@ -46,7 +46,7 @@ template StressSums update_stress<3>(Material&, const StressBlock<3>&) noexcept;
 
 Real plastic_work(const Material& material, Index i, Real volume0) noexcept
 {
-  const auto work = scalar_variable(material.law(), "plastic_work");
+  const auto work = material.law().description().scalar_variable("plastic_work");
   return work ? volume0 * material.history.row(i)[*work] : 0;
 }
 

@@ -23,6 +23,7 @@ struct StressSums {
   }
 };
 
+/// The particles of a body in a block, what a law reads of the mesh and of the step, and where it writes.
 template <int D>
 struct StressBlock {
   std::span<const Index> rows;       ///< the particles

@@ -211,7 +211,7 @@ TestResult perform(const Material& material, const TestPlan& plan)
     start = pressed;
   } else if (plan.pressure > 0) {
     constexpr Real slowly = 1e6;  // s: no viscous stress is left
-    paths.push_back({.time = slowly, .controls = consolidation(plan, material.law().is_fluid())});
+    paths.push_back({.time = slowly, .controls = consolidation(plan, material.law().description().is_fluid)});
     before = paths.front().steps;
   }
   paths.push_back({.steps = plan.steps, .time = plan.strain / plan.rate, .controls = controls_of(plan)});

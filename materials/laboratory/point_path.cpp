@@ -186,7 +186,8 @@ PointTable drive(Material material, std::span<const PointPath> paths, const Mat3
     throw RunError("a path needs one particle to drive");
   if (!initial_stress.isZero(0) && !material.prestress(0, initial_stress))
     throw RunError(fmt::format("{} cannot start from a stress: reach it by a path", law.name()));
-  PointState state{.stress = initial_stress, .history = {material.history.row(0), material.history.row(0) + law.history_width()}};
+  PointState state{.stress = initial_stress,
+                   .history = {material.history.row(0), material.history.row(0) + law.description().history_width}};
   PointTable table{history_names(law), {row_of(0, law, state)}};
   Real time = 0;
   for (std::size_t n = 0; n < paths.size(); ++n) {

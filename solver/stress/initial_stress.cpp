@@ -170,8 +170,8 @@ StressFit fit_stress(const Body& body, const Material& material, Real dt, bool t
 {
   const ConstitutiveLaw& law = material.law();
   // A law that starts from a stress moves on by dt L, another finds its stress from F and the rate of that step.
-  const bool moves_on = law.starts_from_stress();
-  const auto width = static_cast<std::size_t>(law.history_width());
+  const bool moves_on = law.description().starts_from_stress;
+  const auto width = static_cast<std::size_t>(law.description().history_width);
   return parallel_sum<StressFit>(body.size(), [&](Index i) {
     const auto p = static_cast<std::size_t>(body.begin + i);
     const Sym3 before = particles.stress[p];

@@ -151,7 +151,7 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   const Real density = material.law().density();
   setup.state.particles = bench_particles<D>(block.mesh, setting.per_cell, density);
   setup.state.particles.keep_in(block.scene.precision);
-  material.averages_volume = material.law().is_isochoric() || setting.option == bench_options::f_bar;
+  material.averages_volume = material.law().description().is_isochoric || setting.option == bench_options::f_bar;
   if (setting.option == bench_options::bulk_viscosity)
     material.viscosity = BulkViscosity{};
   const Real wave = material.wave_speed(0, Mat3::Identity());

@@ -22,8 +22,8 @@ std::vector<std::string> names_of(Choice choice)
 std::vector<std::string> law_names()
 {
   std::vector<std::string> names;
-  for (const auto& law : known_laws())
-    names.emplace_back(law->name());
+  for (const LawDescription* law : known_laws())
+    names.emplace_back(law->name);
   return names;
 }
 

@@ -318,7 +318,7 @@ FosPlan plan_fos(const FosOptions& options)
     moved.push_back(fmt::format("{{name: moved, mass_share: {}}}", options.mass_share));
   }
   plan.keeps_strain = std::any_of(plan.materials.begin(), plan.materials.end(), [&](Index number) {
-    return scalar_variable(*scene.materials[static_cast<std::size_t>(number)].law.model_of_all_kinds(), "plastic_strain").has_value();
+    return scene.materials[static_cast<std::size_t>(number)].law.description().scalar_variable("plastic_strain").has_value();
   });
   plan.fields = plan.keeps_strain ? "[velocity, displacement, plastic_strain]" : "[velocity, displacement]";
   plan.moved = fmt::format("[{}]", fmt::join(moved, ", "));

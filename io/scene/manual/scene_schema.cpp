@@ -277,8 +277,8 @@ Words words_of_table(const Table& table)
 Words particle_field_words()
 {
   Words words = words_of_table(particle_fields());
-  for (const auto& law : known_laws())
-    for (const HistoryVariable& variable : law->variables())
+  for (const LawDescription* law : known_laws())
+    for (const HistoryVariable& variable : law->variables)
       words.emplace(variable.key, variable.meaning);
   return words;
 }
