@@ -55,9 +55,9 @@ std::pair<std::vector<Real>, LayerCells> bottom_below(const std::vector<Real>& a
 std::string in_words(const LayerCells& fates, const std::string& upper, std::string_view unit)
 {
   std::string text;
-  const auto add = [&](const ColumnSums& tally, const std::string& what) {
-    if (tally.columns > 0)
-      text += fmt::format("{}{} over {:.4g} {}", text.empty() ? "" : ", ", what, tally.extent, unit);
+  const auto add = [&](const ColumnSums& sums, const std::string& what) {
+    if (sums.columns > 0)
+      text += fmt::format("{}{} over {:.4g} {}", text.empty() ? "" : ", ", what, sums.extent, unit);
   };
   add(fates.blank, "not known");
   add(fates.crossed, fmt::format("above {} (by {:.4g} m at most)", upper, fates.crossed.largest));

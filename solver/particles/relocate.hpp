@@ -17,7 +17,7 @@ struct Exits {
 
 /// Finds each particle's cell.  A particle outside behind a closed facet is set back onto it: weights of moving least squares do
 /// not vanish beside a wall, so round-off of a cell's size may carry a particle across.  Others are reported lost or deleted.
-/// What deleted particles take along is added to the tally.  Afterwards `order` is sorted.
+/// The mass, momentum and energy of deleted particles are added to `sums`.  Afterwards `order` is sorted.
 /// True if rows changed place.
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
