@@ -11,7 +11,7 @@
 
 namespace talus {
 
-/// What a law is told about one step of one particle, or of several at once where T is Lanes.
+/// The input of a law for one step of one particle, or of several at once where T is SimdReal.
 template <class T>
 struct IncrementOf {
   const Mat3Of<T>& F;       ///< deformation gradient at the end of the step, relative to the stress-free start [-]
@@ -50,7 +50,7 @@ struct StateRows {
 template <class T, class State>
 using StateOf = std::conditional_t<std::is_same_v<T, SimdReal>, StateRows<State>, State>;
 
-/// One variable of a history, for a law that is written once for Real and Lanes.
+/// One variable of a history, for a law that is written once for Real and SimdReal.
 template <class State, class Owner>
 Real get(const State& state, Real Owner::*member) noexcept
 {
@@ -120,7 +120,7 @@ void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<SimdReal>& va
 ///                                                                   there is; the law itself is the kind that has all of it
 ///   static constexpr bool isochoric = true                          plastic flow keeps the volume: its bodies average it by default
 ///   static constexpr bool objective = false                         it answers a superposed rotation with stress (see is_objective)
-///   update and wave_speed for several particles at once             written once as templates over T = Real and T = Lanes; the history
+///   update and wave_speed for several particles at once             written once as templates over T = Real and T = SimdReal; the history
 ///                                                                   is a StateOf<T, State>, read by get() and written by put()
 /// A history variable with key "plastic_work" [J/m^3 of initial volume] is taken up by the energy audit.
 // clang-format off
@@ -151,7 +151,7 @@ Mat3Of<T> no_answer() noexcept
   return Mat3Of<T>::Constant(std::numeric_limits<Real>::quiet_NaN());
 }
 
-/// The answers of several particles one after the other, for laws and states that are not worth lanes.  Lanes beyond `count` are zero.
+/// The stresses of several particles computed one after the other, for laws that are not written for lanes.  Lanes beyond `count` are zero.
 template <class L>
 Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
                                    const typename L::Constants& constants) noexcept

@@ -238,10 +238,10 @@ class Communicator {
 
 /// Bytes viewed as rows of T, a plain struct of numbers.
 template <class T>
-std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& outgoing)
+std::vector<std::vector<T>> rows_of(const std::vector<std::vector<std::byte>>& received)
 {
   std::vector<std::vector<T>> rows;
-  for (const std::vector<std::byte>& bytes : outgoing) {
+  for (const std::vector<std::byte>& bytes : received) {
     rows.emplace_back(bytes.size() / sizeof(T));
     if (!bytes.empty())
       std::memcpy(static_cast<void*>(rows.back().data()), bytes.data(), bytes.size());

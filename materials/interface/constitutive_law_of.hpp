@@ -62,6 +62,13 @@ auto variables_of()
 }
 }  // namespace detail
 
+/// Whether particles of a law can begin with a stress.
+template <class L>
+inline constexpr bool has_prestress = requires(const L& law, typename L::State& state)
+{
+  law.prestress(Mat3(), state);
+};
+
 template <class L>
 const LawDescription& law_description() noexcept
 {
@@ -71,11 +78,11 @@ const LawDescription& law_description() noexcept
                                           .summary = L::summary,
                                           .variables = variables,
                                           .history_width = std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(Real)),
-                                          .starts_from_stress = requires(const L& law, State& state){law.prestress(Mat3(), state);
-}
-, .has_strength = HasStrength<L>, .is_isochoric = is_isochoric<L>(), .is_fluid = std::is_base_of_v<WeaklyCompressible, L>
-};  // namespace talus
-return description;
+                                          .starts_from_stress = has_prestress<L>,
+                                          .has_strength = HasStrength<L>,
+                                          .is_isochoric = is_isochoric<L>(),
+                                          .is_fluid = std::is_base_of_v<WeaklyCompressible, L>};
+  return description;
 }
 
 template <class L>
@@ -154,9 +161,9 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
 
   bool prestress(const Mat3& stress, Real* history) const noexcept override
   {
-    if constexpr (has_prestress)
+    if constexpr (has_prestress<L>)
       law_.prestress(stress, state_of(history));
-    return has_prestress;
+    return has_prestress<L>;
   }
   std::shared_ptr<const ConstitutiveLaw> weakened(Real factor) const override
   {
@@ -180,8 +187,6 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
 
  private:
-  static constexpr bool has_prestress = requires(const L& law, State& state) { law.prestress(Mat3(), state); };
-
   Real wave_speed(const Mat3& F, const State& state) const noexcept
   {
     if constexpr (requires { law_.wave_speed(F, state, constants_); })
