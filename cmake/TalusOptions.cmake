@@ -53,6 +53,11 @@ if(TALUS_QUICK_TESTS)
   set(TALUS_TEST_OPTIONS -O1 -Wno-mismatched-new-delete -Wno-maybe-uninitialized)
 endif()
 
+# What reads, writes and commands computes little: -O2 instead of -O3 saves a fifth of its compile time. It has a precompiled header of its own.
+if(CMAKE_BUILD_TYPE STREQUAL Release)
+  set(TALUS_OUTER_OPTIONS -O2)
+endif()
+
 # gcc looks for garbage from 1.5 GB on: from 128 MB on, which the precompiled header fills alone, it spends a tenth of its time there.
 if(TALUS_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   add_compile_options($<$<COMPILE_LANGUAGE:CXX>:--param=ggc-min-heapsize=1500000>)

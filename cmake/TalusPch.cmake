@@ -1,4 +1,5 @@
-# Two precompiled headers, each made once: talus_pch for the libraries, talus_tests_pch with GoogleTest for the tests.
+# Precompiled headers, each made once: talus_pch for what computes, talus_outer_pch for what is compiled with TALUS_OUTER_OPTIONS,
+# talus_tests_pch with GoogleTest for the tests.
 # Only headers of the standard library, Eigen and fmt: a file must still compile alone (TALUS_PCH=OFF, as the checks do).
 function(talus_make_pch name)
   cmake_parse_arguments(arg "" "" "LINKS;HEADERS;OPTIONS" ${ARGN})
@@ -19,6 +20,7 @@ endfunction()
 
 if(TALUS_PCH)
   talus_make_pch(talus_pch)
+  talus_make_pch(talus_outer_pch OPTIONS ${TALUS_OUTER_OPTIONS})
   if(TARGET GTest::gmock)
     talus_make_pch(talus_tests_pch LINKS GTest::gtest GTest::gmock HEADERS <gmock/gmock.h> <gtest/gtest.h> OPTIONS ${TALUS_TEST_OPTIONS})
   endif()

@@ -96,6 +96,11 @@ std::variant<T...>& choices_of(std::variant<T...>& value) noexcept
 {
   return value;
 }
+template <class... T>
+const std::variant<T...>& choices_of(const std::variant<T...>& value) noexcept
+{
+  return value;
+}
 template <class Value>
 using ChoicesOf = std::remove_cvref_t<decltype(choices_of(std::declval<Value&>()))>;
 

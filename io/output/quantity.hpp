@@ -19,10 +19,6 @@ constexpr int components_of(QuantityKind kind)
   return kind == number ? 1 : kind == symmetric ? 6 : kind == tensor ? 9 : 3;
 }
 
-/// Numbers per particle of a history variable of a law.
-template <class Value>
-inline constexpr int components_of_history = components_of(std::is_same_v<Value, Sym3> ? QuantityKind::symmetric : QuantityKind::number);
-
 /// A quantity.  Manual, JSON schema, checks of scenes and writers are generated from these rows.  `value` is called with data of a run and
 /// returns a number, a vector, a Sym3 or a Mat3, according to the kind.  It is a generic lambda, because the types of its arguments belong
 /// to folders above this one.

@@ -300,7 +300,7 @@ Scene read_scene_text(const std::filesystem::path& file, const std::string& text
 {
   Document document = read_document(file, plain_text(file, text), overrides);
   Scene scene;
-  FieldReader(document.problems).read(document.root, "", {}, scene);
+  FieldReader(document.problems).read(document.root, "", scene);
   add_findings(document, broken_rules(scene));
   document.problems.throw_if_any();
   settle_accuracy(scene);
@@ -362,7 +362,7 @@ PointTest read_point_path(const std::filesystem::path& file, std::span<const std
 {
   Document document = read_document(file, read_text(file), overrides);
   PointTest test;
-  FieldReader(document.problems).read(document.root, "", {}, test);
+  FieldReader(document.problems).read(document.root, "", test);
   document.problems.throw_if_any();
   return test;
 }
@@ -371,7 +371,7 @@ Study read_study(const std::filesystem::path& file)
 {
   Document document = read_document(file, read_text(file), {});
   StudySpec spec;
-  FieldReader(document.problems).read(document.root, "", {}, spec);
+  FieldReader(document.problems).read(document.root, "", spec);
   Study study = study_of(file, document.root, spec, document.problems);
   document.problems.throw_if_any();
   return study;

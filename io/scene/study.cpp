@@ -76,7 +76,7 @@ std::vector<Varied> read_vary(const StudySpec& spec, Problems& problems)
                      fmt::format("expected a distribution, such as {{low: 1, high: 2}} or {{mean: 1.5, deviation: 0.2}}: combine is {}",
                                  spec.combine == Combine::latin ? "latin" : "tornado"));
       else
-        FieldReader(problems).read(item, path, {}, spread);
+        FieldReader(problems).read(item, path, spread);
       if (problems.size() == before)
         varied.values = values_of(spread, key, spec, item, path);
       all.push_back(std::move(varied));
@@ -87,7 +87,7 @@ std::vector<Varied> read_vary(const StudySpec& spec, Problems& problems)
       continue;
     }
     std::vector<Node> nodes;
-    FieldReader(problems).read(item, path, {}, nodes);
+    FieldReader(problems).read(item, path, nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       varied.values.push_back(written(in_one_line(nodes[i]), vary.items[k].items[i], path_to(path, i, {})));
     all.push_back(std::move(varied));

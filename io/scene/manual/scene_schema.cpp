@@ -2,19 +2,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <array>
 #include <cmath>
-#include <concepts>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <span>
-#include <tuple>
 #include <utility>
-#include <variant>
 
-#include "io/document/field_reader.hpp"
-#include "io/document/field_words.hpp"
 #include "io/document/key_aliases.hpp"
+#include "io/document/value_type.hpp"
 #include "io/output/output_fields.hpp"
 #include "io/scene/manual/manual.hpp"
 #include "io/scene/scene_rules.hpp"
@@ -26,12 +21,7 @@ namespace talus {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-template <class T>
-concept IsVariant = requires
-{
-  std::variant_size<T>::value;
-};
+using Kind = ValueType::Kind;
 
 Json number(std::string_view type, const Range& range)
 {
@@ -43,58 +33,30 @@ Json number(std::string_view type, const Range& range)
   return schema;
 }
 
-template <class T>
-Json schema_of(const Range& range = any);
-
-template <class T>
-void add_keys(Json& schema);
+void add_keys(const StructType& type, Json& schema);
 
 Json empty_mapping()
 {
   return {{"type", "object"}, {"additionalProperties", false}, {"properties", Json::object()}, {"required", Json::array()}};
 }
 
-template <class T>
-Json mapping_of()
-{
-  Json schema = empty_mapping();
-  add_keys<T>(schema);
-  return schema;
-}
-
-template <class T>
-constexpr std::string_view summary_of()
-{
-  if constexpr (requires { T::summary; })
-    return T::summary;
-  else
-    return "";
-}
-
-/// A struct that a key can name.  Data that all structs and keys have in common are not templates, so that the code is compiled once.
-struct Struct {
-  std::string_view name;
-  std::string_view summary;
-  void (*add_keys)(Json& schema);
-};
-
 /// The mapping `base` with the key `name`, which names one of `structs` and so determines the other keys.  Editors then offer and check the
 /// keys of the named struct, and those of `base` while it is not named.
-Json one_of(const Json& base, const std::string& name, std::string_view meaning, std::span<const Struct> structs)
+Json one_of(const Json& base, const std::string& name, std::string_view meaning, std::span<const StructType* const> structs)
 {
   Json schema = base;
   schema.erase("additionalProperties");
   Json names = Json::array(), summaries = Json::array(), all = Json::array();
-  for (const Struct& each : structs) {
-    names.push_back(each.name);
-    if (!each.summary.empty())
-      summaries.push_back(each.summary);
+  for (const StructType* each : structs) {
+    names.push_back(each->name);
+    if (!each->summary.empty())
+      summaries.push_back(each->summary);
     Json chosen = base;
-    chosen["title"] = each.name;  // name of an entry of this kind in editors
-    chosen["properties"][name] = {{"const", each.name}, {"description", each.summary.empty() ? meaning : each.summary}};
+    chosen["title"] = each->name;  // name of an entry of this kind in editors
+    chosen["properties"][name] = {{"const", each->name}, {"description", each->summary.empty() ? meaning : each->summary}};
     chosen["required"].push_back(name);
-    each.add_keys(chosen);
-    Json is_chosen{{"properties", {{name, {{"const", each.name}}}}}, {"required", {name}}};
+    add_keys(*each, chosen);
+    Json is_chosen{{"properties", {{name, {{"const", each->name}}}}}, {"required", {name}}};
     all.push_back({{"if", std::move(is_chosen)}, {"then", std::move(chosen)}});
   }
   Json& word = schema["properties"][name] = {{"description", meaning}, {"enum", std::move(names)}};
@@ -105,67 +67,49 @@ Json one_of(const Json& base, const std::string& name, std::string_view meaning,
   return schema;
 }
 
-template <class... T>
-constexpr std::array<Struct, sizeof...(T)> structs_of(std::type_identity<std::variant<T...>>)
+Json schema_of(const ValueType& type, const Range& range)
 {
-  return {{{T::name, summary_of<T>(), add_keys<T>}...}};
+  switch (type.kind) {
+    case Kind::boolean: return {{"type", "boolean"}};
+    case Kind::whole_number: return number("integer", range);
+    case Kind::number: return number("number", range);
+    case Kind::text: return {{"type", Json::array({"string", "number"})}};  // YAML reads `name: 12` as a number
+    case Kind::word: return {{"enum", type.words}};
+    case Kind::table: return schema_of(value_type<std::vector<std::array<Real, 2>>>(), range);
+    case Kind::optional: return schema_of(*type.entry, range);
+    case Kind::choice: return one_of(empty_mapping(), "type", "what it is: decides the other keys", type.structs);
+    case Kind::node: return Json::object();
+    case Kind::list: {
+      Json schema{{"type", "array"}, {"minItems", 1}, {"items", schema_of(*type.entry, range)}};
+      if (type.length != 0)
+        schema["minItems"] = schema["maxItems"] = type.length;
+      return schema;
+    }
+    case Kind::mapping: break;
+  }
+  Json schema = empty_mapping();
+  add_keys(*type.structs.front(), schema);
+  return schema;
 }
 
-template <class T>
-Json schema_of(const Range& range)
+/// The default as an editor inserts it; null without a default or if it is not a scalar.
+Json inserted_default(const ValueType& type, const void* value, const Range& range)
 {
-  if constexpr (std::same_as<T, bool>) {
-    return {{"type", "boolean"}};
-  } else if constexpr (std::same_as<T, Index>) {
-    return number("integer", range);
-  } else if constexpr (std::same_as<T, Real>) {
-    return number("number", range);
-  } else if constexpr (std::same_as<T, std::string>) {
-    return {{"type", Json::array({"string", "number"})}};  // YAML reads `name: 12` as a number
-  } else if constexpr (std::is_enum_v<T>) {
-    return {{"enum", enum_names(T{})}};
-  } else if constexpr (std::same_as<T, Table>) {
-    return schema_of<std::vector<std::array<Real, 2>>>(range);
-  } else if constexpr (requires {
-                         typename T::value_type;
-                         typename T::iterator;
-                       }) {
-    Json schema{{"type", "array"}, {"minItems", 1}, {"items", schema_of<typename T::value_type>(range)}};
-    if constexpr (requires { std::tuple_size<T>::value; })
-      schema["minItems"] = schema["maxItems"] = std::tuple_size_v<T>;
-    return schema;
-  } else if constexpr (requires(const T& value) { value.has_value(); }) {
-    return schema_of<typename T::value_type>(range);
-  } else if constexpr (IsVariant<T>) {
-    return one_of(empty_mapping(), "type", "what it is: decides the other keys", structs_of(std::type_identity<T>{}));
-  } else {
-    return mapping_of<T>();
+  const std::string text = default_text(type, value, range);
+  if (text == "none")
+    return {};
+  switch (type.kind) {
+    case Kind::optional: return inserted_default(*type.entry, type.at(value, 0), range);
+    case Kind::boolean: return as<bool>(value);
+    case Kind::whole_number: return as<Index>(value);
+    case Kind::number: return as<Real>(value);
+    case Kind::word:
+    case Kind::text: return text;
+    default: return {};
   }
 }
 
-template <class Value>
-constexpr bool is_optional = requires(const Value& value)
-{
-  value.has_value();
-};
-
-/// The default as an editor inserts it; null without a default or if it is not a scalar.
-template <class T>
-Json default_value(const T& value, const Range& range)
-{
-  if constexpr (is_optional<T>)
-    return value ? default_value(*value, range) : Json();
-  else if constexpr (std::same_as<T, bool>)
-    return value;
-  else if constexpr (std::is_arithmetic_v<T>)
-    return range.holds(static_cast<Real>(value)) ? Json(value) : Json();
-  else if constexpr (std::is_enum_v<T> || std::same_as<T, std::string>)
-    return default_of(value, range) == "none" ? Json() : Json(default_of(value, range));
-  else
-    return {};
-}
-
-/// The description of a key in a field list, and the schema of its value.
+/// A key with its schema.
 struct Key {
   std::string_view name;
   std::string_view meaning;
@@ -211,55 +155,26 @@ void insert(Key key, Json& schema)
     schema["oneOf"] = {{{"required", {key.name}}}, {{"required", {other}}}};
 }
 
-template <class Field, class Value>
-void add_key_of(const Field& field, const Value& fallback, std::string_view unit, const Range& range, Need need, Json& schema)
-{
-  std::string default_text;
-  if constexpr (!HasFields<Value>)
-    default_text = default_of(fallback, range);
-  insert({.name = field.key,
-          .meaning = field.meaning,
-          .unit = unit,
-          .range = range,
-          .need = need,
-          .is_mapping = HasFields<Value>,
-          .fallback = std::move(default_text),
-          .inserted = default_value(fallback, range),
-          .schema = schema_of<Value>(range)},
-         schema);
-}
-
-template <class T, class Value>
-void add_key(Json& schema, const Parameter<T, Value>& field)
-{
-  add_key_of(field, T{}.*field.member, field.unit, field.range, field.need, schema);
-}
-template <class T, class Value>
-void add_key(Json& schema, const Choice<T, Value>& field)
-{
-  add_key_of(field, T{}.*field.member, "", any, field.need, schema);
-}
-template <class T, class Value>
-void add_key(Json& schema, const Group<T, Value>& field)
-{
-  add_key_of(field, Value{}, "", any, is_optional<Value> ? Need::optional : Need::required, schema);
-}
-template <class T, class Item>
-void add_key(Json& schema, const List<T, Item>& field)
-{
-  add_key_of(field, std::vector<Item>{}, "", any, field.need, schema);
-}
-template <class T, class Value>
-void add_key(Json& schema, const Alternative<T, Value>& field)
-{
-  schema = one_of(schema, std::string(field.key), field.meaning, structs_of(std::type_identity<ChoicesOf<Value>>{}));
-}
-
 /// Alternatives come last in a field list, because they multiply the keys before them.
-template <class T>
-void add_keys(Json& schema)
+void add_keys(const StructType& type, Json& schema)
 {
-  for_each_field<T>([&](const auto& field) { add_key(schema, field); });
+  for (const FieldType& field : type.fields) {
+    const void* const fallback = field.member_of(type.defaults);
+    const bool is_mapping = field.type->kind == Kind::mapping;
+    if (field.is_alternative)
+      schema = one_of(schema, std::string(field.key), field.meaning, field.type->structs);
+    else
+      insert({.name = field.key,
+              .meaning = field.meaning,
+              .unit = field.unit,
+              .range = field.range,
+              .need = field.need,
+              .is_mapping = is_mapping,
+              .fallback = is_mapping ? "" : default_text(*field.type, fallback, field.range),
+              .inserted = inserted_default(*field.type, fallback, field.range),
+              .schema = schema_of(*field.type, field.range)},
+             schema);
+  }
 }
 
 /// A word and its meaning.
@@ -298,7 +213,7 @@ Json items_of(const Words& words)
 std::string scene_schema()
 {
   Json schema{{"$schema", "http://json-schema.org/draft-07/schema#"}, {"$id", "urn:talus:scene"}, {"title", "Talus scene"}};
-  schema.update(mapping_of<Scene>());
+  schema.update(schema_of(value_type<Scene>(), any));
   Json& keys = schema["properties"];
   Json& kernel = keys["kernel"];
   kernel["enum"] = kernel_names();
