@@ -7,7 +7,6 @@
 
 #include "app/commands/run_command.hpp"
 #include "app/commands/run_files.hpp"
-#include "app/commands/run_identity.hpp"
 #include "app/commands/run_messages.hpp"
 #include "app/observers/balance_errors.hpp"
 #include "app/observers/checkpoints.hpp"

@@ -1,5 +1,5 @@
 #pragma once
-// The files that a run writes at its beginning.
+// What a run writes at its beginning, and the identity of its program, scene, mesh and files, by which it can go on.
 #include <filesystem>
 #include <optional>
 
@@ -17,5 +17,12 @@ bool goes_on_in_place(const CheckpointList* from, const std::filesystem::path& f
 template <int D>
 void write_first_files(const std::filesystem::path& place, const RunSummary& summary, const Mesh<D>& mesh,
                        const std::optional<std::filesystem::path>& initial);
+
+/// The identity for this program and a scene; `mesh` and `from_files` are digests, `initial` is the file of the initial state, or empty.
+RunIdentity identity_of(const Scene& scene, bool quick, std::uint64_t mesh, std::uint64_t from_files, const std::string& initial);
+
+/// Throws EnvironmentError if the mesh, or the contents of other files, differ from those of the checkpoint.  Another program leads to a
+/// warning.
+void compare(const RunIdentity& then, const RunIdentity& now);
 
 }  // namespace talus

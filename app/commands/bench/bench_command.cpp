@@ -9,16 +9,12 @@
 
 #include "app/commands/bench/bench_cases.hpp"
 #include "app/commands/bench/bench_measure.hpp"
-#include "app/commands/bench/bench_ranks.hpp"
 #include "app/commands/bench/bench_table.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/version.hpp"
 
 namespace talus {
 
-namespace {
-
-/// As /proc/cpuinfo names it, or "unknown".
 std::string processor_name()
 {
   std::ifstream info("/proc/cpuinfo");
@@ -28,6 +24,8 @@ std::string processor_name()
         return line.substr(colon + 2);
   return "unknown";
 }
+
+namespace {
 
 /// Runs settings one by one and says so.
 BenchReport measured_report(const BenchOptions& options)

@@ -23,4 +23,11 @@ struct BenchOptions {
 /// nothing.
 void bench(const BenchOptions& options);
 
+/// `talus bench --mpi`: one case on the ranks of this process, to see what sharing it costs.  Prints a table and writes a file if asked to: both
+/// on the root.  Every rank has to ask.
+void bench_ranks(const BenchOptions& options);
+
+/// The processor as /proc/cpuinfo names it, or "unknown".
+std::string processor_name();
+
 }  // namespace talus

@@ -1,4 +1,4 @@
-#include "app/commands/bench/bench_ranks.hpp"
+#include "app/commands/bench/bench_command.hpp"
 
 #include <fmt/format.h>
 

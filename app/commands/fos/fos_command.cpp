@@ -7,7 +7,7 @@
 
 #include "app/commands/fos/fos_command.hpp"
 #include "app/commands/fos/fos_trials.hpp"
-#include "app/commands/pictures/render_command.hpp"
+#include "app/commands/pictures/picture_commands.hpp"
 #include "app/observers/results.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/shell_quote.hpp"

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/new/templates.hpp"
 #include "core/shell_quote.hpp"
 #include "core/word_match.hpp"
 #include "io/document/document.hpp"
