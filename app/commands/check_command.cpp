@@ -8,7 +8,6 @@
 #include "app/run/cost_estimate.hpp"
 #include "app/run/thread_choice.hpp"
 #include "app/setup/quick.hpp"
-#include "app/setup/rest_time.hpp"
 #include "app/setup/vertical_axis.hpp"
 #include "app/setup/water_table.hpp"
 #include "core/finite_count.hpp"

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "core/error.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/files/manifest.hpp"
 
 namespace talus {
@@ -21,12 +22,9 @@ namespace {
 /// Whether another process has the lock.
 bool is_taken(int handle, int kind) { return ::flock(handle, kind | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
-/// Opens a folder; returns its descriptor.
-int opened(const fs::path& folder) { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
-
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder) : handle_(opened(folder))
+FolderLock::FolderLock(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
 {
   bool taken = handle_ >= 0 && is_taken(handle_, LOCK_EX);
   for (int again = 0; taken && again < 10; ++again) {  // a process that checks for a run holds the lock for a moment
@@ -48,11 +46,8 @@ FolderLock::~FolderLock()
 
 bool run_is_at_work(const fs::path& folder)
 {
-  const int handle = opened(folder);
-  const bool taken = handle >= 0 && is_taken(handle, LOCK_SH);
-  if (handle >= 0)
-    ::close(handle);
-  return taken;
+  const FileDescriptor opened(folder, O_RDONLY | O_DIRECTORY);
+  return opened.is_open() && is_taken(opened.number(), LOCK_SH);
 }
 
 void remove_leftovers(const fs::path& folder)

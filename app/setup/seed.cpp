@@ -5,7 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "app/setup/checks/shared_cells.hpp"
+#include "app/setup/checks/shared_nodes.hpp"
 #include "app/setup/initial_velocity.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/setup.hpp"

@@ -4,8 +4,6 @@
 #include <array>
 #include <cctype>
 
-#include "io/files/runout_maps.hpp"
-
 namespace talus {
 
 bool is_numbered(std::string_view name, std::string_view prefix, std::string_view suffix) noexcept

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace talus {
 
@@ -125,6 +126,18 @@ void PictureSpec::check(std::vector<std::string>& problems) const
   needs_direction("view", view);
   if (!up.empty())
     needs_direction("up", up);
+}
+
+std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries)
+{
+  std::vector<std::string> names;
+  std::map<std::string, int> times;
+  for (const BoundaryOptions& boundary : boundaries) {
+    const std::string& group = common_of(boundary).on;
+    const int count = ++times[group];
+    names.push_back(count == 1 ? group : fmt::format("{}_{}", group, count));
+  }
+  return names;
 }
 
 }  // namespace talus

@@ -18,8 +18,7 @@
 #include "io/scene/scene_output.hpp"
 #include "io/scene/scene_stages.hpp"
 #include "io/scene/scene_water.hpp"
-#include "kernels/projected_options.hpp"
-#include "kernels/umls_options.hpp"
+#include "kernels/kernel_options.hpp"
 #include "mesh/conditions/conditions.hpp"
 #include "solver/options/limit_options.hpp"
 #include "solver/options/transfer_options.hpp"
@@ -112,5 +111,8 @@ struct Scene {
             "a tenth of the plastic work; without it these are warnings")};
   }
 };
+
+/// The names of boundary conditions in outputs and stages: that of the group of the condition; the second one on a group is `<group>_2`, and so on.
+std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries);
 
 }  // namespace talus

@@ -12,7 +12,7 @@
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/version.hpp"
-#include "io/output/ranks_json.hpp"
+#include "io/output/bench_json.hpp"
 
 namespace talus {
 

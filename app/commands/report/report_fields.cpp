@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/error.hpp"
-#include "core/parallel/threads.hpp"
 #include "core/word_match.hpp"
 
 namespace talus {
@@ -25,26 +24,6 @@ std::vector<std::string> names_of_fields(const StoredParticles& particles)
 }
 
 }  // namespace
-
-const StoredField* stored_field(const StoredParticles& particles, std::string_view name)
-{
-  const auto found =
-      std::find_if(particles.fields.begin(), particles.fields.end(), [&](const StoredField& field) { return field.name == name; });
-  return found == particles.fields.end() ? nullptr : &*found;
-}
-
-std::vector<Real> viewed_values(const StoredField& field, const ViewedField& viewed)
-{
-  const auto width = static_cast<std::size_t>(field.components);
-  const auto component = viewed.component_of(field.components);
-  const std::span<const Real> all = field.values;
-  std::vector<Real> values(all.size() / width);
-  parallel_for(static_cast<Index>(values.size()), [&](Index i) {
-    const auto entry = all.subspan(static_cast<std::size_t>(i) * width, width);
-    values[static_cast<std::size_t>(i)] = component ? entry[static_cast<std::size_t>(*component)] : viewed_value(entry);
-  });
-  return values;
-}
 
 std::string words_of(const ViewedField& field) { return field.component.empty() ? field.name : field.name + ':' + field.component; }
 

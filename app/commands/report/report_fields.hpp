@@ -1,15 +1,9 @@
 #pragma once
-// The fields of particles that a page shows, and their values.
+// The fields of particles that a page shows.
 #include "core/field_component.hpp"
 #include "io/output/vtk.hpp"
 
 namespace talus {
-
-/// The field of that name; nullptr if the file does not have it.
-const StoredField* stored_field(const StoredParticles& particles, std::string_view name);
-
-/// The shown value of each particle.
-std::vector<Real> viewed_values(const StoredField& field, const ViewedField& viewed);
 
 /// The fields to show: the requested ones, or else the one of the pictures and then every field that was written.  Throws Error if a field
 /// or component does not exist.
