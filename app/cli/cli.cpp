@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 
 #include "app/cli/cli_commands.hpp"
 #include "app/cli/completion.hpp"

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdlib>
 #include <new>
 
 #include "app/commands/run_command.hpp"
@@ -17,10 +16,10 @@
 #include "app/run/thread_choice.hpp"
 #include "app/setup/quick.hpp"
 #include "app/setup/resumed_scene.hpp"
+#include "core/display_text.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/print.hpp"
-#include "core/shell_quote.hpp"
 #include "core/stop_watch.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "app/observers/checkpoints.hpp"
 #include "app/observers/results.hpp"
 #include "core/error.hpp"
 #include "core/parallel/communicator.hpp"

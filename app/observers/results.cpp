@@ -1,16 +1,13 @@
 #include "app/observers/results.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
 #include <thread>
 
 #include "core/error.hpp"
-#include "io/files/file_descriptor.hpp"
 #include "io/files/manifest.hpp"
 
 namespace talus {
@@ -24,24 +21,16 @@ bool is_taken(int handle, int kind) { return ::flock(handle, kind | LOCK_NB) != 
 
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+FolderLock::FolderLock(const fs::path& folder) : handle_(folder, O_RDONLY | O_DIRECTORY)
 {
-  bool taken = handle_ >= 0 && is_taken(handle_, LOCK_EX);
+  bool taken = handle_.is_open() && is_taken(handle_.number(), LOCK_EX);
   for (int again = 0; taken && again < 10; ++again) {  // a process that checks for a run holds the lock for a moment
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    taken = is_taken(handle_, LOCK_EX);
+    taken = is_taken(handle_.number(), LOCK_EX);
   }
-  if (taken) {
-    ::close(handle_);
+  if (taken)
     throw EnvironmentError(
         fmt::format("another run is writing its results to {}: wait for its end, or choose another folder with --out", folder.string()));
-  }
-}
-
-FolderLock::~FolderLock()
-{
-  if (handle_ >= 0)
-    ::close(handle_);
 }
 
 bool run_is_at_work(const fs::path& folder)

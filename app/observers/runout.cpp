@@ -8,7 +8,6 @@
 #include <numbers>
 
 #include "app/observers/results.hpp"
-#include "app/observers/runout_distance.hpp"
 #include "io/files/atomic_file.hpp"
 
 namespace talus {

@@ -80,8 +80,8 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
   const auto press = [&](const auto& load) {
     pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure)) * load.table.largest_magnitude());
   };
-  std::for_each(setup.conditions.loads.on_particles.begin(), setup.conditions.loads.on_particles.end(), press);
-  std::for_each(setup.conditions.loads.on_mesh.begin(), setup.conditions.loads.on_mesh.end(), press);
+  std::ranges::for_each(setup.conditions.loads.on_particles, press);
+  std::ranges::for_each(setup.conditions.loads.on_mesh, press);
   if (pressure > 0) {
     Real layer = std::numeric_limits<Real>::infinity();  // [kg/m^2]
     for (Index row = 0; row < setup.state.particles.size(); ++row) {
@@ -131,7 +131,7 @@ bool wants_displacement(const OutputSpec& outputs)
   if (!outputs.particles)
     return false;
   const auto fields = particle_fields_of(outputs);
-  return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+  return std::ranges::find(fields, "displacement") != fields.end();
 }
 
 /// A table that no drained body reaches down to is hardly meant.  Every rank has to ask.
@@ -139,7 +139,7 @@ template <int D>
 void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
 {
   const std::vector<std::uint8_t>& drained = setup.conditions.water.drained;
-  if (std::none_of(drained.begin(), drained.end(), [](std::uint8_t is) { return is != 0; }))
+  if (std::ranges::none_of(drained, [](std::uint8_t is) { return is != 0; }))
     return;
   std::int64_t wet = 0;
   for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
@@ -212,8 +212,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.limits.shortest = scene.time.min_step;
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
   if (setup.state.particles.x0.empty() &&
-      (wants_displacement(scene.outputs) ||
-       std::any_of(setup.conditions.loads.of_place.begin(), setup.conditions.loads.of_place.end(), from_start)))
+      (wants_displacement(scene.outputs) || std::ranges::any_of(setup.conditions.loads.of_place, from_start)))
     setup.state.particles.x0 = setup.state.particles.x;
   setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);

@@ -5,7 +5,6 @@
 #include <numbers>
 
 #include "app/setup/boundaries_of_scene.hpp"
-#include "app/setup/checks/scene_error_collector.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/water_table.hpp"
 #include "io/scene/scene.hpp"
@@ -63,8 +62,7 @@ std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene&
       table.points.clear();
     for (const std::vector<Real>& point : rule.k0_table)
       table.points.push_back({point.at(0), point.at(1)});
-    const auto material =
-        std::find_if(scene.materials.begin(), scene.materials.end(), [&](const MaterialSpec& m) { return m.name == body.material; });
+    const auto material = std::ranges::find(scene.materials, body.material, &MaterialSpec::name);
     if (!rule.from_friction || material == scene.materials.end())
       continue;
     const auto sine = std::visit([](const auto& law) { return sine_of_friction(law); }, choices_of(material->law));
@@ -104,7 +102,7 @@ std::vector<Index> numbers_of(const std::vector<std::string>& names, const std::
 {
   std::vector<Index> numbers;
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    if (std::find(names.begin(), names.end(), bodies[b].name) != names.end())
+    if (std::ranges::find(names, bodies[b].name) != names.end())
       numbers.push_back(static_cast<Index>(b));
   return numbers;
 }
@@ -167,9 +165,7 @@ void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup
 
 void check_laws(const Scene& scene, SceneErrorCollector& errors)
 {
-  const auto body_of = [&](const std::string& name) {
-    return std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) { return body.name == name; });
-  };
+  const auto body_of = [&](const std::string& name) { return std::ranges::find(scene.bodies, name, &BodySpec::name); };
   for (std::size_t s = 0; s < scene.stages.size(); ++s) {
     const auto stage = static_cast<Index>(s);
     for (const NewMaterialSpec& change : changes_of(scene.stages[s]).change) {
@@ -177,13 +173,13 @@ void check_laws(const Scene& scene, SceneErrorCollector& errors)
                          &after = *material_of(scene, *body_of(change.body), stage);
       const auto name = [](const MaterialSpec& material) { return material.law.name(); };
       const auto can = laws_that_start_from_stress();
-      if (name(before) != name(after) && std::find(can.begin(), can.end(), name(after)) == can.end())
+      if (name(before) != name(after) && std::ranges::find(can, name(after)) == can.end())
         errors.add(change.where, "material",
                    fmt::format("the body comes from law \"{}\", and law \"{}\" cannot start from its stress; of other laws {} can",
                                name(before), name(after), or_list(can)));
     }
     for (const WeakenSpec& weaken : changes_of(scene.stages[s]).weaken) {
-      const bool found = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) {
+      const bool found = std::ranges::any_of(scene.bodies, [&](const BodySpec& body) {
         return (weaken.body.empty() || body.name == weaken.body) && presence_of(body.name, scene.stages).in(stage) &&
                has_strength(*material_of(scene, body, stage));
       });
@@ -222,14 +218,12 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   setup.changes.resize(n);
   setup.laws = laws_of_stages(scene);
   const auto said = [&](std::size_t s) -> const StageChanges& { return changes_of(scene.stages[s]); };
-  const bool bodies_differ = std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) {
-    return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty();
-  });
-  const bool walls_differ =
-      bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
-                                   [](const BoundaryOptions& boundary) { return !common_of(boundary).during.empty(); });
-  const bool tables_differ =
-      std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
+  const bool bodies_differ = std::ranges::any_of(
+      scene.stages, [](const StageSpec& stage) { return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty(); });
+  const bool walls_differ = bodies_differ || std::ranges::any_of(scene.boundaries, [](const BoundaryOptions& boundary) {
+                              return !common_of(boundary).during.empty();
+                            });
+  const bool tables_differ = std::ranges::any_of(scene.stages, [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
   const auto names = wall_names(scene.boundaries);
   SceneErrorCollector errors(scene);
   for (std::size_t s = 1; s < n; ++s) {

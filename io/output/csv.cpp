@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 
 #include "core/error.hpp"

@@ -30,7 +30,7 @@ std::vector<StoredField> stored_fields(const VtkLayout& file, std::string_view s
   if (section == point_data) {
     fields.push_back({"position", 3, file.numbers(*file.find("Points", "Points")), "m"});
     const std::vector<Real>& places = fields.back().values;
-    const auto wrong = std::find_if(places.begin(), places.end(), [](Real x) { return !std::isfinite(x); });
+    const auto wrong = std::ranges::find_if(places, [](Real x) { return !std::isfinite(x); });
     if (wrong != places.end())
       file.fail(fmt::format("position {} is not finite", (wrong - places.begin()) / 3));
   }
@@ -56,8 +56,7 @@ StoredParticles read_particles(const fs::path& path)
 
 const StoredField* stored_field(const StoredParticles& particles, std::string_view name)
 {
-  const auto found =
-      std::find_if(particles.fields.begin(), particles.fields.end(), [&](const StoredField& field) { return field.name == name; });
+  const auto found = std::ranges::find(particles.fields, name, &StoredField::name);
   return found == particles.fields.end() ? nullptr : &*found;
 }
 

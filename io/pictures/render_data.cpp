@@ -8,12 +8,10 @@
 #include <vtkPolyData.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 #include "io/output/vtk.hpp"
-#include "io/pictures/settings/picture_settings.hpp"
 #include "mesh/geometry/outline.hpp"
 
 namespace talus::render {

@@ -127,9 +127,8 @@ std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocat
   const auto is_no_degree = [](const std::array<Real, 2>& corner) { return std::abs(corner[0]) > 360 || std::abs(corner[1]) > 90; };
   const auto facts = crs_facts(read.crs);
   // GeoJSON is in degrees by its standard, but many files are in metres.
-  const bool is_metres = facts && facts->geographic && std::any_of(rings.begin(), rings.end(), [&](const MapRing* ring) {
-                           return std::any_of(ring->begin(), ring->end(), is_no_degree);
-                         });
+  const bool is_metres = facts && facts->geographic &&
+                         std::ranges::any_of(rings, [&](const MapRing* ring) { return std::ranges::any_of(*ring, is_no_degree); });
   if (read.crs.empty() || is_metres) {
     mend(fmt::format("{}; its places are taken to be in {}",
                      is_metres ? fmt::format("the file says {}, but its numbers are no degrees", facts->name)
@@ -151,8 +150,8 @@ std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocat
     return read.polygons;
   for (MapRing* const ring : rings) {
     *ring = to_crs(read.crs, plan.crs, *ring);
-    if (ring->empty() || std::any_of(ring->begin(), ring->end(),
-                                     [](const auto& corner) { return !std::isfinite(corner[0]) || !std::isfinite(corner[1]); })) {
+    if (ring->empty() ||
+        std::ranges::any_of(*ring, [](const auto& corner) { return !std::isfinite(corner[0]) || !std::isfinite(corner[1]); })) {
       problems.push_back(
           {where, fmt::format("{}: its places, in {}, cannot be brought to {}", file, facts ? facts->name : read.crs, plan.crs), {}});
       return {};

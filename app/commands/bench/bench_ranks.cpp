@@ -6,7 +6,6 @@
 #include <array>
 #include <thread>
 
-#include "app/commands/bench/bench_cases.hpp"
 #include "app/commands/bench/bench_measure.hpp"
 #include "app/setup/seed.hpp"
 #include "core/parallel/communicator.hpp"

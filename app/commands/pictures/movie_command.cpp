@@ -33,10 +33,7 @@ struct Passing {
 
 }  // namespace
 
-bool has_option(const std::vector<std::string>& words, std::string_view option)
-{
-  return std::find(words.begin(), words.end(), option) != words.end();
-}
+bool has_option(const std::vector<std::string>& words, std::string_view option) { return std::ranges::find(words, option) != words.end(); }
 
 void check_movie(const MovieOptions& options, const std::vector<std::string>& words, std::vector<std::string>& problems)
 {

@@ -5,17 +5,16 @@
 
 #include <algorithm>
 
-#include "app/commands/pictures/movie_command.hpp"
 #include "app/commands/report/report.hpp"
 #include "app/observers/plan_axes.hpp"
 #include "app/observers/results.hpp"
-#include "app/setup/vertical_axis.hpp"
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 #include "io/output/vtk.hpp"
 #include "io/pictures/settings/launch_render.hpp"
 #include "io/pictures/settings/picture_settings.hpp"
 #include "io/scene/reader.hpp"
+#include "io/scene/scene.hpp"
 
 namespace talus {
 

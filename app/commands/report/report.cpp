@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/commands/report/report_metrics.hpp"
 #include "app/commands/report/report_particles.hpp"
 #include "app/observers/results.hpp"
 #include "app/run/summary.hpp"
-#include "app/setup/vertical_axis.hpp"
 #include "core/error.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/pictures/ground_file.hpp"
@@ -186,8 +184,7 @@ SurveyTask survey_task(const RunFolder& run, const PageOptions& wishes, const st
   SurveyTask task{up, bodies.size(), wishes.fields, run.scene.outputs.picture.field, rule, {}, {}};
   const auto& runout = run.scene.outputs.runout;
   for (const PageBody& body : bodies)
-    task.runs_out.push_back(!runout || runout->bodies.empty() ||
-                            std::find(runout->bodies.begin(), runout->bodies.end(), body.name) != runout->bodies.end());
+    task.runs_out.push_back(!runout || runout->bodies.empty() || std::ranges::find(runout->bodies, body.name) != runout->bodies.end());
   for (const BodySummary& body : run.summary.bodies)
     task.mass.push_back(body.mass);
   return task;

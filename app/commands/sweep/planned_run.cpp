@@ -13,8 +13,8 @@
 #include "app/observers/checkpoints.hpp"
 #include "app/observers/results.hpp"
 #include "app/run/summary.hpp"
+#include "core/display_text.hpp"
 #include "core/parallel/threads.hpp"
-#include "core/shell_quote.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/file_descriptor.hpp"
 

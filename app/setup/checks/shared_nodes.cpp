@@ -195,8 +195,7 @@ void find_groups_filled_twice(const Scene& scene, SceneErrorCollector& errors)
     if (body.region.empty())
       continue;
     std::vector<const BodySpec*>& before = filled[body.region];
-    const auto at_once =
-        std::find_if(before.begin(), before.end(), [&](const BodySpec* other) { return meet(scene, body.name, other->name); });
+    const auto at_once = std::ranges::find_if(before, [&](const BodySpec* other) { return meet(scene, body.name, other->name); });
     if (at_once != before.end())
       errors.add(body.where, "region", fmt::format("body \"{}\" fills the cell group \"{}\" already", (*at_once)->name, body.region));
     before.push_back(&body);

@@ -38,7 +38,7 @@ std::vector<fs::path> sections_in(const fs::path& folder)
   for (const auto& entry : fs::directory_iterator(folder / "sections", not_there))
     if (entry.path().extension() == ".csv")
       files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
@@ -75,10 +75,7 @@ void leave_out_unreached(const std::vector<Real>& arrival, Raster& raster)
       raster.values[c] = arrival[c];
 }
 
-const MapKind& kind_of(std::string_view name)
-{
-  return *std::find_if(map_kinds.begin(), map_kinds.end(), [&](const MapKind& kind) { return kind.name == name; });
-}
+const MapKind& kind_of(std::string_view name) { return *std::ranges::find(map_kinds, name, &MapKind::name); }
 
 void draw_frames(const MapSettings& settings, const std::function<void(const fs::path&)>& written)
 {
@@ -176,7 +173,7 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
   if (settings.frames)
     return draw_frames(settings, written);
   const auto wanted = [&](std::string_view name, bool by_default) {
-    return settings.only.empty() ? by_default : std::find(settings.only.begin(), settings.only.end(), name) != settings.only.end();
+    return settings.only.empty() ? by_default : std::ranges::find(settings.only, name) != settings.only.end();
   };
   std::optional<MapPainter> painter;
   const std::vector<fs::path> sections = wanted("sections", true) ? sections_in(settings.folder) : std::vector<fs::path>();

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "io/pictures/render_legend.hpp"
-#include "io/pictures/render_words.hpp"
 
 namespace talus::render {
 
