@@ -5,16 +5,16 @@
 talus_library(fuzz_materials FOLDER materials EXCLUDE laboratory point_path LINKS talus_core)
 target_compile_options(talus_fuzz_materials PRIVATE -fno-sanitize=all)
 talus_library(fuzz_io FOLDER io
-              ONLY accuracy array_ ascii_grid atomic_file byte_digest hdf5 cell_count csv document field_reader gdal_plugin gmsh_plugin gmsh_read history_columns load_mesh
-                   http_request manifest map_crs memory mesh_groups plugin msh_ page_block point_file polygon_file progress_json quantity raster_file reader record_file
-                   result_files scalars scene shape signals stl_file study summary_json surface_file terrain_ text_file traps value_type vtk wall_names xml_tags
+              ONLY accuracy array_ atomic_file hdf5 cell_count csv document field_reader gdal_plugin gmsh_plugin gmsh_read load_mesh
+                   http_request manifest map_crs memory mesh_groups plugin msh_ page_block point_file progress_json raster_file reader record_file
+                   result_files scalars scene shape signals stl_file study summary_json surface_file terrain_ text_file traps value_type vtk xml_tags
               EXCLUDE scene_schema
               LINKS talus_mesh talus_fuzz_materials
               PRIVATE yaml-cpp nlohmann_json::nlohmann_json VTK::CommonDataModel VTK::CommonCore VTK::IOCore PkgConfig::TALUS_HDF5 ZLIB::ZLIB)
 talus_library(fuzz_solver FOLDER solver ONLY cell_order redistribute loads column_beside boundary_conditions dashpots LINKS talus_mesh talus_fuzz_materials)
 talus_library(fuzz_app FOLDER app
-              ONLY accounts body_forces checkpoints differences disk_space expression field_columns history moved_particles new_results plan_axes progress rank_slices
-                   recorder report_fields report_survey results runout validate_state watch_drawing
+              ONLY accounts body_forces checkpoints differences disk_space expression field_columns history new_results progress rank_slices
+                   recorder report_survey results runout validate_state watch_drawing
               LINKS talus_fuzz_io talus_fuzz_solver
               PRIVATE muparser::muparser)
 

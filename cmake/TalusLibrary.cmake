@@ -97,7 +97,7 @@ function(talus_render_modules)
   endif()
 endfunction()
 
-# scenes/templates/*.yaml as texts in the program, for `talus new` (app/commands/new/templates.hpp). A file that changes makes them again.
+# scenes/templates/*.yaml as texts in the program, for `talus new` (app/commands/new/new_command.hpp). A file that changes makes them again.
 function(talus_embed_templates folder)
   file(GLOB files CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/scenes/templates/*.yaml)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
@@ -111,7 +111,7 @@ function(talus_embed_templates folder)
   set(source ${PROJECT_BINARY_DIR}/generated/scene_templates.cpp)
   file(CONFIGURE OUTPUT ${source} @ONLY CONTENT [[
 // Made of scenes/templates by cmake.
-#include "app/commands/new/templates.hpp"
+#include "app/commands/new/new_command.hpp"
 
 #include <array>
 

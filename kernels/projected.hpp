@@ -1,9 +1,9 @@
 #pragma once
 // The kernel `projected`: linear shape functions at the particles and sparse operators at the nodes.  Its gradient is continuous and
 // satisfies the integration constraint, at about the cost of linear shape functions.
+#include "kernels/kernel_options.hpp"
 #include "kernels/linear.hpp"
 #include "kernels/node_operators.hpp"
-#include "kernels/projected_options.hpp"
 #include "kernels/value_stencils.hpp"
 
 namespace talus {

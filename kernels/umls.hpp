@@ -1,7 +1,7 @@
 #pragma once
 // Unstructured moving least squares (Cao et al., arXiv 2312.10338): weights over the one-ring of a cell's vertices.
 #include "kernels/kernel.hpp"
-#include "kernels/umls_options.hpp"
+#include "kernels/kernel_options.hpp"
 
 namespace talus {
 

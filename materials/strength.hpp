@@ -1,6 +1,5 @@
 #pragma once
 // Shear strength divided by a factor: strength reduction, triggers.
-#include <concepts>
 
 #include "core/types.hpp"
 

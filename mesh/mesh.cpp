@@ -24,7 +24,7 @@ std::vector<Index> inverse(std::span<const Index> old_numbers, std::size_t count
 
 void sort_unique(std::vector<Index>& numbers)
 {
-  std::sort(numbers.begin(), numbers.end());
+  std::ranges::sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 
@@ -72,12 +72,11 @@ std::optional<Facet> find_facet(const Mesh<D>& mesh, const std::array<Index, D>&
 {
   for (const Index c : mesh.cells_of_node()[nodes[0]]) {
     const auto& cell = mesh.cell(c);
-    const bool holds_all =
-        std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return std::find(cell.begin(), cell.end(), n) != cell.end(); });
+    const bool holds_all = std::ranges::all_of(nodes, [&](Index n) { return std::ranges::find(cell, n) != cell.end(); });
     if (!holds_all)
       continue;
     for (Index a = 0; a <= D; ++a)
-      if (std::find(nodes.begin(), nodes.end(), cell[a]) == nodes.end())
+      if (std::ranges::find(nodes, cell[a]) == nodes.end())
         return Facet{c, a};
   }
   return std::nullopt;
@@ -210,7 +209,7 @@ void Mesh<D>::measure()
     const std::array<Real, D + 1> heights = talus::altitudes<D>(s);
     volume_[c] = signed_volume<D>(s);
     gradients_[c] = talus::gradients<D>(s);
-    altitude_[c] = *std::min_element(heights.begin(), heights.end());
+    altitude_[c] = *std::ranges::min_element(heights);
   });
   parallel_for(n_nodes(), [&](Index n) {
     const auto ring = ring_of_node_[n];
@@ -251,7 +250,7 @@ void Mesh<D>::take_sets(const MeshData<D>& data, std::span<const Index> new_cell
       facets.push_back(*facet);
     }
     const auto key = [&](Facet f) { return std::tuple(neighbours_[f.cell][f.local] != none, f.cell, f.local); };
-    std::sort(facets.begin(), facets.end(), [&](Facet a, Facet b) { return key(a) < key(b); });
+    std::ranges::sort(facets, [&](Facet a, Facet b) { return key(a) < key(b); });
     facets.erase(std::unique(facets.begin(), facets.end()), facets.end());
   }
 }
@@ -270,7 +269,7 @@ void Mesh<D>::take_sets(const Mesh& whole, std::span<const Index> new_cell, std:
       const Index across = whole.neighbours_[f.cell][f.local];
       if (new_cell[f.cell] == none && across != none) {
         const auto& back = whole.neighbours_[across];
-        f = {across, static_cast<Index>(std::find(back.begin(), back.end(), f.cell) - back.begin())};
+        f = {across, static_cast<Index>(std::ranges::find(back, f.cell) - back.begin())};
       }
       if (new_cell[f.cell] == none)
         continue;
@@ -294,7 +293,7 @@ std::array<Vec<D>, D + 1> Mesh<D>::corners(Index c) const noexcept
 template <int D>
 bool Mesh<D>::on_boundary(Facet f) const noexcept
 {
-  return std::binary_search(boundary_facets_.begin(), boundary_facets_.end(), f, is_before);
+  return std::ranges::binary_search(boundary_facets_, f, is_before);
 }
 
 template <int D>
@@ -365,7 +364,7 @@ std::vector<std::string> Mesh<D>::node_set_names() const
   std::vector<std::string> names = names_of(node_sets_);
   for (auto& more : {facet_set_names(), cell_set_names()})
     names.insert(names.end(), more.begin(), more.end());
-  std::sort(names.begin(), names.end());
+  std::ranges::sort(names);
   names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }

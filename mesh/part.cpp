@@ -47,7 +47,7 @@ std::vector<int> rings_from(const Mesh<D>& mesh, std::span<const int> rank_of_bl
 /// The index of a number in an ascending list, or `none`.
 Index place_in(std::span<const Index> list, Index number) noexcept
 {
-  const auto found = std::lower_bound(list.begin(), list.end(), number);
+  const auto found = std::ranges::lower_bound(list, number);
   return found != list.end() && *found == number ? static_cast<Index>(found - list.begin()) : none;
 }
 
@@ -72,11 +72,9 @@ Part<D> cut(const Mesh<D>& whole, std::span<const int> rank_of_block, int rank, 
   const std::vector<int> distance = rings_from(whole, rank_of_block, rank, rings - 1);
   std::vector<std::uint8_t> wanted(rank_of_block.size());
   parallel_for(n_blocks, [&](Index b) {
-    const auto is_near = [&](const auto& cell) {
-      return std::any_of(cell.begin(), cell.end(), [&](Index n) { return distance[n] < rings; });
-    };
+    const auto is_near = [&](const auto& cell) { return std::ranges::any_of(cell, [&](Index n) { return distance[n] < rings; }); };
     const auto cells = whole.cells().subspan(b * block_cells, std::min(block_cells, whole.n_cells() - b * block_cells));
-    wanted[b] = rank_of_block[b] == rank || std::any_of(cells.begin(), cells.end(), is_near);
+    wanted[b] = rank_of_block[b] == rank || std::ranges::any_of(cells, is_near);
   });
 
   std::vector<Index> blocks, cells;

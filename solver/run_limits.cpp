@@ -4,8 +4,6 @@
 
 #include <limits>
 
-#include "solver/stable_step.hpp"
-
 namespace talus {
 
 template <int D>

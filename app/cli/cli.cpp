@@ -5,12 +5,10 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
 
 #include "app/cli/cli_commands.hpp"
 #include "app/cli/completion.hpp"
 #include "app/commands/info_command.hpp"
-#include "app/commands/manual_command.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/version.hpp"
 #include "core/word_match.hpp"

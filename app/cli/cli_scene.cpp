@@ -1,7 +1,7 @@
 // Commands for scenes.
 #include "app/cli/cli_checks.hpp"
 #include "app/cli/cli_commands.hpp"
-#include "app/commands/new/templates.hpp"
+#include "app/commands/new/new_command.hpp"
 #include "core/word_match.hpp"
 #include "materials/laboratory/laboratory.hpp"
 

@@ -8,15 +8,14 @@
 #include "app/run/cost_estimate.hpp"
 #include "app/run/thread_choice.hpp"
 #include "app/setup/quick.hpp"
-#include "app/setup/rest_time.hpp"
-#include "app/setup/vertical_axis.hpp"
 #include "app/setup/water_table.hpp"
+#include "core/display_text.hpp"
 #include "core/finite_count.hpp"
-#include "core/format_duration.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/stop_watch.hpp"
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"
+#include "io/scene/scene.hpp"
 #include "io/terrain/terrain_mesh.hpp"
 
 namespace talus {

@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "app/commands/drive_command.hpp"
-#include "core/units.hpp"
+#include "core/display_text.hpp"
 #include "core/word_match.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/pictures/settings/launch_render.hpp"

@@ -2,27 +2,24 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <cstdlib>
 #include <new>
 
 #include "app/commands/run_command.hpp"
 #include "app/commands/run_files.hpp"
-#include "app/commands/run_identity.hpp"
 #include "app/commands/run_messages.hpp"
-#include "app/observers/balance_errors.hpp"
+#include "app/observers/accounts.hpp"
 #include "app/observers/checkpoints.hpp"
 #include "app/observers/results.hpp"
-#include "app/observers/scene_copy.hpp"
 #include "app/run/disk_space.hpp"
 #include "app/run/new_results.hpp"
 #include "app/run/summary.hpp"
 #include "app/run/thread_choice.hpp"
 #include "app/setup/quick.hpp"
 #include "app/setup/resumed_scene.hpp"
+#include "core/display_text.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/print.hpp"
-#include "core/shell_quote.hpp"
 #include "core/stop_watch.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"

@@ -31,7 +31,7 @@ Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Communicator& 
       all.emplace_back(one[0], one[1]);
   if (all.empty())
     return empty_entry;
-  std::sort(all.begin(), all.end());
+  std::ranges::sort(all);
   const Real total = std::accumulate(all.begin(), all.end(), Real{0}, [](Real sum, const auto& one) { return sum + one.second; });
   std::size_t i = 0;
   Real mass = all[0].second;
@@ -232,8 +232,7 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
 template <int D>
 void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row)
 {
-  const auto named =
-      std::find_if(view.state.bodies.begin(), view.state.bodies.end(), [&](const Body& body) { return body.name == spec_.bodies[k]; });
+  const auto named = std::ranges::find(view.state.bodies, spec_.bodies[k], &Body::name);
   const auto b = static_cast<std::size_t>(named - view.state.bodies.begin());
   const BodySums<D>& sums = forces.sums()[b];
   const BodyImpulse<D>&before = state_.given[k], &now = forces.impulses()[b];
@@ -254,7 +253,7 @@ template <int D>
 void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const
 {
   const auto walls = view.state.boundary.conditions();
-  const auto wall = std::find_if(walls.begin(), walls.end(), [&](const BoundaryCondition<D>& one) { return one.name == spec.on; });
+  const auto wall = std::ranges::find(walls, spec.on, &BoundaryCondition<D>::name);
   const auto w = static_cast<std::size_t>(wall - walls.begin());
   const MeshTraction<D> on_nodes =
       carried_by_mesh<D>(view.problem.mesh, facets_of_wall(view.problem.mesh, spec.on).value_or(std::vector<Facet>()));

@@ -26,7 +26,16 @@ struct PlanAxes {
   std::array<Index, 2> plan;  ///< 2-D: only the first one
 };
 template <int D>
-PlanAxes plan_axes(const Vec<D>& gravity);
+PlanAxes plan_axes(const Vec<D>& gravity)
+{
+  PlanAxes axes;
+  axes.up = gravity.norm() > 0 ? Vec3(-in_space<D>(gravity).normalized()) : D == 2 ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ());
+  axes.up.cwiseAbs().maxCoeff(&axes.vertical);
+  axes.sign = axes.up[axes.vertical] < 0 ? -1 : 1;
+  axes.plan =
+      D == 2 ? std::array<Index, 2>{1 - axes.vertical, none} : std::array<Index, 2>{(axes.vertical + 1) % 3, (axes.vertical + 2) % 3};
+  return axes;
+}
 
 /// Calls f(cell, elevation) for the cells whose centre lies above or below a facet.
 template <int D, class F>

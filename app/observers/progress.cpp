@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "core/display_text.hpp"
 #include "core/error.hpp"
-#include "core/format_duration.hpp"
 #include "core/print.hpp"
 #include "io/files/manifest.hpp"
 

@@ -24,7 +24,7 @@ struct SortedIds {
 
 SortedIds sort_ids(Communicator& ranks, std::span<const std::int64_t> ids)
 {
-  const std::int64_t most = ranks.max(ids.empty() ? std::int64_t{0} : *std::max_element(ids.begin(), ids.end()));
+  const std::int64_t most = ranks.max(ids.empty() ? std::int64_t{0} : *std::ranges::max_element(ids));
   const Real share = static_cast<Real>(ranks.size()) / (static_cast<Real>(most) + 1);
   SortedIds sorted;
   sorted.sent.resize(static_cast<std::size_t>(ranks.size()));
@@ -41,7 +41,7 @@ SortedIds sort_ids(Communicator& ranks, std::span<const std::int64_t> ids)
     for (std::size_t i = 0; i < in[r].size(); ++i)
       sorted.here.push_back({in[r][i], r, i});
   }
-  std::sort(sorted.here.begin(), sorted.here.end(), [](const SortedIds::One& a, const SortedIds::One& b) {
+  std::ranges::sort(sorted.here, [](const SortedIds::One& a, const SortedIds::One& b) {
     return std::tie(a.id, a.rank, a.place) < std::tie(b.id, b.rank, b.place);
   });
   return sorted;
@@ -100,8 +100,7 @@ Slices slices_of_nodes(const RunView<D>& view, std::int64_t piece)
 std::optional<std::int64_t> doubled_id(Communicator& ranks, std::span<const std::int64_t> ids)
 {
   const SortedIds sorted = sort_ids(ranks, ids);
-  const auto twice = std::adjacent_find(sorted.here.begin(), sorted.here.end(),
-                                        [](const SortedIds::One& a, const SortedIds::One& b) { return a.id == b.id; });
+  const auto twice = std::ranges::adjacent_find(sorted.here, [](const SortedIds::One& a, const SortedIds::One& b) { return a.id == b.id; });
   constexpr std::int64_t no_id = std::numeric_limits<std::int64_t>::max();
   const std::int64_t least = ranks.min(twice == sorted.here.end() ? no_id : twice->id);
   return least == no_id ? std::nullopt : std::optional(least);

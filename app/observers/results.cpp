@@ -1,9 +1,7 @@
 #include "app/observers/results.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <chrono>
@@ -21,38 +19,24 @@ namespace {
 /// Whether another process has the lock.
 bool is_taken(int handle, int kind) { return ::flock(handle, kind | LOCK_NB) != 0 && errno == EWOULDBLOCK; }
 
-/// Opens a folder; returns its descriptor.
-int opened(const fs::path& folder) { return ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC); }
-
 }  // namespace
 
-FolderLock::FolderLock(const fs::path& folder) : handle_(opened(folder))
+FolderLock::FolderLock(const fs::path& folder) : handle_(folder, O_RDONLY | O_DIRECTORY)
 {
-  bool taken = handle_ >= 0 && is_taken(handle_, LOCK_EX);
+  bool taken = handle_.is_open() && is_taken(handle_.number(), LOCK_EX);
   for (int again = 0; taken && again < 10; ++again) {  // a process that checks for a run holds the lock for a moment
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    taken = is_taken(handle_, LOCK_EX);
+    taken = is_taken(handle_.number(), LOCK_EX);
   }
-  if (taken) {
-    ::close(handle_);
+  if (taken)
     throw EnvironmentError(
         fmt::format("another run is writing its results to {}: wait for its end, or choose another folder with --out", folder.string()));
-  }
-}
-
-FolderLock::~FolderLock()
-{
-  if (handle_ >= 0)
-    ::close(handle_);
 }
 
 bool run_is_at_work(const fs::path& folder)
 {
-  const int handle = opened(folder);
-  const bool taken = handle >= 0 && is_taken(handle, LOCK_SH);
-  if (handle >= 0)
-    ::close(handle);
-  return taken;
+  const FileDescriptor opened(folder, O_RDONLY | O_DIRECTORY);
+  return opened.is_open() && is_taken(opened.number(), LOCK_SH);
 }
 
 void remove_leftovers(const fs::path& folder)

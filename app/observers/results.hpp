@@ -1,8 +1,8 @@
 #pragma once
 // The results folder of a run: its lock and its contents.  For making and replacing it see new_results.hpp.
 #include <filesystem>
-#include <utility>
 
+#include "io/files/file_descriptor.hpp"
 #include "io/files/result_files.hpp"
 
 namespace talus {
@@ -14,16 +14,9 @@ class FolderLock {
   FolderLock() = default;
   /// Throws EnvironmentError if another run has locked the folder.
   explicit FolderLock(const std::filesystem::path& folder);
-  ~FolderLock();
-  FolderLock(FolderLock&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
-  FolderLock& operator=(FolderLock&& other) noexcept
-  {
-    std::swap(handle_, other.handle_);
-    return *this;
-  }
 
  private:
-  int handle_ = -1;  // descriptor of the folder itself: no lock file is needed
+  FileDescriptor handle_;  // of the folder itself: no lock file is needed
 };
 
 /// Whether a run has locked the folder.  False if the file system does not support locks.

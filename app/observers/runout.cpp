@@ -7,9 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "app/observers/moved_particles.hpp"
 #include "app/observers/results.hpp"
-#include "app/observers/runout_distance.hpp"
 #include "io/files/atomic_file.hpp"
 
 namespace talus {

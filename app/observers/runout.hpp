@@ -2,7 +2,7 @@
 // Run-out: moved particles on cells over the plan during the run; runout.csv, maps and sections.
 #include <filesystem>
 
-#include "app/observers/moved_particles.hpp"
+#include "app/observers/runout_distance.hpp"
 #include "app/observers/runout_files.hpp"
 #include "app/observers/schedule.hpp"
 #include "io/output/run_summary.hpp"

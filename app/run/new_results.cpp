@@ -11,8 +11,8 @@
 #include <new>
 #include <vector>
 
+#include "core/display_text.hpp"
 #include "core/error.hpp"
-#include "core/shell_quote.hpp"
 #include "io/files/manifest.hpp"
 #include "io/output/summary_json.hpp"
 

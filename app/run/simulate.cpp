@@ -3,7 +3,7 @@
 #include <new>
 #include <stdexcept>
 
-#include "app/observers/balance_errors.hpp"
+#include "app/observers/accounts.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/rebalance_policy.hpp"
 #include "core/stop_watch.hpp"

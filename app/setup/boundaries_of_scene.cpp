@@ -2,9 +2,8 @@
 
 #include <stdexcept>
 
-#include "app/setup/vertical_axis.hpp"
 #include "io/scene/record_file.hpp"
-#include "io/scene/wall_names.hpp"
+#include "io/scene/scene.hpp"
 #include "solver/boundary/column_beside.hpp"
 
 namespace talus {

@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "core/parallel/threads.hpp"
-#include "core/word_match.hpp"
 
 namespace talus {
 

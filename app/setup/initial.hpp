@@ -1,7 +1,12 @@
 #pragma once
-// Bodies of a scene that begin as another run left them: where that run is, and which of its bodies become which.
+// The state at the start: bodies of a scene that begin as another run left them, where that run is and which of its bodies become which; and the
+// velocity that a scene gives a body.
 #include "app/observers/checkpoints.hpp"
 #include "app/setup/checks/scene_error_collector.hpp"
+#include "core/parallel/communicator.hpp"
+#include "core/particles.hpp"
+#include "io/scene/scene.hpp"
+#include "mesh/mesh.hpp"
 
 namespace talus {
 
@@ -25,5 +30,11 @@ void carry_history(const Material& from, std::span<const Index> rows, Material& 
 /// `dt`: of the step that led to the state [s].  Returns by how much the stress changes, over the largest there; every rank has to ask.
 template <int D>
 Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, Material& material, Particles<D>& particles);
+
+/// Velocity and its gradient of the particles [begin, end): without the latter, affine schemes would begin with particles that do not turn.
+/// Complains about formulas.  Every rank has to ask.
+template <int D>
+void set_velocity(const BodySpec& spec, const Mesh<D>& mesh, Communicator& ranks, Index begin, Index end, SceneErrorCollector& errors,
+                  Particles<D>& particles);
 
 }  // namespace talus

@@ -5,8 +5,7 @@
 #include <numeric>
 #include <utility>
 
-#include "app/setup/checks/shared_cells.hpp"
-#include "app/setup/initial_velocity.hpp"
+#include "app/setup/checks/shared_nodes.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/setup.hpp"
 #include "core/parallel/threads.hpp"
@@ -244,8 +243,8 @@ class Seeder {
   {
     std::vector<Index> rows(static_cast<std::size_t>(body.size()));
     std::iota(rows.begin(), rows.end(), body.begin);
-    std::sort(rows.begin(), rows.end(),
-              [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
+    std::ranges::sort(
+        rows, [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
     return rows;
   }
 
@@ -315,13 +314,12 @@ class Seeder {
       p.x0 = p.x;
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0[row] = from.x0[there]; });
     }
-    if (!from.volume_ratio.empty() &&
-        std::any_of(seeds_.materials.begin(), seeds_.materials.end(), [](const Material& one) { return one.averages_volume; })) {
+    if (!from.volume_ratio.empty() && std::ranges::any_of(seeds_.materials, [](const Material& one) { return one.averages_volume; })) {
       p.volume_ratio.assign(n, 1);
       for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
     }
     if (!from.viscous.empty()) {
-      if (std::any_of(seeds_.materials.begin(), seeds_.materials.end(), [](const Material& one) { return one.viscosity.has_value(); }))
+      if (std::ranges::any_of(seeds_.materials, [](const Material& one) { return one.viscosity.has_value(); }))
         p.viscous.assign(n, 0);
       for_each_taken([&](const Taken& taken, std::size_t row, std::size_t there) {
         if (seeds_.materials[taken.body].viscosity)

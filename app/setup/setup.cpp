@@ -6,7 +6,6 @@
 #include "app/observers/history.hpp"
 #include "app/observers/runout.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
-#include "app/setup/default_limits.hpp"
 #include "app/setup/loads_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
@@ -39,6 +38,78 @@ std::filesystem::path folder_of(const Scene& scene) { return std::filesystem::pa
 
 namespace {
 
+/// Speeds of waves, and the energy of all particles if they moved with the speed of theirs.
+struct Waves {
+  Real fastest = 0, energy = 0;  ///< [m/s], [J]
+};
+
+template <int D>
+Waves waves_in(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
+{
+  const Particles<D>& particles = setup.state.particles;
+  CellOrder order;
+  sort_by_cell(particles.cell, particles.id, setup.state.bodies, mesh.n_cells(), order);
+  Real least = std::numeric_limits<Real>::infinity();  // minus the speed of the fastest
+  ExactSums<Real> energy;
+  for (Index b = 0; b < static_cast<Index>(setup.state.materials.size()); ++b) {
+    const Material& material = setup.state.materials[static_cast<std::size_t>(b)];
+    const auto speed = [&](Index i) { return material.wave_speed(i, particles.F[static_cast<std::size_t>(material.begin + i)]); };
+    least = parallel_min(material.size(), least, [&](Index i) { return -speed(i); });
+    add_particles(order, {b, b + 1}, energy, [&](Index row) {
+      const Real c = speed(row - material.begin);
+      return 0.5 * particles.mass[static_cast<std::size_t>(row)] * c * c;
+    });
+  }
+  ranks.sum(energy);
+  return {std::max(Real{0}, -ranks.min(least)), energy.value()};
+}
+
+/// What loads and walls can make of a particle within the mesh [m/s]; infinite where that cannot be told.
+template <int D>
+Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
+{
+  if (!setup.conditions.loads.of_place.empty())
+    return std::numeric_limits<Real>::infinity();
+  const Real size = (mesh.high() - mesh.low()).norm();
+  Real speed = 0;
+  for (const BoundaryCondition<D>& condition : setup.state.boundary.conditions())
+    speed = std::max(speed, condition.peak_speed());
+  speed +=
+      std::sqrt(2 * setup.conditions.loads.gravity.acceleration.norm() * setup.conditions.loads.gravity.table.largest_magnitude() * size);
+  Real pressure = 0;  // on the thinnest layer that carries it, over the size of the mesh
+  const auto press = [&](const auto& load) {
+    pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure)) * load.table.largest_magnitude());
+  };
+  std::ranges::for_each(setup.conditions.loads.on_particles, press);
+  std::ranges::for_each(setup.conditions.loads.on_mesh, press);
+  if (pressure > 0) {
+    Real layer = std::numeric_limits<Real>::infinity();  // [kg/m^2]
+    for (Index row = 0; row < setup.state.particles.size(); ++row) {
+      const auto p = static_cast<std::size_t>(row);
+      layer =
+          std::min(layer, setup.state.particles.mass[p] / setup.state.particles.volume0[p] * mesh.altitude(setup.state.particles.cell[p]));
+    }
+    speed += std::sqrt(2 * pressure * size / ranks.min(layer));
+  }
+  return speed;
+}
+
+/// How fast particles may be, and how much energy may come from nowhere, before a run is taken for broken: as the scene says; without a word of
+/// it, limits that no sound run comes near.  Every rank has to ask.
+template <int D>
+RunLimits run_limits_of(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks)
+{
+  constexpr Real far_beyond = 10;
+  constexpr Real least_strain = 1e-6;  // waves of less are not looked at
+  const Waves waves = waves_in(mesh, setup, ranks);
+  Real start = 0;
+  for (Index row = 0; row < setup.state.particles.size(); ++row)
+    start = std::max(start, setup.state.particles.v[static_cast<std::size_t>(row)].norm());
+  start = ranks.max(start);
+  const Real fastest = scene.watch.on_speed == LimitAction::ignore || scene.watch.speed ? 0 : driven_speed(mesh, setup, ranks);
+  return {scene.watch, far_beyond * (waves.fastest + start + fastest), least_strain * least_strain * waves.energy};
+}
+
 template <int D>
 std::uint64_t digest_of_files(const Setup<D>& setup)
 {
@@ -60,7 +131,7 @@ bool wants_displacement(const OutputSpec& outputs)
   if (!outputs.particles)
     return false;
   const auto fields = particle_fields_of(outputs);
-  return std::find(fields.begin(), fields.end(), "displacement") != fields.end();
+  return std::ranges::find(fields, "displacement") != fields.end();
 }
 
 /// A table that no drained body reaches down to is hardly meant.  Every rank has to ask.
@@ -68,7 +139,7 @@ template <int D>
 void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
 {
   const std::vector<std::uint8_t>& drained = setup.conditions.water.drained;
-  if (std::none_of(drained.begin(), drained.end(), [](std::uint8_t is) { return is != 0; }))
+  if (std::ranges::none_of(drained, [](std::uint8_t is) { return is != 0; }))
     return;
   std::int64_t wet = 0;
   for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
@@ -141,8 +212,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.limits.shortest = scene.time.min_step;
   const auto from_start = [](const BodyForce<D>& load) { return load.at_start; };
   if (setup.state.particles.x0.empty() &&
-      (wants_displacement(scene.outputs) ||
-       std::any_of(setup.conditions.loads.of_place.begin(), setup.conditions.loads.of_place.end(), from_start)))
+      (wants_displacement(scene.outputs) || std::ranges::any_of(setup.conditions.loads.of_place, from_start)))
     setup.state.particles.x0 = setup.state.particles.x;
   setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);

@@ -1,16 +1,80 @@
 #include "app/setup/stages_of_scene.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "app/setup/boundaries_of_scene.hpp"
-#include "app/setup/k0_stress.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/water_table.hpp"
-#include "io/scene/wall_names.hpp"
+#include "io/scene/scene.hpp"
+#include "materials/interface/law_variant.hpp"
+#include "solver/stress/initial_stress.hpp"
 
 namespace talus {
 
 namespace {
+
+/// Sine of the angle of friction in triaxial compression; nothing for a law that has none.
+template <class Law>
+std::optional<Real> sine_of_friction(const Law& law)
+{
+  if constexpr (requires { law.friction_angle; })
+    return std::sin(law.friction_angle * (std::numbers::pi / 180));
+  else if constexpr (requires { law.critical_state_slope; })
+    return 3 * law.critical_state_slope / (6 + law.critical_state_slope);
+  else
+    return std::nullopt;
+}
+
+std::vector<std::string> laws_with_friction()
+{
+  std::vector<std::string> names;
+  for_each_type(Laws{}, [&]<class L>() {
+    if (sine_of_friction(L{}))
+      names.emplace_back(L::name);
+  });
+  return names;
+}
+
+Table constant(Real value) { return {{{0, value}}}; }
+
+/// (1 - sin phi) ocr^(sin phi), at most passive [Jaky 1944; Mayne & Kulhawy 1982].
+Real from_friction(Real sine, Real ocr) { return std::min((1 - sine) * std::pow(ocr, sine), (1 + sine) / (1 - sine)); }
+
+Mat3 matrix_of(const UniformStressSpec& s)
+{
+  Mat3 stress;
+  stress << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
+  return stress;
+}
+
+/// The key `initial_stress` of a stage -> what each body begins with, in the order of the bodies of the scene.  Complains of laws without an angle of friction where it asks for one.
+std::vector<StartStress> start_stress_of_bodies(const K0Spec& spec, const Scene& scene, SceneErrorCollector& errors)
+{
+  std::vector<StartStress> all;
+  for (const BodySpec& body : scene.bodies) {
+    const K0Rule& rule = spec.of(body.name);
+    Table& table = all.emplace_back(StartStress{.k0 = constant(rule.k0.value_or(1))}).k0;
+    if (rule.stress)
+      all.back().given = matrix_of(*rule.stress);
+    if (!rule.k0_table.empty())
+      table.points.clear();
+    for (const std::vector<Real>& point : rule.k0_table)
+      table.points.push_back({point.at(0), point.at(1)});
+    const auto material = std::ranges::find(scene.materials, body.material, &MaterialSpec::name);
+    if (!rule.from_friction || material == scene.materials.end())
+      continue;
+    const auto sine = std::visit([](const auto& law) { return sine_of_friction(law); }, choices_of(material->law));
+    if (sine)
+      table = constant(from_friction(*sine, rule.ocr));
+    else
+      errors.add(spec.where, "from_friction",
+                 fmt::format("the law of body \"{}\" has no angle of friction; of the laws {} have one", body.name,
+                             or_list(laws_with_friction())));
+  }
+  return all;
+}
 
 Stage stage_of(const RunSpec& spec) { return {.duration = spec.duration, .damping = spec.damping, .where = spec.where}; }
 Stage stage_of(const GeostaticSpec& spec)
@@ -38,7 +102,7 @@ std::vector<Index> numbers_of(const std::vector<std::string>& names, const std::
 {
   std::vector<Index> numbers;
   for (std::size_t b = 0; b < bodies.size(); ++b)
-    if (std::find(names.begin(), names.end(), bodies[b].name) != names.end())
+    if (std::ranges::find(names, bodies[b].name) != names.end())
       numbers.push_back(static_cast<Index>(b));
   return numbers;
 }
@@ -101,9 +165,7 @@ void set_stages(const Scene& scene, SceneErrorCollector& errors, Setup<D>& setup
 
 void check_laws(const Scene& scene, SceneErrorCollector& errors)
 {
-  const auto body_of = [&](const std::string& name) {
-    return std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) { return body.name == name; });
-  };
+  const auto body_of = [&](const std::string& name) { return std::ranges::find(scene.bodies, name, &BodySpec::name); };
   for (std::size_t s = 0; s < scene.stages.size(); ++s) {
     const auto stage = static_cast<Index>(s);
     for (const NewMaterialSpec& change : changes_of(scene.stages[s]).change) {
@@ -111,13 +173,13 @@ void check_laws(const Scene& scene, SceneErrorCollector& errors)
                          &after = *material_of(scene, *body_of(change.body), stage);
       const auto name = [](const MaterialSpec& material) { return material.law.name(); };
       const auto can = laws_that_start_from_stress();
-      if (name(before) != name(after) && std::find(can.begin(), can.end(), name(after)) == can.end())
+      if (name(before) != name(after) && std::ranges::find(can, name(after)) == can.end())
         errors.add(change.where, "material",
                    fmt::format("the body comes from law \"{}\", and law \"{}\" cannot start from its stress; of other laws {} can",
                                name(before), name(after), or_list(can)));
     }
     for (const WeakenSpec& weaken : changes_of(scene.stages[s]).weaken) {
-      const bool found = std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& body) {
+      const bool found = std::ranges::any_of(scene.bodies, [&](const BodySpec& body) {
         return (weaken.body.empty() || body.name == weaken.body) && presence_of(body.name, scene.stages).in(stage) &&
                has_strength(*material_of(scene, body, stage));
       });
@@ -156,14 +218,12 @@ void set_changes(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, S
   setup.changes.resize(n);
   setup.laws = laws_of_stages(scene);
   const auto said = [&](std::size_t s) -> const StageChanges& { return changes_of(scene.stages[s]); };
-  const bool bodies_differ = std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) {
-    return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty();
-  });
-  const bool walls_differ =
-      bodies_differ || std::any_of(scene.boundaries.begin(), scene.boundaries.end(),
-                                   [](const BoundaryOptions& boundary) { return !common_of(boundary).during.empty(); });
-  const bool tables_differ =
-      std::any_of(scene.stages.begin(), scene.stages.end(), [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
+  const bool bodies_differ = std::ranges::any_of(
+      scene.stages, [](const StageSpec& stage) { return !changes_of(stage).appear.empty() || !changes_of(stage).vanish.empty(); });
+  const bool walls_differ = bodies_differ || std::ranges::any_of(scene.boundaries, [](const BoundaryOptions& boundary) {
+                              return !common_of(boundary).during.empty();
+                            });
+  const bool tables_differ = std::ranges::any_of(scene.stages, [](const StageSpec& stage) { return changes_of(stage).water.has_value(); });
   const auto names = wall_names(scene.boundaries);
   SceneErrorCollector errors(scene);
   for (std::size_t s = 1; s < n; ++s) {

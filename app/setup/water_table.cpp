@@ -1,7 +1,6 @@
 #include "app/setup/water_table.hpp"
 
 #include <cmath>
-#include <numeric>
 
 #include "app/setup/setup.hpp"
 #include "io/terrain/surface_file.hpp"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cstring>
 #include <stdexcept>
-#include <utility>
 
 #include "core/error.hpp"
 #include "core/library_call.hpp"

@@ -7,7 +7,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <string>
 
 #include "core/error.hpp"
 #include "core/parallel/communicator.hpp"

@@ -51,6 +51,11 @@ class Digest {
   std::array<std::uint64_t, lanes> lane_{}, rest_{};
 };
 
-std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t seed) noexcept;
+inline std::uint64_t digest_of(std::span<const std::byte> bytes, std::uint64_t seed) noexcept
+{
+  Digest digest(seed, bytes.size());
+  digest.add(bytes);
+  return digest.value();
+}
 
 }  // namespace talus

@@ -1,10 +1,7 @@
 #include "io/files/result_files.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
-
-#include "io/files/runout_maps.hpp"
 
 namespace talus {
 
@@ -13,7 +10,7 @@ bool is_numbered(std::string_view name, std::string_view prefix, std::string_vie
   if (!name.starts_with(prefix) || !name.ends_with(suffix) || name.size() <= prefix.size() + suffix.size())
     return false;
   const std::string_view number = name.substr(prefix.size(), name.size() - prefix.size() - suffix.size());
-  return std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+  return std::ranges::all_of(number, [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
 namespace {
@@ -21,8 +18,7 @@ namespace {
 bool is_map(std::string_view name) noexcept
 {
   const std::string_view stem = name.substr(0, name.rfind('.'));
-  return is_numbered(name, "thickness_", ".tif") ||
-         std::any_of(map_kinds.begin(), map_kinds.end(), [&](const MapKind& kind) { return kind.name == stem; });
+  return is_numbered(name, "thickness_", ".tif") || std::ranges::any_of(map_kinds, [&](const MapKind& kind) { return kind.name == stem; });
 }
 
 }  // namespace
@@ -33,8 +29,7 @@ bool is_written_by_runs(std::string_view name) noexcept
                                                          "mesh.msh",     "mesh.vtu",    "scene.yaml", initial_file};
   const std::size_t slash = name.find('/');
   if (slash == std::string_view::npos)
-    return std::find(names.begin(), names.end(), name) != names.end() || is_numbered(name, "particles_", ".vtp") ||
-           is_numbered(name, "mesh_", ".vtu");
+    return std::ranges::find(names, name) != names.end() || is_numbered(name, "particles_", ".vtp") || is_numbered(name, "mesh_", ".vtu");
   const std::string_view folder = name.substr(0, slash), file = name.substr(slash + 1);
   return (folder == checkpoint_folder && is_numbered(file, "step_", ".h5")) || (folder == map_folder && is_map(file)) ||
          (folder == section_folder && file.ends_with(".csv"));

@@ -106,14 +106,14 @@ class FacingFacets {
     const std::string region = group.of.ends_with(ending) ? group.of.substr(0, group.of.size() - ending.size()) : "";
     for_each_outer_facet(data, match_of(data), marks_of(data, region), [&](FacetNodes<D> nodes, Index c, int a) {
       const Vec<D> normal = normal_of(nodes), inwards = data.nodes[data.cells[c][a]] - data.nodes[nodes[0]];
-      std::sort(nodes.begin(), nodes.end());
+      std::ranges::sort(nodes);
       outwards_[nodes] = normal.dot(inwards) > 0 ? Vec<D>(-normal) : normal;
     });
   }
   bool operator()(FacetNodes<D> nodes) const
   {
     const Vec<D> normal = normal_of(nodes);
-    std::sort(nodes.begin(), nodes.end());
+    std::ranges::sort(nodes);
     const auto outwards = outwards_.find(nodes);
     const Real cosine = outwards == outwards_.end() ? std::abs(normal.dot(direction_)) : outwards->second.dot(direction_);
     return cosine >= least_cosine_;
@@ -158,7 +158,7 @@ class SidesOfRegion {
       sides_of_name[polygon.sides[i]].push_back(i);
     for (const auto& [name, sides] : sides_of_name)
       add(name, [&, &of_name = sides](const std::vector<Vec<D>>& corners) {
-        return std::any_of(of_name.begin(), of_name.end(), [&](std::size_t i) { return lie_on(corners, polygon.points, i, (i + 1) % n); });
+        return std::ranges::any_of(of_name, [&](std::size_t i) { return lie_on(corners, polygon.points, i, (i + 1) % n); });
       });
     for (std::size_t h = 0; h < polygon.holes.size(); ++h)
       add(fmt::format("hole_{}", h + 1), [&](const std::vector<Vec<D>>& corners) {
@@ -173,8 +173,7 @@ class SidesOfRegion {
   {
     const Vec<D> centre = Eigen::Map<const Vec<D>>(ring.centre.data());
     add("inner", [&](const std::vector<Vec<D>>& corners) {
-      return std::all_of(corners.begin(), corners.end(),
-                         [&](const Vec<D>& x) { return std::abs((x - centre).norm() - ring.inner_radius) <= slack_; });
+      return std::ranges::all_of(corners, [&](const Vec<D>& x) { return std::abs((x - centre).norm() - ring.inner_radius) <= slack_; });
     });
   }
   template <class Other>
@@ -184,8 +183,8 @@ class SidesOfRegion {
  private:
   bool lie_on(const std::vector<Vec<D>>& corners, const std::vector<std::vector<Real>>& points, std::size_t from, std::size_t to) const
   {
-    return std::all_of(corners.begin(), corners.end(),
-                       [&](const Vec<D>& x) { return distance_to(Vec<2>(x.template head<2>()), points[from], points[to]) <= slack_; });
+    return std::ranges::all_of(
+        corners, [&](const Vec<D>& x) { return distance_to(Vec<2>(x.template head<2>()), points[from], points[to]) <= slack_; });
   }
   template <class Lies>
   void add(const std::string& side, Lies&& lies)
@@ -236,8 +235,8 @@ void add_automatic_groups(MeshData<D>& data)
     for (const bool upper : {false, true}) {
       const Real plane = upper ? high[axis] : low[axis];
       std::vector<FacetNodes<D>> side;
-      std::copy_if(boundary.begin(), boundary.end(), std::back_inserter(side), [&](const FacetNodes<D>& nodes) {
-        return std::all_of(nodes.begin(), nodes.end(), [&](Index n) { return std::abs(data.nodes[n][axis] - plane) <= slack; });
+      std::ranges::copy_if(boundary, std::back_inserter(side), [&](const FacetNodes<D>& nodes) {
+        return std::ranges::all_of(nodes, [&](Index n) { return std::abs(data.nodes[n][axis] - plane) <= slack; });
       });
       if (!side.empty())
         data.facet_sets.emplace(fmt::format("{}_{}", "xyz"[axis], upper ? "max" : "min"), std::move(side));
@@ -282,8 +281,8 @@ void add_groups(MeshData<D>& data, std::span<const GroupSpec> groups)
       throw SceneErrors(group.where,
                         fmt::format("group \"{}\": within.low {} is not below within.high {}", group.name, place<D>(low), place<D>(high)));
     std::vector<FacetNodes<D>> inside;
-    std::copy_if(source->second.begin(), source->second.end(), std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
-      return std::all_of(nodes.begin(), nodes.end(), [&](Index n) {
+    std::ranges::copy_if(source->second, std::back_inserter(inside), [&](const FacetNodes<D>& nodes) {
+      return std::ranges::all_of(nodes, [&](Index n) {
         const Vec<D>& x = data.nodes[n];
         return (x.array() >= low.array()).all() && (x.array() <= high.array()).all();
       });

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-#include <utility>
 
 #include "mesh/check.hpp"
 #include "mesh/simplex.hpp"
@@ -26,7 +25,7 @@ constexpr std::array<const char*, 4> simplices{"points", "edges", "triangles", "
 template <class T>
 void sort_unique(std::vector<T>& items)
 {
-  std::sort(items.begin(), items.end());
+  std::ranges::sort(items);
   items.erase(std::unique(items.begin(), items.end()), items.end());
 }
 
@@ -91,15 +90,14 @@ void MshAssembler<D>::close_nodes()
     high = high.cwiseMax(x);
   }
   extent_ = (high - low).template head<2>().maxCoeff();
-  const bool consecutive =
-      std::adjacent_find(node_tags_.begin(), node_tags_.end(), [](auto a, auto b) { return b != a + 1; }) == node_tags_.end();
+  const bool consecutive = std::ranges::adjacent_find(node_tags_, [](auto a, auto b) { return b != a + 1; }) == node_tags_.end();
   if (consecutive)
     return;
   by_tag_.resize(nodes_.size());
   for (std::size_t n = 0; n < nodes_.size(); ++n)
     by_tag_[n] = {node_tags_[n], static_cast<Index>(n)};
-  std::sort(by_tag_.begin(), by_tag_.end());
-  const auto twice = std::adjacent_find(by_tag_.begin(), by_tag_.end(), [](const auto& a, const auto& b) { return a.first == b.first; });
+  std::ranges::sort(by_tag_);
+  const auto twice = std::ranges::adjacent_find(by_tag_, [](const auto& a, const auto& b) { return a.first == b.first; });
   if (twice != by_tag_.end())
     refuse("node {} occurs twice", twice->first);
 }
@@ -111,7 +109,7 @@ Index MshAssembler<D>::node_of_tag(std::int64_t tag, std::int64_t element) const
     if (tag >= node_tags_.front() && tag <= node_tags_.back())
       return static_cast<Index>(tag - node_tags_.front());
   } else {
-    const auto found = std::lower_bound(by_tag_.begin(), by_tag_.end(), std::pair{tag, Index{0}});
+    const auto found = std::ranges::lower_bound(by_tag_, std::pair{tag, Index{0}});
     if (found != by_tag_.end() && found->first == tag)
       return found->second;
   }
@@ -174,10 +172,10 @@ void MshAssembler<D>::add_element(std::int64_t tag, int dimension, std::span<con
 template <int D>
 void MshAssembler<D>::check_element_tags()
 {
-  if (std::is_sorted(element_tags_.begin(), element_tags_.end(), std::less_equal<>{}))
+  if (std::ranges::is_sorted(element_tags_, std::less_equal<>{}))
     return;
-  std::sort(element_tags_.begin(), element_tags_.end());
-  const auto twice = std::adjacent_find(element_tags_.begin(), element_tags_.end());
+  std::ranges::sort(element_tags_);
+  const auto twice = std::ranges::adjacent_find(element_tags_);
   if (twice != element_tags_.end())
     refuse("element {} occurs twice", *twice);
 }
@@ -189,9 +187,9 @@ std::vector<Index> MshAssembler<D>::unite_repeated_cells()
   std::vector<std::pair<Cell, Index>> sorted(cells_.size());
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     sorted[c] = {cells_[c], static_cast<Index>(c)};
-    std::sort(sorted[c].first.begin(), sorted[c].first.end());
+    std::ranges::sort(sorted[c].first);
   }
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   std::vector<Index> first(cells_.size()), number(cells_.size());
   for (std::size_t i = 0; i < sorted.size(); ++i)
     first[sorted[i].second] = i > 0 && sorted[i].first == sorted[i - 1].first ? first[sorted[i - 1].second] : sorted[i].second;
@@ -248,7 +246,7 @@ MeshData<D> MshAssembler<D>::finish(bool repeats)
       set.push_back(cell_number[c]);
       in_group[c] = 1;
     }
-    std::sort(set.begin(), set.end());
+    std::ranges::sort(set);
     for (std::size_t i = 1; i < set.size(); ++i)
       if (set[i] == set[i - 1])
         repeated.push_back(set[i]);

@@ -1,8 +1,7 @@
-// BenchReport to JSON and back.
+// BenchReport to JSON and back, RanksReport to JSON.
 #include "io/output/bench_json.hpp"
 
 #include <fmt/format.h>
-
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
@@ -110,6 +109,31 @@ BenchReport read_bench(const std::filesystem::path& file)
   } catch (const OrderedJson::exception& e) {
     throw SceneErrors(where, fmt::format("this is not what `talus bench --json` writes: {}", e.what()));
   }
+}
+
+void write_ranks(const std::filesystem::path& file, const RanksReport& report)
+{
+  const BenchSetting& s = report.setting;
+  nlohmann::ordered_json json;
+  json["format"] = "talus bench ranks 1";
+  json["program"] = {{"version", report.version}, {"commit", report.commit}, {"compiler", report.compiler}, {"build", report.build}};
+  json["machine"] = {{"processor", report.processor}, {"cores", report.cores}};
+  json["setting"] = {{"kernel", s.kernel},       {"transfer", s.transfer}, {"law", s.law},
+                     {"dimension", s.dimension}, {"per_cell", s.per_cell}, {"threads", s.threads},
+                     {"precision", s.precision}};
+  json["particles"] = report.particles;
+  json["cells"] = report.cells;
+  json["nodes"] = report.nodes;
+  json["steps"] = report.steps;
+  json["step [s]"] = {{"median", report.seconds.median}, {"least", report.seconds.least}, {"most", report.seconds.most}};
+  json["ranks"] = nlohmann::ordered_json::array();
+  for (const std::vector<Real>& numbers : report.ranks) {
+    nlohmann::ordered_json rank;
+    for (std::size_t c = 0; c < numbers.size(); ++c)
+      rank[report.columns[c]] = numbers[c];
+    json["ranks"].push_back(std::move(rank));
+  }
+  write_whole(file, json.dump(2) + '\n');
 }
 
 }  // namespace talus

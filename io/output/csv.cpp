@@ -10,7 +10,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 
 #include "core/error.hpp"
@@ -22,14 +21,6 @@ namespace talus {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string header(std::span<const CsvColumn> columns)
-{
-  std::string line;
-  for (const CsvColumn& column : columns)
-    line.append(line.empty() ? "" : ",").append(csv_cell(csv_heading(column)));
-  return line + '\n';
-}
 
 std::string row(std::span<const Real> values)
 {
@@ -118,10 +109,18 @@ std::string csv_heading(const CsvColumn& column)
   return column.unit.empty() ? column.name : fmt::format("{} [{}]", column.name, column.unit);
 }
 
+std::string csv_header(std::span<const CsvColumn> columns)
+{
+  std::string line;
+  for (const CsvColumn& column : columns)
+    line.append(line.empty() ? "" : ",").append(csv_cell(csv_heading(column)));
+  return line + '\n';
+}
+
 HistoryFile::HistoryFile(fs::path file, std::vector<CsvColumn> columns, std::string_view rows)
     : path_(std::move(file)), columns_(std::move(columns))
 {
-  write_whole(path_, header(columns_).append(rows));
+  write_whole(path_, csv_header(columns_).append(rows));
   note_result(path_, path_, Proof::grows);
   file_.reset(std::fopen(path_.c_str(), "ae"));
   if (!file_)

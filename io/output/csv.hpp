@@ -25,6 +25,8 @@ struct CsvColumn {
 std::string csv_cell(std::string text);
 /// The heading "name [unit]".
 std::string csv_heading(const CsvColumn& column);
+/// The line with the headings of all columns.
+std::string csv_header(std::span<const CsvColumn> columns);
 
 /// A history while it is being written.  The first column is the time [s], and times increase.  Every row reaches the file before append()
 /// returns; numbers are bitwise the same when read back.  NaN is written as an empty entry, which spreadsheets read as "no value".  Disk

@@ -1,6 +1,9 @@
 #pragma once
 // Columns of history.csv, as rows of tables.  The function of a column is called with what app/observers/history.cpp knows of its subject
 // at the time of a row (RunNow, PointNow, ...).
+#include <fmt/format.h>
+
+#include "core/field_component.hpp"
 #include "io/output/csv.hpp"
 #include "io/output/quantity.hpp"
 
@@ -94,8 +97,22 @@ constexpr auto body_columns()
 }
 
 /// The columns of a quantity with the name of its subject inserted: one for each of its components.
-std::vector<CsvColumn> csv_columns(std::string_view pattern, std::string_view unit, QuantityKind kind, std::string_view owner,
-                                   int dimension);
+inline std::vector<CsvColumn> csv_columns(std::string_view pattern, std::string_view unit, QuantityKind kind, std::string_view owner,
+                                          int dimension)
+{
+  const std::string name = fmt::format(fmt::runtime(pattern), owner);
+  std::vector<std::string> components = component_names(components_of(kind));
+  if (dimension == 2 && kind == QuantityKind::vector)
+    components = {"x", "y"};
+  if (dimension == 2 && kind == QuantityKind::moment)
+    components = {"z"};
+  if (kind == QuantityKind::number)
+    components = {""};
+  std::vector<CsvColumn> all;
+  for (const std::string& component : components)
+    all.push_back({name + component, unit_in(dimension, unit)});
+  return all;
+}
 
 template <class Table>
 std::vector<CsvColumn> csv_columns(const Table& table, std::string_view owner, int dimension)

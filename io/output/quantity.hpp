@@ -71,6 +71,13 @@ ValueOf<D, kind> value_of(const Quantity<kind, Value>& row, const Of&... of)
 }
 
 /// The unit in a dimension, where a plane has unit thickness; empty for a pure number.
-std::string unit_in(int dimension, std::string_view unit);
+inline std::string unit_in(int dimension, std::string_view unit)
+{
+  if (unit == "m^D")
+    return dimension == 2 ? "m^2" : "m^3";
+  if (unit == "m^(D-1)")
+    return dimension == 2 ? "m" : "m^2";
+  return unit == "-" ? "" : std::string(unit);
+}
 
 }  // namespace talus

@@ -24,4 +24,11 @@ SummaryBack read_summary(const std::filesystem::path& file);
 /// The number of that name, or the only one whose path ends with it, such as "energy.closure" or "plastic".
 const NamedValue* find_number(const std::vector<NamedValue>& numbers, std::string_view name);
 
+struct RunOrigin {
+  std::string status, version, commit, compiler, build, kernel, transfer, precision, threads;  ///< "unknown" if not in the file
+};
+
+/// Throws EnvironmentError with the name of the file if it cannot be read or is not a summary of a run.
+RunOrigin read_origin(const std::filesystem::path& summary);
+
 }  // namespace talus

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/field_component.hpp"
 #include "core/parallel/slices.hpp"
 #include "mesh/mesh.hpp"
 
@@ -66,6 +67,12 @@ struct StoredParticles {
 /// Reads a file of write_particles().  Throws EnvironmentError with the name of the file if it is missing or damaged, or if its particles
 /// have no ids.
 StoredParticles read_particles(const std::filesystem::path& file);
+
+/// The field of that name; nullptr if the file does not have it.
+const StoredField* stored_field(const StoredParticles& particles, std::string_view name);
+
+/// The shown value of each particle.
+std::vector<Real> viewed_values(const StoredField& field, const ViewedField& viewed);
 
 /// Names and numbers of components of the fields in such a file, without "id"; values are not read.  Errors as for read_particles().
 std::vector<std::pair<std::string, int>> stored_particle_fields(const std::filesystem::path& file);

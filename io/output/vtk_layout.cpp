@@ -228,8 +228,7 @@ void VtkLayout::check_sizes() const
 
 const VtkArray* VtkLayout::find(std::string_view section, std::string_view name) const noexcept
 {
-  const auto found =
-      std::find_if(arrays_.begin(), arrays_.end(), [&](const VtkArray& array) { return array.section == section && array.name == name; });
+  const auto found = std::ranges::find_if(arrays_, [&](const VtkArray& array) { return array.section == section && array.name == name; });
   return found == arrays_.end() ? nullptr : &*found;
 }
 

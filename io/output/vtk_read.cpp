@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/error.hpp"
+#include "core/parallel/threads.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/output/vtk.hpp"
 #include "io/output/vtk_layout.hpp"
@@ -29,7 +30,7 @@ std::vector<StoredField> stored_fields(const VtkLayout& file, std::string_view s
   if (section == point_data) {
     fields.push_back({"position", 3, file.numbers(*file.find("Points", "Points")), "m"});
     const std::vector<Real>& places = fields.back().values;
-    const auto wrong = std::find_if(places.begin(), places.end(), [](Real x) { return !std::isfinite(x); });
+    const auto wrong = std::ranges::find_if(places, [](Real x) { return !std::isfinite(x); });
     if (wrong != places.end())
       file.fail(fmt::format("position {} is not finite", (wrong - places.begin()) / 3));
   }
@@ -51,6 +52,25 @@ StoredParticles read_particles(const fs::path& path)
   if (const VtkArray* const origin = file.find("FieldData", origin_field); origin != nullptr && origin->type == "String")
     particles.made_by = file.text(*origin);
   return particles;
+}
+
+const StoredField* stored_field(const StoredParticles& particles, std::string_view name)
+{
+  const auto found = std::ranges::find(particles.fields, name, &StoredField::name);
+  return found == particles.fields.end() ? nullptr : &*found;
+}
+
+std::vector<Real> viewed_values(const StoredField& field, const ViewedField& viewed)
+{
+  const auto width = static_cast<std::size_t>(field.components);
+  const auto component = viewed.component_of(field.components);
+  const std::span<const Real> all = field.values;
+  std::vector<Real> values(all.size() / width);
+  parallel_for(static_cast<Index>(values.size()), [&](Index i) {
+    const auto entry = all.subspan(static_cast<std::size_t>(i) * width, width);
+    values[static_cast<std::size_t>(i)] = component ? entry[static_cast<std::size_t>(*component)] : viewed_value(entry);
+  });
+  return values;
 }
 
 std::vector<std::pair<std::string, int>> stored_particle_fields(const fs::path& path)

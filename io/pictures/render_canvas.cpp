@@ -27,7 +27,6 @@
 #include "io/pictures/render_legend.hpp"
 #include "io/pictures/render_png.hpp"
 #include "io/pictures/render_sheet.hpp"
-#include "mesh/geometry/spacing.hpp"
 
 namespace talus::render {
 

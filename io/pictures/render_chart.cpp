@@ -22,8 +22,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/display_text.hpp"
 #include "core/error.hpp"
-#include "core/units.hpp"
 #include "core/word_match.hpp"
 #include "io/pictures/render_png.hpp"
 #include "io/pictures/render_sheet.hpp"

@@ -8,13 +8,10 @@
 #include <vtkPolyData.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/error.hpp"
-#include "core/field_component.hpp"
 #include "core/word_match.hpp"
 #include "io/output/vtk.hpp"
-#include "io/pictures/settings/picture_settings.hpp"
 #include "mesh/geometry/outline.hpp"
 
 namespace talus::render {
@@ -39,18 +36,11 @@ std::string default_field(const std::vector<std::string>& names)
   return names.empty() ? "id" : names.front();
 }
 
-const StoredField* field_called(const StoredParticles& particles, std::string_view name)
-{
-  const auto fields = std::span(particles.fields).subspan(1);
-  const auto found = std::find_if(fields.begin(), fields.end(), [&](const StoredField& field) { return field.name == name; });
-  return found == fields.end() ? nullptr : &*found;
-}
-
 StoredField find_field(const StoredParticles& particles, const std::string& name, const fs::path& file)
 {
   if (name == "id")
     return {name, 1, {particles.ids.begin(), particles.ids.end()}};
-  if (const StoredField* field = field_called(particles, name))
+  if (const StoredField* field = stored_field(particles, name); field != nullptr && name != "position")
     return *field;
   throw Error(fmt::format("{} has no field \"{}\"{}", file.string(), name, suggestion(name, field_names(particles))));
 }
@@ -61,19 +51,6 @@ std::vector<Vec3> points_of(std::span<const Real> numbers)
   for (std::size_t p = 0; p < x.size(); ++p)
     x[p] = Eigen::Map<const Vec3>(numbers.data() + 3 * p);
   return x;
-}
-
-std::vector<Real> values_of(const StoredField& field, const ViewedField& viewed)
-{
-  const auto width = static_cast<std::size_t>(field.components);
-  const auto component = viewed.component_of(field.components);
-  const std::span<const Real> all = field.values;
-  std::vector<Real> values(all.size() / width);
-  for (std::size_t p = 0; p < values.size(); ++p) {
-    const auto entry = all.subspan(p * width, width);
-    values[p] = component ? entry[static_cast<std::size_t>(*component)] : viewed_value(entry);
-  }
-  return values;
 }
 
 /// The file mesh.vtu, or the first file of mesh.pvd, if it exists.
@@ -118,9 +95,9 @@ Cloud read_cloud(const fs::path& file, const std::optional<std::string>& field)
   const StoredParticles particles = read_particles(file);
   const auto viewed = ViewedField::of(field ? *field : default_field(field_names(particles)));
   const StoredField shown = find_field(particles, viewed.name, file);
-  Cloud cloud{points_of(particles.fields.front().values), values_of(shown, viewed), viewed.label(shown.components), shown.unit,
+  Cloud cloud{points_of(particles.fields.front().values), viewed_values(shown, viewed), viewed.label(shown.components), shown.unit,
               particles.ids};
-  if (const StoredField* volume = field_called(particles, "volume"); volume != nullptr && volume->components == 1)
+  if (const StoredField* volume = stored_field(particles, "volume"); volume != nullptr && volume->components == 1)
     cloud.volume = volume->values;
   return cloud;
 }
@@ -154,17 +131,17 @@ Lines lines_of(vtkPolyData* data)
 std::map<int, Matter> read_bodies(const fs::path& file, const std::optional<std::string>& field)
 {
   const StoredParticles particles = read_particles(file);
-  const StoredField* const volume = field_called(particles, "volume");
+  const StoredField* const volume = stored_field(particles, "volume");
   if (volume == nullptr || volume->components != 1)
     throw Error(
         fmt::format("{} has no field \"volume\", from which surfaces are reckoned: run the scene again with it among "
                     "outputs.particles.fields",
                     file.string()));
-  const StoredField* const body = field_called(particles, "body");
+  const StoredField* const body = stored_field(particles, "body");
   std::vector<Real> values;
   if (field) {
     const auto viewed = ViewedField::of(*field);
-    values = values_of(find_field(particles, viewed.name, file), viewed);
+    values = viewed_values(find_field(particles, viewed.name, file), viewed);
   }
   const std::vector<Vec3> x = points_of(particles.fields.front().values);
   constexpr Real most_bodies = 1e6;

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/units.hpp"
+#include "core/display_text.hpp"
 #include "io/pictures/render_png.hpp"
 #include "io/pictures/render_words.hpp"
 

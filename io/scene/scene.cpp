@@ -1,12 +1,12 @@
-// Rules between the keys of one block.
+// Rules between the keys of one block; names of walls; which way is up.
 #include "io/scene/scene.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
+#include <map>
 
 namespace talus {
 
@@ -125,6 +125,36 @@ void PictureSpec::check(std::vector<std::string>& problems) const
   needs_direction("view", view);
   if (!up.empty())
     needs_direction("up", up);
+}
+
+std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries)
+{
+  std::vector<std::string> names;
+  std::map<std::string, int> times;
+  for (const BoundaryOptions& boundary : boundaries) {
+    const std::string& group = common_of(boundary).on;
+    const int count = ++times[group];
+    names.push_back(count == 1 ? group : fmt::format("{}_{}", group, count));
+  }
+  return names;
+}
+
+std::optional<Vec3> against_gravity(const Scene& scene)
+{
+  for (const LoadSpec& load : scene.loads)
+    if (const auto* gravity = std::get_if<GravitySpec>(&load)) {
+      Vec3 up = Vec3::Zero();
+      for (std::size_t d = 0; d < std::min<std::size_t>(3, gravity->acceleration.size()); ++d)
+        up[static_cast<Index>(d)] = 0 - gravity->acceleration[d];  // not -0
+      if (up.norm() > 0)
+        return up.normalized();
+    }
+  return std::nullopt;
+}
+
+Vec3 upright_of(const Scene& scene)
+{
+  return against_gravity(scene).value_or(scene.dimension == 2 ? Vec3(Vec3::UnitY()) : Vec3(Vec3::UnitZ()));
 }
 
 }  // namespace talus

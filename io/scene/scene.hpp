@@ -12,14 +12,11 @@
 #include "core/fields.hpp"
 #include "core/particle_column.hpp"
 #include "io/scene/scene_bodies.hpp"
-#include "io/scene/scene_initial.hpp"
 #include "io/scene/scene_loads.hpp"
 #include "io/scene/scene_mesh.hpp"
 #include "io/scene/scene_output.hpp"
 #include "io/scene/scene_stages.hpp"
-#include "io/scene/scene_water.hpp"
-#include "kernels/projected_options.hpp"
-#include "kernels/umls_options.hpp"
+#include "kernels/kernel_options.hpp"
 #include "mesh/conditions/conditions.hpp"
 #include "solver/options/limit_options.hpp"
 #include "solver/options/transfer_options.hpp"
@@ -112,5 +109,15 @@ struct Scene {
             "a tenth of the plastic work; without it these are warnings")};
   }
 };
+
+/// The names of boundary conditions in outputs and stages: that of the group of the condition; the second one on a group is `<group>_2`,
+/// and so on.
+std::vector<std::string> wall_names(const std::vector<BoundaryOptions>& boundaries);
+
+/// A unit vector against gravity; nothing where the scene has none.
+std::optional<Vec3> against_gravity(const Scene& scene);
+
+/// The same; without gravity y in 2-D and z in 3-D.
+Vec3 upright_of(const Scene& scene);
 
 }  // namespace talus

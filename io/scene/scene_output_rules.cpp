@@ -4,8 +4,8 @@
 #include "core/field_component.hpp"
 #include "io/output/history_columns.hpp"
 #include "io/output/output_fields.hpp"
+#include "io/scene/scene.hpp"
 #include "io/scene/scene_rule_base.hpp"
-#include "io/scene/wall_names.hpp"
 
 namespace talus {
 

@@ -66,9 +66,8 @@ class StageRules : private SceneRuleBase {
       add(at + ".water",
           "there is no water in this scene: its block water says how heavy it is, which bodies are drained, and where its "
           "table is at the start");
-    const bool any_left = std::any_of(bodies_.begin(), bodies_.end(), [&](const std::string& body) { return presence(body).in(s); });
-    const bool any_before =
-        s == 0 || std::any_of(bodies_.begin(), bodies_.end(), [&](const auto& body) { return presence(body).in(s - 1); });
+    const bool any_left = std::ranges::any_of(bodies_, [&](const std::string& body) { return presence(body).in(s); });
+    const bool any_before = s == 0 || std::ranges::any_of(bodies_, [&](const auto& body) { return presence(body).in(s - 1); });
     if (!bodies_.empty() && !any_left && any_before)
       add(at, s == 0 ? "there is no body at the start: all of them appear later" : "no body is left in this stage");
   }
@@ -138,7 +137,7 @@ class StageRules : private SceneRuleBase {
   {
     for (Index t = 0; t <= s; ++t) {
       const auto& names = changes_of(scene_.stages[static_cast<std::size_t>(t)]).*list;
-      const auto found = std::find(names.begin(), names.end(), body);
+      const auto found = std::ranges::find(names, body);
       if (found != names.end() && (t < s || static_cast<std::size_t>(found - names.begin()) < place))
         return t;
     }

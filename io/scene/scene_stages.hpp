@@ -11,7 +11,7 @@
 
 #include "core/error.hpp"
 #include "core/fields.hpp"
-#include "core/ramp.hpp"
+#include "core/time_table.hpp"
 #include "io/scene/scene_surface.hpp"
 
 namespace talus {

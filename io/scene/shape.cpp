@@ -61,7 +61,7 @@ std::optional<std::pair<std::size_t, std::size_t>> colliding_sides(const std::ve
   const auto right = [&](std::size_t i) { return std::max(corners[i][0], corners[(i + 1) % n][0]); };
   std::vector<std::size_t> order(n);
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
+  std::ranges::sort(order, [&](std::size_t i, std::size_t j) { return left(i) < left(j); });
   for (std::size_t k = 0; k < n; ++k)
     for (std::size_t m = k + 1; m < n && left(order[m]) <= right(order[k]); ++m)
       if (sides_collide(corners, order[k], order[m]))
@@ -128,8 +128,7 @@ bool holds(const Polygon& polygon, std::span<const Real> x)
     return false;
   const Point p{x[0], x[1]};
   return place_in(polygon.points, p) != WhereInPolygon::outside &&
-         std::none_of(polygon.holes.begin(), polygon.holes.end(),
-                      [&](const auto& hole) { return place_in(hole, p) == WhereInPolygon::inside; });
+         std::ranges::none_of(polygon.holes, [&](const auto& hole) { return place_in(hole, p) == WhereInPolygon::inside; });
 }
 
 bool holds(const Ring& ring, std::span<const Real> x)
@@ -146,16 +145,15 @@ bool holds(const SimpleShape& shape, std::span<const Real> x)
 }
 bool holds(const Difference& difference, std::span<const Real> x)
 {
-  return holds(difference.of, x) &&
-         std::none_of(difference.without.begin(), difference.without.end(), [&](const SimpleShape& part) { return holds(part, x); });
+  return holds(difference.of, x) && std::ranges::none_of(difference.without, [&](const SimpleShape& part) { return holds(part, x); });
 }
 bool holds(const Union& all, std::span<const Real> x)
 {
-  return std::any_of(all.of.begin(), all.of.end(), [&](const SimpleShape& part) { return holds(part, x); });
+  return std::ranges::any_of(all.of, [&](const SimpleShape& part) { return holds(part, x); });
 }
 bool holds(const Intersection& all, std::span<const Real> x)
 {
-  return std::all_of(all.of.begin(), all.of.end(), [&](const SimpleShape& part) { return holds(part, x); });
+  return std::ranges::all_of(all.of, [&](const SimpleShape& part) { return holds(part, x); });
 }
 
 /// Adds an error unless the corners are those of a simple polygon; `key` is their name.  Returns whether they are.

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "io/files/file_descriptor.hpp"
 
 namespace talus {
 
@@ -101,17 +102,12 @@ Ending run_to_its_end(std::vector<std::string> words)
   std::array<int, 2> ends;
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw EnvironmentError(fmt::format("cannot start {}: {}", words.front(), std::strerror(errno)));
-  std::optional<ChildProcess> child;
-  try {
-    child.emplace(std::move(words), ends[1]);
-  } catch (const EnvironmentError&) {
-    ::close(ends[0]), ::close(ends[1]);
-    throw;
-  }
-  ::close(ends[1]);
-  Ending ending{read_all(ends[0]), 0};
-  ::close(ends[0]);
-  ending.code = child->wait();
+  FileDescriptor from(ends[0]), to(ends[1]);
+  ChildProcess child(std::move(words), to.number());
+  to = {};  // closed, so that the end of the child's output can be seen
+  Ending ending{read_all(from.number()), 0};
+  from = {};
+  ending.code = child.wait();
   return ending;
 }
 

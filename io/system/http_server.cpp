@@ -1,7 +1,6 @@
 // One thread and non-blocking sockets, so that a slow client does not block the others.
 #include "io/system/http_server.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <netinet/in.h>
 #include <poll.h>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "core/error.hpp"
+#include "io/files/file_descriptor.hpp"
 #include "io/system/http_request.hpp"
 
 namespace talus {
@@ -38,22 +38,6 @@ constexpr std::string_view headers =
     "Referrer-Policy: no-referrer\r\n"
     "Cross-Origin-Resource-Policy: same-origin\r\n"
     "Connection: close\r\n";
-
-class Socket {
- public:
-  explicit Socket(int number) : number_(number) {}
-  ~Socket()
-  {
-    if (number_ >= 0)
-      ::close(number_);
-  }
-  Socket(const Socket&) = delete;
-  Socket& operator=(const Socket&) = delete;
-  int number() const noexcept { return number_; }
-
- private:
-  int number_;
-};
 
 /// The head and body of an answer.
 struct Reply {
@@ -79,7 +63,7 @@ struct Connection {
   enum class State : std::uint8_t { asks, takes, leaves };
 
   Connection(int number, std::uint32_t from) : socket(number), address(from) {}
-  Socket socket;
+  FileDescriptor socket;
   std::uint32_t address;
   State state = State::asks;
   Clock::time_point until = Clock::now() + time_for_request;  ///< deadline after which it is closed
@@ -137,19 +121,17 @@ struct Connection {
   }
 };
 
-int listening_socket(int port)
+FileDescriptor listening_socket(int port)
 {
-  const int number = ::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  FileDescriptor door(::socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
   const int yes = 1;
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (number >= 0 && ::setsockopt(number, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
-      ::bind(number, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && ::listen(number, SOMAXCONN) == 0)
-    return number;
-  if (number >= 0)
-    ::close(number);
+  if (door.is_open() && ::setsockopt(door.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes) == 0 &&
+      ::bind(door.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 && ::listen(door.number(), SOMAXCONN) == 0)
+    return door;
   throw EnvironmentError(port == 0
                              ? fmt::format("no port of {} is free", loopback)
                              : fmt::format("--port {}: another program has it, or it is not allowed: choose another, or leave it out for "
@@ -180,11 +162,11 @@ struct HttpServer::Inside {
   Inside(int wanted_port, Answer give) : answer(std::move(give)), door(listening_socket(wanted_port)), port(port_of(door.number())) {}
 
   Answer answer;
-  Socket door;
+  FileDescriptor door;
   int port;
   std::array<int, 2> wake = pipe_ends();
-  Socket wake_read{wake[0]}, wake_write{wake[1]};  ///< closed last: the thread has ended by then
-  std::list<Connection> connections;               ///< the oldest first
+  FileDescriptor wake_read{wake[0]}, wake_write{wake[1]};  ///< closed last: the thread has ended by then
+  std::list<Connection> connections;                       ///< the oldest first
   std::thread thread;
 
   bool is_ours(const std::string& host) const

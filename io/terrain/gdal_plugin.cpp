@@ -10,4 +10,6 @@ const GdalPart& gdal()
   return part;
 }
 
+PolygonFile read_polygons(const std::filesystem::path& file) { return gdal().read_polygons(file); }
+
 }  // namespace talus

@@ -1,5 +1,5 @@
 #pragma once
-// Reads the surfaces of a scene: from files, points and numbers.
+// Reads the surfaces of a scene, from files, points and numbers, and its outlines from files.
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -42,5 +42,9 @@ std::optional<SurfaceRead> read_surface(const SurfaceSpec& spec, MapPlan& plan, 
 /// hole.  `of` is the name of the outline, such as "domain".
 void check_cover(const SurfaceRead& surface, const SourceLocation& where, const MapRing& outline, const std::string& of,
                  std::vector<SceneError>& problems);
+
+/// The polygons of a file in map coordinates, reprojected if the file has another coordinate system.  Empty after an error.
+std::vector<MapPolygon> read_outlines(const std::string& file, const SourceLocation& where, const MapPlan& plan,
+                                      std::vector<SceneError>& problems, std::vector<std::string>& repairs);
 
 }  // namespace talus

@@ -59,7 +59,7 @@ class FileReader {
 std::optional<SurfaceRead> FileReader::read()
 {
   std::string kind = path_.extension().string();
-  std::transform(kind.begin(), kind.end(), kind.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(kind, kind.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool of_points = kind == ".csv" || kind == ".xyz" || kind == ".txt";
   if (kind != ".stl")
     gdal();  // checked here, because a missing plugin is not an error of the scene
@@ -131,10 +131,10 @@ bool FileReader::settle_units(Raster& raster)
                                       Length{"dm", 0.1},
                                       Length{"km", 1e3}};
   std::string unit = raster.unit;
-  std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::ranges::transform(unit, unit.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (unit.empty() || unit == "m")
     return true;
-  const auto* const length = std::find_if(lengths.begin(), lengths.end(), [&](const Length& l) { return l.name == unit; });
+  const auto* const length = std::ranges::find(lengths, unit, &Length::name);
   if (length == lengths.end()) {
     complain(fmt::format("elevations are in '{}', which is no length that is known: m, ft, US survey foot, km, dm, cm, mm", raster.unit));
     return false;
@@ -153,7 +153,7 @@ void FileReader::drop_undeclared(Raster& raster)
   Index dropped = 0;
   Real example = 0;
   for (Real& value : raster.values)
-    if (std::find(usual.begin(), usual.end(), value) != usual.end() || std::abs(value) > absurd) {
+    if (std::ranges::find(usual, value) != usual.end() || std::abs(value) > absurd) {
       example = value;
       value = std::numeric_limits<Real>::quiet_NaN();
       ++dropped;
@@ -251,10 +251,9 @@ std::optional<SurfaceRead> FileReader::read_stl_surface()
   const Real farthest = std::max({std::abs(extent.west), std::abs(extent.east), std::abs(extent.south), std::abs(extent.north)});
   // Coordinates of a binary file have 24 bits, and those of an ASCII file often come from a binary one.
   const auto is_single = [](const auto& corner) {
-    return std::all_of(corner.begin(), corner.end(), [](Real x) { return x == static_cast<Real>(static_cast<float>(x)); });
+    return std::ranges::all_of(corner, [](Real x) { return x == static_cast<Real>(static_cast<float>(x)); });
   };
-  if (const Real step = std::ldexp(1.0, std::ilogb(farthest) - 23);
-      step > 0.05 && std::all_of(sheet.corners.begin(), sheet.corners.end(), is_single))
+  if (const Real step = std::ldexp(1.0, std::ilogb(farthest) - 23); step > 0.05 && std::ranges::all_of(sheet.corners, is_single))
     mend(fmt::format("places {:.0f} m away from zero are exact to {:.2g} m only in an STL file", farthest, step));
   const Real spacing = std::sqrt((extent.east - extent.west) * (extent.north - extent.south) / static_cast<Real>(sheet.triangles.size()));
   return SurfaceRead{surface_of(std::move(sheet)), file_, extent, spacing};

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "io/terrain/outline_file.hpp"
 #include "io/terrain/surface_file.hpp"
 
 namespace talus {

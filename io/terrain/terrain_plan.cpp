@@ -28,16 +28,16 @@ std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
   for (const Area& area : areas_of(input))
     for (const Real share : crossings(area, from, to))
       x.push_back(input.from + share * (input.to - input.from));
-  std::sort(x.begin(), x.end());
+  std::ranges::sort(x);
   x.erase(std::unique(x.begin(), x.end()), x.end());
   constexpr Real room = 0.3;  // relative to a cell
   for (const Real kink : input.kinks) {
     const Real least = room * sizes(input.frame.to_map(kink));
-    const bool free = std::all_of(x.begin(), x.end(), [&](Real other) { return std::abs(other - kink) >= least; });
+    const bool free = std::ranges::all_of(x, [&](Real other) { return std::abs(other - kink) >= least; });
     if (free && kink > input.from && kink < input.to)
       x.push_back(kink);
   }
-  std::sort(x.begin(), x.end());
+  std::ranges::sort(x);
   return x;
 }
 
@@ -45,10 +45,9 @@ std::vector<Real> stops(const TerrainInput& input, const PlanSizes& sizes)
 void divide(Real a, Real b, const TerrainInput& input, const PlanSizes& sizes, std::vector<Vec<1>>& nodes)
 {
   const auto place = [&](Real share) { return a * (1 - share) + b * share; };
-  const Real smallest =
-      sizes.strips.empty() ? sizes.size : std::min_element(sizes.strips.begin(), sizes.strips.end(), [](const Strip& s, const Strip& t) {
-                                            return s.inside < t.inside;
-                                          })->inside;
+  const Real smallest = sizes.strips.empty() ? sizes.size : std::ranges::min_element(sizes.strips, [](const Strip& s, const Strip& t) {
+                                                              return s.inside < t.inside;
+                                                            })->inside;
   const auto pieces = sizes.strips.empty() ? 1 : static_cast<Index>(std::ceil(8 * (b - a) / std::min(smallest, sizes.size)));
   std::vector<Real> cells{0};  // number of cells up to the end of each interval
   for (Index i = 0; i < pieces; ++i)

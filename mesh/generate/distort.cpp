@@ -193,11 +193,10 @@ MeshData<D> slivered(MeshData<D> data, Real angle, Index count, std::uint64_t se
     const auto cells = cells_of_node[n];
     const Index c = cells.empty() ? none : cells[static_cast<std::size_t>(uniform(random) * static_cast<Real>(cells.size()))];
     const auto free = [&](Index m) { return used[m] == 0; };
-    const bool free_star =
-        std::all_of(cells.begin(), cells.end(), [&](Index k) { return std::all_of(data.cells[k].begin(), data.cells[k].end(), free); });
+    const bool free_star = std::ranges::all_of(cells, [&](Index k) { return std::ranges::all_of(data.cells[k], free); });
     if (c == none || !normals[n].empty() || !free_star)
       continue;
-    const Index local = static_cast<Index>(std::find(data.cells[c].begin(), data.cells[c].end(), n) - data.cells[c].begin());
+    const Index local = static_cast<Index>(std::ranges::find(data.cells[c], n) - data.cells[c].begin());
     const std::optional<Vec<D>> pressed = press_flat<D>(data, cells, n, facet<D>(corners(data, c), static_cast<int>(local)), angle);
     if (!pressed || !(least_volume_ratio<D>(data, cells, n, *pressed, volume) > 0))
       continue;

@@ -1,7 +1,5 @@
 #include "solver/boundary/boundary_conditions.hpp"
 
-#include <algorithm>
-
 #include "solver/boundary/pushed_node.hpp"
 
 namespace talus {

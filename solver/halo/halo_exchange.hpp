@@ -236,14 +236,4 @@ inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& subdom
   return HaloExchange(ranks, topic, std::move(borders));
 }
 
-/// Marks all nodes that are sent to any rank.
-inline std::vector<std::uint8_t> nodes_out(const HaloExchange& messages, std::size_t n_nodes)
-{
-  std::vector<std::uint8_t> out(messages.borders().empty() ? 0 : n_nodes, 0);
-  for (const NeighbourRank& border : messages.borders())
-    for (const Index n : border.out)
-      out[static_cast<std::size_t>(n)] = 1;
-  return out;
-}
-
 }  // namespace talus

@@ -9,7 +9,7 @@
 #include "core/fields.hpp"
 #include "core/member_count.hpp"
 #include "core/particles.hpp"
-#include "core/ramp.hpp"
+#include "core/time_table.hpp"
 #include "materials/interface/material.hpp"
 #include "solver/boundary/boundary_conditions.hpp"
 #include "solver/state/ledger.hpp"

@@ -1,9 +1,7 @@
 #include "solver/state/cell_order.hpp"
 
-#include <algorithm>
 #include <array>
 #include <numeric>
-#include <utility>
 
 #include "core/parallel/threads.hpp"
 

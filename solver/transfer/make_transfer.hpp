@@ -4,8 +4,7 @@
 #include <string_view>
 #include <tuple>
 
-#include "kernels/projected_options.hpp"
-#include "kernels/umls_options.hpp"
+#include "kernels/kernel_options.hpp"
 #include "solver/model/transfer.hpp"
 
 namespace talus {

@@ -1,5 +1,5 @@
 // Ramps begin at nothing, end at all, and say how.
-#include "core/ramp.hpp"
+#include "core/time_table.hpp"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 #include <algorithm>
 
 #include "app/commands/report/report_survey.hpp"
+#include "core/display_text.hpp"
 #include "core/error.hpp"
-#include "core/format_duration.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/output/csv.hpp"
 #include "io/output/progress_json.hpp"

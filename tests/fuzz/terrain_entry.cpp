@@ -1,7 +1,6 @@
 // Grounds and outlines from files, and records of motion: what a scene names besides its mesh.
 #include "core/error.hpp"
 #include "io/scene/record_file.hpp"
-#include "io/terrain/outline_file.hpp"
 #include "io/terrain/surface_file.hpp"
 #include "tests/fuzz/entries.hpp"
 #include "tests/fuzz/memory_file.hpp"

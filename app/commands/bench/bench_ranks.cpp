@@ -1,4 +1,4 @@
-#include "app/commands/bench/bench_ranks.hpp"
+#include "app/commands/bench/bench_command.hpp"
 
 #include <fmt/format.h>
 
@@ -6,13 +6,12 @@
 #include <array>
 #include <thread>
 
-#include "app/commands/bench/bench_cases.hpp"
 #include "app/commands/bench/bench_measure.hpp"
 #include "app/setup/seed.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/version.hpp"
-#include "io/output/ranks_json.hpp"
+#include "io/output/bench_json.hpp"
 
 namespace talus {
 

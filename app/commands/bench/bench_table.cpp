@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/commands/bench/bench_cases.hpp"
+#include "app/commands/bench/bench_command.hpp"
 
 namespace talus {
 

@@ -11,7 +11,7 @@
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 #include "io/files/atomic_file.hpp"
-#include "io/output/origin_json.hpp"
+#include "io/output/summary_json.hpp"
 
 namespace talus {
 

@@ -7,10 +7,9 @@
 
 #include "app/commands/fos/fos_command.hpp"
 #include "app/commands/fos/fos_trials.hpp"
-#include "app/commands/pictures/render_command.hpp"
+#include "app/commands/pictures/picture_commands.hpp"
 #include "app/observers/results.hpp"
 #include "core/parallel/communicator.hpp"
-#include "core/shell_quote.hpp"
 #include "core/version.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/output/csv.hpp"
@@ -145,10 +144,7 @@ class FosSearch {
     std::fflush(stdout);
   }
 
-  const Planned& planned_of(const FosTrial& trial) const
-  {
-    return *std::find_if(made_.begin(), made_.end(), [&](const Planned& planned) { return planned.factor == trial.factor; });
-  }
+  const Planned& planned_of(const FosTrial& trial) const { return *std::ranges::find(made_, trial.factor, &Planned::factor); }
 
   [[noreturn]] void stopped() const
   {
@@ -220,7 +216,7 @@ class FosSearch {
         } catch (const std::logic_error&) {  // a folder that is not one of this search
         }
     }
-    std::sort(factors.begin(), factors.end());
+    std::ranges::sort(factors);
     for (const Real factor : factors)
       for (int times = longest_trial; times > 0; times /= 2)
         if (judge_run({factor, times, trial_of(plan_, factor, times)}, times == longest_trial))
@@ -234,8 +230,7 @@ class FosSearch {
   {
     const CaseStatus status = status_of(planned.run, plan_.quick);
     FosTrial trial{.factor = planned.factor, .verdict = Verdict::unclear, .motion = {}, .by_growth_alone = false, .message = {}};
-    if (status.state == CaseState::failed &&
-        std::find(broken_off_.begin(), broken_off_.end(), planned.run.scene_digest) != broken_off_.end()) {
+    if (status.state == CaseState::failed && std::ranges::find(broken_off_, planned.run.scene_digest) != broken_off_.end()) {
       trial.verdict = Verdict::fails;
       trial.message = status.why;
     } else if (status.state == CaseState::done) {
@@ -252,7 +247,7 @@ class FosSearch {
       return false;
     made_.push_back(planned);
     trials_.push_back(std::move(trial));
-    std::sort(trials_.begin(), trials_.end(), [](const FosTrial& a, const FosTrial& b) { return a.factor < b.factor; });
+    std::ranges::sort(trials_, [](const FosTrial& a, const FosTrial& b) { return a.factor < b.factor; });
     return true;
   }
 
@@ -292,7 +287,7 @@ class FosSearch {
     else if (ended.code != 0)
       throw EnvironmentError(fmt::format("the trial of {:.6g} did not run: {}", one.factor, runs_.why(one.run, ended.code, status)));
     if (judge_run(one, one.times == longest_trial)) {
-      const FosTrial& trial = *std::find_if(trials_.begin(), trials_.end(), [&](const FosTrial& t) { return t.factor == one.factor; });
+      const FosTrial& trial = *std::ranges::find(trials_, one.factor, &FosTrial::factor);
       say(fmt::format(
           "{:.6g}: {} after {:.1f} s{}", one.factor, word_of(trial), ended.seconds,
           trial.motion ? fmt::format(" (growth {:.3g}, kinetic/peak {:.2e})", trial.motion->growth, trial.motion->liveliness) : ""));

@@ -9,7 +9,6 @@
 #include "app/run/summary.hpp"
 #include "app/setup/laws_in_force.hpp"
 #include "app/setup/setup.hpp"
-#include "app/setup/vertical_axis.hpp"
 #include "core/word_match.hpp"
 #include "io/load_mesh.hpp"
 #include "io/scene/reader.hpp"

@@ -3,8 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/new/templates.hpp"
-#include "core/shell_quote.hpp"
+#include "core/display_text.hpp"
 #include "core/word_match.hpp"
 #include "io/document/document.hpp"
 #include "io/files/atomic_file.hpp"

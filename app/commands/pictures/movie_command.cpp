@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "app/commands/pictures/rendered_run.hpp"
+#include <algorithm>
+
 #include "io/pictures/settings/launch_render.hpp"
 #include "io/system/movie.hpp"
 
@@ -31,6 +32,8 @@ struct Passing {
 };
 
 }  // namespace
+
+bool has_option(const std::vector<std::string>& words, std::string_view option) { return std::ranges::find(words, option) != words.end(); }
 
 void check_movie(const MovieOptions& options, const std::vector<std::string>& words, std::vector<std::string>& problems)
 {

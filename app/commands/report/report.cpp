@@ -3,13 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/commands/report/report_metrics.hpp"
 #include "app/commands/report/report_particles.hpp"
 #include "app/observers/results.hpp"
 #include "app/run/summary.hpp"
-#include "app/setup/vertical_axis.hpp"
 #include "core/error.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/pictures/ground_file.hpp"
@@ -186,8 +184,7 @@ SurveyTask survey_task(const RunFolder& run, const PageOptions& wishes, const st
   SurveyTask task{up, bodies.size(), wishes.fields, run.scene.outputs.picture.field, rule, {}, {}};
   const auto& runout = run.scene.outputs.runout;
   for (const PageBody& body : bodies)
-    task.runs_out.push_back(!runout || runout->bodies.empty() ||
-                            std::find(runout->bodies.begin(), runout->bodies.end(), body.name) != runout->bodies.end());
+    task.runs_out.push_back(!runout || runout->bodies.empty() || std::ranges::find(runout->bodies, body.name) != runout->bodies.end());
   for (const BodySummary& body : run.summary.bodies)
     task.mass.push_back(body.mass);
   return task;
@@ -282,6 +279,24 @@ std::string page_of(const RunFolder& run, const PageOptions& wishes, const fs::p
                 page);
   notes = page.notes;
   return filled(text, template_file, page);
+}
+
+void write_report(const ReportOptions& options)
+{
+  const RunFolder run = read_run_folder(options.folder);
+  PageOptions wishes{options.fields, {}, options.size.value_or(PageOptions{}.megabytes), {}};
+  if (options.frames)
+    wishes.frames = static_cast<std::size_t>(*options.frames);
+  const auto file = options.out.value_or(options.folder / report_file);
+  if (file.extension() != ".html")
+    throw Error(fmt::format("--out {}: the name of a page ends in .html", file.string()));
+  RunSurvey survey;
+  std::vector<std::string> notes;
+  const std::string page = page_of(run, wishes, page_template(options.page), survey, notes);
+  write_whole(file, page);
+  fmt::print("{}  {:.1f} MB\n", file.string(), static_cast<Real>(page.size()) / 1e6);
+  for (const std::string& note : notes)
+    fmt::print("  {}\n", note);
 }
 
 }  // namespace talus

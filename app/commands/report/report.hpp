@@ -1,11 +1,12 @@
 #pragma once
-// The report of a run as an HTML page.
+// Command talus report: the report of a run as an HTML page.
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/commands/report/report_survey.hpp"
+#include "core/types.hpp"
 #include "io/output/summary_json.hpp"
 #include "io/page/page.hpp"
 #include "io/scene/scene.hpp"
@@ -47,5 +48,17 @@ std::filesystem::path page_template(const std::optional<std::filesystem::path>& 
 
 /// The line of a scene that a warning concerns: the one it names ("slope.yaml:12:5: ..."), or that of the key it names ("watch.speed").
 std::optional<int> line_of_warning(const std::string& warning, const std::string& scene_file, const std::string& scene_text);
+
+struct ReportOptions {
+  std::filesystem::path folder;
+  std::optional<std::filesystem::path> out;   ///< default DIR/report.html
+  std::optional<std::filesystem::path> page;  ///< template; default: the one beside the program
+  std::vector<std::string> fields;            ///< empty: the field of the pictures, then all that were written
+  std::optional<int> frames;                  ///< number of frames
+  std::optional<Real> size;                   ///< largest size of the page [MB]
+};
+/// Makes a page for the browser from a results folder, also of a run that has not ended, and prints what it leaves out.  Throws Error if
+/// there is no run or a requested item is missing; EnvironmentError.
+void write_report(const ReportOptions& options);
 
 }  // namespace talus

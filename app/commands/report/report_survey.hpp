@@ -1,14 +1,23 @@
 #pragma once
-// The survey of a run's particles: what is known of each frame after all have been read once, one at a time.
+// The fields of particles that a page shows, and a survey of all frames of a run.
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "app/commands/report/report_fields.hpp"
 #include "app/observers/runout_distance.hpp"
+#include "core/field_component.hpp"
+#include "io/output/vtk.hpp"
 
 namespace talus {
+
+/// The fields to show: the requested ones, or else the one of the pictures and then every field that was written.  Throws Error if a field
+/// or component does not exist.
+std::vector<ViewedField> fields_to_show(const StoredParticles& particles, const std::vector<std::string>& asked,
+                                        const std::string& of_picture);
+
+/// The field as the user names it, such as "stress:xy".
+std::string words_of(const ViewedField& field);
 
 struct ValueRange {
   Real low, high;  ///< range of finite values

@@ -1,9 +1,7 @@
 #include "app/commands/sweep/planned_run.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -15,9 +13,10 @@
 #include "app/observers/checkpoints.hpp"
 #include "app/observers/results.hpp"
 #include "app/run/summary.hpp"
+#include "core/display_text.hpp"
 #include "core/parallel/threads.hpp"
-#include "core/shell_quote.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/files/file_descriptor.hpp"
 
 namespace talus {
 
@@ -147,16 +146,10 @@ void ChildRuns::start(std::size_t number, const fs::path& scene, const PlannedRu
   words.emplace_back("--quiet");
   if (threads_)
     words.insert(words.end(), {"--threads", std::to_string(*threads_)});
-  const int log = ::open(log_of(run).c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  if (log < 0)
+  const FileDescriptor log(log_of(run), O_WRONLY | O_CREAT | O_TRUNC);
+  if (!log.is_open())
     throw EnvironmentError(fmt::format("cannot write {}: {}", log_of(run).string(), std::strerror(errno)));
-  try {
-    running_.push_back({number, ChildProcess(std::move(words), log), std::chrono::steady_clock::now()});
-  } catch (const EnvironmentError&) {
-    ::close(log);
-    throw;
-  }
-  ::close(log);
+  running_.push_back({number, ChildProcess(std::move(words), log.number()), std::chrono::steady_clock::now()});
 }
 
 std::vector<ChildRuns::Ended> ChildRuns::look()

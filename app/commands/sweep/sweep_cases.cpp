@@ -26,8 +26,7 @@ class CaseErrors {
   void add(const SweepCase& one, const SceneErrors& errors)
   {
     for (const SceneError& problem : errors.problems()) {
-      const auto change = std::find_if(one.changes.begin(), one.changes.end(),
-                                       [&](const std::string& set) { return problem.where.file == "--set " + set; });
+      const auto change = std::ranges::find_if(one.changes, [&](const std::string& set) { return problem.where.file == "--set " + set; });
       const bool of_value = change != one.changes.end();
       SceneError here = problem;
       if (of_value) {
@@ -157,7 +156,7 @@ SweepPlan plan_sweep(Study study, fs::path folder, bool quick)
       const Scene scene = read_scene(scene_of(plan.study), one.changes);
       one.scene_digest = scene_digest(scene);
       for (const FrontSpec& front : scene.outputs.history ? scene.outputs.history->fronts : std::vector<FrontSpec>{})
-        if (std::find(plan.fronts.begin(), plan.fronts.end(), front.name) == plan.fronts.end())
+        if (std::ranges::find(plan.fronts, front.name) == plan.fronts.end())
           plan.fronts.push_back(front.name);
     } catch (const SceneErrors& e) {
       errors.add(one, e);

@@ -38,8 +38,7 @@ class Sweep {
   void operator()(const std::vector<std::size_t>& chosen)
   {
     std::deque<std::size_t> waiting;
-    std::copy_if(chosen.begin(), chosen.end(), std::back_inserter(waiting),
-                 [&](std::size_t i) { return table_.status(i).state != CaseState::done; });
+    std::ranges::copy_if(chosen, std::back_inserter(waiting), [&](std::size_t i) { return table_.status(i).state != CaseState::done; });
     const StopRequests requests;
     while (runs_.count() > 0 || (!waiting.empty() && StopRequests::received().empty())) {
       while (!waiting.empty() && runs_.count() < jobs_ && StopRequests::received().empty()) {
@@ -145,7 +144,7 @@ void print_remarks(const SweepPlan& plan, const SweepTable& table)
   std::error_code unreadable;
   for (const auto& entry : fs::directory_iterator(plan.folder, unreadable)) {
     const fs::path& place = entry.path();
-    const bool of_case = std::any_of(plan.cases.begin(), plan.cases.end(), [&](const SweepCase& one) { return one.folder == place; });
+    const bool of_case = std::ranges::any_of(plan.cases, [&](const SweepCase& one) { return one.folder == place; });
     if (!of_case && fs::is_directory(place, unreadable) && place.filename().string().starts_with("case_"))
       fmt::print(stderr, "warning: {} is of no case of this study\n", place.string());
   }
@@ -166,7 +165,7 @@ void list_cases(const SweepPlan& plan, const SweepTable& table)
 void conclude(const SweepPlan& plan, const Sweep& sweep, const SweepTable& table, const std::vector<std::size_t>& chosen)
 {
   const auto count = [&](CaseState state) {
-    return std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state == state; });
+    return std::ranges::count_if(chosen, [&](std::size_t i) { return table.status(i).state == state; });
   };
   if (!sweep.signal().empty() && count(CaseState::done) < std::ssize(chosen))
     throw Stopped(fmt::format("stopped by {}: of {} cases {} done, {} stopped with a checkpoint; go on by running the sweep again",
@@ -211,7 +210,7 @@ void sweep(const SweepOptions& options)
       find_out(false);
     return print_remarks(plan, table);
   }
-  const auto left = std::count_if(chosen.begin(), chosen.end(), [&](std::size_t i) { return table.status(i).state != CaseState::done; });
+  const auto left = std::ranges::count_if(chosen, [&](std::size_t i) { return table.status(i).state != CaseState::done; });
   const SideBySide side =
       divide_cores(options.only ? 1 : options.jobs, options.threads, options.launcher.has_value(), static_cast<std::size_t>(left));
   if (!options.quiet)

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +11,7 @@
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 #include "io/files/atomic_file.hpp"
+#include "io/files/file_descriptor.hpp"
 
 namespace talus {
 
@@ -22,26 +22,6 @@ namespace fs = std::filesystem;
 /// Default numbers, after the fronts.
 constexpr std::array usual_numbers{"kinetic", "plastic", "friction",       "energy.closure", "mass.removed",
                                    "fastest", "steps",   "simulated_time", "cost.wall"};
-
-/// A lock that allows one process at a time in a folder, where the file system supports locks; others wait.
-class OneAtATime {
- public:
-  explicit OneAtATime(const fs::path& folder) : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
-  {
-    if (handle_ >= 0)
-      ::flock(handle_, LOCK_EX);
-  }
-  ~OneAtATime()
-  {
-    if (handle_ >= 0)
-      ::close(handle_);
-  }
-  OneAtATime(const OneAtATime&) = delete;
-  OneAtATime& operator=(const OneAtATime&) = delete;
-
- private:
-  int handle_;
-};
 
 /// The statistic of a column of a history.
 enum class Of : std::uint8_t { last, max, min };
@@ -160,27 +140,22 @@ void SweepTable::update()
 {
   std::error_code said_when_written;
   fs::create_directories(plan_.folder, said_when_written);
-  const OneAtATime alone(plan_.folder);
+  // One program at a time writes the table, where the file system supports locks; others wait.
+  const FileDescriptor alone(plan_.folder, O_RDONLY | O_DIRECTORY);
+  ::flock(alone.number(), LOCK_EX);
   for (std::size_t i = 0; i < status_.size(); ++i)
     if (status_[i].state != CaseState::done) {
       status_[i] = status_of(plan_.cases[i], plan_.quick);
       rows_[i] = row_of(i);
     }
-  std::string text;
-  const auto add_line = [&](const std::vector<std::string>& cells) {
-    for (std::size_t c = 0; c < cells.size(); ++c)
-      text.append(c == 0 ? "" : ",").append(csv_cell(cells[c]));
-    text += '\n';
-  };
-  std::vector<std::string> heads;
-  for (const CsvColumn& column : columns())
-    heads.push_back(csv_heading(column));
-  add_line(heads);
+  std::string text = csv_header(columns());
   for (std::size_t i = 0; i < status_.size(); ++i) {
-    std::vector<std::string> cells = words_of_case(i);
+    std::string line;
+    for (const std::string& word : words_of_case(i))
+      line.append(line.empty() ? "" : ",").append(csv_cell(word));
     for (const auto& number : rows_[i].numbers)
-      cells.push_back(number && !std::isnan(number->value) ? fmt::format("{}", number->value) : "");
-    add_line(cells);
+      line += number && !std::isnan(number->value) ? fmt::format(",{}", number->value) : ",";
+    text += line + '\n';
   }
   write_whole(plan_.folder / "sweep.csv", text);
 }

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "app/observers/results.hpp"
+#include "core/display_text.hpp"
 #include "core/error.hpp"
-#include "core/format_duration.hpp"
 
 namespace talus {
 

@@ -3,15 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/error.hpp"
-#include "io/files/runout_maps.hpp"
+#include "io/files/result_files.hpp"
 #include "io/output/csv.hpp"
 #include "io/pictures/maps/render_map_painter.hpp"
-#include "io/pictures/maps/render_section.hpp"
+#include "io/pictures/maps/render_map_sheet.hpp"
 #include "io/pictures/render_legend.hpp"
 #include "io/terrain/raster_file.hpp"
 
@@ -35,7 +38,7 @@ std::vector<fs::path> sections_in(const fs::path& folder)
   for (const auto& entry : fs::directory_iterator(folder / "sections", not_there))
     if (entry.path().extension() == ".csv")
       files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
   return files;
 }
 
@@ -72,10 +75,7 @@ void leave_out_unreached(const std::vector<Real>& arrival, Raster& raster)
       raster.values[c] = arrival[c];
 }
 
-const MapKind& kind_of(std::string_view name)
-{
-  return *std::find_if(map_kinds.begin(), map_kinds.end(), [&](const MapKind& kind) { return kind.name == name; });
-}
+const MapKind& kind_of(std::string_view name) { return *std::ranges::find(map_kinds, name, &MapKind::name); }
 
 void draw_frames(const MapSettings& settings, const std::function<void(const fs::path&)>& written)
 {
@@ -101,6 +101,71 @@ void draw_frames(const MapSettings& settings, const std::function<void(const fs:
   }
 }
 
+/// Draws a line for each surface, and fills the area between the ground before and the surface after.
+void draw_section(const MapSettings& settings, const fs::path& file, const fs::path& png)
+{
+  struct Curve {
+    const char *column, *words;
+    Colour colour;
+  };
+  constexpr std::array curves{Curve{"base", "base", {110, 110, 110}}, Curve{"surface_max", "highest surface", {213, 94, 0}},
+                              Curve{"surface", "surface after", {0, 114, 178}}, Curve{"ground", "ground before", {38, 38, 38}}};
+  const HistoryTable table = read_history(file);
+  const std::vector<Real>& along = table.values.front();
+  std::vector<Real> heights;
+  for (const Curve& curve : curves)
+    if (const auto values = table[curve.column])
+      heights.insert(heights.end(), values->begin(), values->end());
+  const auto [low, high] = range_of(heights);
+  const Real margin = 0.06 * (high - low);
+  const Shown shown{{along.front(), low - margin}, {along.back(), high + margin}};
+  // Without vertical exaggeration if the section is then high enough to be readable.
+  const Real aspect = (shown.high[0] - shown.low[0]) / (shown.high[1] - shown.low[1]);
+  constexpr Real flattest = 3.5;
+  const MapLayout layout = layout_for(std::min(aspect, flattest), settings.size);
+  const Place& place = layout.place;
+  on_sheet(layout, png, [&](vtkRenderer*, Sheet& sheet) {
+    const auto x_of = [&](Real x) { return std::lerp(place.left, place.right, (x - shown.low[0]) / (shown.high[0] - shown.low[0])); };
+    const auto y_of = [&](Real y) { return std::lerp(place.bottom, place.top, (y - shown.low[1]) / (shown.high[1] - shown.low[1])); };
+    if (const auto ground = table["ground"], surface = table["surface"]; ground && surface)
+      for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+        const Real sum = (*ground)[i] + (*ground)[i + 1] + (*surface)[i] + (*surface)[i + 1];
+        const Real rise = (*surface)[i] + (*surface)[i + 1] - (*ground)[i] - (*ground)[i + 1];
+        if (std::isnan(sum) || rise == 0)
+          continue;
+        sheet.area({{x_of(along[i]), y_of((*ground)[i])},
+                    {x_of(along[i + 1]), y_of((*ground)[i + 1])},
+                    {x_of(along[i + 1]), y_of((*surface)[i + 1])},
+                    {x_of(along[i]), y_of((*surface)[i])}},
+                   rise > 0 ? Colour{200, 222, 240} : Colour{245, 222, 205});
+      }
+    Real y = place.top - 0.9 * sheet.letter();
+    for (const Curve& curve : curves) {
+      const auto values = table[curve.column];
+      if (!values)
+        continue;
+      std::vector<std::array<Real, 2>> line;
+      for (std::size_t i = 0; i <= along.size(); ++i) {
+        if (i < along.size() && !std::isnan((*values)[i]))
+          line.push_back({x_of(along[i]), y_of((*values)[i])});
+        else if (line.size() > 1)
+          sheet.line(std::exchange(line, {}), curve.colour);
+        else
+          line.clear();
+      }
+      const Real left = place.right + 0.8 * sheet.letter();
+      sheet.line({{left, y}, {left + sheet.letter(), y}}, curve.colour);
+      sheet.text(curve.words, left + 1.3 * sheet.letter(), y, Side::left, {.size = 0.85});
+      y -= 1.4 * sheet.letter();
+    }
+    add_frame(sheet, place, shown, {"distance [m]", "elevation [m]"});
+    const Real exaggeration = (place.height() / (shown.high[1] - shown.low[1])) / (place.width() / (shown.high[0] - shown.low[0]));
+    add_title(sheet, layout, settings.title,
+              fmt::format("section {}{}", file.stem().string(),
+                          exaggeration > 1.01 ? fmt::format(", heights {:.2g} times", exaggeration) : std::string()));
+  });
+}
+
 }  // namespace
 
 void draw_maps(const MapSettings& settings, const std::function<void(const fs::path&)>& written)
@@ -108,7 +173,7 @@ void draw_maps(const MapSettings& settings, const std::function<void(const fs::p
   if (settings.frames)
     return draw_frames(settings, written);
   const auto wanted = [&](std::string_view name, bool by_default) {
-    return settings.only.empty() ? by_default : std::find(settings.only.begin(), settings.only.end(), name) != settings.only.end();
+    return settings.only.empty() ? by_default : std::ranges::find(settings.only, name) != settings.only.end();
   };
   std::optional<MapPainter> painter;
   const std::vector<fs::path> sections = wanted("sections", true) ? sections_in(settings.folder) : std::vector<fs::path>();

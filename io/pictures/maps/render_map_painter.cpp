@@ -11,7 +11,6 @@
 
 #include "io/pictures/render_legend.hpp"
 #include "io/terrain/raster_file.hpp"
-#include "mesh/geometry/hillshade.hpp"
 
 namespace talus::render {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "io/files/runout_maps.hpp"
+#include "io/files/result_files.hpp"
 #include "io/pictures/maps/render_map_sheet.hpp"
 #include "io/pictures/settings/picture_settings.hpp"
 #include "mesh/geometry/hillshade.hpp"

@@ -25,8 +25,7 @@ void check_field(const std::optional<std::string>& field, const RunFacts& facts,
   if (!field)
     return;
   const auto viewed = ViewedField::of(*field);
-  const auto found = std::find_if(facts.fields.begin(), facts.fields.end(),
-                                  [&wanted = viewed.name](const RunFacts::Field& f) { return f.name == wanted; });
+  const auto found = std::ranges::find_if(facts.fields, [&wanted = viewed.name](const RunFacts::Field& f) { return f.name == wanted; });
   if (found == facts.fields.end()) {
     std::vector<std::string> known;
     for (const RunFacts::Field& f : facts.fields)
@@ -38,7 +37,7 @@ void check_field(const std::optional<std::string>& field, const RunFacts& facts,
   const auto components = component_names(found->components);
   if (components.empty())
     problems.push_back(fmt::format("--field: \"{}\" is one number, it has no component \"{}\"", viewed.name, viewed.component));
-  else if (std::find(components.begin(), components.end(), viewed.component) == components.end())
+  else if (std::ranges::find(components, viewed.component) == components.end())
     problems.push_back(
         fmt::format("--field: \"{}\" has no component \"{}\"; it has {}", viewed.name, viewed.component, or_list(components)));
 }

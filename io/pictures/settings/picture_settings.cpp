@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "io/files/runout_maps.hpp"
+#include "io/files/result_files.hpp"
 #include "io/pictures/settings/option_parser.hpp"
 
 namespace talus::render {

@@ -3,7 +3,7 @@
 
 #include <sstream>
 
-#include "core/format_duration.hpp"
+#include "core/display_text.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::help_test {

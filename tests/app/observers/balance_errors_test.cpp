@@ -1,5 +1,5 @@
 // What the balances of a run say against it, and what becomes of the run then.
-#include "app/observers/balance_errors.hpp"
+#include "app/observers/accounts.hpp"
 
 #include <gmock/gmock.h>
 

@@ -9,7 +9,6 @@
 #include <limits>
 
 #include "io/files/atomic_file.hpp"
-#include "io/terrain/outline_file.hpp"
 #include "io/terrain/point_file.hpp"
 #include "io/terrain/raster_file.hpp"
 #include "io/terrain/surface_file.hpp"

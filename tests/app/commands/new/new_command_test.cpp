@@ -1,7 +1,7 @@
 // talus new: every template is a scene that can be run, and what is wrong is told before anything is written.
 #include <gmock/gmock.h>
 
-#include "app/commands/new/templates.hpp"
+#include "app/commands/new/new_command.hpp"
 #include "tests/app/program.hpp"
 
 namespace talus::new_test {

@@ -1,9 +1,10 @@
-#include "core/format_duration.hpp"
+#include "core/display_text.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "core/finite_count.hpp"
 
@@ -34,6 +35,32 @@ std::string bar(Real share, int width)
 {
   const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * width);
   return std::string(full, '#') + std::string(static_cast<std::size_t>(width) - full, ' ');
+}
+
+ScaledUnit scaled_unit(const std::string& unit, Real largest)
+{
+  const auto scaled = [&](Real factor, const char* prefix) { return ScaledUnit{factor, prefix + unit}; };
+  if (unit == "Pa" && largest >= 1e9)
+    return scaled(1e-9, "G");
+  if (unit == "Pa" && largest >= 1e6)
+    return scaled(1e-6, "M");
+  if (unit == "Pa" && largest >= 1e3)
+    return scaled(1e-3, "k");
+  if (unit == "m" && largest < 0.1)
+    return scaled(1e3, "m");
+  return {1, unit};
+}
+
+std::string shell_word(const std::filesystem::path& word)
+{
+  const std::string text = word.string();
+  constexpr std::string_view plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-./=,:+@%";
+  if (!text.empty() && text.find_first_not_of(plain) == text.npos)
+    return text;
+  std::string out = "'";
+  for (const char c : text)
+    out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
 }
 
 }  // namespace talus

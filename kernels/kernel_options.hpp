@@ -1,5 +1,5 @@
 #pragma once
-// Options of the kernel `umls` in a scene.
+// Options of the kernels in a scene.
 #include "core/fields.hpp"
 #include "core/types.hpp"
 
@@ -17,6 +17,15 @@ struct UmlsOptions {
         optional_choice("gradient", &UmlsOptions::gradient,
                         "estimate (of least squares, for forces and strains alike, as published) or exact_force (forces from the "
                         "exact slopes of the values, strains from the estimate)")};
+  }
+};
+
+/// The options of the kernel `projected`.
+struct ProjectedOptions {
+  Real alpha = 0.5;  ///< prior weight of neighbours relative to that of the node itself [-]
+  static constexpr auto fields()
+  {
+    return std::tuple{optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own")};
   }
 };
 
