@@ -53,34 +53,6 @@ struct Parameter {
   std::string_view unit, meaning;
 };
 
-/// One of a few named words.  `Value` is an enum with `constexpr auto enum_names(Value) -> std::array<std::string_view, N>`, found by
-/// argument-dependent lookup, which lists the words in the order of the enumerators.
-template <class Owner, class Value>
-struct Choice {
-  std::string_view key;
-  Value Owner::*member;
-  Need need;
-  std::string_view meaning;
-};
-
-/// A nested mapping.  Optional when the member is a std::optional, required otherwise.
-template <class Owner, class Value>
-struct Group {
-  std::string_view key;
-  Value Owner::*member;
-  std::string_view meaning;
-};
-
-/// A list of mappings: the member is a std::vector of a struct with fields(), or of a std::variant of such structs, each with
-/// `static constexpr std::string_view name`; for variants the key `type` chooses.
-template <class Owner, class Item>
-struct List {
-  std::string_view key;
-  std::vector<Item> Owner::*member;
-  Need need;
-  std::string_view meaning;
-};
-
 /// One of several structs: the member is a std::variant of structs with fields(), each with `static constexpr std::string_view
 /// name`, or a type that holds such a variant and gives it by a function choices_of().  The key chooses which by its name; the fields of
 /// the chosen one stand in the same mapping.
@@ -130,30 +102,36 @@ constexpr auto optional(std::string_view key, Value Owner::*member, Range range,
 {
   return Parameter<Owner, Value>{key, member, Need::optional, range, unit, meaning};
 }
+/// One of a few named words.  `Value` is an enum with `constexpr auto enum_names(Value) -> std::array<std::string_view, N>`, found by
+/// argument-dependent lookup, which lists the words in the order of the enumerators.
 template <class Owner, class Value>
 constexpr auto required_choice(std::string_view key, Value Owner::*member, std::string_view meaning)
 {
-  return Choice<Owner, Value>{key, member, Need::required, meaning};
+  return required(key, member, any, "-", meaning);
 }
 template <class Owner, class Value>
 constexpr auto optional_choice(std::string_view key, Value Owner::*member, std::string_view meaning)
 {
-  return Choice<Owner, Value>{key, member, Need::optional, meaning};
+  return optional(key, member, any, "-", meaning);
 }
+/// A nested mapping.  Optional when the member is a std::optional, required otherwise.
 template <class Owner, class Value>
 constexpr auto group(std::string_view key, Value Owner::*member, std::string_view meaning)
 {
-  return Group<Owner, Value>{key, member, meaning};
+  constexpr bool is_optional = requires(const Value& value) { value.has_value(); };
+  return Parameter<Owner, Value>{key, member, is_optional ? Need::optional : Need::required, any, "", meaning};
 }
+/// A list of mappings: the member is a std::vector of a struct with fields(), or of a std::variant of such structs, each with
+/// `static constexpr std::string_view name`; for variants the key `type` chooses.
 template <class Owner, class Item>
 constexpr auto required_list(std::string_view key, std::vector<Item> Owner::*member, std::string_view meaning)
 {
-  return List<Owner, Item>{key, member, Need::required, meaning};
+  return required(key, member, any, "", meaning);
 }
 template <class Owner, class Item>
 constexpr auto optional_list(std::string_view key, std::vector<Item> Owner::*member, std::string_view meaning)
 {
-  return List<Owner, Item>{key, member, Need::optional, meaning};
+  return optional(key, member, any, "", meaning);
 }
 template <class Owner, class Value>
 constexpr auto alternative(std::string_view key, Value Owner::*member, std::string_view meaning)

@@ -120,21 +120,6 @@ FieldType row_of(const Parameter<Owner, Value>& field)
   return {field.key, HasFields<Value> ? std::string_view{} : field.unit, field.meaning, field.need, field.range};
 }
 template <class Owner, class Value>
-FieldType row_of(const Choice<Owner, Value>& field)
-{
-  return {field.key, "-", field.meaning, field.need, any};
-}
-template <class Owner, class Value>
-FieldType row_of(const Group<Owner, Value>& field)
-{
-  return {field.key, "", field.meaning, is_optional<Value> ? Need::optional : Need::required, any};
-}
-template <class Owner, class Item>
-FieldType row_of(const List<Owner, Item>& field)
-{
-  return {field.key, "", field.meaning, field.need, any};
-}
-template <class Owner, class Value>
 FieldType row_of(const Alternative<Owner, Value>& field)
 {
   return {field.key, "-", field.meaning, Need::required, any, true};
