@@ -1,9 +1,7 @@
 #include "core/library_call.hpp"
 
-#include <algorithm>
 #include <array>
 #include <csignal>
-#include <initializer_list>
 
 namespace talus {
 

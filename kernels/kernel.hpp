@@ -3,7 +3,6 @@
 // of one particle over the stencil of its cell) and optionally a set of node operators (sparse operators over the one-ring, applied to
 // nodal rows between scatter and gather; see node_operators.hpp).
 #include <concepts>
-#include <cstddef>
 #include <string_view>
 
 #include "kernels/pack.hpp"

@@ -1,7 +1,5 @@
 #pragma once
 // Soil and sand: a cone in stress space on logarithmic elasticity, with tension cut-off, dilation and softening.
-#include <algorithm>
-#include <optional>
 #include <string>
 #include <string_view>
 

@@ -1,6 +1,5 @@
 #pragma once
 // Soil and rock with a friction angle: the six planes of Mohr and Coulomb on logarithmic elasticity.
-#include <optional>
 #include <string>
 #include <string_view>
 

@@ -1,7 +1,5 @@
 #include "app/observers/body_forces.hpp"
 
-#include <algorithm>
-
 namespace talus {
 
 namespace {

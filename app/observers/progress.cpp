@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
-
 #include "core/display_text.hpp"
 #include "core/error.hpp"
 #include "core/print.hpp"

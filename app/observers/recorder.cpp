@@ -3,7 +3,6 @@
 #include "core/stop_watch.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/observers/field_columns.hpp"
 #include "app/observers/rank_slices.hpp"

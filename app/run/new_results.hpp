@@ -1,9 +1,7 @@
 #pragma once
 // The results folder of a new run: checked before the first step, prepared beside existing results, and put in place by renaming.
-#include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <string>
 
 #include "app/observers/results.hpp"
 

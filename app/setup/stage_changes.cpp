@@ -1,6 +1,5 @@
 #include "app/setup/stage_changes.hpp"
 
-#include <algorithm>
 #include <numeric>
 
 #include "app/setup/initial.hpp"

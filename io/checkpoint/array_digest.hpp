@@ -1,9 +1,7 @@
 #pragma once
 // Digests of arrays, by which a reader detects every change of a value since it was written.
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
 #include <vector>

@@ -2,7 +2,6 @@
 // An input file as a tree of values with their positions.  Only io/scene/reader.cpp depends on the YAML library.
 #include <filesystem>
 #include <list>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>

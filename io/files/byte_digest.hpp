@@ -1,7 +1,6 @@
 #pragma once
 // A digest of bytes: 64 bits that change with every byte, for files and arrays.
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

@@ -2,7 +2,6 @@
 // The results of `talus bench` and of `talus bench --mpi`, and their files.
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 // Geometry of a cloud of points: bounding box, and directions of its surface.
 #include <algorithm>
-#include <cmath>
 #include <unordered_map>
 
 #include "io/pictures/render_data.hpp"

@@ -1,6 +1,5 @@
 #pragma once
 // The parameters of all laws: for what reads, writes and describes them.  Everything else includes any_law.hpp.
-#include <variant>
 
 #include "core/type_list.hpp"
 #include "materials/interface/any_law.hpp"

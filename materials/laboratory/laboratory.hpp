@@ -1,6 +1,5 @@
 #pragma once
 // Standard laboratory tests on one point of a law, and what they must measure where that is known in closed form.
-#include <optional>
 #include <string>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #pragma once
 // The list of boundary conditions: the types that a scene may name and that the contract tests check.  A new condition is one line here.
-#include <concepts>
 
 #include "core/type_list.hpp"
 #include "mesh/conditions/compliant_base.hpp"

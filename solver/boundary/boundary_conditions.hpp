@@ -1,8 +1,5 @@
 #pragma once
 // The boundary conditions of a scene, applied to nodes, to nodes of small mass and to projected nodes.
-#include <algorithm>
-#include <cassert>
-#include <string>
 #include <vector>
 
 #include "core/parallel/communicator.hpp"

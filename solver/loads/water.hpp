@@ -1,7 +1,6 @@
 #pragma once
 // Pore water: hydrostatic pressure below a given water table, part of the stress of drained bodies.
 #include <algorithm>
-#include <optional>
 #include <vector>
 
 #include "core/parallel/threads.hpp"

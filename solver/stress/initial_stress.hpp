@@ -2,7 +2,6 @@
 // Stress at the start: of a geostatic stage, and of bodies that come from another run.
 #include <algorithm>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/parallel/communicator.hpp"

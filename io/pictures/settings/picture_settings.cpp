@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 
 #include "io/files/result_files.hpp"
 #include "io/pictures/settings/option_parser.hpp"
