@@ -13,7 +13,7 @@ namespace talus::render {
 
 namespace {
 
-constexpr Real margin = 0.03;       // fraction of the panel, on each side
+constexpr Real panel_margin = 0.03;       // fraction of the panel, on each side
 constexpr Real panel_right = 0.85;  // fraction of the picture's width
 constexpr Real view_angle = 25;     // vertical angle of view [degrees]
 constexpr Real degree = std::numbers::pi / 180;
@@ -114,7 +114,7 @@ Camera fit_camera(const std::vector<Vec3>& points, const Viewpoint& from, bool p
   const Bounds bounds = bounds_of(projected).value_or(Bounds{-Vec3::Ones(), Vec3::Ones()});
   Vec3 centre = 0.5 * (bounds.low + bounds.high);
   const Vec3 half = 0.5 * (bounds.high - bounds.low);
-  const Real room = 1 - 2 * margin;
+  const Real room = 1 - 2 * panel_margin;
   Camera camera{.towards = axes.towards, .up = axes.up, .perspective = perspective, .slope = std::tan(0.5 * view_angle * degree)};
   camera.half_height = std::max(half[1], half[0] / aspect) / room;
   if (camera.half_height <= 0)
