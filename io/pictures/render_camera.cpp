@@ -13,9 +13,9 @@ namespace talus::render {
 
 namespace {
 
-constexpr Real panel_margin = 0.03;       // fraction of the panel, on each side
-constexpr Real panel_right = 0.85;  // fraction of the picture's width
-constexpr Real view_angle = 25;     // vertical angle of view [degrees]
+constexpr Real panel_margin = 0.03;  // fraction of the panel, on each side
+constexpr Real panel_right = 0.85;   // fraction of the picture's width
+constexpr Real view_angle = 25;      // vertical angle of view [degrees]
 constexpr Real degree = std::numbers::pi / 180;
 constexpr Real above = 2.6, below = 2.4;  // title and length scale, in letter heights
 
