@@ -1,6 +1,6 @@
 #pragma once
 // A constitutive law behind the interface, and its stress update of four particles at a time.  Included by the units in which the laws of the
-// list are compiled, one unit per law (cmake/TalusLaws.cmake), and by tests.
+// list are compiled, one unit per law (cmake/TalusLists.cmake), and by tests.
 #include <array>
 #include <type_traits>
 #include <variant>

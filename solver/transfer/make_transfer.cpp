@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-#include "solver/transfer/compiled_transfers.hpp"
+#include "kernels/kernels.hpp"
 
 namespace talus {
 
@@ -14,9 +14,9 @@ std::unique_ptr<Transfer<D>> make_transfer(std::string_view kernel, const Kernel
     if (K::name != kernel)
       return;
     if constexpr (std::is_same_v<Options<K>, NoOptions>)
-      made = std::make_unique<TransferOf<D, K>>(mesh, NoOptions{});
+      made = transfer_of<K>(mesh, NoOptions{});
     else
-      made = std::make_unique<TransferOf<D, K>>(mesh, std::get<Options<K>>(options));
+      made = transfer_of<K>(mesh, std::get<Options<K>>(options));
   });
   return made;
 }

@@ -4,6 +4,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "kernels/kernel.hpp"
 #include "kernels/kernel_options.hpp"
 #include "solver/model/transfer.hpp"
 
@@ -16,5 +17,9 @@ using KernelOptions = std::tuple<UmlsOptions, ProjectedOptions>;
 /// refuses the mesh.
 template <int D>
 std::unique_ptr<Transfer<D>> make_transfer(std::string_view kernel, const KernelOptions& options, const Mesh<D>& mesh);
+
+/// The transfer of a kernel; throws as above.  Defined in transfer_of.hpp, compiled for every kernel of the list.
+template <class K, int D>
+std::unique_ptr<Transfer<D>> transfer_of(const Mesh<D>& mesh, const Options<K>& options);
 
 }  // namespace talus

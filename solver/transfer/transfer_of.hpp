@@ -1,10 +1,12 @@
 #pragma once
-// Transfer<D> for one kernel.  It is compiled once for the kernels of compiled_transfers.hpp, and for any other kernel wherever it is used.
+// Transfer<D> for one kernel.  Included by the units in which the kernels of the list are compiled, one unit per kernel
+// (cmake/TalusLists.cmake), and where a kernel is not in the list.
 #include <algorithm>
 #include <utility>
 
 #include "solver/state/integrate.hpp"
 #include "solver/transfer/gather.hpp"
+#include "solver/transfer/make_transfer.hpp"
 
 namespace talus {
 
@@ -182,6 +184,12 @@ class TransferOf final : public Transfer<D> {
 
   Rows rows_;
 };
+
+template <class K, int D>
+std::unique_ptr<Transfer<D>> transfer_of(const Mesh<D>& mesh, const Options<K>& options)
+{
+  return std::make_unique<TransferOf<D, K>>(mesh, options);
+}
 
 /// A model of one rank without particles, for a kernel known at compile time.
 template <class K, int D>
