@@ -94,7 +94,7 @@ void record_node_sums(Model<D>& m)
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
-  const auto blocks = std::span<const IndexRange>(problem.own.of_block);
+  const std::span<const IndexRange> blocks = work.nodes.in_use.own();
   const Real time = state.clock.time;
   add_ranges(blocks, work.sums.nodes, [&](Index n) { return node_work(state.stage.damping, problem.mesh, work.nodes, n); });
   add_ranges(blocks, work.sums.balance, [&](Index n) { return balance_at(state.stage.seeks_rest, work.nodes, n); });

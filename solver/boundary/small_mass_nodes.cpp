@@ -147,14 +147,18 @@ void SmallMassNodes<D>::lump(const Mesh<D>& mesh, const OwnNodes& own, Nodes<D>&
   small_.clear();
   weight_.resize(nodes.sum.size());
   ring_.resize(nodes.sum.size());
-  for (std::size_t n = 0; n < nodes.sum.size(); ++n) {
+  for (const NeighbourRank& border : near_.borders())
+    for (const Index n : border.in)  // which may be in use on another rank alone
+      ring_[static_cast<std::size_t>(n)] = 0, weight_[static_cast<std::size_t>(n)] = 0;
+  nodes.in_use.for_each_ascending([&](Index node) {
+    const auto n = static_cast<std::size_t>(node);
     const NodeSum<D>& sum = nodes.sum[n];
     nodes.active[n] = takes_part(sum, nodes) ? 1 : 0;
     weight_[n] = nodes.active[n] ? sum.mass : 0;
     ring_[n] = !nodes.active[n] && (sum.is_seen() || !sum.force.isZero(0)) ? 1 : 0;
     if (ring_[n] != 0)
-      small_.push_back({static_cast<Index>(n), sum.mass});
-  }
+      small_.push_back({node, sum.mass});
+  });
   const std::size_t n_own = small_.size();
   if (!near_.borders().empty())
     exchange_neighbours(mesh, nodes);

@@ -116,11 +116,13 @@ std::vector<std::uint8_t> nodes_read(const Subdomain& subdomain, const BlockRows
 }
 
 /// Adds the rows of blocks to sums of the nodes that this rank owns, and of those of other ranks of which it has `copies`; other sums stay
-/// empty.
-template <class What, int D, class Sum>
-void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, HaloExchange& copies, std::vector<Sum>& sum)
+/// empty.  Nodes that are not in use are left out; see() is called once the rows of other ranks have arrived.
+template <class What, int D, class Sum, class See>
+void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, HaloExchange& copies, const NodesInUse& in_use,
+              std::vector<Sum>& sum, See&& see)
 {
   halo.template take_rows<What>(blocks);
+  see();
   const auto add_up = [&](Index n) {
     Sum total = sum[static_cast<std::size_t>(n)];
     What::clear(total);
@@ -133,7 +135,7 @@ void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, H
   for (const NeighbourRank& border : copies.borders())
     parallel_for(static_cast<Index>(border.out.size()), [&](Index i) { add_up(border.out[static_cast<std::size_t>(i)]); });
   copies.send(sum, What{});
-  parallel_for(static_cast<Index>(sum.size()), add_up);  // repeats the few sums above, which is cheaper than to leave them out
+  in_use.for_each(add_up);  // repeats the few sums above, which is cheaper than to leave them out
   copies.take(sum, What{});
 }
 

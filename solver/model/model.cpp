@@ -12,6 +12,7 @@ void Model<D>::join(Communicator& others, Subdomain part)
   problem.ranks = &others;
   problem.subdomain = std::move(part);
   problem.own = own_nodes(problem.mesh, problem.subdomain);
+  work.nodes.in_use.prepare(problem.mesh, problem.own);
   work.migration = Migration<D>(others, problem.subdomain);
   work.small_mass_nodes = SmallMassNodes<D>(others, problem.mesh, problem.subdomain, problem.own);
   transfer->join(problem);

@@ -19,7 +19,9 @@ struct Model {
   /// A model of one rank without particles.
   Model(Mesh<D> mesh, std::unique_ptr<Transfer<D>> of_kernel)
       : problem(std::move(mesh)), work(problem.mesh.n_nodes()), transfer(std::move(of_kernel))
-  {}
+  {
+    work.nodes.in_use.prepare(problem.mesh, problem.own);
+  }
   /// Turns the model of a single rank into that of one of several ranks, whose mesh is their part of a larger one.  Collective.
   void join(Communicator& others, Subdomain part);
   Index n_bodies() const noexcept { return static_cast<Index>(state.bodies.size()); }

@@ -38,6 +38,7 @@ struct Workspace {
     nodes.sum.resize(static_cast<std::size_t>(n_nodes));
     nodes.motion.resize(nodes.sum.size());
     nodes.active.resize(nodes.sum.size());
+    nodes.in_use = NodesInUse(n_nodes);
   }
 };
 

@@ -20,7 +20,7 @@ template <int D>
 void integrate(const Vec<D>& gravity, Real kick, Nodes<D>& nodes)
 {
   nodes.gravity = gravity, nodes.kick = kick;
-  parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+  nodes.in_use.for_each([&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     NodeMotion<D>& motion = nodes.motion[i];
     if (!nodes.active[i]) {
@@ -39,15 +39,17 @@ template <int D>
 void find_net_acceleration(Nodes<D>& nodes)
 {
   nodes.felt.resize(nodes.sum.size());
-  for (std::size_t i = 0; i < nodes.felt.size(); ++i)
+  nodes.in_use.for_each([&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
     nodes.felt[i] = nodes.motion[i].change / nodes.kick;
+  });
 }
 
 /// Damps nodes without boundary conditions by the part of their net acceleration that acts on particles.
 template <int D>
 void damp(Real damping, Nodes<D>& nodes)
 {
-  parallel_for(static_cast<Index>(nodes.sum.size()), [&](Index n) {
+  nodes.in_use.for_each([&](Index n) {
     const auto i = static_cast<std::size_t>(n);
     if (!nodes.active[i] || nodes.bound[i])
       return;

@@ -8,6 +8,7 @@
 
 #include "core/types.hpp"
 #include "kernels/symmetric.hpp"
+#include "solver/state/nodes_in_use.hpp"
 
 namespace talus {
 
@@ -129,8 +130,9 @@ struct Nodes {
   std::vector<Vec<D>> felt;         ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
   Vec<D> gravity = Vec<D>::Zero();  ///< gravity in the present step [m/s^2]
   Real kick{};                      ///< time over which forces act, from the old velocities to the new ones [s]
-  Real least_share{};               ///< limit of mass relative to the lightest particle around: nodes with less are nodes of small mass
-  Real least_share_of_gross{};      ///< limit of mass relative to `gross`
+  NodesInUse in_use{0};
+  Real least_share{};           ///< limit of mass relative to the lightest particle around: nodes with less are nodes of small mass
+  Real least_share_of_gross{};  ///< limit of mass relative to `gross`
 };
 
 }  // namespace talus

@@ -84,7 +84,7 @@ class NodePatchSums {
       });
       blocks_.occupied[static_cast<std::size_t>(block)] = occupied ? 1 : 0;
     });
-    assemble<Whole>(blocks_, own_, halo_, copies_, of_node_);
+    assemble<Whole>(blocks_, own_, halo_, copies_, in_use_, of_node_, [&] { in_use_.find(blocks_.occupied, false); });
   }
 
   const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
@@ -93,11 +93,15 @@ class NodePatchSums {
   NodePatchSums(const Mesh<D>& mesh, OwnNodes own)
       : blocks_(make_block_rows<Row>(mesh, [&](Index c) { return std::span(mesh.cell(c)); })),
         own_(std::move(own)),
+        in_use_(mesh.n_nodes()),
         of_node_(static_cast<std::size_t>(mesh.n_nodes()))
-  {}
+  {
+    in_use_.prepare(mesh, own_);
+  }
 
   BlockRows<D, Row> blocks_;
   OwnNodes own_;
+  NodesInUse in_use_;
   Halo<Row> halo_;
   HaloExchange copies_;
   std::vector<Row> of_node_;

@@ -29,12 +29,12 @@ struct ProjectedNodes {
 /// mass of a node is the mean mass of the linear shape functions around.
 template <int D>
 void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
-                  const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
+                  const std::vector<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, std::vector<NodeSum<D>>& sum)
 {
-  for_each_node(std::span(sum), [&](Index v) {
-    NodeSum<D> total;
+  in_use.for_each([&](Index v) {
+    NodeSum<D>& total = sum[static_cast<std::size_t>(v)] = {};
     if (!own.has(v))
-      return total;
+      return;
     Real around = 0;
     int ring = 0;
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>& gradient) {
@@ -49,16 +49,15 @@ void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const 
       total.force += S * projected_node.force - projected_node.tension * gradient;
     });
     total.gross = static_cast<float>(around / ring);
-    return total;
   });
 }
 
 /// The momentum only.
 template <int D>
 void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
-                      const std::vector<ProjectedNodeSum<D>>& projected, std::vector<NodeSum<D>>& sum)
+                      const std::vector<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, std::vector<NodeSum<D>>& sum)
 {
-  parallel_for(operators.n_nodes(), [&](Index v) {
+  in_use.for_each([&](Index v) {
     if (!own.has(v))
       return;
     Vec<D> momentum = Vec<D>::Zero();
@@ -74,14 +73,14 @@ void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, co
 /// Calls f(n, linear shape function) for the linear shape functions that particles use, in parallel; f writes their values.  Those that use
 /// nodes of other ranks wait until arrive() returns.
 template <int D, class Arrive, class F>
-void for_each_seen_hat(ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
+void for_each_seen_hat(const NodesInUse& in_use, ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
 {
   for (const bool late : {false, true}) {
     if (late)
       arrive();
     if (late && projected.late.empty())
       break;
-    parallel_for(static_cast<Index>(projected.sum.size()), [&](Index n) {
+    in_use.for_each([&](Index n) {
       const auto i = static_cast<std::size_t>(n);
       if (projected.sum[i].is_seen() && (projected.late.empty() || (projected.late[i] != 0) == late))
         f(n, projected.motion[i]);
@@ -93,34 +92,36 @@ void for_each_seen_hat(ProjectedNodes<D>& projected, Arrive&& arrive, F&& f)
 /// modes of the unknowns: what remains of them moves no particle and must not count in the criterion of equilibrium.  arrive() receives
 /// accelerations of nodes of other ranks.
 template <int D, class Arrive>
-void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, Arrive&& arrive, ProjectedNodes<D>& projected,
-                         std::vector<Vec<D>>& a)
+void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own, const NodesInUse& in_use, Arrive&& arrive,
+                         ProjectedNodes<D>& projected, std::vector<Vec<D>>& a)
 {
-  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
+  for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
     projected_node.change.setZero();
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) { projected_node.change += S * a[static_cast<std::size_t>(v)]; });
   });
-  for_each_node(std::span(a), [&](Index v) {
+  in_use.for_each([&](Index v) {
     Real mass = 0;
     Vec<D> sum = Vec<D>::Zero();
-    if (!own.has(v))
-      return sum;
+    if (!own.has(v)) {
+      a[static_cast<std::size_t>(v)] = sum;
+      return;
+    }
     operators.for_each_in_column(v, [&](Index n, Real S, const Vec<D>&) {
       const Real share = S * projected.sum[static_cast<std::size_t>(n)].mass;
       mass += share;
       sum += share * projected.motion[static_cast<std::size_t>(n)].change;
     });
-    return mass > 0 ? Vec<D>(sum / mass) : Vec<D>(Vec<D>::Zero());
+    a[static_cast<std::size_t>(v)] = mass > 0 ? Vec<D>(sum / mass) : Vec<D>(Vec<D>::Zero());
   });
 }
 
 /// From unknowns to the linear shape functions that particles use: v_n = sum_v S_nv v_v, changes likewise, L_n = sum_v v_v (x) D_nv.
 /// arrive() receives the motion of nodes of other ranks.
 template <int D, class Arrive>
-void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
+void project_motion(const NodeOperators<D>& operators, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
                     ProjectedNodes<D>& projected)
 {
-  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
+  for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
     ProjectedNodeMotion<D> projected_node;
     operators.for_each_in_row(n, [&](Index v, Real S, const Vec<D>& gradient) {
       const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
@@ -134,10 +135,10 @@ void project_motion(const NodeOperators<D>& operators, const std::vector<NodeMot
 
 /// The gradient of remapped velocities; the velocity of the step is stored in `change`.
 template <int D, class Arrive>
-void project_gradient(const NodeOperators<D>& operators, const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive,
-                      ProjectedNodes<D>& projected)
+void project_gradient(const NodeOperators<D>& operators, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& remapped,
+                      Arrive&& arrive, ProjectedNodes<D>& projected)
 {
-  for_each_seen_hat(projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
+  for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
         n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });

@@ -66,11 +66,13 @@ class TransferOf final : public Transfer<D> {
 
   void assemble_nodes(Model<D>& m) override
   {
+    Nodes<D>& nodes = m.work.nodes;
+    const auto see = [&] { nodes.in_use.find(rows_.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
     if constexpr (Rows::projects) {
-      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, rows_.projected.sum);
-      project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, m.work.nodes.sum);
+      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, see);
+      project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use, nodes.sum);
     } else {
-      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, m.work.nodes.sum);
+      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, see);
     }
   }
 
@@ -80,7 +82,8 @@ class TransferOf final : public Transfer<D> {
       std::vector<Vec<D>>& felt = m.work.nodes.felt;
       rows_.ghosts.felt.send(felt, Numbers{});
       talus::filter_acceleration(
-          rows_.kernel.node_operators(), m.problem.own, [&] { rows_.ghosts.felt.take(felt, Numbers{}); }, rows_.projected, felt);
+          rows_.kernel.node_operators(), m.problem.own, m.work.nodes.in_use, [&] { rows_.ghosts.felt.take(felt, Numbers{}); },
+          rows_.projected, felt);
     }
   }
 
@@ -138,8 +141,8 @@ class TransferOf final : public Transfer<D> {
   {
     if constexpr (Rows::projects) {
       project_motion(
-          rows_.kernel.node_operators(), m.work.nodes.motion, [&] { rows_.ghosts.motion.take(m.work.nodes.motion, Whole{}); },
-          rows_.projected);
+          rows_.kernel.node_operators(), m.work.nodes.in_use, m.work.nodes.motion,
+          [&] { rows_.ghosts.motion.take(m.work.nodes.motion, Whole{}); }, rows_.projected);
       m.state.boundary.apply(kick, rows_.projected.sum, rows_.projected.motion, m.work.sums.beyond_nodes);
     }
   }
@@ -157,13 +160,13 @@ class TransferOf final : public Transfer<D> {
     Nodes<D>& nodes = work.nodes;
     std::vector<NodeMotion<D>>& remapped = rows_.remapped;
     if constexpr (Rows::projects) {
-      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, rows_.projected.sum);
-      project_momentum(rows_.kernel.node_operators(), mesh, own, rows_.projected.sum, nodes.sum);
+      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, [] {});
+      project_momentum(rows_.kernel.node_operators(), mesh, own, rows_.projected.sum, nodes.in_use, nodes.sum);
     } else {
-      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, nodes.sum);
+      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, [] {});
     }
     work.small_mass_nodes.lump_momentum(mesh, own, nodes);
-    parallel_for(static_cast<Index>(remapped.size()), [&](Index n) {
+    nodes.in_use.for_each([&](Index n) {
       const auto i = static_cast<std::size_t>(n);
       const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
       remapped[i] = {v, nodes.motion[i].v};
@@ -171,10 +174,10 @@ class TransferOf final : public Transfer<D> {
     state.boundary.hold(mid, remapped);
     work.small_mass_nodes.extrapolate_velocity(mesh, own, state.boundary, mid, remapped);
     rows_.ghosts.motion.send(remapped, Whole{});
-    add_ranges(std::span<const IndexRange>(own.of_block), work.sums.remap, [&](Index n) { return remap_work(nodes, remapped, n); });
+    add_ranges(nodes.in_use.own(), work.sums.remap, [&](Index n) { return remap_work(nodes, remapped, n); });
     const auto arrive = [&] { rows_.ghosts.motion.take(remapped, Whole{}); };
     if constexpr (Rows::projects) {
-      project_gradient(rows_.kernel.node_operators(), remapped, arrive, rows_.projected);
+      project_gradient(rows_.kernel.node_operators(), nodes.in_use, remapped, arrive, rows_.projected);
       gather_gradient(
           m, rows_, rows_.projected.motion, [] {}, dt, update);
     } else {
