@@ -10,7 +10,7 @@
 namespace talus::nodes_in_use_test {
 namespace {
 
-using testing::IsEmpty;
+using ::testing::IsEmpty;
 
 /// A strip of many blocks of cells.
 Mesh<2> strip() { return Mesh<2>(box<2>({0, 0}, {64, 4}, {256, 16})); }
@@ -34,7 +34,7 @@ std::set<Index> near_block(const Mesh<2>& mesh, Index block)
   return nodes;
 }
 
-class NodesInUseOf : public testing::Test {
+class NodesInUseOf : public ::testing::Test {
  protected:
   NodesInUseOf() { in_use_.prepare(mesh_, all_nodes(mesh_)); }
   void occupy(std::initializer_list<std::size_t> blocks, bool everything = false)
