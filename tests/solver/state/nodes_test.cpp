@@ -16,6 +16,7 @@ Nodes<2> nodes_of(const Mesh<2>& mesh)
   nodes.sum.resize(n);
   nodes.motion.resize(n);
   nodes.active.resize(n);
+  nodes.in_use = NodesInUse(mesh.n_nodes());
   nodes.least_share = 1e-8;
   return nodes;
 }
