@@ -49,8 +49,8 @@ function(talus_compile_kernels target)
 
 namespace talus {
 
-template std::unique_ptr<Transfer<2>> transfer_of<@type@<2>>(const Mesh<2>&, const Options<@type@<2>>&);
-template std::unique_ptr<Transfer<3>> transfer_of<@type@<3>>(const Mesh<3>&, const Options<@type@<3>>&);
+template std::unique_ptr<Transfer<2>> make_transfer_of<@type@<2>>(const Mesh<2>&, const Options<@type@<2>>&);
+template std::unique_ptr<Transfer<3>> make_transfer_of<@type@<3>>(const Mesh<3>&, const Options<@type@<3>>&);
 
 }  // namespace talus
 ]])

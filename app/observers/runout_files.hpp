@@ -28,7 +28,7 @@ struct RunoutPlan {
   {
     return map ? map->to_map(place[0], dimension == 3 ? place[1] : 0) : place;
   }
-  /// The names of these coordinates: east and north, or letters of axes.
+  /// The names of these coordinates: east and north, or those of the axes.
   std::vector<std::string> axis_names() const;
 };
 

@@ -116,13 +116,13 @@ std::vector<std::uint8_t> nodes_read(const Subdomain& subdomain, const BlockRows
 }
 
 /// Adds the rows of blocks to sums of the nodes that this rank owns, and of those of other ranks of which it has `copies`; other sums stay
-/// empty.  Nodes that are not in use are left out; see() is called once the rows of other ranks have arrived.
-template <class What, int D, class Sum, class See>
+/// empty.  Nodes that are not in use are left out; on_arrival() is called once the rows of other ranks have arrived.
+template <class What, int D, class Sum, class OnArrival>
 void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, HaloExchange& copies, const NodesInUse& in_use,
-              std::vector<Sum>& sum, See&& see)
+              std::vector<Sum>& sum, OnArrival&& on_arrival)
 {
   halo.template take_rows<What>(blocks);
-  see();
+  on_arrival();
   const auto add_up = [&](Index n) {
     Sum total = sum[static_cast<std::size_t>(n)];
     What::clear(total);

@@ -14,9 +14,9 @@ std::unique_ptr<Transfer<D>> make_transfer(std::string_view kernel, const Kernel
     if (K::name != kernel)
       return;
     if constexpr (std::is_same_v<Options<K>, NoOptions>)
-      made = transfer_of<K>(mesh, NoOptions{});
+      made = make_transfer_of<K>(mesh, NoOptions{});
     else
-      made = transfer_of<K>(mesh, std::get<Options<K>>(options));
+      made = make_transfer_of<K>(mesh, std::get<Options<K>>(options));
   });
   return made;
 }

@@ -20,6 +20,6 @@ std::unique_ptr<Transfer<D>> make_transfer(std::string_view kernel, const Kernel
 
 /// The transfer of a kernel; throws as above.  Defined in transfer_of.hpp, compiled for every kernel of the list.
 template <class K, int D>
-std::unique_ptr<Transfer<D>> transfer_of(const Mesh<D>& mesh, const Options<K>& options);
+std::unique_ptr<Transfer<D>> make_transfer_of(const Mesh<D>& mesh, const Options<K>& options);
 
 }  // namespace talus

@@ -67,12 +67,12 @@ class TransferOf final : public Transfer<D> {
   void assemble_nodes(Model<D>& m) override
   {
     Nodes<D>& nodes = m.work.nodes;
-    const auto see = [&] { nodes.in_use.find(rows_.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
+    const auto find_nodes = [&] { nodes.in_use.find(rows_.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
     if constexpr (Rows::projects) {
-      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, see);
+      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, find_nodes);
       project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use, nodes.sum);
     } else {
-      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, see);
+      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
     }
   }
 
@@ -189,7 +189,7 @@ class TransferOf final : public Transfer<D> {
 };
 
 template <class K, int D>
-std::unique_ptr<Transfer<D>> transfer_of(const Mesh<D>& mesh, const Options<K>& options)
+std::unique_ptr<Transfer<D>> make_transfer_of(const Mesh<D>& mesh, const Options<K>& options)
 {
   return std::make_unique<TransferOf<D, K>>(mesh, options);
 }

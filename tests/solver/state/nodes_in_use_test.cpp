@@ -6,6 +6,7 @@
 #include <set>
 
 #include "mesh/generate/generate.hpp"
+#include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::nodes_in_use_test {
 namespace {
@@ -94,6 +95,44 @@ TEST_F(NodesInUseOf, SumOverRangesOfOwnBlocks)
     nodes += range.end - range.begin;
   EXPECT_GE(static_cast<std::size_t>(nodes), near_block(mesh_, 0).size() / 2);
   EXPECT_LT(nodes, mesh_.n_nodes() / 2);
+}
+
+/// A grain that flies over many blocks.  A load of zero on the mesh puts all nodes in use.
+template <class K>
+Model<2> flying_grain(bool everything)
+{
+  auto m = make_model<K>(testing::unit_box<2>(32, 0.2));
+  m.problem.transfer.pic_damping_crossings = 25;
+  testing::add_body<2>(m, "grain", testing::rubber(1e4, 0.3, 1000), 3,
+                       [](const Vec<2>& x) { return (x.array() - 0.2).abs().maxCoeff() < 0.08; });
+  if (everything)
+    m.problem.loads.on_mesh.emplace_back();
+  make_ready(m);
+  testing::set_velocity<2>(m, Mat<2>(Mat<2>::Identity() * 0.3), Vec<2>(2, 1));
+  testing::run_until(m, 0.25);
+  return m;
+}
+
+template <class K>
+class NodesInUseUnder : public ::testing::Test {};
+using AllKernels = ::testing::Types<Linear<2>, Umls<2>, Projected<2>>;
+TYPED_TEST_SUITE(NodesInUseUnder, AllKernels);
+
+TYPED_TEST(NodesInUseUnder, ChangeNoBit)
+{
+  const Model<2> near = flying_grain<TypeParam>(false), all = flying_grain<TypeParam>(true);
+  ASSERT_EQ(near.state.clock.step, all.state.clock.step);
+  ASSERT_GT(near.state.clock.step, 50);
+  EXPECT_GT(near.state.particles.x[0][0], 0.5) << "it must have left the blocks in which it began";
+  EXPECT_LT(visited(near.work.nodes.in_use).size(), visited(all.work.nodes.in_use).size());
+  for (std::size_t p = 0; p < near.state.particles.id.size(); ++p) {
+    EXPECT_EQ(near.state.particles.x[p], all.state.particles.x[p]);
+    EXPECT_EQ(near.state.particles.v[p], all.state.particles.v[p]);
+    EXPECT_EQ(near.state.particles.stress[p], all.state.particles.stress[p]);
+  }
+  EXPECT_EQ(near.state.momentum.on_nodes, all.state.momentum.on_nodes);
+  for (std::size_t n = 0; n < near.work.nodes.motion.size(); ++n)
+    EXPECT_EQ(near.work.nodes.motion[n].v, all.work.nodes.motion[n].v) << n;
 }
 
 }  // namespace
