@@ -37,7 +37,7 @@ METHODS = {  # for sweeps, the default first; linear with tpic inverts particles
     for kernel, scheme in (("projected", "aflip"), ("umls", "tpic"), ("umls", "flip"), ("umls", "apic"), ("linear", "flip"))}
 METHODS["umls, exact_force, aflip"] = {"kernel": "umls", "umls.gradient": "exact_force", "transfer.scheme": "aflip"}
 SUITED = {"umls": "tpic", "linear": "flip", "projected": "aflip"}  # kernel -> suitable transfer
-OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme", "precision": "precision"}  # option of the command line -> key of the scene
+OVERRIDES = {"kernel": "kernel", "transfer": "transfer.scheme"}  # option of the command line -> key of the scene
 
 
 class RunFailed(RuntimeError):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs the benchmarks with a built talus against their references; writes OUT/verify.json and OUT/report/index.html.
 
-Usage: talus verify [case ...] [--level quick|full] [--kernel K] [--transfer T] [--precision P] [--out DIR]      without cases: all of them
+Usage: talus verify [case ...] [--level quick|full] [--kernel K] [--transfer T] [--out DIR]      without cases: all of them
 Exit status: 0 all judged numbers pass, 1 some do not or a run failed, 2 wrong words, 3 a module of Python is missing.
 """
 import argparse
@@ -88,7 +88,6 @@ def arguments():
     options.add_argument("cases", nargs="*", metavar="case", help=", ".join(CASES))
     options.add_argument("--kernel", help="kernel of every run that does not choose one itself")
     options.add_argument("--transfer", help="transfer scheme of every run that does not choose one itself")
-    options.add_argument("--precision", help="double or single, of every run that does not choose itself")
     options.add_argument("--release", action="store_true", help="for developers: store the values as those of the release (release.json of each case)")
     options.add_argument("--regression", action="store_true", help="status 1 only where something is worse than in the last release: a run failed, or a number that passed then or is new")
     options.add_argument("--judged", action="store_true", help="for developers: leave out cases of which nothing passed in the release, so that nothing can become worse")
@@ -97,10 +96,10 @@ def arguments():
     given = options.parse_args()
     if unknown := [case for case in given.cases + given.but if case not in CASES]:
         options.error(f"no case {', '.join(unknown)}; there are: {', '.join(CASES)}")
-    if given.release and (given.kernel or given.transfer or given.precision or given.level != "quick"):
-        options.error("--release stores values of the quick level without --kernel, --transfer and --precision")
-    if given.write_docs and (given.kernel or given.transfer or given.precision):
-        options.error("--write-docs wants runs without --kernel, --transfer and --precision")
+    if given.release and (given.kernel or given.transfer or given.level != "quick"):
+        options.error("--release stores values of the quick level without --kernel and --transfer")
+    if given.write_docs and (given.kernel or given.transfer):
+        options.error("--write-docs wants runs without --kernel and --transfer")
     return settle(options, given, "verify")
 
 

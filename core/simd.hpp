@@ -1,10 +1,6 @@
 #pragma once
 // Packs of numbers.  Sums over a stencil run over whole packs, so that they use the vector unit without a scalar remainder.  For laws,
 // SimdReal holds one number of several particles and is used like a Real.
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
-
 #include <Eigen/Core>
 #include <cmath>
 #include <cstring>
@@ -38,47 +34,18 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
   c = __builtin_shufflevector(ab_even, cd_even, 2, 3, 6, 7);
   d = __builtin_shufflevector(ab_odd, cd_odd, 2, 3, 6, 7);
 }
-/// Loads four numbers from any address, stored in double or single precision.
+/// Loads four numbers from any address.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
-#ifdef __AVX__  // the compiler would convert in halves, through memory
-[[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept { return _mm256_cvtps_pd(_mm_loadu_ps(from)); }
-[[gnu::always_inline]] inline void store_loose(float* to, const Pack& pack) noexcept { _mm_storeu_ps(to, _mm256_cvtpd_ps(pack)); }
-#else
-[[gnu::always_inline]] inline Pack load_loose(const float* from) noexcept { return Pack{from[0], from[1], from[2], from[3]}; }
-[[gnu::always_inline]] inline void store_loose(float* to, const Pack& pack) noexcept
+/// Repeats lane n - 1 in the lanes from n on.
+[[gnu::always_inline]] inline Pack first_lanes(const Pack& a, int n) noexcept
 {
-  for (int i = 0; i < pack_size; ++i)
-    to[i] = static_cast<float>(pack[i]);
-}
-#endif
-/// Converts n consecutive numbers of four rows to one pack per number, with one row per lane, and back for the first `count` rows.  N is
-/// double or float.
-template <int n, class N>
-[[gnu::always_inline]] inline void load_rows(const N* const (&row)[pack_size], Pack* to) noexcept
-{
-  constexpr int whole = n / pack_size * pack_size;
-  for (int k = 0; k < whole; k += pack_size) {
-    for (int lane = 0; lane < pack_size; ++lane)
-      to[k + lane] = load_loose(row[lane] + k);
-    transpose(to[k], to[k + 1], to[k + 2], to[k + 3]);
+  switch (n) {
+    case 1: return __builtin_shufflevector(a, a, 0, 0, 0, 0);
+    case 2: return __builtin_shufflevector(a, a, 0, 1, 1, 1);
+    case 3: return __builtin_shufflevector(a, a, 0, 1, 2, 2);
+    default: return a;
   }
-  for (int k = whole; k < n; ++k)
-    to[k] = Pack{row[0][k], row[1][k], row[2][k], row[3][k]};
-}
-template <int n, class N>
-[[gnu::always_inline]] inline void store_rows(const Pack* from, N* const (&row)[pack_size], int count) noexcept
-{
-  constexpr int whole = n / pack_size * pack_size;
-  for (int k = 0; k < whole; k += pack_size) {
-    Pack of[pack_size] = {from[k], from[k + 1], from[k + 2], from[k + 3]};
-    transpose(of[0], of[1], of[2], of[3]);
-    for (int lane = 0; lane < count; ++lane)
-      store_loose(row[lane] + k, of[lane]);
-  }
-  for (int k = whole; k < n; ++k)
-    for (int lane = 0; lane < count; ++lane)
-      row[lane][k] = static_cast<N>(from[k][lane]);
 }
 static_assert(pack_size == 4);
 

@@ -47,9 +47,7 @@ Real plastic_work(const RunView<D>& view)
 template <int D>
 Real bytes_per_particle(const RunView<D>& view)
 {
-  std::size_t bytes = 0;
-  view.state.particles.for_each_column(
-      [&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+  std::size_t bytes = bytes_of(view.state.particles);
   for (const Material& material : view.state.materials)
     bytes += material.history.bytes();
   return view.problem.ranks->max(static_cast<Real>(bytes) / static_cast<Real>(std::max(view.state.particles.size(), Index{1})));

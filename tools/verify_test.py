@@ -15,7 +15,6 @@ sys.path.insert(0, str(ROOT / "benchmarks"))
 import lab  # noqa: E402
 import numpy as np  # noqa: E402
 import pages  # noqa: E402
-import precision  # noqa: E402
 import regression  # noqa: E402
 import report  # noqa: E402
 import tradeoff  # noqa: E402
@@ -314,21 +313,6 @@ class Readme(unittest.TestCase):
     def test_without_both_markers_in_order_nothing_is_replaced(self):
         for text in ("", report.BEGIN, f"{report.END}\n{report.BEGIN}", f"{report.BEGIN}{report.BEGIN}{report.END}"):
             self.assertIsNone(report.replace_block(text, "new"))
-
-
-class Precision(unittest.TestCase):
-    @staticmethod
-    def records(*values_and_verdicts):
-        return {("case", f"m{k}"): {"value": value, "reference": None, "pass": passed} for k, (value, passed) in enumerate(values_and_verdicts)}
-
-    def test_counts_numbers_by_how_much_they_change_and_verdicts_that_fail_in_single_only(self):
-        double = self.records((1, True), (1, True), (1, False), (2, None), (None, None))
-        single = self.records((1, True), (1.001, False), (1, False), (2.2, None), (None, None))
-        self.assertEqual(precision.rows(double, single), [["case", 4, 2, 2, 1, "9e-02", "m3", 1]])
-
-    def test_a_number_that_single_does_not_have_has_changed_wholly_and_rounding_has_not(self):
-        double = self.records((1, True), (1e-15, True))
-        self.assertEqual(precision.rows(double, self.records((None, None), (-1e-13, True))), [["case", 2, 1, 1, 1, "1e+00", "m0", 1]])
 
 
 if __name__ == "__main__":

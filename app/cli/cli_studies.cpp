@@ -68,7 +68,6 @@ void StudyCommands::add_suite(CLI::App& app, const std::string& name, const std:
   if (verify) {
     suite->add_option("--kernel", options.kernel, "kernel of every run that does not choose one itself");
     suite->add_option("--transfer", options.transfer, "transfer scheme of every run that does not choose one itself");
-    suite->add_option("--precision", options.precision, "double or single, of every run that does not choose itself");
     suite->add_flag("--regression", options.regression, "status 1 only where something is worse than in the last release");
   }
   suite->callback([&options] { run_suite(options); });
@@ -82,11 +81,10 @@ void StudyCommands::add_bench(CLI::App& app)
   list("--kernel", bench_.kernels, "kernels, such as projected,umls");
   list("--transfer", bench_.transfers, "transfer schemes");
   list("--law", bench_.laws, "constitutive laws");
-  list("--precision", bench_.precisions, "double, single or both");
   list("--dimension", bench_.dimensions, "2, 3 or both")->check(number_within(2, 3));
   list("--threads", bench_.threads, "numbers of threads")->check(number_within(1, 1024));
   list("--per-cell", bench_.per_cell, "particles per cell; default 8 in 3-D, 4 in 2-D")->check(number_within(1, 100));
-  CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, precision, dimension: hours");
+  CLI::Option* all = bench->add_flag("--all", bench_.all, "every kernel, transfer, law, dimension: hours");
   CLI::Option* options =
       bench->add_flag("--options", bench_.options, "what averaged volumes, friction, viscosity, loads and histories cost")->excludes(all);
   CLI::Option* mpi = bench->add_flag("--mpi", bench_.ranks, "one case on the ranks of mpirun: what each holds, sends and waits for");

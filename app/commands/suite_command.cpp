@@ -56,7 +56,6 @@ void run_suite(const SuiteOptions& options)
   add("--level", options.level, words);
   add("--kernel", options.kernel, words);
   add("--transfer", options.transfer, words);
-  add("--precision", options.precision, words);
   add("--out", options.out ? std::optional(options.out->string()) : std::nullopt, words);
   add_number("--jobs", options.jobs);
   add_number("--threads", options.threads);

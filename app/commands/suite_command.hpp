@@ -10,7 +10,7 @@ namespace talus {
 struct SuiteOptions {
   std::string suite;  ///< verify or tradeoff
   std::vector<std::string> cases;
-  std::optional<std::string> level, kernel, transfer, precision;
+  std::optional<std::string> level, kernel, transfer;
   std::optional<std::filesystem::path> out;
   std::optional<int> jobs, threads;
   bool reuse = false, regression = false;

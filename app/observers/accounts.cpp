@@ -110,8 +110,6 @@ MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& view) const
   for (const BoundaryCondition<D>& wall : view.state.boundary.conditions())
     in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
   MomentumNow<D> now{start_, momentum_of(view), in_steps + given.rest + given.changes + -1 * view.state.mass.carried_away};
-  if (view.state.particles.precision() == Precision::single)
-    now.most_linear_defect = 1e-5;
   now.forces = given.on_nodes - in_steps.angular;
   now.lost = now.start.angular + now.given.angular + now.forces - now.end.angular;
   return now;

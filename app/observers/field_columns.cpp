@@ -9,6 +9,7 @@
 
 #include "core/field_component.hpp"
 #include "io/output/output_fields.hpp"
+#include "materials/interface/any_law.hpp"
 
 namespace talus {
 

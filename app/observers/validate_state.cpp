@@ -56,13 +56,19 @@ class Inspection {
       faults_.push_back(fmt::format("there is more than one particle {}", *twice));
   }
 
-  /// Checks the particles from row `begin` on.
-  template <class Rows>
-  void finite(std::string_view name, Index begin, Index n, const Rows& rows)
+  /// Checks a column.
+  template <class Column>
+  void finite(std::string_view name, const Column& column)
   {
-    const Index bad = first_bad(n, [&](Index i) { return !is_finite(rows[i]); });
+    const Index bad = first_bad(static_cast<Index>(column.size()), [&](Index row) {
+      const auto* const numbers = numbers_of(column, static_cast<std::size_t>(row));
+      for (std::size_t c = 0; c < RowsOf<Column>::components; ++c)
+        if (!std::isfinite(static_cast<Real>(numbers[c * rows_in_group])))
+          return true;
+      return false;
+    });
     if (bad != none)
-      add(begin + bad, fmt::format("{} is not finite", name));
+      add(bad, fmt::format("{} is not finite", name));
   }
 
   void finite(const HistoryVariable& variable, Index begin, const Material& material)
@@ -134,9 +140,7 @@ void find_invalid(const Particles<D>& particles, const std::vector<Body>& bodies
   const std::size_t before = faults.size();
   Inspection<D> inspection(particles, bodies, faults);
   inspection.ids();
-  particles.for_each_column([&](std::string_view name, std::string_view, const auto& rows) {
-    inspection.finite(name, 0, static_cast<Index>(rows.size()), rows.data());
-  });
+  particles.for_each_column([&](std::string_view name, std::string_view, const auto& rows) { inspection.finite(name, rows); });
   for (std::size_t b = 0; b < materials.size(); ++b)
     for (const HistoryVariable& variable : materials[b].law().variables())
       inspection.finite(variable, bodies[b].begin, materials[b]);

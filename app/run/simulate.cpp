@@ -91,7 +91,6 @@ Setup<D> without_particles(Setup<D>& setup)
   Particles<D> particles = std::exchange(setup.state.particles, {});
   std::vector<Material> materials = std::exchange(setup.state.materials, {});
   Setup<D> rest = setup;
-  rest.state.particles.keep_in(particles.precision());
   for (Body& body : rest.state.bodies)
     body.begin = body.end = 0;
   for (const Material& material : materials)
@@ -329,7 +328,7 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   const Stage first_stage = setup.stages.front();
   const Model<D> m = build(scene, std::move(mesh), std::move(setup));
   const auto bytes = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
-  m.state.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) { cost.particle_bytes += bytes(column); });
+  cost.particle_bytes = static_cast<std::int64_t>(bytes_of(m.state.particles));
   for (const Material& material : m.state.materials)
     cost.particle_bytes += static_cast<std::int64_t>(material.history.bytes());
   const Mesh<D>& whole = m.problem.mesh;

@@ -186,7 +186,6 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.kernel = scene.kernel;
   s.transfer = fmt::format("{}{}", enum_names(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
                            setup.conditions.transfer.uses_musl() ? ", musl" : "");
-  s.precision = enum_names(scene.precision)[static_cast<std::size_t>(scene.precision)];
   s.ranks.count = world().size();
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();

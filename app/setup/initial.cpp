@@ -82,7 +82,6 @@ template <int D>
 KeptBodies<D> bodies_of(const Scene& scene)
 {
   KeptBodies<D> saved;
-  saved.particles.keep_in(scene.precision);
   for (const BodySpec& body : scene.bodies)
     saved.bodies.push_back({body.name, 0, 0, body.where});
   saved.laws = laws_of_stages(scene);

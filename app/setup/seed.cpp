@@ -44,9 +44,7 @@ class Seeder {
  public:
   Seeder(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks, SceneErrorCollector& errors)
       : scene_(scene), mesh_(mesh), ranks_(ranks), mine_(cells_to_fill(mesh, ranks)), errors_(errors)
-  {
-    seeds_.particles.keep_in(scene.precision);  // while they are none: never more memory than the run needs
-  }
+  {}
 
   void add(const BodySpec& spec)
   {
@@ -205,10 +203,8 @@ class Seeder {
     if (seeds_.n_particles + more > std::numeric_limits<Index>::max())
       return fmt::format("{} particles are more than can be numbered", seeds_.n_particles + more);
     Particles<D> one;
-    one.keep_in(scene_.precision);
     make_room(1, one);
-    std::size_t bytes = sizeof(Real) * static_cast<std::size_t>(law.description().history_width);
-    one.for_each_column([&](std::string_view, std::string_view, const auto& column) { bytes += column.size() * sizeof(column[0]); });
+    const std::size_t bytes = bytes_of(one) + sizeof(Real) * static_cast<std::size_t>(law.description().history_width);
     const Real on_this_machine = static_cast<Real>(std::min(ranks_on_this_machine(), ranks_.size())) / ranks_.size();
     return ranks_.first(too_many(static_cast<Real>(more) * on_this_machine, "particles", static_cast<Real>(bytes)));
   }
@@ -227,12 +223,13 @@ class Seeder {
       for_each_place(cell, points, spec, [&](const Vec<D>& x) {
         p.id[row] = first_id + static_cast<std::int64_t>(row) - first.front();
         p.cell[row] = cell;
-        p.x[row] = x;
+        p.x.set(row, x);
         p.v.set(row, Vec<D>::Zero());
         p.L.set(row, Mat<D>::Zero());
         p.F.set(row, Mat3::Identity());
         p.stress.set(row, Sym3::Zero());
-        p.volume0[row] = p.volume[row] = volume;
+        p.volume0.set(row, volume);
+        p.volume.set(row, volume);
         p.mass.set(row, density * volume);
         ++row;
       });
@@ -264,14 +261,14 @@ class Seeder {
     const bool moves = scene_.initial->velocity == Carried::keep;
     for_each_pair(begin, rows, [&](std::size_t row, std::size_t there) {
       p.id[row] = first_id + static_cast<std::int64_t>(row) - begin;
-      p.x[row] = from.x[there];
+      p.x.set(row, from.x[there]);
       p.v.set(row, moves ? Vec<D>(from.v[there]) : Vec<D>(Vec<D>::Zero()));
       p.L.set(row, moves ? Mat<D>(from.L[there]) : Mat<D>(Mat<D>::Zero()));
       p.F.set(row, from.F[there]);
       p.stress.set(row, from.stress[there]);
       p.mass.set(row, heavier * from.mass[there]);
-      p.volume0[row] = from.volume0[there];
-      p.volume[row] = from.volume[there];
+      p.volume0.set(row, from.volume0[there]);
+      p.volume.set(row, from.volume[there]);
     });
   }
 
@@ -287,7 +284,7 @@ class Seeder {
     const auto outside = std::find(first, last, none);
     if (outside == last)
       return;
-    const Vec<D>& x = p.x[static_cast<std::size_t>(outside - p.cell.begin())];
+    const Vec<D> x = p.x[static_cast<std::size_t>(outside - p.cell.begin())];
     errors_.add(scene_.initial->where, "from",
                 fmt::format("{} of the {} particles of body \"{}\" there lie outside the mesh of this scene, the first at ({:.6g})",
                             std::count(outside, last, none), body.size(), source.name, fmt::join(x.begin(), x.end(), ", ")));
@@ -312,11 +309,11 @@ class Seeder {
       errors_.add(scene_.initial->where, "displacement", "the run there kept none: it wrote neither displacements nor points");
     } else if (scene_.initial->displacement == Carried::keep) {
       p.x0 = p.x;
-      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0[row] = from.x0[there]; });
+      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.x0.set(row, from.x0[there]); });
     }
     if (!from.volume_ratio.empty() && std::ranges::any_of(seeds_.materials, [](const Material& one) { return one.averages_volume; })) {
       p.volume_ratio.assign(n, 1);
-      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio[row] = from.volume_ratio[there]; });
+      for_each_taken([&](const Taken&, std::size_t row, std::size_t there) { p.volume_ratio.set(row, from.volume_ratio[there]); });
     }
     if (!from.viscous.empty()) {
       if (std::ranges::any_of(seeds_.materials, [](const Material& one) { return one.viscosity.has_value(); }))

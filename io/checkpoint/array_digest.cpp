@@ -16,11 +16,12 @@ std::uint64_t digest_of(const std::string& path, const std::string& type, const 
   return digest_of(std::as_bytes(std::span(meaning)), 0);
 }
 
-void pack(const SharedArray& array, std::size_t from, std::size_t row_bytes, std::span<std::byte> to)
+CopyRows rows_in(std::span<const std::byte> memory, std::size_t row_bytes)
 {
-  const std::byte* row = array.first + from * array.stride;
-  for (; !to.empty(); to = to.subspan(row_bytes), row += array.stride)
-    std::memcpy(to.data(), row, row_bytes);
+  return [=](std::size_t from, std::span<std::byte> to) {
+    if (!to.empty())
+      std::memcpy(to.data(), memory.data() + from * row_bytes, to.size());
+  };
 }
 
 std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t number_bytes, std::uint64_t meaning)
@@ -34,9 +35,8 @@ std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t numb
   const Slice& slice = array.slice;
   const std::int64_t begin = slice.piece_of(slice.first), end = slice.piece_of(slice.first + static_cast<std::int64_t>(array.rows) - 1) + 1;
   std::vector<std::uint64_t> digests(static_cast<std::size_t>(end - begin));
-  const bool is_packed = array.stride == row_bytes;
   std::vector<std::vector<std::byte>> room(std::min(static_cast<std::size_t>(threads()), digests.size()),
-                                           std::vector<std::byte>(is_packed ? 0 : at_once * row_bytes));
+                                           std::vector<std::byte>(at_once * row_bytes));
   parallel_for(static_cast<Index>(room.size()), [&](Index t) {
     const auto thread = static_cast<std::size_t>(t);
     for (std::size_t i = thread; i < digests.size(); i += room.size()) {
@@ -44,11 +44,9 @@ std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t numb
       auto row = static_cast<std::size_t>(slice.begin_of(number) - slice.first);
       const auto last = static_cast<std::size_t>(slice.begin_of(number + 1) - slice.first);
       Digest digest(meaning, (last - row) * row_bytes);
-      if (is_packed)
-        digest.add({array.first + row * row_bytes, (last - row) * row_bytes});
-      for (; !is_packed && row < last; row += at_once) {
+      for (; row < last; row += at_once) {
         const auto some = std::span(room[thread]).first(std::min(at_once, last - row) * row_bytes);
-        pack(array, row, row_bytes, some);
+        array.copy(row, some);
         digest.add(some);
       }
       digests[i] = digest.value();

@@ -24,9 +24,9 @@ Measured measured_of(const OrderedJson& json)
 OrderedJson object_of(const BenchResult& r)
 {
   const BenchSetting& s = r.setting;
-  OrderedJson json = {
-      {"kernel", s.kernel},   {"transfer", s.transfer},   {"law", s.law},       {"dimension", s.dimension}, {"per_cell", s.per_cell},
-      {"threads", s.threads}, {"precision", s.precision}, {"option", s.option}, {"particles", r.particles}, {"steps", r.steps}};
+  OrderedJson json = {{"kernel", s.kernel},       {"transfer", s.transfer},   {"law", s.law},
+                      {"dimension", s.dimension}, {"per_cell", s.per_cell},   {"threads", s.threads},
+                      {"option", s.option},       {"particles", r.particles}, {"steps", r.steps}};
   json["particle_steps_per_second_and_core"] = 1e6 * r.rate();
   json["ns_per_particle_step"] = object_of(r.ns);
   json["cpu_ns_per_particle_step"] = object_of(r.cpu);
@@ -43,8 +43,7 @@ BenchResult result_of(const OrderedJson& json)
 {
   BenchResult r;
   BenchSetting& s = r.setting;
-  for (const auto& [key, value] :
-       {std::pair{"kernel", &s.kernel}, {"transfer", &s.transfer}, {"law", &s.law}, {"precision", &s.precision}, {"option", &s.option}})
+  for (const auto& [key, value] : {std::pair{"kernel", &s.kernel}, {"transfer", &s.transfer}, {"law", &s.law}, {"option", &s.option}})
     json.at(key).get_to(*value);
   for (const auto& [key, value] : {std::pair{"dimension", &s.dimension}, {"per_cell", &s.per_cell}, {"threads", &s.threads}})
     json.at(key).get_to(*value);
@@ -119,8 +118,7 @@ void write_ranks(const std::filesystem::path& file, const RanksReport& report)
   json["program"] = {{"version", report.version}, {"commit", report.commit}, {"compiler", report.compiler}, {"build", report.build}};
   json["machine"] = {{"processor", report.processor}, {"cores", report.cores}};
   json["setting"] = {{"kernel", s.kernel},       {"transfer", s.transfer}, {"law", s.law},
-                     {"dimension", s.dimension}, {"per_cell", s.per_cell}, {"threads", s.threads},
-                     {"precision", s.precision}};
+                     {"dimension", s.dimension}, {"per_cell", s.per_cell}, {"threads", s.threads}};
   json["particles"] = report.particles;
   json["cells"] = report.cells;
   json["nodes"] = report.nodes;

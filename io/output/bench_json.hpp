@@ -18,7 +18,6 @@ struct Measured {
 struct BenchSetting {
   std::string kernel, transfer, law;
   int dimension{}, per_cell{}, threads{};
-  std::string precision = "double";
   std::string option = {};  ///< additional feature of the block, such as "f_bar"; empty for none
   bool operator==(const BenchSetting&) const = default;
 };

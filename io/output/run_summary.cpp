@@ -154,7 +154,6 @@ std::string to_json(const RunSummary& s)
   json["dimension"] = s.dimension;
   json["kernel"] = s.kernel;
   json["transfer"] = s.transfer;
-  json["precision"] = s.precision;
   json["mesh"] = {{"nodes", s.mesh_nodes},
                   {"cells", s.mesh_cells},
                   {"nodes_treated_as_corners", s.nodes_as_corners},

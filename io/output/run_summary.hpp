@@ -117,7 +117,7 @@ struct RunSummary {
   std::string message;  ///< reason of a failure
 
   int dimension{};
-  std::string kernel, transfer, precision;
+  std::string kernel, transfer;
   int threads{};
   RanksSummary ranks;
 

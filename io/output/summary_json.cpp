@@ -138,9 +138,8 @@ RunOrigin read_origin(const std::filesystem::path& summary)
   try {
     const nlohmann::json json = nlohmann::json::parse(text);
     const nlohmann::json& program = json.at("program");
-    return {told(json, "status"),      told(program, "version"), told(program, "commit"),
-            told(program, "compiler"), told(program, "build"),   told(json, "kernel"),
-            told(json, "transfer"),    told(json, "precision"),  told(json.at("cost"), "threads")};
+    return {told(json, "status"),   told(program, "version"), told(program, "commit"), told(program, "compiler"),
+            told(program, "build"), told(json, "kernel"),     told(json, "transfer"),  told(json.at("cost"), "threads")};
   } catch (const nlohmann::json::exception& e) {
     throw EnvironmentError(fmt::format("{} is not the summary of a run: {}", summary.string(), e.what()));
   }

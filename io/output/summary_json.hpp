@@ -25,7 +25,7 @@ SummaryBack read_summary(const std::filesystem::path& file);
 const NamedValue* find_number(const std::vector<NamedValue>& numbers, std::string_view name);
 
 struct RunOrigin {
-  std::string status, version, commit, compiler, build, kernel, transfer, precision, threads;  ///< "unknown" if not in the file
+  std::string status, version, commit, compiler, build, kernel, transfer, threads;  ///< "unknown" if not in the file
 };
 
 /// Throws EnvironmentError with the name of the file if it cannot be read or is not a summary of a run.

@@ -56,7 +56,6 @@ struct Scene {
   std::string kernel = "projected";
   std::optional<UmlsOptions> umls;
   std::optional<ProjectedOptions> projected;
-  Precision precision = Precision::full;
   TimeSpec time;
   TransferOptions transfer;
   std::vector<MaterialSpec> materials;
@@ -85,9 +84,6 @@ struct Scene {
         optional("kernel", &Scene::kernel, any, "-", "how particles see nodes"),
         group("umls", &Scene::umls, "choices of the kernel umls"),
         group("projected", &Scene::projected, "choices of the kernel projected"),
-        optional_choice("precision", &Scene::precision,
-                        "in which numbers particles are kept; single takes little more than half the memory, and some accuracy where "
-                        "strains are small"),
         optional("time", &Scene::time, any, "-", "end and step"),
         optional("transfer", &Scene::transfer, any, "-", "how particles and nodes exchange momentum"),
         required_list("materials", &Scene::materials, "constitutive laws with their constants"),

@@ -199,19 +199,17 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   StressSums update_block(Material& material, const StressBlock<D>& block) const noexcept
   {
     detail::StressLanes lanes;
-    in_numbers_of(block.particles, [&]<class S>(S) {
-      for_each_pack<S>(
-          block.rows, [&](const ParticlePackOf<S>& pack) { update_pack(material, pack, block, lanes); },
-          [&](std::size_t p) {
-            const Particles<D>& particles = block.particles;
-            Prefetch<S>::row(p, particles.F, particles.stress, particles.volume, particles.volume0, particles.mass);
-          });
-    });
+    for_each_pack(
+        block.rows, [&](const ParticlePack& pack) { update_pack(material, pack, block, lanes); },
+        [&](std::size_t p) {
+          const Particles<D>& particles = block.particles;
+          prefetch_row(p, particles.F, particles.stress, particles.volume, particles.volume0, particles.mass);
+        });
     return lanes.total();
   }
 
-  template <int D, class S>
-  [[gnu::flatten]] void update_pack(Material& material, const ParticlePackOf<S>& pack, const StressBlock<D>& block,
+  template <int D>
+  [[gnu::flatten]] void update_pack(Material& material, const ParticlePack& pack, const StressBlock<D>& block,
                                     detail::StressLanes& sums) const noexcept
   {
     Particles<D>& particles = block.particles;

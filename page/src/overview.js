@@ -155,7 +155,6 @@ export function show_cost(element, run) {
       ]),
     ['memory at most', cost['peak_memory [B]'] ? `${number(cost['peak_memory [B]'] / 2 ** 20, 4)} MiB` : '–'],
     ['state of a particle', `${number(cost.bytes_per_particle)} bytes`],
-    ['precision', run.summary.precision],
     ['compiler', run.summary.program?.compiler],
     ['build', run.summary.program?.build],
   ];

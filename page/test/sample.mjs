@@ -43,7 +43,6 @@ function summary_of(title, dimension, particles, rows, columns) {
     dimension,
     kernel: 'projected',
     transfer: 'aflip, musl',
-    precision: 'double',
     mesh: {nodes: 4141, cells: 8000, digest: 'c75b770bebecbbc4', quality: {}},
     bodies: [{name: 'column', material: 'sand', law: 'drucker_prager', particles, 'mass [kg]': 3200}],
     stages: [

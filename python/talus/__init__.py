@@ -6,7 +6,7 @@
     last = run.particles[-1]
     last.time, last["position"], last.units["position"]       # s, (particles, 3), "m"
     last.of("clay")["stress"]                                 # of one body: (its particles, 6)
-    run.checkpoints[-1]["particles/velocity"]                 # in the precision of the run, with its digest checked
+    run.checkpoints[-1]["particles/velocity"]                 # in double precision, with its digest checked
 
 The package is one folder that can be copied.  It needs numpy, h5py to read checkpoints, and lz4 to read particles and meshes
 (Debian: python3-numpy, python3-h5py, python3-lz4).  Units are SI; a pure number has the unit "-".  Symmetric tensors have six components,

@@ -87,7 +87,7 @@ void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& foll
     }
   }
   for (const auto& load : loads.of_place) {
-    const Rows<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
+    const ParticleColumn<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
     constexpr std::size_t at_once = 256;
     const std::size_t n = particles.applied.size();
     parallel_for(static_cast<Index>((n + at_once - 1) / at_once), [&](Index chunk) {

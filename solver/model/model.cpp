@@ -26,8 +26,8 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
     particles.C = particles.L;
   if (wanted.applied)
     particles.applied.assign(n, Vec<D>::Zero()), particles.applied_at.assign(n, 0);
-  if (wanted.volume_ratio)
-    particles.volume_ratio.resize(n, 1);
+  if (wanted.volume_ratio && particles.volume_ratio.empty())
+    particles.volume_ratio.assign(n, 1);
   if (wanted.viscous && particles.viscous.empty())
     particles.viscous.assign(n, 0);
   if (wanted.pore && particles.pore.empty())

@@ -77,7 +77,7 @@ void make_room(const std::vector<Turnover>& turnovers, std::vector<Body>& bodies
   for_each_kept_column(particles, keepers, [&](auto& column) {
     column.resize(std::max(column.size(), n));
     for (const auto& [from, to] : moves)
-      column[static_cast<std::size_t>(to)] = column[static_cast<std::size_t>(from)];
+      copy_row(column, static_cast<std::size_t>(from), column, static_cast<std::size_t>(to));
     column.resize(n);
   });
   for (std::size_t b = 0; b < bodies.size(); ++b) {
@@ -128,7 +128,10 @@ bool Migration<D>::operator()(const Subdomain& subdomain, std::vector<Body>& bod
         auto& message = out_[static_cast<std::size_t>(border_of_block_[static_cast<std::size_t>(block)])];
         append_bytes(static_cast<Index>(b), message);
         append_bytes(subdomain.whole_cell(particles.cell[p]), message);
-        for_each_kept_column(particles, keepers_, [&](auto& column) { append_bytes(column[p], message); });
+        for_each_kept_column(particles, keepers_, [&](auto& column) {
+          message.resize(message.size() + row_bytes<std::decay_t<decltype(column)>>);
+          save_row(column, p, message.data() + message.size() - row_bytes<std::decay_t<decltype(column)>>);
+        });
         const auto history = std::as_const(materials[b].history).bytes_of_row(row - materials[b].begin);
         message.insert(message.end(), history.begin(), history.end());
         turnovers[b].leaving.push_back(row);
@@ -139,7 +142,7 @@ bool Migration<D>::operator()(const Subdomain& subdomain, std::vector<Body>& bod
 
   // How long a record is depends on its body alone.
   std::size_t columns = 2 * sizeof(Index);
-  for_each_kept_column(particles, keepers_, [&](auto& column) { columns += sizeof(column[0]); });
+  for_each_kept_column(particles, keepers_, [&](auto& column) { columns += row_bytes<std::decay_t<decltype(column)>>; });
   std::vector<std::vector<std::span<const std::byte>>> records(bodies.size());
   bool busy = false;
   for (std::span<const std::byte> message : in)
@@ -167,7 +170,10 @@ bool Migration<D>::operator()(const Subdomain& subdomain, std::vector<Body>& bod
       const auto p = static_cast<std::size_t>(row);
       Index body{}, cell{};
       take_bytes(record, body), take_bytes(record, cell);
-      for_each_kept_column(particles, keepers_, [&](auto& column) { take_bytes(record, column[p]); });
+      for_each_kept_column(particles, keepers_, [&](auto& column) {
+        load_row(record.data(), column, p);
+        record = record.subspan(row_bytes<std::decay_t<decltype(column)>>);
+      });
       std::ranges::copy(record, materials[b].history.bytes_of_row(row - materials[b].begin).begin());
       particles.cell[p] = subdomain.local_cell(cell);
       arrived.push_back(row++);

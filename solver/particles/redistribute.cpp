@@ -12,29 +12,34 @@ namespace {
 
 using RowsOfRanks = std::vector<std::vector<Index>>;
 
-/// Sends out[r] of `rows` to rank r; what comes from rank r stands in the rows in[r] of `n` then.
-/// Rows are `bytes` long; row_at(i) is the address of row i, and make_room() makes `rows` those that there are then.
-template <class RowAt, class MakeRoom>
-void send_rows(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t bytes, RowAt&& row_at, MakeRoom&& make_room)
+/// Sends out[r] of the rows to rank r; what comes from rank r is put in the rows in[r].  Rows are `bytes` long: save(i, to) copies row i to an
+/// address, load(from, i) back.  make_room() makes the rows those that there are then.
+template <class Save, class Load, class MakeRoom>
+void send_rows(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t bytes, Save&& save, Load&& load,
+               MakeRoom&& make_room)
 {
   std::vector<std::vector<std::byte>> messages(out.size());
-  for (std::size_t r = 0; r < out.size(); ++r)
-    for (const Index row : out[r]) {
-      const auto* const first = static_cast<const std::byte*>(row_at(row));
-      messages[r].insert(messages[r].end(), first, first + bytes);
-    }
+  for (std::size_t r = 0; r < out.size(); ++r) {
+    messages[r].resize(out[r].size() * bytes);
+    for (std::size_t i = 0; i < out[r].size() && bytes > 0; ++i)
+      save(out[r][i], messages[r].data() + i * bytes);
+  }
   messages = ranks.all_to_all(messages);
   make_room();
   for (std::size_t r = 0; r < in.size(); ++r)
     for (std::size_t i = 0; i < in[r].size() && bytes > 0; ++i)
-      std::memcpy(row_at(in[r][i]), messages[r].data() + i * bytes, bytes);
+      load(messages[r].data() + i * bytes, in[r][i]);
 }
 template <class Column>
 void send_column(Communicator& ranks, const RowsOfRanks& out, const RowsOfRanks& in, std::size_t n, Column& rows)
 {
   send_rows(
-      ranks, out, in, sizeof(typename Column::value_type),
-      [&](Index row) { return static_cast<void*>(&rows[static_cast<std::size_t>(row)]); }, [&] { rows = Column(n); });
+      ranks, out, in, row_bytes<Column>, [&](Index row, std::byte* to) { save_row(rows, static_cast<std::size_t>(row), to); },
+      [&](const std::byte* from, Index row) { load_row(from, rows, static_cast<std::size_t>(row)); },
+      [&] {
+        rows = {};
+        rows.resize(n);
+      });
 }
 
 /// What says where a row comes to stand.
@@ -114,7 +119,9 @@ void redistribute(Communicator& ranks, std::span<const int> rank_of_row, std::ve
     const RowsOfRanks arriving = within(in, body.begin, body.end);
     HistoryRows& history = materials[b].history;
     send_rows(
-        ranks, leaving, arriving, history.row_bytes(), [&](Index row) { return static_cast<void*>(history.row(row)); },
+        ranks, leaving, arriving, history.row_bytes(),
+        [&](Index row, std::byte* to) { std::ranges::copy(std::as_const(history).bytes_of_row(row), to); },
+        [&](const std::byte* from, Index row) { std::copy_n(from, history.row_bytes(), history.bytes_of_row(row).data()); },
         [&] { history.resize(body.size()); });
     materials[b].set_range(body);
   }

@@ -20,17 +20,17 @@ constexpr Real inset = 1e-6;
 std::size_t z(Index i) { return static_cast<std::size_t>(i); }
 
 /// column[i] <- column[order[i]] by way of `spare`, which is kept: room for one column.
-template <class T, class Allocator>
-void permute(std::vector<T, Allocator>& column, std::span<const Index> order, std::vector<std::byte>& spare)
+template <class Column>
+void permute(Column& column, std::span<const Index> order, std::vector<std::byte>& spare)
 {
   if (column.empty())
     return;
-  spare.resize(std::max(spare.size(), column.size() * sizeof(T)));
+  constexpr std::size_t bytes = row_bytes<Column>;
+  spare.resize(std::max(spare.size(), column.size() * bytes));
   std::byte* const sorted = spare.data();
-  std::byte* const rows = reinterpret_cast<std::byte*>(column.data());
   const auto n = static_cast<Index>(order.size());
-  parallel_for(n, [&](Index i) { std::memcpy(sorted + z(i) * sizeof(T), rows + z(order[z(i)]) * sizeof(T), sizeof(T)); });
-  parallel_for(n, [&](Index i) { std::memcpy(rows + z(i) * sizeof(T), sorted + z(i) * sizeof(T), sizeof(T)); });
+  parallel_for(n, [&](Index i) { save_row(column, z(order[z(i)]), sorted + z(i) * bytes); });
+  parallel_for(n, [&](Index i) { load_row(sorted + z(i) * bytes, column, z(i)); });
 }
 
 }  // namespace
@@ -45,7 +45,7 @@ void drop_lost(std::vector<Body>& bodies, std::vector<Material>& materials, Part
     auto to = z(begin);
     for (Index p = begin; p < end; ++p)
       if (stays[z(p)])
-        column[to++] = column[z(p)];
+        copy_row(column, z(p), column, to++);
     return to;
   };
   for (auto& material : materials) {
@@ -117,40 +117,58 @@ void remove_failed(const Mesh<D>& mesh, std::vector<Body>& bodies, std::vector<M
   sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
 }
 
+namespace {
+
+/// Finds the particles that are not deep inside their cells.
+template <int D>
+void test_all(const Mesh<D>& mesh, const Locator<D>& locator, const Particles<D>& particles, CellOrder& order)
+{
+  order.begin_test();
+  parallel_for_uneven(static_cast<Index>(order.keys()), [&](Index k) {
+    const auto key = static_cast<std::size_t>(k);
+    for_each_run(order.rows(key), particles.cell, [&](Index c, std::span<const Index> run) {
+      const auto probe = locator.probe(mesh, c);
+      for_each_pack(run, [&](const ParticlePack& pack) { add_leaving<D>(probe, pack, pack.load(particles.x), key, order); });
+    });
+  });
+}
+
+}  // namespace
+
 template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
               std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& errors)
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
+  /// Whether a particle is elsewhere than in its cell, as far as is known.
   const auto find = [&](std::size_t p) {
     if (!particles.x[p].allFinite()) {
       errors.report(particles.id[p], Trouble::not_finite);
-      return;
+      return false;
     }
     const Index cell = locator(mesh, particles.x[p], particles.cell[p]).value_or(none);
-    if (cell == none)
+    if (cell == particles.cell[p])
+      return false;
+    if (cell == none) {
       outside = true;
-    else if (cell != particles.cell[p]) {
+    } else {
       particles.cell[p] = cell;
       moved = true;
     }
+    return true;
   };
-  if (unsorted)
+  if (unsorted) {
     parallel_for(particles.size(), [&](Index p) { find(z(p)); });
-  else
-    parallel_for_uneven(order.blocks, [&](Index block) {
-      for (Index body = 0; body < static_cast<Index>(bodies.size()); ++body)
-        for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
-          const auto probe = locator.probe(mesh, c);
-          for_each_pack(run, [&](const ParticlePack& pack) {
-            if (const auto deep = probe.deep_each(pack.load(particles.x)); !all_of(deep))
-              for (int lane = 0; lane < pack.count; ++lane)
-                if (!deep[lane])
-                  find(pack.p[lane]);
-          });
-        });
+  } else {
+    if (!order.is_tested)
+      test_all(mesh, locator, particles, order);
+    parallel_for(static_cast<Index>(order.keys()), [&](Index k) {
+      const std::span<Index> leaving = order.leaving_of(z(k));
+      const auto left = std::remove_if(leaving.begin(), leaving.end(), [&](Index position) { return !find(z(order.row[z(position)])); });
+      order.n_leaving[z(k)] = static_cast<Index>(left - leaving.begin());
     });
+  }
 
   bool rows_changed = false;
   if (outside) {  // rare
@@ -165,7 +183,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
         Vec<D> centre = Vec<D>::Zero();
         for (const Index n : mesh.cell(nearest.cell))
           centre += mesh.node(n) / (D + 1);
-        particles.x[p] = nearest.x + inset * (centre - nearest.x);
+        particles.x.set(p, nearest.x + inset * (centre - nearest.x));
         particles.cell[p] = locator(mesh, particles.x[p], nearest.cell).value_or(nearest.cell);
         sums.removed.add({.held_count = 1});
         sums.largest_set_back = std::max(sums.largest_set_back, distance);
@@ -187,6 +205,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
     sort_by_cell(particles.cell, particles.id, bodies, mesh.n_cells(), order);
   else if (moved)
     sort_again(particles.cell, particles.id, order);
+  order.is_tested = false;
   return rows_changed;
 }
 

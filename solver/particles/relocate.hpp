@@ -23,6 +23,17 @@ template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
               std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& errors);
 
+/// Lists the particles of a pack that are not deep inside their cell with those that may leave it.
+template <int D>
+[[gnu::always_inline]] inline void add_leaving(const typename Locator<D>::Probe& probe, const ParticlePack& pack, const VecOf<D>& x,
+                                               std::size_t key, CellOrder& order) noexcept
+{
+  if (const auto deep = probe.deep_each(x); !all_of(deep))
+    for (int lane = 0; lane < pack.count; ++lane)
+      if (!deep[lane])
+        order.add_leaving(key, pack.listed + lane);
+}
+
 /// Drops the particles whose cell is `none`.
 template <int D>
 void drop_lost(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles);

@@ -1,6 +1,5 @@
 #include "solver/state/cell_order.hpp"
 
-#include <array>
 #include <numeric>
 
 #include "core/parallel/threads.hpp"
@@ -28,18 +27,6 @@ void insertion_sort(std::span<const Index> cell, std::span<const std::int64_t> i
   }
 }
 
-/// Sorts the rows of one block by cell, keeping the order within each cell; each(f) calls f(row) for all of them.
-template <class Each>
-void count_cells(std::span<const Index> cell, Each&& each, std::span<Index> to)
-{
-  std::array<Index, block_cells> position{};
-  each([&](Index row) { ++at(position, at(cell, row) % block_cells); });
-  Index sum = 0;
-  for (Index& count : position)
-    sum += std::exchange(count, sum);
-  each([&](Index row) { at(to, at(position, at(cell, row) % block_cells)++) = row; });
-}
-
 std::span<Index> part(std::vector<Index>& rows, const std::vector<Index>& first, std::size_t key)
 {
   return std::span(rows).subspan(static_cast<std::size_t>(first[key]), static_cast<std::size_t>(first[key + 1] - first[key]));
@@ -52,6 +39,7 @@ void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id,
 {
   order.blocks = blocks_of(n_cells);
   order.is_new = true;
+  order.is_tested = false;
   order.row.resize(cell.size());
   order.first.assign(bodies.size() * static_cast<std::size_t>(order.blocks) + 1, 0);
   order.count.resize(static_cast<std::size_t>(n_cells));
@@ -79,59 +67,54 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
 {
   const std::size_t keys = order.keys();
   const auto n_keys = static_cast<Index>(keys);
-  // the body of a row does not change
-  const auto base_of = [&](std::size_t key) { return key - key % static_cast<std::size_t>(order.blocks); };
-  const auto key_of = [&](std::size_t base, Index row) { return base + static_cast<std::size_t>(at(cell, row) / block_cells); };
+  // The body of a row does not change.
+  const auto key_of = [&](std::size_t key, Index row) {
+    return key - key % static_cast<std::size_t>(order.blocks) + static_cast<std::size_t>(at(cell, row) / block_cells);
+  };
+  const auto in_order = [&](Index a, Index b) { return before(cell, id, a, b); };
   order.is_new = true;
+  order.is_tested = false;
   order.arrived.reserve(order.row.size());  // does not grow within a step
-  order.moved.resize(order.row.size());
   order.next_row.resize(order.row.size());
-  order.left.assign(keys, 0);
-  parallel_for(n_keys, [&](Index k) {
-    const auto key = static_cast<std::size_t>(k), base = base_of(key);
-    auto leaving = part(order.moved, order.first, key);
-    for (const Index row : order.rows(key))
-      if (key_of(base, row) != key)
-        at(leaving, order.left[key]++) = row;
-  });
 
-  // The particles that leave their block, few, are counted at their destination.
-  order.next_first.assign(keys + 1, 0);
-  for (std::size_t key = 0; key < keys; ++key)
-    for (Index i = 0; i < order.left[key]; ++i)
-      ++order.next_first[key_of(base_of(key), at(order.moved, order.first[key] + i)) + 1];
-  for (std::size_t key = 0; key < keys; ++key)
-    order.next_first[key + 1] += order.next_first[key];
+  // The particles that change cells, few, are sorted by where they go.
   std::vector<Index>& arrivals = order.next_first;  // first entry in `arrived` of each key
+  arrivals.assign(keys + 1, 0);
+  for (std::size_t key = 0; key < keys; ++key)
+    for (const Index position : order.leaving_of(key))
+      ++arrivals[key_of(key, at(order.row, position)) + 1];
+  std::partial_sum(arrivals.begin(), arrivals.end(), arrivals.begin());
   order.arrived.resize(static_cast<std::size_t>(arrivals.back()));
   order.count.assign(arrivals.begin(), arrivals.end());
   for (std::size_t key = 0; key < keys; ++key)
-    for (Index i = 0; i < order.left[key]; ++i) {
-      const Index row = at(order.moved, order.first[key] + i);
-      at(order.arrived, order.count[key_of(base_of(key), row)]++) = row;
-    }
+    for (const Index position : order.leaving_of(key))
+      at(order.arrived, order.count[key_of(key, at(order.row, position))]++) = at(order.row, position);
 
   order.count.assign(keys + 1, 0);  // first row of each key in the new order
   for (std::size_t key = 0; key < keys; ++key)
-    order.count[key + 1] = order.count[key] + order.first[key + 1] - order.first[key] - order.left[key] + arrivals[key + 1] - arrivals[key];
+    order.count[key + 1] =
+        order.count[key] + order.first[key + 1] - order.first[key] - order.n_leaving[key] + arrivals[key + 1] - arrivals[key];
   parallel_for(n_keys, [&](Index k) {
-    const auto key = static_cast<std::size_t>(k), base = base_of(key);
-    const auto rows = order.rows(key);
-    const auto sorted = part(order.next_row, order.count, key);
-    if (order.left[key] == 0 && arrivals[key + 1] == arrivals[key] &&
-        std::is_sorted(rows.begin(), rows.end(), [&](Index a, Index b) { return at(cell, a) < at(cell, b); })) {
-      std::copy(rows.begin(), rows.end(), sorted.begin());
-    } else {
-      const auto each = [&](auto&& f) {
-        for (const Index row : rows)
-          if (key_of(base, row) == key)
-            f(row);
-        for (Index i = arrivals[key]; i < arrivals[key + 1]; ++i)
-          f(at(order.arrived, i));
-      };
-      count_cells(cell, each, sorted);
+    const auto key = static_cast<std::size_t>(k);
+    const auto rows = part(order.row, order.first, key), coming = part(order.arrived, arrivals, key);
+    auto stay = rows.begin();  // the rows that stay close up
+    auto next = rows.begin();
+    for (const Index position : order.leaving_of(key)) {
+      const auto gap = rows.begin() + (position - order.first[key]);
+      stay = std::copy(next, gap, stay);
+      next = gap + 1;
     }
-    insertion_sort(cell, id, sorted);
+    stay = std::copy(next, rows.end(), stay);
+    std::sort(coming.begin(), coming.end(), in_order);
+    auto to = part(order.next_row, order.count, key).begin();
+    auto from = rows.begin();
+    for (const Index row : coming) {
+      const auto place = std::lower_bound(from, stay, row, in_order);
+      to = std::copy(from, place, to);
+      *to++ = row;
+      from = place;
+    }
+    std::copy(from, stay, to);
   });
   std::swap(order.row, order.next_row);
   std::swap(order.first, order.count);

@@ -29,19 +29,38 @@ struct CellOrder {
     return std::span(row).subspan(static_cast<std::size_t>(first[at]), static_cast<std::size_t>(first[at + 1] - first[at]));
   }
 
-  // Buffers of both sorts.
+  /// Particles that may have left their cells since the last sort: their positions in `row`, ascending, for each key from `first` on.
+  std::vector<Index> leaving;
+  std::vector<Index> n_leaving;  ///< how many, for each key
+  bool is_tested = false;        ///< whether `leaving` holds for the present positions
+
+  /// Prepares for the test of all particles, each by the thread that has its key.
+  void begin_test()
+  {
+    leaving.resize(row.size());
+    n_leaving.assign(keys(), 0);
+    is_tested = true;
+  }
+  void add_leaving(std::size_t key, const Index* listed) noexcept
+  {
+    leaving[static_cast<std::size_t>(first[key] + n_leaving[key]++)] = static_cast<Index>(listed - row.data());
+  }
+  std::span<Index> leaving_of(std::size_t key) noexcept
+  {
+    return std::span(leaving).subspan(static_cast<std::size_t>(first[key]), static_cast<std::size_t>(n_leaving[key]));
+  }
+
+  // Buffers of the sorts.
   std::vector<Index> count;  ///< particles per cell, or per block
-  /// The new `row`; particles that leave a block, stored in `moved` at the positions of the block in `row`.
-  std::vector<Index> next_row, moved;
-  std::vector<Index> next_first, left, arrived;
+  std::vector<Index> next_row, next_first, arrived;
 };
 
 /// Sorts by `cell` and `id` from scratch; `order` keeps its buffers.  Linear in particles and cells.
 void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
                   CellOrder& order);
 
-/// Sorts after some particles have changed their cells.  The result is that of sort_by_cell(), but only blocks with changes are touched, in
-/// parallel.
+/// Sorts after some particles have changed their cells: those in `leaving`, which is empty afterwards.  The result is that of
+/// sort_by_cell(), but only these are moved, in parallel.
 void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, CellOrder& order);
 
 /// Updates the order after all rows in the blocks `left` have been removed and other rows have moved to their places: `moves` lists the

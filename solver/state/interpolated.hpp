@@ -6,10 +6,10 @@
 namespace talus {
 
 /// Calls f(pack, x) for the particles of a cell batch, four at a time.
-template <class S, int D, class F>
-void for_each_placed_pack(std::span<const Index> run, const Rows<Vec<D>>& places, F&& f)
+template <int D, class F>
+void for_each_placed_pack(std::span<const Index> run, const ParticleColumn<Vec<D>>& places, F&& f)
 {
-  for_each_pack<S>(run, [&](const ParticlePackOf<S>& pack) {
+  for_each_pack(run, [&](const ParticlePack& pack) {
     Pack x[D];
     const auto place = pack.load(places);
     for (int d = 0; d < D; ++d)

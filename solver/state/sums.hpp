@@ -57,7 +57,8 @@ void add_particles(const CellOrder& order, ExactSums<T>& sum, F&& f)
 }
 
 /// Adds the energy [J] that the law of a body has dissipated.
-inline void add_plastic_work(const Material& material, const CellOrder& order, Index body, const Rows<Real>& volume0, ExactSums<Real>& sum)
+inline void add_plastic_work(const Material& material, const CellOrder& order, Index body, const ParticleColumn<Real>& volume0,
+                             ExactSums<Real>& sum)
 {
   add_particles(order, {body, body + 1}, sum,
                 [&](Index row) { return plastic_work(material, row - material.begin, volume0[static_cast<std::size_t>(row)]); });

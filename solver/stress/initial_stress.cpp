@@ -159,9 +159,9 @@ void start_from_stress(const Body& body, Material& material, Particles<D>& parti
     stress.diagonal().array() += beside_law(particles, p);
     material.prestress(i, stress);
     particles.F.set(p, Mat3::Identity());
-    particles.volume0[p] = particles.volume[p];
+    particles.volume0.set(p, particles.volume[p]);
     if (!particles.volume_ratio.empty())
-      particles.volume_ratio[p] = 1;
+      particles.volume_ratio.set(p, 1);
   });
 }
 

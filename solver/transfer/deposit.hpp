@@ -43,8 +43,8 @@ template <int D>
 struct Tension {
   Pack slope[D][D], shift[D];
 };
-template <int D, int N, class S>
-Tension<D> tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Weights<D, N>& weights) noexcept
+template <int D, int N>
+Tension<D> tension_of(const Particles<D>& particles, const ParticlePack& pack, const Weights<D, N>& weights) noexcept
 {
   const Pack volume = pack.load(particles.volume).of;
   const Sym3Of<SimdReal> stress = pack.load(particles.stress);
@@ -68,9 +68,9 @@ Tension<D> tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pa
 /// Adds m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G.
 /// A is taken from `fields` if `affine`; f_p is the force of loads if `loaded`; without `forces` (the second half of MUSL) only momentum is
 /// summed.  There is one loop per component, so that all data of the particle in a loop stay in registers.
-template <bool affine, bool loaded, bool forces, int D, int N, class S>
-void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const ParticleColumn<Mat<D>>& fields,
-             const StencilCell<D, N>& cell, const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
+template <bool affine, bool loaded, bool forces, int D, int N>
+void deposit(const Particles<D>& particles, const ParticlePack& pack, const ParticleColumn<Mat<D>>& fields, const StencilCell<D, N>& cell,
+             const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
 {
   alignas(64) Real share[N];  // m_p w_v
   for (int lane = 0; lane < pack.count; ++lane) {
@@ -138,8 +138,8 @@ void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const
 }
 
 /// Subtracts V sigma grad w_v of one particle from f_v, for the first n nodes.
-template <int D, int N, class S>
-void deposit_force(const Particles<D>& particles, const ParticlePackOf<S>& pack, int lane, const Real (&slopes)[D][N], int n,
+template <int D, int N>
+void deposit_force(const Particles<D>& particles, const ParticlePack& pack, int lane, const Real (&slopes)[D][N], int n,
                    CellSums<D, N>& sums) noexcept
 {
   const Real volume = particles.volume[pack.p[lane]];

@@ -145,16 +145,11 @@ class DirectTransfer {
 
   explicit DirectTransfer(const K& kernel) : kernel_(kernel) {}
   void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
-  template <class S>
-  void place(const ParticlePackOf<S>& pack, const Pack (&x)[D]) noexcept
-  {
-    kernel_.evaluate(cell_, x, pack.count, weights_);
-  }
+  void place(const ParticlePack& pack, const Pack (&x)[D]) noexcept { kernel_.evaluate(cell_, x, pack.count, weights_); }
 
   void clear() noexcept { sums_.clear(cell_.padded_size); }
-  template <bool affine, bool loaded, bool forces, class S>
-  void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Pack (&x)[D],
-               const ParticleColumn<Mat<D>>& fields) noexcept
+  template <bool affine, bool loaded, bool forces>
+  void deposit(const Particles<D>& particles, const ParticlePack& pack, const Pack (&x)[D], const ParticleColumn<Mat<D>>& fields) noexcept
   {
     const bool exact = forces && pairs_force_with_slopes();
     const Tension<D> tension = forces && !exact ? tension_of(particles, pack, weights_) : Tension<D>{};
@@ -169,8 +164,8 @@ class DirectTransfer {
   }
 
   void read(const std::vector<NodeMotion<D>>& nodes) noexcept { motion_.read(nodes, cell_.nodes, cell_.padded_size); }
-  template <bool with_change, bool with_gradient, class S>
-  Interpolated<D> see(const ParticlePackOf<S>& pack) const noexcept
+  template <bool with_change, bool with_gradient>
+  Interpolated<D> see(const ParticlePack& pack) const noexcept
   {
     return talus::see<with_change, with_gradient>(motion_, weights_, pack.count);
   }
@@ -187,8 +182,7 @@ class DirectTransfer {
     else
       return false;
   }
-  template <class S>
-  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const ParticlePackOf<S>& pack,
+  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const ParticlePack& pack,
                            [[maybe_unused]] const Pack (&x)[D]) noexcept
   {
     if constexpr (HasSlopesOfValues<K, D>)

@@ -7,9 +7,8 @@ namespace detail {
 
 /// Computes v_p and, if needed, the velocity gradient and the affine field of the scheme: into L, or into C where the scheme stores it
 /// separately.  With `musl` L is computed later, from remapped velocities.
-template <bool increments, bool with_gradient, bool musl, int D, class Through_, class S>
-Interpolated<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const ParticlePackOf<S>& pack,
-                              Particles<D>& particles) noexcept
+template <bool increments, bool with_gradient, bool musl, int D, class Through_>
+Interpolated<D> take_velocity(const Through_& through, Scheme scheme, Real pic, const ParticlePack& pack, Particles<D>& particles) noexcept
 {
   const Interpolated<D> seen = through.template see<increments, with_gradient>(pack);
   VecOf<D> v = vector_of(seen.v);
@@ -32,14 +31,33 @@ Interpolated<D> take_velocity(const Through_& through, Scheme scheme, Real pic, 
   return seen;
 }
 
-/// Moves particles, x <- x + dt v.
-template <int D, class S>
-void move(const ParticlePackOf<S>& pack, const Pack (&x)[D], const Pack (&v)[D], Real dt, Particles<D>& particles) noexcept
-{
-  pack.store(VecOf<D>(vector_of(x) + SimdReal(dt) * vector_of(v)), particles.x);
-}
+/// Moves the particles of a cell, x <- x + dt v, and lists those that may have left it.
+template <int D>
+class Mover {
+ public:
+  Mover(Model<D>& m, Index body, Index block, Index cell, Real dt)
+      : particles_(m.state.particles),
+        order_(m.work.order),
+        key_(order_.key(body, block)),
+        probe_(m.problem.locator.probe(m.problem.mesh, cell)),
+        dt_(dt)
+  {}
+  void operator()(const ParticlePack& pack, const Pack (&x)[D], const Pack (&v)[D]) const noexcept
+  {
+    const VecOf<D> there = vector_of(x) + SimdReal(dt_) * vector_of(v);
+    pack.store(there, particles_.x);
+    add_leaving<D>(probe_, pack, there, key_, order_);
+  }
 
-/// Calls f(c, run, through) for the cell batches of a block, with the cell opened and its part of `motion` read; ask(p) before each row is
+ private:
+  Particles<D>& particles_;
+  CellOrder& order_;
+  std::size_t key_;
+  typename Locator<D>::Probe probe_;
+  Real dt_;
+};
+
+/// Calls f(body, c, run, through) for the cell batches of a block, with the cell opened and its part of `motion` read; ask(p) before each row is
 /// used, see PrefetchRows; then done(body) for each body.
 template <int D, Kernel<D> K, class Ask, class F, class Done>
 void for_each_reading_run(const Model<D>& m, const KernelRows<D, K>& of, Index b,
@@ -52,7 +70,7 @@ void for_each_reading_run(const Model<D>& m, const KernelRows<D, K>& of, Index b
         [&](Index c, std::span<const Index> run) {
           through.enter(m.problem.mesh, c);
           through.read(motion);
-          f(c, run, through);
+          f(body, c, run, through);
         },
         ask);
     done(body);
@@ -67,7 +85,7 @@ void take_motion([[maybe_unused]] Model<D>& m, KernelRows<D, K>& of)
     of.ghosts.motion.take(m.work.nodes.motion, Whole{});
 }
 
-template <class S, bool increments, int D, Kernel<D> K, class Then>
+template <bool increments, int D, Kernel<D> K, class Then>
 void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then)
 {
   const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
@@ -76,20 +94,21 @@ void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then)
       [&](Index b) {
         for_each_reading_run(
             m, of, b, of.motion(m.work.nodes),
-            [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.L); },
-            [&](Index, std::span<const Index> run, auto& through) {
-              for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+            [&](std::size_t p) { prefetch_row(p, m.state.particles.x, m.state.particles.v, m.state.particles.L); },
+            [&](Index body, Index c, std::span<const Index> run, auto& through) {
+              const Mover<D> move(m, body, b, c, dt);
+              for_each_placed_pack<D>(run, m.state.particles.x, [&](const ParticlePack& pack, const Pack(&x)[D]) {
                 through.place(pack, x);
                 const Interpolated<D> seen =
                     take_velocity<increments, true, false>(through, m.problem.transfer.scheme, pic, pack, m.state.particles);
-                move(pack, x, seen.v, dt, m.state.particles);
+                move(pack, x, seen.v);
               });
             },
             [&](Index body) { then(body, b); });
       });
 }
 
-template <class S, bool increments, bool affine, int D, Kernel<D> K>
+template <bool increments, bool affine, int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 {
   const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
@@ -101,10 +120,10 @@ void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
     std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});
     for_each_reading_run(
         m, of, b, of.motion(m.work.nodes),
-        [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields()); },
-        [&](Index c, std::span<const Index> run, auto& through) {
+        [&](std::size_t p) { prefetch_row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields()); },
+        [&](Index, Index c, std::span<const Index> run, auto& through) {
           through.clear();
-          for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+          for_each_placed_pack<D>(run, m.state.particles.x, [&](const ParticlePack& pack, const Pack(&x)[D]) {
             through.place(pack, x);
             take_velocity<increments, affine, true>(through, m.problem.transfer.scheme, pic, pack, m.state.particles);
             through.template deposit<affine, false, false>(m.state.particles, pack, x, m.state.particles.affine_fields());
@@ -125,22 +144,18 @@ struct Nothing {
 template <int D, Kernel<D> K, class Then = Nothing>
 void gather(Model<D>& m, KernelRows<D, K>& of, Real dt, Then&& then = {})
 {
-  in_numbers_of(m.state.particles, [&]<class S>(S) {
-    m.problem.transfer.increments() ? detail::gather<S, true>(m, of, dt, then) : detail::gather<S, false>(m, of, dt, then);
-  });
+  m.problem.transfer.increments() ? detail::gather<true>(m, of, dt, then) : detail::gather<false>(m, of, dt, then);
 }
 
 /// MUSL, first half: computes v_p and the affine field, and adds their momentum to the rows of the blocks with the same weights.
 template <int D, Kernel<D> K>
 void gather_and_return_momentum(Model<D>& m, KernelRows<D, K>& of, Real dt)
 {
-  in_numbers_of(m.state.particles, [&]<class S>(S) {
-    if (!m.problem.transfer.affine())
-      detail::gather_and_return_momentum<S, true, false>(m, of, dt);
-    else
-      m.problem.transfer.increments() ? detail::gather_and_return_momentum<S, true, true>(m, of, dt)
-                                      : detail::gather_and_return_momentum<S, false, true>(m, of, dt);
-  });
+  if (!m.problem.transfer.affine())
+    detail::gather_and_return_momentum<true, false>(m, of, dt);
+  else
+    m.problem.transfer.increments() ? detail::gather_and_return_momentum<true, true>(m, of, dt)
+                                    : detail::gather_and_return_momentum<false, true>(m, of, dt);
 }
 
 /// MUSL, second half: computes L_p from the remapped velocities, while particles move with the velocities of the step.  The rows contain
@@ -149,20 +164,19 @@ template <int D, Kernel<D> K, class Arrive, class Then>
 void gather_gradient(Model<D>& m, KernelRows<D, K>& of, const std::vector<typename KernelRows<D, K>::Motion>& remapped, Arrive&& arrive,
                      Real dt, Then&& then)
 {
-  in_numbers_of(m.state.particles, [&]<class S>(S) {
-    for_each_reading_block(of.halo, arrive, [&](Index b) {
-      detail::for_each_reading_run(
-          m, of, b, remapped, [&](std::size_t p) { Prefetch<S>::row(p, m.state.particles.L); },
-          [&](Index, std::span<const Index> run, auto& through) {
-            for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
-              through.place(pack, x);
-              const Interpolated<D> seen = through.template see<true, true>(pack);
-              pack.store(matrix_of(seen.L), m.state.particles.L);
-              detail::move(pack, x, seen.change, dt, m.state.particles);
-            });
-          },
-          [&](Index body) { then(body, b); });
-    });
+  for_each_reading_block(of.halo, arrive, [&](Index b) {
+    detail::for_each_reading_run(
+        m, of, b, remapped, [&](std::size_t p) { prefetch_row(p, m.state.particles.L); },
+        [&](Index body, Index c, std::span<const Index> run, auto& through) {
+          const detail::Mover<D> move(m, body, b, c, dt);
+          for_each_placed_pack<D>(run, m.state.particles.x, [&](const ParticlePack& pack, const Pack(&x)[D]) {
+            through.place(pack, x);
+            const Interpolated<D> seen = through.template see<true, true>(pack);
+            pack.store(matrix_of(seen.L), m.state.particles.L);
+            move(pack, x, seen.change);
+          });
+        },
+        [&](Index body) { then(body, b); });
   });
 }
 

@@ -61,8 +61,8 @@ struct CornerSums {
 };
 
 /// V sigma of four particles [N m].
-template <int D, class S>
-[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const ParticlePackOf<S>& pack, Pack* to) noexcept
+template <int D>
+[[gnu::always_inline]] inline void tension_of(const Particles<D>& particles, const ParticlePack& pack, Pack* to) noexcept
 {
   const Pack volume = pack.load(particles.volume).of;
   const Sym3Of<SimdReal> stress = pack.load(particles.stress);
@@ -83,10 +83,9 @@ using HatSums = CornerSums<D, Deposit<D, true, true, true>::size>;
 
 /// Adds a pack, with the momentum about the origin of the cell: m (v - A x), where x is the position, relative to the origin, of the centre
 /// of the particles' weights.
-template <bool affine, bool loaded, bool forces, int D, class S>
-[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack,
-                                           const ParticleColumn<Mat<D>>& fields, const Pack (&x)[D], const CornerWeights<D>& shares,
-                                           HatSums<D>& sums) noexcept
+template <bool affine, bool loaded, bool forces, int D>
+[[gnu::always_inline]] inline void deposit(const Particles<D>& particles, const ParticlePack& pack, const ParticleColumn<Mat<D>>& fields,
+                                           const Pack (&x)[D], const CornerWeights<D>& shares, HatSums<D>& sums) noexcept
 {
   using Of = Deposit<D, affine, loaded, forces>;
   Pack quantities[padded(Of::size)]{};
@@ -195,16 +194,11 @@ class ProjectedTransfer {
     for (std::size_t a = 0; a <= D; ++a)
       arms_[a] = kernel_.node_operators().centre(cell_.nodes[a]) - cell_.origin;
   }
-  template <class S>
-  void place(const ParticlePackOf<S>& pack, const Pack (&x)[D]) noexcept
-  {
-    shares_ = shares_of<D>(cell_.dw, cell_.origin, x, pack.count);
-  }
+  void place(const ParticlePack& pack, const Pack (&x)[D]) noexcept { shares_ = shares_of<D>(cell_.dw, cell_.origin, x, pack.count); }
 
   void clear() noexcept { sums_.clear(); }
-  template <bool affine, bool loaded, bool forces, class S>
-  void deposit(const Particles<D>& particles, const ParticlePackOf<S>& pack, const Pack (&)[D],
-               const ParticleColumn<Mat<D>>& fields) noexcept
+  template <bool affine, bool loaded, bool forces>
+  void deposit(const Particles<D>& particles, const ParticlePack& pack, const Pack (&)[D], const ParticleColumn<Mat<D>>& fields) noexcept
   {
     Pack x[D]{};  // sum B c: values are read and passed on about the same position
     for (int a = 0; a <= D; ++a)
@@ -219,8 +213,8 @@ class ProjectedTransfer {
   }
 
   void read(const std::vector<ProjectedNodeMotion<D>>& projected) noexcept { motion_ = motions_of(projected, cell_.nodes); }
-  template <bool with_change, bool with_gradient, class S>
-  Interpolated<D> see(const ParticlePackOf<S>&) const noexcept
+  template <bool with_change, bool with_gradient>
+  Interpolated<D> see(const ParticlePack&) const noexcept
   {
     Interpolated<D> seen;
     see_velocity<with_change>(motion_, shares_, seen);

@@ -57,17 +57,16 @@ struct KernelRows {
 
 namespace detail {
 
-template <class S, int D>
+template <int D>
 float lightest_of(const Particles<D>& particles, std::span<const Index> run) noexcept
 {
-  const S* const mass = particles.mass.template rows<S>();
   float lightest = NodeSum<D>::unseen;
   for (const Index p : run)
-    lightest = std::min(lightest, static_cast<float>(mass[p]));
+    lightest = std::min(lightest, static_cast<float>(particles.mass[static_cast<std::size_t>(p)]));
   return lightest;
 }
 
-template <class S, bool affine, bool loaded, int D, Kernel<D> K>
+template <bool affine, bool loaded, int D, Kernel<D> K>
 void scatter(Model<D>& m, KernelRows<D, K>& of)
 {
   for_each_own_block<Whole>(of.blocks, of.halo, [&](Index b) {
@@ -75,8 +74,8 @@ void scatter(Model<D>& m, KernelRows<D, K>& of)
     typename KernelRows<D, K>::Through through(of.kernel);
     bool occupied = false;
     const auto ask = [&](std::size_t p) {
-      Prefetch<S>::row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields(), m.state.particles.stress,
-                       m.state.particles.mass, m.state.particles.volume);
+      prefetch_row(p, m.state.particles.x, m.state.particles.v, m.state.particles.affine_fields(), m.state.particles.stress,
+                   m.state.particles.mass, m.state.particles.volume);
     };
     for (Index body = 0; body < m.n_bodies(); ++body)
       for_each_run(
@@ -86,11 +85,11 @@ void scatter(Model<D>& m, KernelRows<D, K>& of)
               std::fill(row.begin(), row.end(), typename KernelRows<D, K>::Sum{});
             through.enter(m.problem.mesh, c);
             through.clear();
-            for_each_placed_pack<S, D>(run, m.state.particles.x, [&](const ParticlePackOf<S>& pack, const Pack(&x)[D]) {
+            for_each_placed_pack<D>(run, m.state.particles.x, [&](const ParticlePack& pack, const Pack(&x)[D]) {
               through.place(pack, x);
               through.template deposit<affine, loaded, true>(m.state.particles, pack, x, m.state.particles.affine_fields());
             });
-            through.template add_to<affine, loaded, true>(row, of.blocks.slots(c), lightest_of<S>(m.state.particles, run));
+            through.template add_to<affine, loaded, true>(row, of.blocks.slots(c), lightest_of(m.state.particles, run));
           },
           ask);
     if (std::exchange(of.blocks.occupied[static_cast<std::size_t>(b)], occupied ? 1 : 0) && !occupied)
@@ -105,12 +104,10 @@ template <int D, Kernel<D> K>
 void scatter(Model<D>& m, KernelRows<D, K>& of)
 {
   const bool loaded = !m.state.particles.applied.empty();
-  in_numbers_of(m.state.particles, [&]<class S>(S) {
-    if (m.problem.transfer.affine())
-      loaded ? detail::scatter<S, true, true>(m, of) : detail::scatter<S, true, false>(m, of);
-    else
-      loaded ? detail::scatter<S, false, true>(m, of) : detail::scatter<S, false, false>(m, of);
-  });
+  if (m.problem.transfer.affine())
+    loaded ? detail::scatter<true, true>(m, of) : detail::scatter<true, false>(m, of);
+  else
+    loaded ? detail::scatter<false, true>(m, of) : detail::scatter<false, false>(m, of);
 }
 
 }  // namespace talus

@@ -92,6 +92,7 @@ class TransferOf final : public Transfer<D> {
   void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const typename Transfer<D>::StressUpdate& update) override
   {
     project_to_particles(m, kick);
+    m.work.order.begin_test();
     if (m.problem.transfer.uses_musl()) {
       gather_and_return_momentum(m, rows_, dt);
       gather_from_remapped(m, kick.to, dt, update);

@@ -23,20 +23,19 @@ import talus  # noqa: E402
 
 SCENE = """title: Read back
 dimension: 2
-precision: {precision}
-mesh: {{grid: {{low: [0, 0], high: [2, 2], cells: [6, 6]}}}}
+mesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}}
 materials:
-  - {{name: soil, law: drucker_prager, density: 2000, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 500, match: plane_strain}}
+  - {name: soil, law: drucker_prager, density: 2000, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 500, match: plane_strain}
 bodies:
-  - {{name: low, material: soil, shape: {{type: box, low: [0, 0], high: [1, 0.6]}}, particles_per_cell: 3, velocity: [3, -1]}}
-loads: [{{type: gravity, acceleration: [0, -9.81]}}]
-boundaries: [{{type: fixed, on: y_min}}, {{type: roller, on: x_min}}]
-time: {{end: 0.03, max_step: 1.0e-3}}
+  - {name: low, material: soil, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}
+loads: [{type: gravity, acceleration: [0, -9.81]}]
+boundaries: [{type: fixed, on: y_min}, {type: roller, on: x_min}]
+time: {end: 0.03, max_step: 1.0e-3}
 outputs:
-  checkpoint: {{steps: 10, keep: 9}}
-  particles: {{every: 1.0e-6, fields: [velocity, stress, plastic_strain, mass]}}
-  mesh: {{every: 1.0e-6, fields: [mass, velocity, reaction]}}
-  history: {{every: 1.0e-6}}
+  checkpoint: {steps: 10, keep: 9}
+  particles: {every: 1.0e-6, fields: [velocity, stress, plastic_strain, mass]}
+  mesh: {every: 1.0e-6, fields: [mass, velocity, reaction]}
+  history: {every: 1.0e-6}
 """
 KEPT = ("position", "velocity", "stress", "mass")  # in a checkpoint and in a particle file
 
@@ -52,10 +51,9 @@ def series(path):
 class ReadBack(unittest.TestCase):
     program = ""
 
-    def run_in(self, precision):
-        folder = Path(self.scratch.name) / precision
-        folder.mkdir()
-        (folder / "scene.yaml").write_text(SCENE.format(precision=precision), encoding="utf-8")
+    def finished_run(self):
+        folder = Path(self.scratch.name)
+        (folder / "scene.yaml").write_text(SCENE, encoding="utf-8")
         subprocess.run([self.program, "run", "scene.yaml", "--out", "out", "--quiet", "--threads", "1"], cwd=folder, check=True)
         return folder / "out"
 
@@ -68,7 +66,7 @@ class ReadBack(unittest.TestCase):
             return [{name.split(" [")[0]: float(value) for name, value in row.items()} for row in csv.DictReader(text)]
 
     def test_series_and_their_files_show_what_the_history_says(self):
-        out = self.run_in("double")
+        out = self.finished_run()
         rows = self.history_of(out)
         times, files = series(out / "particles.pvd")
         self.assertEqual(times, [row["time"] for row in rows])
@@ -95,7 +93,7 @@ class ReadBack(unittest.TestCase):
                 self.assertAlmostEqual(borne * kick, told * row["dt"], delta=SINGLE * scale)
 
     def test_the_mesh_is_the_grid_of_the_scene(self):
-        out = self.run_in("double")
+        out = self.finished_run()
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         for name in ("mesh.vtu", "mesh_0000.vtu"):
             shown = talus.Mesh(out / name)
@@ -112,7 +110,7 @@ class ReadBack(unittest.TestCase):
             self.assertAlmostEqual(area.sum(), 4, places=12)
 
     def test_the_summary_says_what_the_history_ends_with(self):
-        out = self.run_in("double")
+        out = self.finished_run()
         rows = self.history_of(out)
         summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
         self.assertEqual(summary["status"], "done")
@@ -145,31 +143,29 @@ class ReadBack(unittest.TestCase):
             self.assertTrue((out / name).is_file(), name)
 
     def test_a_checkpoint_holds_what_the_other_files_show(self):
-        for precision, number in (("double", np.float64), ("single", np.float32)):
-            out = self.run_in(precision)
-            with (out / "history.csv").open(encoding="utf-8") as text:
-                rows = list(csv.DictReader(text))
-            with h5py.File(sorted((out / "checkpoints").glob("step_*.h5"))[1]) as kept:
-                step = int(kept["clock/step"][0])
-                self.assertEqual(step, 20)
-                self.assertEqual(kept["particles/velocity"].dtype, number)
-                self.assertEqual(kept["particles/position"].dtype, np.float64)
-                self.assertEqual(kept["particles/position"].attrs["unit"], b"m")
-                shown = talus.Particles(out / f"particles_{step:04}.vtp")  # one a step, the first before any
-                by_id = np.argsort(kept["particles/id"][()])
-                for name in KEPT:
-                    values = kept[f"particles/{name}"][()][by_id]
-                    wanted = shown[name][:, :values.shape[1]] if values.ndim > 1 else shown[name]
-                    np.testing.assert_array_equal(values.astype(wanted.dtype), wanted, err_msg=name)
-                hardened = kept["laws/history/0/plastic_strain"][()][by_id].astype(np.float32)
-                np.testing.assert_array_equal(hardened, shown["plastic_strain"])
-                self.assertGreater(hardened.max(), 0)
-                row = rows[step]
-                self.assertEqual(float(row["time [s]"]), kept["clock/time"][0])
-                self.assertAlmostEqual(float(row["gravity_work [J]"]), kept["energy/gravity"][0], delta=1e-9 * abs(kept["energy/gravity"][0]))
-            summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
-            self.assertEqual(summary["steps"], len(rows) - 1)
-            self.assertEqual(summary["precision"], precision)
+        out = self.finished_run()
+        with (out / "history.csv").open(encoding="utf-8") as text:
+            rows = list(csv.DictReader(text))
+        with h5py.File(sorted((out / "checkpoints").glob("step_*.h5"))[1]) as kept:
+            step = int(kept["clock/step"][0])
+            self.assertEqual(step, 20)
+            self.assertEqual(kept["particles/velocity"].dtype, np.float64)
+            self.assertEqual(kept["particles/position"].dtype, np.float64)
+            self.assertEqual(kept["particles/position"].attrs["unit"], b"m")
+            shown = talus.Particles(out / f"particles_{step:04}.vtp")  # one a step, the first before any
+            by_id = np.argsort(kept["particles/id"][()])
+            for name in KEPT:
+                values = kept[f"particles/{name}"][()][by_id]
+                wanted = shown[name][:, :values.shape[1]] if values.ndim > 1 else shown[name]
+                np.testing.assert_array_equal(values.astype(wanted.dtype), wanted, err_msg=name)
+            hardened = kept["laws/history/0/plastic_strain"][()][by_id].astype(np.float32)
+            np.testing.assert_array_equal(hardened, shown["plastic_strain"])
+            self.assertGreater(hardened.max(), 0)
+            row = rows[step]
+            self.assertEqual(float(row["time [s]"]), kept["clock/time"][0])
+            self.assertAlmostEqual(float(row["gravity_work [J]"]), kept["energy/gravity"][0], delta=1e-9 * abs(kept["energy/gravity"][0]))
+        summary = json.loads((out / "summary.json").read_text(encoding="utf-8"))
+        self.assertEqual(summary["steps"], len(rows) - 1)
 
 
 if __name__ == "__main__":

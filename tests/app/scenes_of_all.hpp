@@ -15,7 +15,7 @@ namespace talus {
 /// Two bodies that fall, bounce and slide; every line may be replaced.
 struct SceneParts {
   std::string dimension = "dimension: 2\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [6, 6]}}\n";
-  std::string more = "";  ///< kernel, transfer, precision
+  std::string more = "";  ///< kernel, transfer
   std::string law = "law: neo_hookean, youngs_modulus: 1.0e6, poisson_ratio: 0.3";
   std::string bodies = "";  ///< replaces both
   std::string boundaries =
@@ -103,8 +103,6 @@ inline std::vector<SceneCase> scenes_of_all()
   for (const std::string scheme : {"flip", "tpic"})
     all.push_back({"projected_" + scheme, {.more = "transfer: {scheme: " + scheme + "}\n"}});
   all.push_back({"flip_without_musl", {.more = "transfer: {scheme: flip, musl: false}\n"}});
-  all.push_back({"single", {.more = "precision: single\n"}});
-  all.push_back({"single_soil", {.more = "precision: single\n", .law = soil_law}});
   all.push_back(
       {"averaged_volume",
        {.bodies =

@@ -17,7 +17,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SEEN = """accuracy_misspelt bulk_viscosity_as_number cells_half cells_negative cfl_too_large checkpoint_unknown_key damping_one
 dimension_four duration_zero empty_list f_bar_no_switch friction_angle_outside friction_missing friction_negative jitter_too_large
 key_of_damage_missing list_for_mapping list_for_number mapping_for_list missing_block missing_key missing_title missing_type negative_density
-number_for_list number_in_quotes on_exit_misspelt poisson_ratio_outside precision_half radius_negative scheme_misspelt stage_without_duration
+number_for_list number_in_quotes on_exit_misspelt poisson_ratio_outside precision_taken_away radius_negative scheme_misspelt stage_without_duration
 unknown_field unknown_kernel unknown_key unknown_key_in_shape unknown_key_of_law unknown_law unknown_load unknown_shape unknown_word
 watch_policy_misspelt word_for_number yes_for_true zero_end""".split()
 

@@ -1,60 +1,136 @@
-// Columns of particles: rows are what was set, in double exactly, in single to its rounding.
+// Columns of particles: rows are what was set, bit by bit, and lie in groups of 16, component by component.
 #include "core/particle_column.hpp"
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace talus::column_test {
 namespace {
 
-const Mat3 strained = Mat3::Identity() + 1e-6 * Mat3{{1, 2, 3}, {0, -1, 4}, {0.5, 0, 0.1}};
+constexpr std::size_t n_rows = 3 * rows_in_group + 5;
 
-TEST(ParticleColumn, KeepsRowsExactlyInDouble)
+/// Nine numbers that no other row has.
+Mat3 some(std::size_t row) { return 0.1 * Mat3{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}} + static_cast<Real>(row) * Mat3::Ones(); }
+
+/// The column whose rows are some(row).
+ParticleColumn<Mat3> filled()
 {
-  ParticleColumn<Mat3, Rest::identity> F;
-  F.assign(3, Mat3::Identity());
-  F.set(1, strained);
-  F.push_back(2 * strained);
-  ASSERT_EQ(F.size(), 4u);
-  EXPECT_EQ(F[0], Mat3::Identity());
-  EXPECT_EQ(F[1], strained);
-  EXPECT_EQ(F[3], 2 * strained);
-  EXPECT_EQ(F.precision(), Precision::full);
+  ParticleColumn<Mat3> F;
+  F.resize(n_rows);
+  for (std::size_t row = 0; row < n_rows; ++row)
+    F.set(row, some(row));
+  return F;
 }
 
-TEST(ParticleColumn, RoundsRowsInSingleAndTakesHalfTheRoom)
+TEST(ParticleColumn, KeepsWhatIsSetInEveryGroup)
+{
+  const ParticleColumn<Mat3> F = filled();
+  ASSERT_EQ(F.size(), n_rows);
+  const std::vector<Mat3> all = F.values();
+  ASSERT_EQ(all.size(), n_rows);
+  for (std::size_t row = 0; row < n_rows; ++row) {
+    EXPECT_EQ(F[row], some(row)) << row;
+    EXPECT_EQ(all[row], some(row)) << row;
+  }
+}
+
+TEST(ParticleColumn, HoldsNumbersAsItHoldsTensors)
 {
   ParticleColumn<Real> mass;
-  mass.assign(2, 0.1);
-  const auto bytes = [](const auto& rows) { return rows.size() * sizeof(rows[0]); };
-  EXPECT_EQ(mass.visit(bytes), 16u);
-  mass.keep_in(Precision::single);
-  EXPECT_EQ(mass.visit(bytes), 8u);
-  EXPECT_EQ(mass[1], static_cast<double>(0.1F));
+  EXPECT_TRUE(mass.empty());
+  mass.assign(rows_in_group, 0.1);
   mass.push_back(1e10);
-  EXPECT_EQ(mass[2], 1e10);
-  mass.keep_in(Precision::full);
-  EXPECT_EQ(mass.visit(bytes), 24u);
-  EXPECT_EQ(mass[0], static_cast<double>(0.1F));
+  EXPECT_FALSE(mass.empty());
+  ASSERT_EQ(mass.size(), rows_in_group + 1);
+  EXPECT_EQ(mass[rows_in_group - 1], 0.1);
+  EXPECT_EQ(mass[rows_in_group], 1e10);
+  mass.set(3, -2);
+  EXPECT_EQ(mass[2], 0.1);
+  EXPECT_EQ(mass[3], -2);
 }
 
-TEST(ParticleColumn, KeepsSmallStrainsInSingle)
+TEST(ParticleColumn, AssignReplacesAllRows)
 {
-  ParticleColumn<Mat3, Rest::identity> F;
-  F.assign(1, strained);
-  F.keep_in(Precision::single);
-  const Mat3 strain = strained - Mat3::Identity();
-  EXPECT_LT((F[0] - strained).norm(), 1e-7 * strain.norm()) << "F itself in single would lose a tenth of the strain";
-  F.set(0, Mat3(strained * strained));
-  EXPECT_LT((F[0] - strained * strained).norm(), 1e-7 * strain.norm());
+  ParticleColumn<Mat3> F = filled();
+  F.assign(2 * n_rows, some(7));
+  ASSERT_EQ(F.size(), 2 * n_rows);
+  for (std::size_t row = 0; row < F.size(); ++row)
+    EXPECT_EQ(F[row], some(7)) << row;
 }
 
-TEST(ParticleColumn, StaysInItsPrecisionWhenItIsEmpty)
+TEST(ParticleColumn, RowsThatComeBackAreZero)
 {
-  ParticleColumn<Vec<2>> applied;
-  applied.keep_in(Precision::single);
-  applied.assign(5, {1, 2});
-  EXPECT_EQ(applied.precision(), Precision::single);
-  EXPECT_EQ(applied[4], Vec<2>(1, 2));
+  for (const std::size_t left : {std::size_t{0}, std::size_t{3}, rows_in_group, 2 * rows_in_group + 1, n_rows - 1}) {
+    ParticleColumn<Mat3> F = filled();
+    F.resize(left);
+    EXPECT_EQ(F.size(), left);
+    F.resize(2 * n_rows);
+    ASSERT_EQ(F.size(), 2 * n_rows);
+    for (std::size_t row = 0; row < F.size(); ++row)
+      EXPECT_EQ(F[row], row < left ? some(row) : Mat3(Mat3::Zero())) << row << " of " << left << " left";
+  }
+}
+
+TEST(ParticleColumn, NeighboursOfAGroupAreAdjacentInEachComponent)
+{
+  ParticleColumn<Vec<2>> v;
+  v.resize(n_rows);
+  for (std::size_t row = 0; row < n_rows; ++row)
+    v.set(row, {static_cast<Real>(row), -static_cast<Real>(row)});
+  for (std::size_t row = 0; row < n_rows; ++row)
+    for (int c = 0; c < 2; ++c) {
+      EXPECT_EQ(*v.lane(row, c), v[row][c]);
+      EXPECT_EQ(v.lane(row, c) - v.lane(row / rows_in_group * rows_in_group, c), static_cast<std::ptrdiff_t>(row % rows_in_group));
+    }
+  constexpr auto group = static_cast<std::ptrdiff_t>(rows_in_group);
+  EXPECT_EQ(v.lane(0, 1) - v.lane(0, 0), group);
+  EXPECT_EQ(v.lane(rows_in_group, 0) - v.lane(0, 0), 2 * group) << "after both components of the group before";
+}
+
+/// A row of the column `from` saved and loaded, or copied, into another row of `to`; no other row of `to` changes.
+template <class Column>
+void expect_moved(const Column& from, Column to)
+{
+  const Column before = to;
+  std::array<std::byte, row_bytes<Column>> bytes{};
+  save_row(from, rows_in_group - 1, bytes.data());
+  load_row(bytes.data(), to, 2 * rows_in_group);
+  copy_row(from, 2, to, 1);
+  for (std::size_t row = 0; row < to.size(); ++row)
+    EXPECT_EQ(to[row], row == 2 * rows_in_group ? from[rows_in_group - 1] : row == 1 ? from[2] : before[row]) << row;
+}
+
+TEST(ParticleColumn, RowsAreCopiedSavedAndLoadedAsThoseOfAnArray)
+{
+  ParticleColumn<Mat3> other;
+  other.assign(n_rows, some(1000));
+  expect_moved(filled(), other);
+  ParticleColumn<Real> mass, other_mass;
+  other_mass.assign(n_rows, -1);
+  std::vector<std::int64_t> id;
+  for (std::size_t row = 0; row < n_rows; ++row) {
+    mass.push_back(static_cast<Real>(row));
+    id.push_back(static_cast<std::int64_t>(row));
+  }
+  expect_moved(mass, other_mass);
+  expect_moved(id, std::vector<std::int64_t>(n_rows, -1));
+}
+
+TEST(ParticleColumn, SavesTheNumbersOfARowOneAfterTheOther)
+{
+  std::array<Real, 9> numbers{};
+  save_row(filled(), rows_in_group + 1, reinterpret_cast<std::byte*>(numbers.data()));
+  const Mat3 row = some(rows_in_group + 1);
+  for (int c = 0; c < 9; ++c)
+    EXPECT_EQ(numbers[static_cast<std::size_t>(c)], row(c));
+}
+
+TEST(ParticleColumn, BytesAreThoseOfItsRows)
+{
+  EXPECT_EQ(bytes_of(filled()), n_rows * 9 * 8);
+  EXPECT_EQ(bytes_of(ParticleColumn<Real>()), 0u);
+  EXPECT_EQ(bytes_of(std::vector<std::int32_t>(n_rows)), n_rows * 4);
 }
 
 TEST(Rows, LieInWholeLargePagesWhereTheyFillSome)

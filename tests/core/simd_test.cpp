@@ -130,31 +130,12 @@ TEST(SimdReal, AreNumbersOfTensors)
   EXPECT_EQ(lane_of(unpack(pack(Mat3Of<SimdReal>(product + product.transpose()))), 0), Mat3(a * b + (a * b).transpose()));
 }
 
-template <int n>
-void rows_there_and_back()
+TEST(Lanes, RepeatTheLastOfTheFirst)
 {
-  Real from[pack_size][n], to[pack_size][n]{};
-  std::iota(&from[0][0], &from[0][0] + pack_size * n, 1.0);
-  Pack columns[n];
-  load_rows<n>({from[0], from[1], from[2], from[3]}, columns);
-  for (int k = 0; k < n; ++k)
+  const Pack four{1, 2, 3, 4};
+  for (int n = 1; n <= pack_size; ++n)
     for (int lane = 0; lane < pack_size; ++lane)
-      ASSERT_EQ(columns[k][lane], from[lane][k]);
-  store_rows<n>(columns, {to[0], to[1], to[2], to[3]}, 3);
-  for (int k = 0; k < n; ++k) {
-    for (int lane = 0; lane < 3; ++lane)
-      ASSERT_EQ(to[lane][k], from[lane][k]);
-    ASSERT_EQ(to[3][k], 0) << "a row beyond the count was written";
-  }
-}
-
-TEST(SimdReal, RowsBecomeLanesAndLanesRows)
-{
-  rows_there_and_back<2>();
-  rows_there_and_back<3>();
-  rows_there_and_back<4>();
-  rows_there_and_back<6>();
-  rows_there_and_back<9>();
+      EXPECT_EQ(first_lanes(four, n)[lane], std::min(lane + 1, n));
 }
 
 }  // namespace

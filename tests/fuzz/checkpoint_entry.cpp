@@ -91,7 +91,8 @@ struct SmallRun {
     for (std::size_t row = 0; row < n_particles; ++row) {
       p.id[row] = static_cast<std::int64_t>(row);
       p.cell[row] = static_cast<Index>(row);
-      p.x[row] = p.x0[row] = centroid<2>(problem.mesh.corners(p.cell[row]));
+      p.x.set(row, centroid<2>(problem.mesh.corners(p.cell[row])));
+      p.x0.set(row, p.x[row]);
       p.v.set(row, Vec<2>::Zero());
       p.L.set(row, Mat<2>::Zero());
       p.F.set(row, Mat3::Identity());

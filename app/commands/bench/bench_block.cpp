@@ -142,7 +142,6 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   cells.fill(cells_a_side(D, particles, simplices * setting.per_cell));
   BenchBlock<D> block{.scene = {}, .mesh = Mesh<D>(jittered(box<D>(Vec<D>::Zero(), Vec<D>::Ones(), cells), bench_jitter, 1)), .setup = {}};
   block.scene.kernel = setting.kernel;
-  block.scene.precision = setting.precision == "single" ? Precision::single : Precision::full;
   Setup<D>& setup = block.setup;
   const Index n = setting.per_cell * block.mesh.n_cells();
   setup.state.bodies.push_back({"block", 0, n, {}});
@@ -150,7 +149,6 @@ BenchBlock<D> bench_block(const BenchSetting& setting, Index particles, int step
   Material& material = setup.state.materials.front();
   const Real density = material.law().density();
   setup.state.particles = bench_particles<D>(block.mesh, setting.per_cell, density);
-  setup.state.particles.keep_in(block.scene.precision);
   material.averages_volume = material.law().description().is_isochoric || setting.option == bench_options::f_bar;
   if (setting.option == bench_options::bulk_viscosity)
     material.viscosity = BulkViscosity{};

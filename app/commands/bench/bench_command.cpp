@@ -93,7 +93,7 @@ std::vector<std::string> chosen(const std::string& option, const std::vector<std
 
 /// The words on the command line as values of each axis.
 struct Axes {
-  std::vector<std::string> kernels, transfers, laws, precisions;
+  std::vector<std::string> kernels, transfers, laws;
   std::vector<int> dimensions, threads, per_cell;  ///< per_cell empty: the usual ones of each dimension
 };
 
@@ -104,10 +104,9 @@ Axes axes_of(const BenchOptions& o, int all_threads)
   Axes axes;
   axes.kernels = chosen("--kernel", o.kernels, all ? kernel_names() : std::vector<std::string>{"projected", "umls", "linear"},
                         kernel_names(), problems);
-  const auto transfers = names_of(Scheme{}), precisions = names_of(Precision{});
+  const auto transfers = names_of(Scheme{});
   axes.transfers = chosen("--transfer", o.transfers, all ? transfers : std::vector<std::string>{"tpic", "aflip"}, transfers, problems);
   axes.laws = chosen("--law", o.laws, all ? law_names() : std::vector<std::string>{"neo_hookean"}, law_names(), problems);
-  axes.precisions = chosen("--precision", o.precisions, all ? precisions : std::vector<std::string>{"double"}, precisions, problems);
   axes.dimensions = !o.dimensions.empty() ? o.dimensions : all ? std::vector{3, 2} : std::vector{3};
   axes.threads = !o.threads.empty() ? o.threads : all && all_threads > 1 ? std::vector{1, all_threads} : std::vector{1};
   axes.per_cell = o.per_cell;
@@ -135,9 +134,8 @@ std::vector<BenchSetting> product(const Axes& axes, bool all)
       for (const std::string& law : axes.laws)
         for (const std::string& kernel : axes.kernels)
           for (const std::string& transfer : axes.transfers)
-            for (const std::string& precision : axes.precisions)
-              for (const int n : axes.threads)
-                list.push_back({kernel, transfer, law, dimension, per_cell, n, precision});
+            for (const int n : axes.threads)
+              list.push_back({kernel, transfer, law, dimension, per_cell, n});
   return list;
 }
 
@@ -146,8 +144,8 @@ std::vector<BenchSetting> product(const Axes& axes, bool all)
 std::vector<BenchSetting> bench_settings(const BenchOptions& o, int all_threads)
 {
   const Axes axes = axes_of(o, all_threads);
-  const bool any_word = !o.kernels.empty() || !o.transfers.empty() || !o.laws.empty() || !o.precisions.empty() || !o.dimensions.empty() ||
-                        !o.threads.empty() || !o.per_cell.empty();
+  const bool any_word =
+      !o.kernels.empty() || !o.transfers.empty() || !o.laws.empty() || !o.dimensions.empty() || !o.threads.empty() || !o.per_cell.empty();
   auto list = product(axes, o.all);
   if (any_word || o.all)
     return list;
@@ -159,9 +157,6 @@ std::vector<BenchSetting> bench_settings(const BenchOptions& o, int all_threads)
     list.push_back({"projected", "aflip", law, 3, 8, 1});
   for (const char* transfer : {"tpic", "aflip"})
     list.push_back({"projected", transfer, "neo_hookean", 3, 2, 1});
-  for (const int dimension : {3, 2})
-    list.push_back({"projected", "tpic", "neo_hookean", dimension, dimension == 3 ? 8 : 4, 1, "single"});
-  list.push_back({"umls", "tpic", "neo_hookean", 3, 8, 1, "single"});
   if (all_threads > 1)
     list.push_back({"projected", "aflip", "neo_hookean", 3, 8, all_threads});
   return list;
@@ -186,9 +181,8 @@ std::vector<BenchSetting> option_settings(const BenchOptions& o)
 
 std::string describe(const BenchSetting& s)
 {
-  return fmt::format("{} {} {} {}-D {} a cell {}{} thread{}{}{}", s.kernel, s.transfer, s.law, s.dimension, s.per_cell,
-                     s.precision == "double" ? "" : s.precision + " ", s.threads, s.threads == 1 ? "" : "s", s.option.empty() ? "" : " + ",
-                     s.option);
+  return fmt::format("{} {} {} {}-D {} a cell {} thread{}{}{}", s.kernel, s.transfer, s.law, s.dimension, s.per_cell, s.threads,
+                     s.threads == 1 ? "" : "s", s.option.empty() ? "" : " + ", s.option);
 }
 
 }  // namespace talus

@@ -11,7 +11,7 @@
 namespace talus {
 
 struct BenchOptions {
-  std::vector<std::string> kernels, transfers, laws, precisions;
+  std::vector<std::string> kernels, transfers, laws;
   std::vector<int> dimensions, threads, per_cell;
   bool all = false;      ///< the whole product
   bool options = false;  ///< what one case costs with each option of a scene

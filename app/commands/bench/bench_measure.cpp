@@ -119,7 +119,7 @@ Real bytes_moved(const RunView<D>& view)
   Real total = 0;
   view.state.particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
     const bool changes = std::find(constants.begin(), constants.end(), name) == constants.end();
-    total += (changes ? 2 : 1) * bytes(column);
+    total += (changes ? 2 : 1) * static_cast<Real>(bytes_of(column));
   });
   for (const Material& material : view.state.materials)
     total += 2 * static_cast<Real>(material.history.bytes());

@@ -34,17 +34,13 @@ std::string phase_entry(const BenchResult& result, const std::string& name)
 
 std::string spread_entry(const Measured& m) { return fmt::format("{:.0f}-{:.0f}", m.least, m.most); }
 
-/// Kernel to precision, as they stand at the beginning of each line.
+/// Kernel to threads, as they stand at the beginning of each line.
 std::string setting_entry(const BenchSetting& s)
 {
-  return fmt::format("{:<15}{:<9}{:<16}{:>3}{:>5}{:>4}  {:<9}", s.kernel, s.transfer, s.law, s.dimension, s.per_cell, s.threads,
-                     s.precision);
+  return fmt::format("{:<15}{:<9}{:<16}{:>3}{:>5}{:>4}  ", s.kernel, s.transfer, s.law, s.dimension, s.per_cell, s.threads);
 }
 
-std::string setting_names()
-{
-  return fmt::format("{:<15}{:<9}{:<16}{:>3}{:>5}{:>4}  {:<9}", "kernel", "transfer", "law", "D", "cell", "thr", "precision");
-}
+std::string setting_names() { return fmt::format("{:<15}{:<9}{:<16}{:>3}{:>5}{:>4}  ", "kernel", "transfer", "law", "D", "cell", "thr"); }
 
 const BenchResult* find(const BenchReport& report, const BenchSetting& setting)
 {

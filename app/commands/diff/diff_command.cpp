@@ -75,7 +75,6 @@ void print_origins(const RunFolders& folders)
                                      {"flags", &RunOrigin::build},
                                      {"kernel", &RunOrigin::kernel},
                                      {"transfer", &RunOrigin::transfer},
-                                     {"precision", &RunOrigin::precision},
                                      {"threads", &RunOrigin::threads}}) {
     if (a.*member == b.*member)
       same.emplace_back(name);

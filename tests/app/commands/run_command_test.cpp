@@ -47,20 +47,6 @@ TEST_F(Run, BarSwingsAsTheWaveEquationSays)
   EXPECT_GT(last(table, "reach"), first(table, "reach"));
 }
 
-TEST_F(Run, InSinglePrecisionSwingsAsInDoubleToItsRounding)
-{
-  write("bar.yaml", bar_scene);
-  ASSERT_EQ(talus("run bar.yaml --quiet --out full").code, 0);
-  ASSERT_EQ(talus("run bar.yaml --quiet --out single --set precision=single").code, 0);
-  const Real full = last(history("full"), "tip_ux"), single = last(history("single"), "tip_ux");
-  EXPECT_NE(full, single);
-  EXPECT_NEAR(full, single, 1e-4 * std::abs(full));
-  EXPECT_THAT(read("full/summary.json"), HasSubstr("\"precision\": \"double\""));
-  EXPECT_EQ(read("single/scene.yaml"), bar_scene + "\n# Run with changes:\n#   --set 'precision=single'\n");
-  EXPECT_EQ(talus("check single/scene.yaml").code, 0);
-  EXPECT_THAT(read("single/summary.json"), HasSubstr("\"precision\": \"single\""));
-}
-
 /// What the line of the audit says of the energy.
 Real closure_told(const std::string& out)
 {

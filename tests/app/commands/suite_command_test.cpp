@@ -28,11 +28,9 @@ class Suite : public Program {
 
 TEST_F(Suite, IsGivenTheProgramAndTheOptionsAndItsStatusIsThatOfTheProgram)
 {
-  const Outcome outcome =
-      suite("verify shock --level full --kernel linear --transfer apic --precision single --out 'a b' --jobs 2 --reuse");
+  const Outcome outcome = suite("verify shock --level full --kernel linear --transfer apic --out 'a b' --jobs 2 --reuse");
   EXPECT_EQ(outcome.code, 7) << outcome.err;
-  EXPECT_THAT(outcome.out, testing::EndsWith(
-                               "talus --level full --kernel linear --transfer apic --precision single --out a b --jobs 2 --reuse shock\n"));
+  EXPECT_THAT(outcome.out, testing::EndsWith("talus --level full --kernel linear --transfer apic --out a b --jobs 2 --reuse shock\n"));
   EXPECT_THAT(outcome.out, testing::StartsWith("--program /"));
 }
 

@@ -169,7 +169,7 @@ TEST(Moved, IsTheDisplacementThatAShareOfTheMassDoesNotExceed)
   auto particles = row_of_four();
   particles.x0 = particles.x;
   for (std::size_t p = 0; p < 4; ++p)
-    particles.x0[p] -= Vec<2>(3, 4) * std::vector<Real>{0.2, 0, 0.6, 0.4}[p];
+    particles.x0.set(p, particles.x0[p] - Vec<2>(3, 4) * std::vector<Real>{0.2, 0, 0.6, 0.4}[p]);
   MovedSpec spec;
   spec.mass_share = 1;
   EXPECT_NEAR(moved(spec, bodies, particles), 3, 1e-14);

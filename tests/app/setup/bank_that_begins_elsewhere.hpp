@@ -28,7 +28,7 @@ inline const std::string filled = "shape: {type: box, low: [0, 0], high: [1, 1]}
 /// A bank of soil 1 m high, and the room that it fails into.  Every part may be replaced.
 struct Bank {
   std::string mesh = "{grid: {low: [0, 0], high: [3, 1.5], cells: [12, 6]}}";
-  std::string more = "";  ///< precision, transfer, accuracy
+  std::string more = "";  ///< transfer, accuracy
   std::string material = soil;
   std::string bodies = "{name: bank, material: soil, " + filled + "}";
   std::string initial = "";

@@ -221,20 +221,6 @@ TEST_F(Initial, MassFollowsTheDensityOfTheMaterial)
   EXPECT_NEAR(first_row("second").mass, 1.05 * last_row("first").mass, 1e-12 * last_row("first").mass);
 }
 
-TEST_F(Initial, PrecisionIsThatOfTheScene)
-{
-  const std::string single = "precision: single\n";
-  for (const bool from_single : {false, true}) {
-    run_well("first", {.more = from_single ? single : ""});
-    Bank bank = second();
-    bank.more = from_single ? "" : single;
-    run_well("second", bank);
-    const Row end = last_row("first"), start = first_row("second");
-    EXPECT_NEAR(start.deep_syy, end.deep_syy, 1e-6 * std::abs(end.deep_syy));
-    EXPECT_NEAR(start.centre_y, end.centre_y, 1e-7 * end.centre_y);
-  }
-}
-
 /// A column of its own for affine fields, averaged volumes or viscous pressure may be on one side only.
 TEST_F(Initial, OtherTransfersAveragesAndViscosityAreNoHindrance)
 {

@@ -26,7 +26,6 @@ TEST(Scene, ReadsTheHead)
   EXPECT_EQ(s.title, "Slope — \"über\" all");
   EXPECT_EQ(s.dimension, 2);
   EXPECT_EQ(s.kernel, "umls");
-  EXPECT_EQ(s.precision, Precision::single);
   EXPECT_EQ(s.time.cfl, 0.3);
   EXPECT_EQ(s.time.max_step, 1e-3);
   EXPECT_EQ(s.time.min_step, 1e-9);

@@ -84,8 +84,8 @@ TEST(Loads, CarriedTractionsFollowTheDeformationOfTheirParticles)
 
   // what is moved works, against where it was
   const Vec<2> way(0.01, -0.03);
-  for (Vec<2>& x : m.state.particles.x)
-    x += way;
+  for (std::size_t p = 0; p < m.state.particles.x.size(); ++p)
+    m.state.particles.x.set(p, m.state.particles.x[p] + way);
   ExactSums<Real> work;
   add_work(m.work.order, m.state.particles, work);
   EXPECT_NEAR(work.value(), 6 * force.dot(way), rounding);
@@ -122,10 +122,10 @@ TEST(Loads, ForcesOfPlaceAreTheMassTimesTheAccelerationThere)
     if (at_start)
       m.state.particles.x0 = m.state.particles.x;
     make_ready(m);
-    const std::vector<Vec<2>> start(m.state.particles.x.begin(), m.state.particles.x.end());
+    const std::vector<Vec<2>> start = m.state.particles.x.values();
     ASSERT_EQ(start.size(), 600u);
-    for (Vec<2>& x : m.state.particles.x)
-      x += Vec<2>(0.01, 0.02);
+    for (std::size_t p = 0; p < m.state.particles.x.size(); ++p)
+      m.state.particles.x.set(p, m.state.particles.x[p] + Vec<2>(0.01, 0.02));
     ExactSums<ForceAndMoment<2>> total;
     apply(m.problem.loads, 3.0, 0.5, m.work.followed, m.work.order, m.state.particles, total);
     Vec<2> sum = Vec<2>::Zero();

@@ -204,8 +204,9 @@ TEST(SumsByHand, PlasticWorkIsThatOfTheBodyAlone)
   law.density = 1000, law.youngs_modulus = 1e6, law.poisson_ratio = 0.3, law.yield_stress = 1e4;
   Material second = make_material(law, 200, 202, "second");
   state_of<VonMises>(second, 0).plastic_work = 10, state_of<VonMises>(second, 1).plastic_work = 1000;
-  Rows<Real> volume0(202, 7);
-  volume0[200] = 2, volume0[201] = 3;
+  ParticleColumn<Real> volume0;
+  volume0.assign(202, 7);
+  volume0.set(200, 2), volume0.set(201, 3);
   CellOrder order;
   order.row = {0, 200, 201}, order.first = {0, 1, 3}, order.blocks = 1;
   ExactSums<Real> sum;

@@ -28,9 +28,10 @@ Model<S::D> ball()
   std::mt19937 random(1);
   std::uniform_real_distribution<Real> number(-1, 1);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
-    Vec<D> v;
+    Vec<D> x = m.state.particles.x[p], v;
     for (int d = 0; d < D; ++d)
-      m.state.particles.x[p][d] += 1e-3 * number(random), v[d] = number(random);
+      x[d] += 1e-3 * number(random), v[d] = number(random);
+    m.state.particles.x.set(p, x);
     m.state.particles.v.set(p, v);
   }
   make_ready(m);
@@ -113,8 +114,8 @@ TEST(Projected, HoldsAFilmOnAWall)
   const Real share = 0.02;
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     m.state.particles.v.set(p, {0.1 * std::sin(12 * m.state.particles.x[p][0]), 0});
-    m.state.particles.x[p][1] *= share;
-    m.state.particles.volume0[p] *= share;
+    m.state.particles.x.set(p, m.state.particles.x[p].cwiseProduct(Vec<2>(1, share)));
+    m.state.particles.volume0.set(p, share * m.state.particles.volume0[p]);
     m.state.particles.mass.set(p, share * m.state.particles.mass[p]);
   }
   close_off(m, "y_min", Roller<2>{});
@@ -123,7 +124,7 @@ TEST(Projected, HoldsAFilmOnAWall)
   const Real kinetic = totals(m).kinetic;
   ASSERT_NO_THROW(run_until(m, 0.05));
   EXPECT_LT(totals(m).kinetic, kinetic);
-  for (const auto& x : m.state.particles.x) {
+  for (const auto& x : m.state.particles.x.values()) {
     EXPECT_GT(x[1], 0);
     EXPECT_LT(x[1], 1.1 * share / 8) << "the height of the film at the start";
   }

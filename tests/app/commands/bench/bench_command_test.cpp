@@ -67,19 +67,6 @@ TEST_F(Bench, WordsMakeAProduct)
   EXPECT_EQ(read_bench(folder_ / "speed.json").results.size(), 8u);
 }
 
-TEST_F(Bench, SinglePrecisionStandsBesideDoubleAndTakesLessRoom)
-{
-  const Outcome outcome =
-      talus("bench --particles 1000 --repeats 1 --steps 1 --kernel projected --transfer tpic --precision double,single --json speed.json");
-  ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const BenchReport report = read_bench(folder_ / "speed.json");
-  ASSERT_EQ(report.results.size(), 2u);
-  const BenchResult &twofold = report.results[0], &single = report.results[1];
-  EXPECT_EQ(twofold.setting.precision, "double");
-  EXPECT_EQ(single.setting.precision, "single");
-  EXPECT_EQ(twofold.bytes_held - single.bytes_held, 4 * (3 + 9 + 9 + 6 + 1)) << "v, L, F, stress, mass";
-}
-
 TEST_F(Bench, OptionsStandBesideTheSameBlockWithoutAny)
 {
   const Outcome outcome = talus("bench --options --particles 1000 --repeats 1 --steps 1 --json speed.json");
