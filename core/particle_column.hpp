@@ -1,5 +1,5 @@
 #pragma once
-// The columns of the particles: numbers, vectors or tensors, one row per particle, stored so that packs of particles load without transposing.
+// The columns of the particles: numbers, vectors or tensors, one row per particle.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -9,9 +9,6 @@
 #include "core/types.hpp"
 
 namespace talus {
-
-/// The number of rows in a group.
-inline constexpr std::size_t rows_in_group = 16;
 
 namespace detail {
 template <class T, class Value>
@@ -29,9 +26,8 @@ struct With<T, Eigen::Matrix<Real, R, C, Eigen::DontAlign>> {
 template <class T, class Value>
 using With = typename detail::With<T, Value>::type;
 
-/// One row per particle, in groups of 16 rows.  A group holds its rows component by component: 16 first numbers, then 16 second ones and so
-/// on (an array of structs of arrays).  So neighbouring rows of a group lie side by side in each component, and all numbers of a group in
-/// one stretch of memory.  New rows are zero.
+/// One row per particle: the numbers of a row lie side by side, row after row.  New rows are zero.  A whole pack may be read from any number
+/// on: there is room behind the last row.
 template <class Value>
 class ParticleColumn {
  public:
@@ -42,33 +38,26 @@ class ParticleColumn {
   bool empty() const noexcept { return size_ == 0; }
   void resize(std::size_t n)
   {
-    const std::size_t before = size_;
-    numbers_.resize((n + rows_in_group - 1) / rows_in_group * rows_in_group * components);
+    constexpr auto width = static_cast<std::size_t>(components);
+    numbers_.resize(n * width + spare);
+    std::fill_n(numbers_.end() - spare, spare, 0.0);  // rows that come later begin there
     size_ = n;
-    for (std::size_t row = n; row < before && row % rows_in_group != 0; ++row)  // rows that come back later are new ones
-      for (int c = 0; c < components; ++c)
-        *lane(row, c) = 0;
   }
 
   // const, so that writing to a copy does not compile
   const Value operator[](std::size_t row) const noexcept  // NOLINT(readability-const-return-type)
   {
-    if constexpr (components == 1) {
-      return *lane(row, 0);
-    } else {
-      Value value;
-      for (int c = 0; c < components; ++c)
-        value(c) = *lane(row, c);
-      return value;
-    }
+    if constexpr (components == 1)
+      return *row_at(row);
+    else
+      return Eigen::Map<const Value>(row_at(row));
   }
   void set(std::size_t row, const Value& value) noexcept
   {
     if constexpr (components == 1)
-      *lane(row, 0) = value;
+      *row_at(row) = value;
     else
-      for (int c = 0; c < components; ++c)
-        *lane(row, c) = value(c);
+      Eigen::Map<Value>(row_at(row)) = value;
   }
   void assign(std::size_t n, const Value& value)
   {
@@ -90,15 +79,12 @@ class ParticleColumn {
     return all;
   }
 
-  /// The address of a component of a row; those of the following rows of the group follow.
-  Real* lane(std::size_t row, int c) noexcept { return numbers_.data() + place(row, c); }
-  const Real* lane(std::size_t row, int c) const noexcept { return numbers_.data() + place(row, c); }
+  /// The address of the first number of a row.
+  Real* row_at(std::size_t row) noexcept { return numbers_.data() + row * static_cast<std::size_t>(components); }
+  const Real* row_at(std::size_t row) const noexcept { return numbers_.data() + row * static_cast<std::size_t>(components); }
 
  private:
-  static std::size_t place(std::size_t row, int c) noexcept
-  {
-    return (row / rows_in_group * components + static_cast<std::size_t>(c)) * rows_in_group + row % rows_in_group;
-  }
+  static constexpr std::size_t spare = 3;  ///< numbers of a pack beside its first
 
   Rows<Real> numbers_;
   std::size_t size_ = 0;
@@ -126,46 +112,38 @@ std::size_t bytes_of(const Column& column) noexcept
   return column.size() * row_bytes<Column>;
 }
 
-/// The address of the first number of a row; the others follow at a distance of rows_in_group numbers.
 template <class Value>
-const Real* numbers_of(const ParticleColumn<Value>& rows, std::size_t row) noexcept
+const Real* numbers_of(const ParticleColumn<Value>& column, std::size_t row) noexcept
 {
-  return rows.lane(row, 0);
+  return column.row_at(row);
 }
 template <class N, class Allocator>
-const N* numbers_of(const std::vector<N, Allocator>& rows, std::size_t row) noexcept
+const N* numbers_of(const std::vector<N, Allocator>& column, std::size_t row) noexcept
 {
-  return rows.data() + row;
+  return column.data() + row;
 }
 template <class Column>
-auto* numbers_of(Column& rows, std::size_t row) noexcept
+auto* numbers_of(Column& column, std::size_t row) noexcept
 {
-  return const_cast<typename RowsOf<Column>::Number*>(numbers_of(std::as_const(rows), row));
+  return const_cast<typename RowsOf<Column>::Number*>(numbers_of(std::as_const(column), row));
 }
 
 /// Copies row `from` of a column to row `to` of the same or another one.
 template <class Column>
 void copy_row(const Column& source, std::size_t from, Column& column, std::size_t to) noexcept
 {
-  const auto* const numbers = numbers_of(source, from);
-  auto* const copy = numbers_of(column, to);
-  for (std::size_t c = 0; c < RowsOf<Column>::components; ++c)
-    copy[c * rows_in_group] = numbers[c * rows_in_group];
+  std::copy_n(numbers_of(source, from), RowsOf<Column>::components, numbers_of(column, to));
 }
-/// Copies the numbers of a row, one after the other, to an address, and back.
+/// Copies the numbers of a row to an address, and back.
 template <class Column>
 void save_row(const Column& column, std::size_t row, std::byte* to) noexcept
 {
-  const auto* const numbers = numbers_of(column, row);
-  for (std::size_t c = 0; c < RowsOf<Column>::components; ++c)
-    std::memcpy(to + c * sizeof(*numbers), numbers + c * rows_in_group, sizeof(*numbers));
+  std::memcpy(to, numbers_of(column, row), row_bytes<Column>);
 }
 template <class Column>
 void load_row(const std::byte* from, Column& column, std::size_t row) noexcept
 {
-  auto* const numbers = numbers_of(column, row);
-  for (std::size_t c = 0; c < RowsOf<Column>::components; ++c)
-    std::memcpy(numbers + c * rows_in_group, from + c * sizeof(*numbers), sizeof(*numbers));
+  std::memcpy(numbers_of(column, row), from, row_bytes<Column>);
 }
 
 }  // namespace talus

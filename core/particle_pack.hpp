@@ -19,9 +19,6 @@ struct ParticlePack {
   {
     for (std::size_t lane = 0; lane < pack_size; ++lane)
       p[lane] = static_cast<std::size_t>(rows[std::min(begin + lane, rows.size() - 1)]);
-    adjacent_ = p[0] % rows_in_group <= rows_in_group - pack_size;
-    for (std::size_t lane = 1; lane < pack_size; ++lane)
-      adjacent_ = adjacent_ && p[lane] == p[0] + std::min(lane, static_cast<std::size_t>(count) - 1);
   }
   /// Calls f(p) for every lane.
   template <class F>
@@ -34,30 +31,22 @@ struct ParticlePack {
   template <class Value>
   [[gnu::always_inline]] With<SimdReal, Value> load(const ParticleColumn<Value>& column) const noexcept
   {
+    constexpr int n = ParticleColumn<Value>::components;
     With<SimdReal, Value> all;
-    const auto fill = [&](auto&& of_component) {
-      for (int c = 0; c < ParticleColumn<Value>::components; ++c)
-        component(all, c) = of_component(c);
-    };
-    if (!adjacent_)
-      fill([&](int c) { return lanes([&](std::size_t row) { return *column.lane(row, c); }); });
-    else if (count < pack_size)
-      fill([&](int c) { return first_lanes(load_loose(column.lane(p[0], c)), count); });
-    else
-      fill([&](int c) { return load_loose(column.lane(p[0], c)); });
+    Pack of[n];
+    load_rows<n>({column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, of);
+    for (int c = 0; c < n; ++c)
+      component(all, c) = of[c];
     return all;
   }
   template <class Value>
   [[gnu::always_inline]] void store(const With<SimdReal, Value>& value, ParticleColumn<Value>& column) const noexcept
   {
-    With<SimdReal, Value> all = value;
-    if (adjacent_ && count == pack_size)
-      for (int c = 0; c < ParticleColumn<Value>::components; ++c)
-        store_loose(column.lane(p[0], c), component(all, c).of);
-    else
-      for (int c = 0; c < ParticleColumn<Value>::components; ++c)
-        for (int lane = 0; lane < count; ++lane)
-          *column.lane(p[lane], c) = component(all, c)[lane];
+    constexpr int n = ParticleColumn<Value>::components;
+    Pack of[n];
+    for (int c = 0; c < n; ++c)
+      of[c] = component(value, c).of;
+    store_rows<n>(of, {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, count);
   }
   [[gnu::always_inline]] SimdReal load(std::span<const Real> column) const noexcept
   {
@@ -71,11 +60,14 @@ struct ParticlePack {
   }
 
  private:
-  bool adjacent_;  ///< whether the rows are neighbours in one group, in their order, with room for a whole pack
-
-  static SimdReal& component(SimdReal& one, int) noexcept { return one; }
-  template <int R, int C>
-  static SimdReal& component(Eigen::Matrix<SimdReal, R, C, Eigen::DontAlign>& all, int c) noexcept
+  static auto& component(auto& one, int) noexcept { return one; }
+  template <class T, int R, int C>
+  static T& component(Eigen::Matrix<T, R, C, Eigen::DontAlign>& all, int c) noexcept
+  {
+    return all(c);
+  }
+  template <class T, int R, int C>
+  static const T& component(const Eigen::Matrix<T, R, C, Eigen::DontAlign>& all, int c) noexcept
   {
     return all(c);
   }
@@ -103,17 +95,16 @@ struct AskForNothing {
   void operator()(std::size_t) const noexcept {}
 };
 
-/// Prefetches the rows of a particle in some columns.  A cache line holds several rows: it is prefetched with the first of them.
+/// Prefetches the rows of a particle in some columns.  The end of a row that does not fill a cache line is prefetched with the next row.
 template <class... Values>
 [[gnu::always_inline]] inline void prefetch_row(std::size_t p, const ParticleColumn<Values>&... columns) noexcept
 {
-  constexpr std::size_t rows_in_line = 64 / sizeof(Real);
+  constexpr int numbers_in_line = 64 / sizeof(Real);
   const auto lines = [p](const auto& column) {
-    for (int c = 0; c < std::decay_t<decltype(column)>::components; ++c)
-      __builtin_prefetch(column.lane(p, c));
+    for (int c = 0; c < std::decay_t<decltype(column)>::components; c += numbers_in_line)
+      __builtin_prefetch(column.row_at(p) + c);
   };
-  if (p % rows_in_line == 0)
-    (lines(columns), ...);
+  (lines(columns), ...);
 }
 
 /// Calls f(pack) for all rows, four at a time, and ask(p) for each row before it is used.

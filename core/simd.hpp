@@ -2,6 +2,7 @@
 // Packs of numbers.  Sums over a stencil run over whole packs, so that they use the vector unit without a scalar remainder.  For laws,
 // SimdReal holds one number of several particles and is used like a Real.
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -23,6 +24,7 @@ inline void store(Real* to, const Pack& pack) noexcept { *reinterpret_cast<Pack*
 inline Real sum(const Pack& a) noexcept { return (a[0] + a[1]) + (a[2] + a[3]); }
 /// A pack at any address.  (The compiler would split a memcpy into halves, and the following load would wait for both.)
 using LoosePack = Real __attribute__((vector_size(sizeof(Pack)), aligned(sizeof(Real)), may_alias));
+using LoosePair = Real __attribute__((vector_size(2 * sizeof(Real)), aligned(sizeof(Real)), may_alias));
 
 /// Transposes four by four numbers.
 inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
@@ -37,14 +39,45 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 /// Loads four numbers from any address.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
-/// Repeats lane n - 1 in the lanes from n on.
-[[gnu::always_inline]] inline Pack first_lanes(const Pack& a, int n) noexcept
+/// Converts n consecutive numbers of four rows to one pack per number, with one row per lane.  A whole pack is read from any number on, so
+/// up to three numbers behind a row.
+template <int n>
+[[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Pack* to) noexcept
 {
-  switch (n) {
-    case 1: return __builtin_shufflevector(a, a, 0, 0, 0, 0);
-    case 2: return __builtin_shufflevector(a, a, 0, 1, 1, 1);
-    case 3: return __builtin_shufflevector(a, a, 0, 1, 2, 2);
-    default: return a;
+  constexpr int whole = n % pack_size == 1 ? n - 1 : n;  // a single number is not worth transposing
+  for (int k = 0; k < whole; k += pack_size) {
+    Pack of[pack_size];
+    for (int lane = 0; lane < pack_size; ++lane)
+      of[lane] = load_loose(row[lane] + k);
+    transpose(of[0], of[1], of[2], of[3]);
+    for (int i = k; i < std::min(k + pack_size, n); ++i)
+      to[i] = of[i - k];
+  }
+  for (int k = whole; k < n; ++k)
+    to[k] = Pack{row[0][k], row[1][k], row[2][k], row[3][k]};
+}
+/// Converts back for the first `count` rows, of which n numbers are written.
+template <int n>
+[[gnu::always_inline]] inline void store_rows(const Pack* from, Real* const (&row)[pack_size], int count) noexcept
+{
+  constexpr int whole = n / pack_size * pack_size, rest = n - whole;
+  for (int k = 0; k < whole; k += pack_size) {
+    Pack of[pack_size] = {from[k], from[k + 1], from[k + 2], from[k + 3]};
+    transpose(of[0], of[1], of[2], of[3]);
+    for (int lane = 0; lane < count; ++lane)
+      store_loose(row[lane] + k, of[lane]);
+  }
+  if constexpr (rest > 1) {
+    Pack of[pack_size] = {from[whole], from[whole + 1], from[n - 1], from[n - 1]};
+    transpose(of[0], of[1], of[2], of[3]);
+    for (int lane = 0; lane < count; ++lane) {
+      *reinterpret_cast<LoosePair*>(row[lane] + whole) = __builtin_shufflevector(of[lane], of[lane], 0, 1);
+      if constexpr (rest == 3)
+        row[lane][n - 1] = of[lane][2];
+    }
+  } else if constexpr (rest == 1) {
+    for (int lane = 0; lane < count; ++lane)
+      row[lane][n - 1] = from[n - 1][lane];
   }
 }
 static_assert(pack_size == 4);

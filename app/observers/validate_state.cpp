@@ -62,10 +62,8 @@ class Inspection {
   {
     const Index bad = first_bad(static_cast<Index>(column.size()), [&](Index row) {
       const auto* const numbers = numbers_of(column, static_cast<std::size_t>(row));
-      for (std::size_t c = 0; c < RowsOf<Column>::components; ++c)
-        if (!std::isfinite(static_cast<Real>(numbers[c * rows_in_group])))
-          return true;
-      return false;
+      return !std::all_of(numbers, numbers + RowsOf<Column>::components,
+                          [](auto number) { return std::isfinite(static_cast<Real>(number)); });
     });
     if (bad != none)
       add(bad, fmt::format("{} is not finite", name));

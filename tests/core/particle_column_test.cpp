@@ -1,4 +1,4 @@
-// Columns of particles: rows are what was set, bit by bit, and lie in groups of 16, component by component.
+// Columns of particles: rows are what was set, bit by bit, and lie one after the other.
 #include "core/particle_column.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace talus::column_test {
 namespace {
 
-constexpr std::size_t n_rows = 3 * rows_in_group + 5;
+constexpr std::size_t n_rows = 53, some_row = 16;
 
 /// Nine numbers that no other row has.
 Mat3 some(std::size_t row) { return 0.1 * Mat3{{1, 2, 3}, {4, 5, 6}, {7, 8, 9}} + static_cast<Real>(row) * Mat3::Ones(); }
@@ -23,7 +23,7 @@ ParticleColumn<Mat3> filled()
   return F;
 }
 
-TEST(ParticleColumn, KeepsWhatIsSetInEveryGroup)
+TEST(ParticleColumn, KeepsWhatIsSet)
 {
   const ParticleColumn<Mat3> F = filled();
   ASSERT_EQ(F.size(), n_rows);
@@ -39,12 +39,12 @@ TEST(ParticleColumn, HoldsNumbersAsItHoldsTensors)
 {
   ParticleColumn<Real> mass;
   EXPECT_TRUE(mass.empty());
-  mass.assign(rows_in_group, 0.1);
+  mass.assign(some_row, 0.1);
   mass.push_back(1e10);
   EXPECT_FALSE(mass.empty());
-  ASSERT_EQ(mass.size(), rows_in_group + 1);
-  EXPECT_EQ(mass[rows_in_group - 1], 0.1);
-  EXPECT_EQ(mass[rows_in_group], 1e10);
+  ASSERT_EQ(mass.size(), some_row + 1);
+  EXPECT_EQ(mass[some_row - 1], 0.1);
+  EXPECT_EQ(mass[some_row], 1e10);
   mass.set(3, -2);
   EXPECT_EQ(mass[2], 0.1);
   EXPECT_EQ(mass[3], -2);
@@ -61,7 +61,7 @@ TEST(ParticleColumn, AssignReplacesAllRows)
 
 TEST(ParticleColumn, RowsThatComeBackAreZero)
 {
-  for (const std::size_t left : {std::size_t{0}, std::size_t{3}, rows_in_group, 2 * rows_in_group + 1, n_rows - 1}) {
+  for (const std::size_t left : {std::size_t{0}, std::size_t{3}, some_row, 2 * some_row + 1, n_rows - 1}) {
     ParticleColumn<Mat3> F = filled();
     F.resize(left);
     EXPECT_EQ(F.size(), left);
@@ -72,20 +72,15 @@ TEST(ParticleColumn, RowsThatComeBackAreZero)
   }
 }
 
-TEST(ParticleColumn, NeighboursOfAGroupAreAdjacentInEachComponent)
+TEST(ParticleColumn, RowsLieOneAfterTheOtherWithRoomForAPackBehind)
 {
-  ParticleColumn<Vec<2>> v;
-  v.resize(n_rows);
+  ParticleColumn<Vec3> v;
+  v.assign(n_rows, Vec3(1, 2, 3));
   for (std::size_t row = 0; row < n_rows; ++row)
-    v.set(row, {static_cast<Real>(row), -static_cast<Real>(row)});
-  for (std::size_t row = 0; row < n_rows; ++row)
-    for (int c = 0; c < 2; ++c) {
-      EXPECT_EQ(*v.lane(row, c), v[row][c]);
-      EXPECT_EQ(v.lane(row, c) - v.lane(row / rows_in_group * rows_in_group, c), static_cast<std::ptrdiff_t>(row % rows_in_group));
-    }
-  constexpr auto group = static_cast<std::ptrdiff_t>(rows_in_group);
-  EXPECT_EQ(v.lane(0, 1) - v.lane(0, 0), group);
-  EXPECT_EQ(v.lane(rows_in_group, 0) - v.lane(0, 0), 2 * group) << "after both components of the group before";
+    EXPECT_EQ(v.row_at(row) - v.row_at(0), static_cast<std::ptrdiff_t>(3 * row));
+  const Real* const last = v.row_at(n_rows - 1) + 2;
+  for (int i = 1; i <= 3; ++i)
+    EXPECT_EQ(last[i], 0);
 }
 
 /// A row of the column `from` saved and loaded, or copied, into another row of `to`; no other row of `to` changes.
@@ -94,11 +89,11 @@ void expect_moved(const Column& from, Column to)
 {
   const Column before = to;
   std::array<std::byte, row_bytes<Column>> bytes{};
-  save_row(from, rows_in_group - 1, bytes.data());
-  load_row(bytes.data(), to, 2 * rows_in_group);
+  save_row(from, some_row - 1, bytes.data());
+  load_row(bytes.data(), to, 2 * some_row);
   copy_row(from, 2, to, 1);
   for (std::size_t row = 0; row < to.size(); ++row)
-    EXPECT_EQ(to[row], row == 2 * rows_in_group ? from[rows_in_group - 1] : row == 1 ? from[2] : before[row]) << row;
+    EXPECT_EQ(to[row], row == 2 * some_row ? from[some_row - 1] : row == 1 ? from[2] : before[row]) << row;
 }
 
 TEST(ParticleColumn, RowsAreCopiedSavedAndLoadedAsThoseOfAnArray)
@@ -120,8 +115,8 @@ TEST(ParticleColumn, RowsAreCopiedSavedAndLoadedAsThoseOfAnArray)
 TEST(ParticleColumn, SavesTheNumbersOfARowOneAfterTheOther)
 {
   std::array<Real, 9> numbers{};
-  save_row(filled(), rows_in_group + 1, reinterpret_cast<std::byte*>(numbers.data()));
-  const Mat3 row = some(rows_in_group + 1);
+  save_row(filled(), some_row + 1, reinterpret_cast<std::byte*>(numbers.data()));
+  const Mat3 row = some(some_row + 1);
   for (int c = 0; c < 9; ++c)
     EXPECT_EQ(numbers[static_cast<std::size_t>(c)], row(c));
 }

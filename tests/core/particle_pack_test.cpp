@@ -1,4 +1,4 @@
-// Packs of rows that are neighbours, that are not, and that do not fill a pack.
+// Packs of rows, whether or not they are neighbours, and packs of fewer than four.
 #include "core/particle_pack.hpp"
 
 #include <gtest/gtest.h>

@@ -130,12 +130,31 @@ TEST(SimdReal, AreNumbersOfTensors)
   EXPECT_EQ(lane_of(unpack(pack(Mat3Of<SimdReal>(product + product.transpose()))), 0), Mat3(a * b + (a * b).transpose()));
 }
 
-TEST(Lanes, RepeatTheLastOfTheFirst)
+template <int n>
+void rows_there_and_back()
 {
-  const Pack four{1, 2, 3, 4};
-  for (int n = 1; n <= pack_size; ++n)
+  constexpr int width = n + pack_size - 1;
+  Real from[pack_size][width], to[pack_size][width]{};
+  std::iota(&from[0][0], &from[0][0] + pack_size * width, 1.0);
+  Pack columns[n];
+  load_rows<n>({from[0], from[1], from[2], from[3]}, columns);
+  for (int k = 0; k < n; ++k)
     for (int lane = 0; lane < pack_size; ++lane)
-      EXPECT_EQ(first_lanes(four, n)[lane], std::min(lane + 1, n));
+      ASSERT_EQ(columns[k][lane], from[lane][k]);
+  store_rows<n>(columns, {to[0], to[1], to[2], to[3]}, 3);
+  for (int lane = 0; lane < pack_size; ++lane)
+    for (int k = 0; k < width; ++k)
+      ASSERT_EQ(to[lane][k], lane < 3 && k < n ? from[lane][k] : 0) << "row " << lane << ", number " << k << " of " << n;
+}
+
+TEST(SimdReal, RowsBecomeLanesAndLanesRows)
+{
+  rows_there_and_back<1>();
+  rows_there_and_back<2>();
+  rows_there_and_back<3>();
+  rows_there_and_back<4>();
+  rows_there_and_back<6>();
+  rows_there_and_back<9>();
 }
 
 }  // namespace
