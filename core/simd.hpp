@@ -159,10 +159,49 @@ SimdReal by_array(const SimdReal& a, F&& f) noexcept
   std::memcpy(&result.of, y.data(), sizeof(Pack));
   return result;
 }
+
+/// The range of log_of_normal and of exp_of_moderate.
+inline constexpr Real least_normal = 1e-300, moderate = 700;
+/// ln(a) for a from least_normal to its inverse, where nothing has to be told apart.  a = 2^k m with m from sqrt(1/2) to sqrt(2) and
+/// s = (m - 1) / (m + 1); the polynomial in s^2 and the order of the sums are those of fdlibm (Sun Microsystems 1993, e_log.c), below one
+/// unit in the last place.
+inline Pack log_of_normal(const Pack& a) noexcept
+{
+  using Bits = SimdReal::Mask::Bits;
+  constexpr std::int64_t one = 0x3ff0000000000000, root_half = 0x3fe6a09e667f3bcd, mantissa = 0x000fffffffffffff;
+  constexpr std::int64_t magic = 0x4330000000000000;  // 2^52, whose last bits count ones
+  constexpr Real counted = 4503599627370496.0 + 1023;
+  const Bits shifted = reinterpret_cast<Bits>(a) + (one - root_half);
+  const Pack k = reinterpret_cast<Pack>((shifted >> 52) | magic) - counted;
+  const Pack f = reinterpret_cast<Pack>((shifted & mantissa) + root_half) - 1;
+  const Pack s = f / (2 + f), z = s * s, w = z * z, half_square = 0.5 * f * f;
+  const Pack even = w * (0.3999999999940941908 + w * (0.2222219843214978396 + w * 0.1531383769920937332));
+  const Pack odd = z * (0.6666666666666735130 + w * (0.2857142874366239149 + w * (0.1818357216161805012 + w * 0.1479819860511658591)));
+  constexpr Real ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10;
+  return k * ln2_high - ((half_square - (s * (half_square + (even + odd)) + k * ln2_low)) - f);
+}
+/// exp(a) for moderate |a|.  a = n ln 2 + r with |r| up to ln(2) / 2; the first term that the series of exp(r) leaves out is below
+/// 0.347^14 / 14! = 4e-18.  Even and odd powers are two chains, which the processor computes side by side.
+inline Pack exp_of_moderate(const Pack& a) noexcept
+{
+  using Bits = SimdReal::Mask::Bits;
+  constexpr Real magic = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number, which the last bits hold
+  constexpr Real ln2_high = 6.93147180369123816490e-01, ln2_low = 1.90821492927058770002e-10, per_ln2 = 1.44269504088896338700;
+  const Pack sum = a * per_ln2 + magic, n = sum - magic;
+  const Pack r = (a - n * ln2_high) - n * ln2_low, r2 = r * r;
+  Pack even = Pack{} + 1.0 / 479001600, odd = Pack{} + 1.0 / 6227020800;
+  even = 1.0 / 3628800 + even * r2, odd = 1.0 / 39916800 + odd * r2;
+  even = 1.0 / 40320 + even * r2, odd = 1.0 / 362880 + odd * r2;
+  even = 1.0 / 720 + even * r2, odd = 1.0 / 5040 + odd * r2;
+  even = 1.0 / 24 + even * r2, odd = 1.0 / 120 + odd * r2;
+  even = 0.5 + even * r2, odd = 1.0 / 6 + odd * r2;
+  const Pack power = 1 + (r + r2 * (even + r * odd));
+  return reinterpret_cast<Pack>(reinterpret_cast<Bits>(power) + (reinterpret_cast<Bits>(sum) << 52));
+}
 }  // namespace detail
 
-// Mathematical functions, found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are Eigen's, accurate to
-// 2 units in the last place.
+// Mathematical functions, found by argument-dependent lookup beside `using std::sqrt`.  Logarithm and exponential are accurate to 2 units
+// in the last place; those of Eigen, which tell zero, infinity and NaN apart, only where a lane needs it.
 inline SimdReal sqrt(const SimdReal& a) noexcept
 {
   return detail::by_array(a, [](const auto& x) { return x.sqrt(); });
@@ -173,14 +212,22 @@ inline SimdReal min(const SimdReal& a, const SimdReal& b) noexcept { return b.of
 inline SimdReal::Mask isfinite(const SimdReal& a) noexcept { return abs(a) <= std::numeric_limits<Real>::max(); }
 inline SimdReal log(const SimdReal& a) noexcept
 {
+  if (all_of(a >= detail::least_normal && a <= 1 / detail::least_normal))
+    return detail::log_of_normal(a.of);
   return detail::by_array(a, [](const auto& x) { return x.log(); });
 }
 inline SimdReal exp(const SimdReal& a) noexcept
 {
+  if (all_of(abs(a) <= detail::moderate))
+    return detail::exp_of_moderate(a.of);
   return detail::by_array(a, [](const auto& x) { return x.exp(); });
 }
 /// a^n for a > 0, accurate to 2 |n ln a| units in the last place, twice the error of the logarithm; 0 for a = 0 with n > 0.
-inline SimdReal pow(const SimdReal& a, Real n) noexcept { return where(a == 0 && SimdReal(n) > 0, 0, exp(n * log(a))); }
+inline SimdReal pow(const SimdReal& a, Real n) noexcept
+{
+  const auto nothing = a == 0 && SimdReal(n) > 0;
+  return where(nothing, 0, exp(n * log(where(nothing, 1, a))));
+}
 
 /// ln(1 + a), accurate for small a.
 inline SimdReal log1p(const SimdReal& a) noexcept

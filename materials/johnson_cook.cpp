@@ -18,13 +18,21 @@ T homologous(const JohnsonCookMetal& metal, const T& temperature, const MetalCon
   return min(max(T((temperature - metal.room_temperature) * c.range_inverse), T(0)), T(1));
 }
 
+/// A lower bound of the strength [Pa of Cauchy stress] at any plastic strain, without powers; most metal is below it or flows.
+template <class T>
+T least_strength(const JohnsonCookMetal& metal, const T& temperature, const MetalConstants& c) noexcept
+{
+  const T heat = homologous(metal, temperature, c);
+  return metal.yield_stress * (1 - where(heat > 0, metal.thermal_exponent >= 1 ? heat : T(1), T(0)));
+}
+
 /// Strength [Pa of Cauchy stress], or its slope.
 template <class T>
 struct Strength {
   T value, by_strain, by_temperature;
 };
 
-/// The strength at slow rates, evaluated fast near the state before the step.
+/// The strength at slow rates, evaluated fast near the state before the step and near the last one that was evaluated in full.
 template <class T>
 struct SlowStrength {
   const JohnsonCookMetal& metal;
@@ -34,17 +42,17 @@ struct SlowStrength {
   SlowStrength(const JohnsonCookMetal& of, const MetalConstants& constants, const T& plastic_strain, const T& temperature) noexcept
       : metal(of),
         c(constants),
-        hardening(plastic_strain, of.hardening_exponent),
-        softening(homologous(of, temperature, constants), of.thermal_exponent)
+        hardening(plastic_strain, constants.hardening),
+        softening(homologous(of, temperature, constants), constants.softening)
   {}
   /// The strength; its slopes are those at positive plastic strain.
-  Strength<T> operator()(const T& plastic_strain, const T& temperature) const noexcept
+  Strength<T> operator()(const T& plastic_strain, const T& temperature) noexcept
   {
     const T heat = homologous(metal, temperature, c);
-    const T gain = metal.hardening_coefficient * hardening(plastic_strain), cold = metal.yield_stress + gain;
+    const T gain = metal.hardening_coefficient * hardening.advance(plastic_strain), cold = metal.yield_stress + gain;
     T lost = 0, lost_slope = 0;
     if (const auto warm = heat > 0; any_of(warm)) {
-      lost = where(warm, softening(heat), 0);
+      lost = where(warm, softening.advance(heat), 0);
       lost_slope = where(warm && heat < 1, metal.thermal_exponent * lost / above_nothing(heat) * c.range_inverse, 0);
     }
     const T hardens = metal.hardening_exponent * gain / above_nothing(plastic_strain) * (1 - lost);
@@ -65,7 +73,7 @@ template <class T>
 struct JohnsonCookReturn {
   const JohnsonCookMetal& metal;
   const MetalConstants& c;
-  const SlowStrength<T>& slow;
+  SlowStrength<T>& slow;
   Strength<T> start;                      ///< strength before the step
   T J, J_before;                          ///< volume ratios at the end of the step and before
   T mises, stiffness;                     ///< von Mises stress (Cauchy) of the trial state and its decrease per plastic strain [Pa]
@@ -76,12 +84,12 @@ struct JohnsonCookReturn {
 
   ValueAndSlopeOf<T> rate_factor(const T& x) const noexcept
   {
-    using std::log;
+    using std::log, std::max;
     const T rate = relative * x;
     const auto fast = rate > 1;
     if (!any_of(fast))
       return {1, 0};
-    return {where(fast, 1 + metal.rate_coefficient * log(rate), 1), where(fast, metal.rate_coefficient / above_nothing(x), 0)};
+    return {1 + metal.rate_coefficient * log(max(rate, T(1))), where(fast, metal.rate_coefficient / above_nothing(x), 0)};
   }
   /// The plastic work by the trapezoidal rule in the Kirchhoff stress: strength before and after the step, at the rate of the step.
   T work(const T& x, const T& factor, const T& end) const noexcept { return 0.5 * x * (J_before * factor * start.value + J * end); }
@@ -158,6 +166,8 @@ JohnsonCookMetal::Constants JohnsonCookMetal::constants() const noexcept
               .heat = heat_fraction / (density * specific_heat),
               .range_inverse = 1 / (melting_temperature - room_temperature),
               .rate_inverse = 1 / reference_rate,
+              .hardening = hardening_exponent,
+              .softening = thermal_exponent,
               .curve = {}};
   if (mie_gruneisen) {
     c.curve.emplace(*mie_gruneisen, density);
@@ -187,8 +197,8 @@ std::optional<Mat3Of<T>> JohnsonCookMetal::update(const IncrementOf<T>& in, Memo
   const Real relative = c.rate_inverse / in.dt;
   const T temperature = started(memory.temperature);
   PlasticFlow<T> flow{.mises = where(failed_before, 0, mises)};
-  if (!in.elastic && !all_of(failed_before)) {
-    const SlowStrength<T> slow(*this, c, memory.plastic_strain, temperature);
+  if (!in.elastic && !all_of(failed_before || mises <= least_strength(*this, temperature, c))) {
+    SlowStrength<T> slow(*this, c, memory.plastic_strain, temperature);
     const Strength<T> start = slow(memory.plastic_strain, temperature);
     if (const auto flows = !failed_before && mises > start.value; any_of(flows)) {
       JohnsonCookReturn<T> map{*this, c, slow, start, J, J / growth, mises, stiffness, memory.plastic_strain, temperature, relative};

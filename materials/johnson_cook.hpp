@@ -9,6 +9,7 @@
 #include "materials/elasticity.hpp"
 #include "materials/equation_of_state.hpp"
 #include "materials/law.hpp"
+#include "materials/power_near.hpp"
 
 namespace talus {
 
@@ -44,10 +45,11 @@ struct JohnsonCookMetal : Elasticity {
   std::optional<MieGruneisen> mie_gruneisen;
 
   struct Constants {
-    Real bulk, shear;    ///< Pa; the bulk modulus is used where there is no equation of state
-    Real heat;           ///< heat_fraction / (density specific_heat) [K m^3/J]
-    Real range_inverse;  ///< 1 / (melting - room temperature) [1/K]
-    Real rate_inverse;   ///< 1 / reference_rate [s]
+    Real bulk, shear;                     ///< Pa; the bulk modulus is used where there is no equation of state
+    Real heat;                            ///< heat_fraction / (density specific_heat) [K m^3/J]
+    Real range_inverse;                   ///< 1 / (melting - room temperature) [1/K]
+    Real rate_inverse;                    ///< 1 / reference_rate [s]
+    BinomialSeries hardening, softening;  ///< powers of plastic strain and of homologous temperature
     std::optional<MieGruneisenCurve> curve;
   };
   Constants constants() const noexcept;

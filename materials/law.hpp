@@ -136,10 +136,14 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
   { law.wave_speed(in.F, constants) } noexcept -> std::same_as<Real>;
 };
 
+/// A law that updates several particles at once.
+template <class L>
+concept UpdatesInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
+  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
+};
 /// A law that answers for several particles at once.
 template <class L>
-concept LawInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
-  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
+concept LawInLanes = UpdatesInLanes<L> && requires(const L law, const IncrementOf<SimdReal>& in, const typename L::Constants& constants) {
   { law.wave_speed(in.F, constants) } noexcept -> std::same_as<SimdReal>;
 };
 // clang-format on
@@ -151,10 +155,11 @@ Mat3Of<T> no_answer() noexcept
   return Mat3Of<T>::Constant(std::numeric_limits<Real>::quiet_NaN());
 }
 
-/// The stresses of several particles computed one after the other, for laws that are not written for lanes.  Lanes beyond `count` are zero.
+namespace detail {
+/// The stresses of several particles computed one after the other.  Lanes beyond `count` are zero.
 template <class L>
-Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
-                                   const typename L::Constants& constants) noexcept
+Mat3Of<SimdReal> update_alone(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
+                              const typename L::Constants& constants) noexcept
 {
   Mat3Of<SimdReal> stress = Mat3Of<SimdReal>::Zero();
   for (int lane = 0; lane < rows.count; ++lane) {
@@ -164,6 +169,19 @@ Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in
       stress(k).set(lane, after(k));
   }
   return stress;
+}
+}  // namespace detail
+
+/// The stresses of several particles for a law that is not wholly written for lanes: at once if its update is, otherwise one after the
+/// other.
+template <class L>
+Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, StateRows<typename L::State> rows,
+                                   const typename L::Constants& constants) noexcept
+{
+  if constexpr (UpdatesInLanes<L>)
+    return law.update(in, rows, constants);
+  else
+    return detail::update_alone(law, in, rows, constants);
 }
 
 /// What a law answers where some lane has no answer: to the others it must, so it is asked one lane at a time.
@@ -176,7 +194,7 @@ template <class L>
 Mat3Of<SimdReal> no_answer_somewhere(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
                                      const typename L::Constants& constants) noexcept
 {
-  return update_one_by_one(law, in, rows, constants);
+  return detail::update_alone(law, in, rows, constants);
 }
 
 /// True if the law says that its flow keeps the volume, which locks simplices.

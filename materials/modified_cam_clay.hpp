@@ -66,12 +66,23 @@ struct ModifiedCamClay {
     Real shear, reference, preconsolidation;  ///< stresses [Pa]
     Real slope;                               ///< M [-]
     Real swelling, plastic;                   ///< kappa and lambda - kappa [-]
-    Real pressure(Real compression) const noexcept { return reference * std::expm1(compression / swelling); }
-    Real preconsolidation_at(Real plastic_volume) const noexcept { return preconsolidation * std::exp(-plastic_volume / plastic); }
+    template <class T>
+    T pressure(const T& compression) const noexcept
+    {
+      using std::expm1;
+      return reference * expm1(T(compression / swelling));
+    }
+    template <class T>
+    T preconsolidation_at(const T& plastic_volume) const noexcept
+    {
+      using std::exp;
+      return preconsolidation * exp(T(-plastic_volume / plastic));
+    }
   };
   Constants constants() const noexcept;
 
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   /// Sets the history for a stress.  A stress outside the ellipse raises the preconsolidation so that the stress lies on it; tension opens
   /// the material in the first step.
   void prestress(const Mat3& stress, State& state) const noexcept;
@@ -82,7 +93,8 @@ struct ModifiedCamClay {
   /// after a prestress or dilation the material may be stiffer than the bound.
   Real wave_speed(const Mat3& F, const Constants& c) const noexcept;
   /// The wave speed from the elastic strain in the history: rho_0 c^2 = K + 4/3 G - (Kirchhoff stress)_nn.
-  Real wave_speed(const Mat3& F, const State& state, const Constants& c) const noexcept;
+  template <class T>
+  T wave_speed(const Mat3Of<T>& F, const StateOf<T, State>& state, const Constants& c) const noexcept;
 };
 
 }  // namespace talus

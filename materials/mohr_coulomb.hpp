@@ -9,10 +9,12 @@ namespace talus {
 
 /// A strength: yield where (s1 - s3)/2 + sine (s1 + s3)/2 = cohesive, with the largest and smallest principal Kirchhoff stress s1 and s3,
 /// tension positive.
-struct ShearStrength {
-  Real sine;      ///< sine of the angle of friction [-]
-  Real cohesive;  ///< cohesion times cosine of the angle of friction [Pa]
+template <class T>
+struct ShearStrengthOf {
+  T sine;      ///< sine of the angle of friction [-]
+  T cohesive;  ///< cohesion times cosine of the angle of friction [Pa]
 };
+using ShearStrength = ShearStrengthOf<Real>;
 
 /// Mohr-Coulomb with non-associated flow (of the same form with the angle of dilation) and a Rankine limit of tension, in Kirchhoff stress
 /// and logarithmic strain.  The return is backward Euler, exact: to a plane, an edge, a corner or the apex in principal stresses (Clausen,
@@ -52,16 +54,18 @@ struct MohrCoulomb : HenckyPlastic, SoilStrength {
     Real softening_strain;         ///< plastic strain at which softening ends; infinite without softening
     Real sin_psi;                  ///< sine of the angle of dilation [-]
     Real cutoff;                   ///< largest principal stress [Pa]; infinite if only the apex limits it
-    ShearStrength strength_at(Real plastic_strain) const noexcept
+    template <class T>
+    ShearStrengthOf<T> strength_at(const T& plastic_strain) const noexcept
     {
-      return plastic_strain < softening_strain
-                 ? ShearStrength{peak.sine + plastic_strain * slope.sine, peak.cohesive + plastic_strain * slope.cohesive}
-                 : residual;
+      const auto softens = plastic_strain < softening_strain;
+      return {where(softens, peak.sine + plastic_strain * slope.sine, residual.sine),
+              where(softens, peak.cohesive + plastic_strain * slope.cohesive, residual.cohesive)};
     }
   };
   Constants constants() const noexcept;
 
-  Mat3 update(const Increment& in, State& state, const Constants& c) const noexcept;
+  template <class T>
+  Mat3Of<T> update(const IncrementOf<T>& in, StateOf<T, State>& state, const Constants& c) const noexcept;
   /// The yield function [Pa]: the larger of (s1 - s3)/2 + sine (s1 + s3)/2 - cohesive and s1 - tension_cutoff, for the Kirchhoff stress
   /// that belongs to the elastic strain of `state`; the Cauchy stress is the Kirchhoff stress over J.
   Real yield(const Mat3& stress, const State& state) const noexcept;

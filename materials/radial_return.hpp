@@ -6,6 +6,7 @@
 
 #include "materials/law.hpp"
 #include "materials/logarithm.hpp"
+#include "materials/power_near.hpp"
 
 namespace talus {
 
@@ -52,58 +53,7 @@ T growth_of(const IncrementOf<T>& in) noexcept
   return (Mat3Of<T>::Identity() + in.dt * in.L).determinant();
 }
 
-/// A divisor that is positive where `a` may be zero in a lane whose quotient is not used; the bound is far below any strain, stress or
-/// fraction.
-template <class T>
-T above_nothing(const T& a) noexcept
-{
-  using std::max;
-  return max(a, T(1e-200));
-}
-
 /// The slope of power hardening with an exponent below 1 at zero plastic strain.
 inline constexpr Real infinitely_steep = std::numeric_limits<Real>::infinity();
-
-/// x^n, computed fast near a point where it is known: hardening changes little within a step.
-template <class T>
-class PowerNear {
- public:
-  PowerNear(const T& at, Real exponent) noexcept : at_(at), inverse_(1 / above_nothing(at)), exponent_(exponent), value_(power(at)) {}
-  T operator()(const T& x) const noexcept
-  {
-    using std::abs, std::max;
-    // The first terms that the binomial series omits are below 0.001^6 and 0.02^8 for exponents below 1.
-    const T r = (x - at_) * inverse_, size = abs(r) * max(exponent_, Real{1});
-    const auto same = x == at_;
-    if (all_of(same))
-      return value_;
-    if (all_of(same || size <= 0.001))
-      return where(same, value_, value_ * series<5>(r));
-    if (all_of(same || size <= 0.02))
-      return where(same, value_, value_ * series<7>(r));
-    return where(same, value_, power(x));
-  }
-
- private:
-  T power(const T& x) const noexcept
-  {
-    using std::pow;
-    const auto some = x > 0;  // metal without plastic strain and heating is common
-    return any_of(some) ? where(some, pow(x, exponent_), 0) : T(0);
-  }
-  /// (1 + r)^n
-  template <int terms>
-  T series(const T& r) const noexcept
-  {
-    T sum = 1;
-    for (int k = terms; k > 0; --k)
-      sum = 1 + sum * (r * (exponent_ - (k - 1)) * (1.0 / k));
-    return sum;
-  }
-
-  T at_, inverse_;
-  Real exponent_;
-  T value_;
-};
 
 }  // namespace talus

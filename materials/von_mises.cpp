@@ -14,8 +14,8 @@ struct Hardening {
   const VonMises& law;
   PowerNear<T> gain;
 
-  Hardening(const VonMises& of, const T& plastic_strain) noexcept
-      : law(of), gain(of.power ? plastic_strain : T(0), of.power ? of.power->exponent : 1)
+  Hardening(const VonMises& of, const BinomialSeries& binomial, const T& plastic_strain) noexcept
+      : law(of), gain(of.power ? plastic_strain : T(0), binomial)
   {}
   ValueAndSlopeOf<T> operator()(const T& plastic_strain) const noexcept
   {
@@ -83,13 +83,14 @@ VonMises::Constants VonMises::constants() const noexcept
           .shear = elastic.shear,
           .closed_form = !voce && !power && !rate,
           .rate_inverse = rate ? 1 / rate->reference_rate : 0,
-          .rate_power = rate ? 1 / rate->exponent : 1};
+          .rate_power = rate ? 1 / rate->exponent : 1,
+          .power = power ? power->exponent : 1};
 }
 
 Real VonMises::flow_stress(Real plastic_strain, Real plastic_rate) const noexcept
 {
   const Real factor = rate ? 1 + std::pow(plastic_rate / rate->reference_rate, 1 / rate->exponent) : 1;
-  return Hardening<Real>(*this, plastic_strain)(plastic_strain).value * factor;
+  return Hardening<Real>(*this, constants().power, plastic_strain)(plastic_strain).value * factor;
 }
 
 void VonMises::divide_strength(Real factor) noexcept
@@ -111,7 +112,7 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
     return no_answer_somewhere(*this, in, state, c);
   const T stiffness = 3 * c.shear / J, mises = stiffness * trial.shear;  // change of the Cauchy stress per strain, at constant J
   const T plastic_strain = get(state, &State::plastic_strain);
-  const Hardening<T> slow(*this, plastic_strain);
+  const Hardening<T> slow(*this, c.power, plastic_strain);
   const ValueAndSlopeOf<T> start = slow(plastic_strain);
   const auto yields = mises > start.value;
   if (in.elastic || !any_of(yields)) {

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "materials/hencky_plastic.hpp"
+#include "materials/power_near.hpp"
 
 namespace talus {
 
@@ -76,10 +77,11 @@ struct VonMises : HenckyPlastic {
   };
 
   struct Constants {
-    Real bulk, shear;   ///< Pa
-    bool closed_form;   ///< whether hardening is linear and without rate
-    Real rate_inverse;  ///< 1/D [s]; 0 without a rate factor
-    Real rate_power;    ///< 1/q
+    Real bulk, shear;      ///< Pa
+    bool closed_form;      ///< whether hardening is linear and without rate
+    Real rate_inverse;     ///< 1/D [s]; 0 without a rate factor
+    Real rate_power;       ///< 1/q
+    BinomialSeries power;  ///< of plastic strain, in hardening by a power
   };
   Constants constants() const noexcept;
 

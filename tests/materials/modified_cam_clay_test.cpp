@@ -369,5 +369,25 @@ TEST(ModifiedCamClayRules, ContradictionsAreToldInWords)
   EXPECT_EQ(found, Problems{"compression_index 0.1 must be above swelling_index 0.1"});
 }
 
+TEST(ModifiedCamClay, WaveSpeedsOfFourAtOnceAreThoseOfEach)
+{
+  const ModifiedCamClay law = clay();
+  const ModifiedCamClay::Constants constants = law.constants();
+  Dice dice(7);
+  std::array<ModifiedCamClay::State, pack_size> each;
+  StateRows<ModifiedCamClay::State> rows{{}, pack_size};
+  for (int lane = 0; lane < pack_size; ++lane) {
+    Point<ModifiedCamClay> point = consolidated(law, p0 * lane);
+    point.step(Mat3::Identity() + dice.matrix(0.01));
+    each[static_cast<std::size_t>(lane)] = point.state;
+    rows.row[lane] = &each[static_cast<std::size_t>(lane)];
+  }
+  const SimdReal together = law.wave_speed(Mat3Of<SimdReal>(Mat3Of<SimdReal>::Identity()), rows, constants);
+  for (int lane = 0; lane < pack_size; ++lane) {
+    const Real alone = law.wave_speed(Mat3(Mat3::Identity()), *rows.row[lane], constants);
+    EXPECT_NEAR(together[lane], alone, 1e-13 * alone) << lane;
+  }
+}
+
 }  // namespace
 }  // namespace talus::modified_cam_clay_test
