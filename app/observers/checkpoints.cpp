@@ -9,6 +9,7 @@
 #include "app/observers/rank_slices.hpp"
 #include "app/observers/results.hpp"
 #include "app/observers/validate_state.hpp"
+#include "core/stop_watch.hpp"
 #include "io/checkpoint/serialize.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"
@@ -196,6 +197,7 @@ void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, const Recorder<D>&
 template <int D>
 void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
 {
+  StopWatch watch;
   const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
   view.problem.ranks->together([&] {
     require_results(folder_);
@@ -224,8 +226,15 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
   last_ = file;
   at_ = view.state.clock;
   when_ = Watch::now();
-  if (!view.problem.ranks->is_root())
-    return;
+  if (view.problem.ranks->is_root())
+    remove_older();
+  watch.lap(seconds_);
+}
+
+/// Removes checkpoints beyond the number that the scene keeps.
+template <int D>
+void Checkpoints<D>::remove_older() const
+{
   const auto all = checkpoints_in(folder_ / checkpoint_folder);
   const auto manifest = Manifest::of(folder_);
   std::error_code stays;  // a file that cannot be removed does not end the run

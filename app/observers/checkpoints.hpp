@@ -51,10 +51,13 @@ class Checkpoints {
   /// The last checkpoint written, empty if there is none, and its number of steps.
   const std::filesystem::path& last() const noexcept { return last_; }
   std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
+  /// Wall time of all that were written [s].
+  Real seconds() const noexcept { return seconds_; }
 
  private:
   using Watch = std::chrono::steady_clock;
   bool due(const Clock& clock) const;
+  void remove_older() const;
 
   std::filesystem::path folder_;
   CheckpointSpec spec_;
@@ -63,6 +66,7 @@ class Checkpoints {
   std::filesystem::path last_;
   std::optional<Clock> at_;  // time of the last one, or of the first call
   Watch::time_point when_ = Watch::now();
+  Real seconds_ = 0;
 };
 
 /// The sizes of a state of this scene.

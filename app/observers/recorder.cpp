@@ -146,6 +146,7 @@ template <int D>
 void Recorder<D>::go_on(const RunView<D>& view)
 {
   traffic_begin_ = view.problem.ranks->traffic(), step_begin_ = view.state.clock.step;
+  timings_begin_ = view.state.timings, output_begin_ = output_seconds_;
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, view, history_state_);
   runout_.go_on(view);
@@ -213,6 +214,15 @@ bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, Index particles) c
   return history_state_.impulse.size() == walls && history_state_.angular.size() == walls &&
          history_state_.given.size() == outputs_.history->bodies.size() &&
          history_state_.followed.size() == outputs_.history->points.size() && std::ranges::all_of(history_state_.followed, known);
+}
+
+template <int D>
+Timings Recorder<D>::step_seconds() const noexcept
+{
+  Timings seconds = last_.timings;
+  for (Real Timings::*const phase : {&Timings::locate, &Timings::scatter, &Timings::nodes, &Timings::gather, &Timings::stress})
+    seconds.*phase -= timings_begin_.*phase;
+  return seconds;
 }
 
 template <int D>

@@ -69,7 +69,9 @@ class Recorder {
   /// The files written to the folder, relative to it.
   std::span<const std::string> files() const noexcept { return std::span(files_).subspan(static_cast<std::size_t>(elsewhere_.files)); }
   std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
-  Real output_seconds() const noexcept { return output_seconds_; }
+  /// Wall times of output, and of the phases of the steps, in this run: without those of an earlier one that it continues [s].
+  Real output_seconds() const noexcept { return output_seconds_ - output_begin_; }
+  Timings step_seconds() const noexcept;
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
   const RanksSummary& ranks() const noexcept { return ranks_; }  ///< at the end of the last stage
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
@@ -133,6 +135,8 @@ class Recorder {
   RanksSummary ranks_;
   Traffic traffic_begin_;  // at the beginning of the first step
   std::int64_t step_begin_ = 0;
+  Timings timings_begin_;
+  Real output_begin_ = 0;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
   std::vector<std::string> changes_;
