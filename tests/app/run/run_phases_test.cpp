@@ -3,7 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
+#include <map>
 #include <thread>
 
 #include "tests/app/program.hpp"
@@ -49,14 +49,31 @@ TEST(RunPhases, ALapThatAnExceptionEndsCounts)
 
 class Phases : public Program {
  protected:
+  struct Cost {
+    Real wall = 0;
+    std::map<std::string, Real> phases;
+    Real sum() const
+    {
+      Real seconds = 0;
+      for (const auto& [name, of_phase] : phases)
+        seconds += of_phase;
+      return seconds;
+    }
+  };
   /// The cost of a run in its summary.
-  nlohmann::json cost(const std::string& run) const { return nlohmann::json::parse(read(run + "/summary.json"))["cost"]; }
-  static Real sum(const nlohmann::json& cost)
+  Cost cost(const std::string& run) const
   {
-    Real seconds = 0;
-    for (const auto& phase : cost["wall_by_phase"])
-      seconds += phase.get<Real>();
-    return seconds;
+    const std::string text = read(run + "/summary.json");
+    Cost cost;
+    std::smatch found;
+    if (std::regex_search(text, found, std::regex("\"wall \\[s\\]\": ([0-9.e+-]+)")))
+      cost.wall = std::stod(found[1]);
+    const auto begin = text.find("\"wall_by_phase\": {"), end = text.find('}', begin);
+    const std::string phases = text.substr(begin + 17, end - begin - 17);
+    const std::regex phase("\"([a-z_]+)\": ([0-9.e+-]+)");
+    for (auto at = std::sregex_iterator(phases.begin(), phases.end(), phase); at != std::sregex_iterator(); ++at)
+      cost.phases[(*at)[1]] = std::stod((*at)[2]);
+    return cost;
   }
   /// A block of 24 000 particles under its weight, with a stress at the start, frames and checkpoints.
   static std::string layer(const std::string& more = "")
@@ -79,15 +96,14 @@ TEST_F(Phases, NameSetUpStepsOutputAndCheckpointsAndLeaveOutLittle)
   write("layer.yaml", layer());
   const Outcome outcome = talus("run layer.yaml --quiet --threads 1 --out out");
   ASSERT_EQ(outcome.code, 0) << outcome.err;
-  const auto all = cost("out");
+  const Cost all = cost("out");
   for (const char* name : {"mesh", "seeding", "kernel", "build", "first_files", "initial_stress", "locate", "scatter", "nodes", "gather",
                            "stress", "output", "checkpoints", "monitoring"}) {
-    ASSERT_TRUE(all["wall_by_phase"].contains(name)) << name;
-    EXPECT_GT(all["wall_by_phase"][name].get<Real>(), 0) << name;
+    ASSERT_TRUE(all.phases.contains(name)) << name;
+    EXPECT_GT(all.phases.at(name), 0) << name;
   }
-  const Real total = all["wall [s]"].get<Real>();
-  EXPECT_LE(sum(all), total * (1 + 1e-9));
-  EXPECT_GT(sum(all), 0.8 * total);  // measured: 0.97; checks between steps have no phase
+  EXPECT_LE(all.sum(), all.wall * (1 + 1e-9));
+  EXPECT_GT(all.sum(), 0.8 * all.wall);  // measured: 0.97; checks between steps have no phase
 }
 
 /// The checkpoint by which a run is stopped counts, and the phases of a run that goes on are those of its own wall time.
@@ -96,10 +112,11 @@ TEST_F(Phases, OfARunThatGoesOnAreItsOwn)
   write("layer.yaml", layer());
   const Outcome stopped = talus("run layer.yaml --quiet --threads 1 --out out --until 15 --set outputs.checkpoint.steps=1000");
   ASSERT_EQ(stopped.code, 4) << stopped.err;
-  EXPECT_GT(cost("out")["wall_by_phase"]["checkpoints"].get<Real>(), 0);
+  EXPECT_GT(cost("out").phases["checkpoints"], 0);
   const Outcome on = talus("run --resume out --quiet --threads 1");
   ASSERT_EQ(on.code, 0) << on.err;
-  EXPECT_LE(sum(cost("out")), cost("out")["wall [s]"].get<Real>() * (1 + 1e-9));
+  EXPECT_LE(cost("out").sum(), cost("out").wall * (1 + 1e-9));
+  EXPECT_GT(cost("out").wall, 0);
 }
 
 }  // namespace
