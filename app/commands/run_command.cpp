@@ -112,13 +112,12 @@ class Run {
     };
     if (from_)
       callbacks.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
-    callbacks.kernel_made = [&](Real seconds) { phases_.kernel = seconds; };
+    callbacks.kernel_made = [&](Real seconds) { phases_.kernel = seconds, phases_.build -= seconds; };
     // Only now: errors of the kernel, lack of memory and unreadable input are found before existing results are replaced.
     callbacks.ready = [&](const RunView<D>& view) {
       summary_.nodes_as_corners = world().sum(view.nodes_as_corners);
       check_disk_space(folder_, view, scene_.outputs, time_left(view));
       watch_.lap(phases_.build);
-      phases_.build -= phases_.kernel;
       world().together([&] { prepare(view); });
       watch_.lap(phases_.first_files);
       began_ = true;  // for the other ranks too
@@ -131,6 +130,7 @@ class Run {
       std::string message = what;
       if (!began_)
         return message;
+      static_cast<void>(Communicator::caught([&] { recorder.finish_frame(); }));  // the first message is the relevant one
       if (!recorder.last_output().empty())
         message += "; last good output " + recorder.last_output();
       if (!checkpoints.last().empty())

@@ -164,7 +164,7 @@ bool Checkpoints<D>::due(const Clock& clock) const
 }
 
 template <int D>
-void Checkpoints<D>::see(const RunView<D>& view, const Recorder<D>& recorder)
+void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
 {
   if (!at_)
     at_ = view.state.clock;
@@ -188,14 +188,14 @@ void Checkpoints<D>::see(const RunView<D>& view, const Recorder<D>& recorder)
 }
 
 template <int D>
-void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, const Recorder<D>& recorder, Index n_stages)
+void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, Recorder<D>& recorder, Index n_stages)
 {
   if (spec_.at_end && view.state.stage.number + 1 == n_stages)
     write(view, recorder);
 }
 
 template <int D>
-void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
+void Checkpoints<D>::write(const RunView<D>& view, Recorder<D>& recorder)
 {
   StopWatch watch;
   const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
