@@ -72,7 +72,8 @@ def run(given, scene, threads, spin):
         sys.exit(f"{line} ended with {done.returncode}:\n{done.stderr}")
     summary = json.loads((given.out / "run" / "summary.json").read_text(encoding="utf-8"))
     cost, phases = summary["cost"], summary["cost"]["wall_by_phase"]
-    seconds = cost["wall [s]"] - phases["mesh"] - phases["build"] - phases["output"]
+    before = sum(phases[name] for name in ("mesh", "seeding", "kernel", "build", "first_files"))
+    seconds = cost["wall [s]"] - before - phases["output"] - phases["checkpoints"]
     return seconds, cost["threads"], sum(body["particles"] for body in summary["bodies"]), summary["steps"], others
 
 

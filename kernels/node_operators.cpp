@@ -16,14 +16,23 @@ std::size_t entry_of(const Csr& ring, Index n, Index v)
 
 namespace {
 
+/// For the entry of each v in the row of n, the entry of n in the row of v.  Rows that contain v come in the order in which the row of v
+/// names them, so each takes the next entry of that row.
+std::vector<Index> opposite_entries(const Csr& ring)
+{
+  std::vector<Index> opposite(ring.item.size()), next(ring.begin.begin(), ring.begin.end() - 1);
+  for (std::size_t entry = 0; entry < ring.item.size(); ++entry)
+    opposite[entry] = next[static_cast<std::size_t>(ring.item[entry])]++;
+  return opposite;
+}
+
 template <class Entry>
-std::vector<Entry> transposed(const Csr& ring, const std::vector<Entry>& rows)
+std::vector<Entry> transposed(std::span<const Index> opposite, const std::vector<Entry>& rows)
 {
   std::vector<Entry> columns(rows.size());
-  parallel_for(ring.size(), [&](Index v) {
-    auto to = static_cast<std::size_t>(ring.begin[static_cast<std::size_t>(v)]);
-    for (const Index n : ring[v])
-      columns[to++] = rows[entry_of(ring, n, v)];
+  parallel_for(static_cast<Index>(rows.size()), [&](Index entry) {
+    const auto i = static_cast<std::size_t>(entry);
+    columns[i] = rows[static_cast<std::size_t>(opposite[i])];
   });
   return columns;
 }
@@ -35,8 +44,9 @@ NodeOperators<D>::NodeOperators(const Mesh<D>& mesh, std::vector<Real> S, std::v
     : ring_(mesh.ring_of_node()), S_row_(std::move(S)), D_row_(std::move(gradients))
 {
   assert(S_row_.size() == ring_.item.size() && D_row_.size() == ring_.item.size());
-  S_column_ = transposed(ring_, S_row_);
-  D_column_ = transposed(ring_, D_row_);
+  const std::vector<Index> opposite = opposite_entries(ring_);
+  S_column_ = transposed(opposite, S_row_);
+  D_column_ = transposed(opposite, D_row_);
   centre_.resize(static_cast<std::size_t>(mesh.n_nodes()));
   for_each_node(std::span<Vec<D>>(centre_), [&](Index n) {
     Vec<D> centre = Vec<D>::Zero();
@@ -62,9 +72,21 @@ template <int D>
 std::vector<Vec<D>> averaged_gradients(const Mesh<D>& mesh)
 {
   const auto volumes = hat_volumes(mesh);
-  std::vector<Vec<D>> gradients(mesh.ring_of_node().item.size(), Vec<D>::Zero());
-  for_each_cell_of_ring(mesh, [&](Index n, Index c, std::size_t a, std::size_t entry) {
-    gradients[entry] += mesh.volume(c) / ((D + 1) * volumes[static_cast<std::size_t>(n)]) * mesh.gradients(c)[a];
+  const Csr& ring = mesh.ring_of_node();
+  std::vector<Vec<D>> gradients(ring.item.size(), Vec<D>::Zero());
+  const Index n_nodes = mesh.n_nodes(), ranges = threads();
+  const auto first_of = [&](Index range) { return static_cast<Index>(std::int64_t{n_nodes} * range / ranges); };
+  parallel_for(ranges, [&](Index range) {
+    std::vector<Index> entry_in_row(static_cast<std::size_t>(n_nodes));  // of each node in the row of n, where it has one
+    for (Index n = first_of(range); n < first_of(range + 1); ++n) {
+      Index entry = ring.begin[static_cast<std::size_t>(n)];
+      for (const Index v : ring[n])
+        entry_in_row[static_cast<std::size_t>(v)] = entry++;
+      for (const Index c : mesh.cells_of_node()[n])
+        for (std::size_t a = 0; a <= D; ++a)
+          gradients[static_cast<std::size_t>(entry_in_row[static_cast<std::size_t>(mesh.cell(c)[a])])] +=
+              mesh.volume(c) / ((D + 1) * volumes[static_cast<std::size_t>(n)]) * mesh.gradients(c)[a];
+    }
   });
   return gradients;
 }

@@ -65,19 +65,6 @@ std::vector<Vec<D>> averaged_gradients(const Mesh<D>& mesh);
 /// The index of node v in the row of n.  Rings are ascending and contain v.
 std::size_t entry_of(const Csr& ring, Index n, Index v);
 
-/// Calls f(n, c, a, entry) for every node n, every cell c around it and every vertex a of c, where `entry` is the index of cell(c)[a] in
-/// the row of n.  Rows are processed in parallel.
-template <int D, class F>
-void for_each_cell_of_ring(const Mesh<D>& mesh, F&& f)
-{
-  const Csr& ring = mesh.ring_of_node();
-  parallel_for(mesh.n_nodes(), [&](Index n) {
-    for (const Index c : mesh.cells_of_node()[n])
-      for (std::size_t a = 0; a <= D; ++a)
-        f(n, c, a, entry_of(ring, n, mesh.cell(c)[a]));
-  });
-}
-
 /// The lumped volumes V_n = int N_n dx [m^D].
 template <int D>
 std::vector<Real> hat_volumes(const Mesh<D>& mesh);

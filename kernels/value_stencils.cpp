@@ -59,30 +59,32 @@ bool reaches(const Mesh<D>& mesh, const std::vector<Facet>& of_n, const std::vec
 }
 
 /// The weights a_v exp(lambda . y_v) / Z whose weighted sum of y is zero; empty if Newton's method does not find them.
-template <class Places>
-std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Places& y)
+std::vector<Real> of_largest_entropy(const std::vector<Real>& prior, const Eigen::MatrixXd& y)
 {
-  using Vector = Eigen::VectorXd;
   const auto d = y.rows();
-  Vector lambda = Vector::Zero(d);
+  Eigen::VectorXd lambda = Eigen::VectorXd::Zero(d), mean(d);
+  Eigen::VectorXd at(d), weighted(d);  // these and `product` exist once, so that the sums over the neighbours allocate nothing
+  Eigen::MatrixXd second(d, d), product(d, d);
   std::vector<Real> weights(prior.size());
   for (int iteration = 0; iteration < 200; ++iteration) {
     Real total = 0;
-    Vector mean = Vector::Zero(d);
-    Eigen::MatrixXd second = Eigen::MatrixXd::Zero(d, d);
+    mean.setZero();
+    second.setZero();
     for (std::size_t i = 0; i < prior.size(); ++i) {
-      const Vector at = y.col(static_cast<Index>(i));
+      at = y.col(static_cast<Index>(i));
       const Real w = weights[i] = prior[i] * std::exp(lambda.dot(at));
       total += w;
       mean += w * at;
-      second += w * at * at.transpose();
+      weighted = w * at;
+      product.noalias() = weighted * at.transpose();
+      second += product;
     }
     mean /= total;
     for (Real& w : weights)
       w /= total;
     if (mean.norm() < 1e-15)  // positions are of order one
       return weights;
-    Vector step = (second / total - mean * mean.transpose()).ldlt().solve(-mean);
+    Eigen::VectorXd step = (second / total - mean * mean.transpose()).ldlt().solve(-mean);
     if (!step.allFinite())
       return {};
     const Real longest = 1.5;  // the objective is convex, but not nearly quadratic where the neighbours of a node are one-sided

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/parallel/parallel_sort.hpp"
 #include "core/parallel/threads.hpp"
 
 namespace talus {
@@ -19,13 +20,12 @@ std::uint64_t hilbert_key(std::array<std::uint32_t, D> x, int bits) noexcept
   for (std::uint32_t q = top; q > 1; q >>= 1) {
     const std::uint32_t below = q - 1;
     for (int d = 0; d < D; ++d) {
-      if (x[d] & q) {
-        x[0] ^= below;
-      } else {
-        const std::uint32_t swap = (x[0] ^ x[d]) & below;
-        x[0] ^= swap;
-        x[d] ^= swap;
-      }
+      // Inverts the lower bits of x[0] where the bit is set, else exchanges them with those of x[d]; without a branch, which would be
+      // mispredicted half of the time.
+      const std::uint32_t is_set = (x[d] & q) != 0 ? below : 0;
+      const std::uint32_t swap = (x[0] ^ x[d]) & below & ~is_set;
+      x[0] ^= swap | is_set;
+      x[d] ^= swap;
     }
   }
   for (int d = 1; d < D; ++d)
@@ -66,7 +66,7 @@ std::vector<Index> hilbert_order(std::span<const Vec<D>> nodes, std::span<const 
       place[d] = static_cast<std::uint32_t>(scale / (D + 1) * sum[d]);
     keys[c] = {hilbert_key<D>(place, bits), c};
   });
-  std::sort(keys.begin(), keys.end());
+  parallel_sort(keys);
   std::vector<Index> order(cells.size());
   for (Index c = 0; c < n_cells; ++c)
     order[c] = keys[c].second;
@@ -105,39 +105,70 @@ std::vector<Index> nodes_in_use(std::span<const std::array<Index, D + 1>> cells,
   return nodes;
 }
 
+namespace {
+
+/// A facet of a cell by its nodes other than the lowest one.
+struct FacetClaim {
+  std::uint64_t rest;  ///< these nodes, ascending, as one number
+  Facet facet;
+  friend bool operator<(const FacetClaim& a, const FacetClaim& b) noexcept
+  {
+    return std::tie(a.rest, a.facet.cell) < std::tie(b.rest, b.facet.cell);
+  }
+};
+
+/// The nodes of the facet opposite local node `a`, other than n, as one number.
+template <int D>
+std::uint64_t rest_of_facet(const std::array<Index, D + 1>& cell, Index a, Index n) noexcept
+{
+  std::array<std::uint64_t, D - 1> rest{};
+  std::size_t count = 0;
+  for (Index i = 0; i <= D; ++i)
+    if (i != a && cell[i] != n)
+      rest[count++] = static_cast<std::uint64_t>(cell[i]);
+  if constexpr (D == 2)
+    return rest[0];
+  else
+    return std::min(rest[0], rest[1]) << 32 | std::max(rest[0], rest[1]);
+}
+
+/// Adds the facets of a cell whose lowest node is n: all at n if n is the lowest node of the cell, the one opposite the lowest node if n is
+/// the second lowest, none otherwise.
+template <int D>
+void claim_facets(Index c, const std::array<Index, D + 1>& cell, Index n, std::vector<FacetClaim>& claims)
+{
+  Index below = 0, lowest = 0;  // number of nodes below n; local number of the lowest node
+  for (Index i = 0; i <= D; ++i) {
+    below += cell[i] < n ? 1 : 0;
+    lowest = cell[i] < cell[lowest] ? i : lowest;
+  }
+  if (below == 1)
+    claims.push_back({rest_of_facet<D>(cell, lowest, n), {c, lowest}});
+  for (Index a = 0; a <= D && below == 0; ++a)
+    if (a != lowest)
+      claims.push_back({rest_of_facet<D>(cell, a, n), {c, a}});
+}
+
+}  // namespace
+
 template <int D>
 FacetMatch<D> match_facets(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
 {
-  // Every facet is found from its lowest node, among the few other facets of that node.
-  struct Claim {
-    std::array<Index, D - 1> rest;
-    Facet facet;
-  };
   FacetMatch<D> match;
   match.neighbours.resize(cells.size());
   for (auto& row : match.neighbours)
     row.fill(none);
-  // Stores the neighbours across facets whose lowest node is n; returns a facet that belongs to three cells, if there is one.
+  // Every facet is found from its lowest node, among the few other facets of that node: stores the neighbours across facets whose lowest
+  // node is n; returns a facet that belongs to three cells, if there is one.
   using Three = std::array<Facet, 3>;
   const auto match_from = [&](Index n) -> std::optional<Three> {
-    static thread_local std::vector<Claim> claims;
+    static thread_local std::vector<FacetClaim> claims;
     claims.clear();
     for (const Index c : cells_of_node[n])
-      for (Index a = 0; a <= D; ++a) {
-        std::array<Index, D> nodes;
-        for (int i = 0; i < D; ++i)
-          nodes[i] = cells[c][i < a ? i : i + 1];
-        std::sort(nodes.begin(), nodes.end());
-        if (nodes[0] != n)
-          continue;
-        Claim& claim = claims.emplace_back();
-        std::copy(nodes.begin() + 1, nodes.end(), claim.rest.begin());
-        claim.facet = Facet{c, a};
-      }
-    std::sort(claims.begin(), claims.end(),
-              [](const Claim& a, const Claim& b) { return std::tie(a.rest, a.facet.cell) < std::tie(b.rest, b.facet.cell); });
+      claim_facets<D>(c, cells[c], n, claims);
+    std::sort(claims.begin(), claims.end());
     for (auto claim = claims.begin(); claim != claims.end();) {
-      const auto end = std::find_if(claim, claims.end(), [&](const Claim& other) { return other.rest != claim->rest; });
+      const auto end = std::find_if(claim, claims.end(), [&](const FacetClaim& other) { return other.rest != claim->rest; });
       if (end - claim > 2)
         return Three{claim[0].facet, claim[1].facet, claim[2].facet};
       if (end - claim == 2) {
@@ -160,26 +191,30 @@ template <int D>
 Csr nodes_around(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
 {
   const Index n_nodes = cells_of_node.size();
-  const auto ring_of = [&](Index n, std::vector<Index>& ring) {
-    ring.clear();
-    for (const Index c : cells_of_node[n])
-      ring.insert(ring.end(), cells[c].begin(), cells[c].end());
-    std::sort(ring.begin(), ring.end());
-    ring.erase(std::unique(ring.begin(), ring.end()), ring.end());
-  };
-  static thread_local std::vector<Index> ring;
+  const Index ranges = threads();
+  const auto first_of = [&](Index range) { return static_cast<Index>(std::int64_t{n_nodes} * range / ranges); };
+  std::vector<std::vector<Index>> rings(static_cast<std::size_t>(ranges));  // of the nodes of each range, one after the other
   Csr around;
   around.begin.assign(static_cast<std::size_t>(n_nodes) + 1, 0);
-  parallel_for(n_nodes, [&](Index n) {
-    ring_of(n, ring);
-    around.begin[n + 1] = static_cast<Index>(ring.size());
+  parallel_for(ranges, [&](Index range) {
+    std::vector<Index>& ring = rings[static_cast<std::size_t>(range)];
+    std::vector<Index> last(static_cast<std::size_t>(n_nodes), none);  // the last ring of the range that has the node
+    for (Index n = first_of(range); n < first_of(range + 1); ++n) {
+      const auto begin = static_cast<std::ptrdiff_t>(ring.size());
+      for (const Index c : cells_of_node[n])
+        for (const Index m : cells[c])
+          if (std::exchange(last[m], n) != n)
+            ring.push_back(m);
+      std::sort(ring.begin() + begin, ring.end());
+      around.begin[n + 1] = static_cast<Index>(static_cast<std::ptrdiff_t>(ring.size()) - begin);
+    }
   });
   for (Index n = 0; n < n_nodes; ++n)
     around.begin[n + 1] += around.begin[n];
   around.item.resize(static_cast<std::size_t>(around.begin.back()));
-  parallel_for(n_nodes, [&](Index n) {
-    ring_of(n, ring);
-    std::copy(ring.begin(), ring.end(), around.item.begin() + around.begin[n]);
+  parallel_for(ranges, [&](Index range) {
+    const std::vector<Index>& ring = rings[static_cast<std::size_t>(range)];
+    std::copy(ring.begin(), ring.end(), around.item.begin() + around.begin[first_of(range)]);
   });
   return around;
 }

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "core/parallel/parallel_sort.hpp"
 #include "core/parallel/threads.hpp"
 #include "mesh/check.hpp"
 #include "mesh/connectivity.hpp"
@@ -24,7 +25,7 @@ std::vector<Index> inverse(std::span<const Index> old_numbers, std::size_t count
 
 void sort_unique(std::vector<Index>& numbers)
 {
-  std::ranges::sort(numbers);
+  parallel_sort(numbers);
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
 }
 

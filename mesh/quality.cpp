@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/parallel/threads.hpp"
 #include "mesh/check.hpp"
 
 namespace talus {
@@ -27,9 +28,12 @@ Real smallest_angle(const Simplex<D>& s) noexcept
   // The angle between the outward normals of two facets is pi minus the angle of the simplex.  The tangent form (sine from the cross
   // product) is accurate for angles near zero, where the cosine is not.
   Real smallest = std::numeric_limits<Real>::infinity();
+  std::array<Vec<D>, D + 1> normal;
+  for (int a = 0; a <= D; ++a)
+    normal[a] = area_vector(facet<D>(s, a));
   for (int a = 0; a < D; ++a)
     for (int b = a + 1; b <= D; ++b) {
-      const Vec<D> m = area_vector(facet<D>(s, a)), n = area_vector(facet<D>(s, b));
+      const Vec<D>&m = normal[a], &n = normal[b];
       Real cross = 0;
       if constexpr (D == 2)
         cross = std::abs(m[0] * n[1] - m[1] * n[0]);
@@ -40,6 +44,31 @@ Real smallest_angle(const Simplex<D>& s) noexcept
   return smallest;
 }
 
+namespace {
+
+struct CellQuality {
+  Real mean_ratio, smallest_angle, shortest_edge, longest_edge;
+  Real largest_ratio;  ///< of its volume to that of a neighbour
+};
+
+template <int D>
+CellQuality quality_of(const Mesh<D>& mesh, Index c)
+{
+  const Simplex<D> s = mesh.corners(c);
+  Real shortest = std::numeric_limits<Real>::infinity(), longest = 0;
+  for_each_edge<D>(s, [&](Real squared) {
+    shortest = std::min(shortest, squared);
+    longest = std::max(longest, squared);
+  });
+  Real largest_ratio = 0;
+  for (const Index other : mesh.neighbours(c))
+    if (other != none)  // computed from both sides, so one of the two ratios is above one
+      largest_ratio = std::max(largest_ratio, mesh.volume(c) / mesh.volume(other));
+  return {mean_ratio<D>(s), smallest_angle<D>(s), std::sqrt(shortest), std::sqrt(longest), largest_ratio};
+}
+
+}  // namespace
+
 template <int D>
 MeshQuality<D> quality(const Mesh<D>& mesh)
 {
@@ -49,30 +78,29 @@ MeshQuality<D> quality(const Mesh<D>& mesh)
   q.cells = mesh.n_cells();
   q.boundary_facets = static_cast<Index>(mesh.boundary_facets().size());
   q.smallest_volume = q.smallest_mean_ratio = q.smallest_angle = q.shortest_edge = infinity;
-  q.gradation = 1;
   std::vector<Real> heights(mesh.cells().size());
-  for (Index c = 0; c < mesh.n_cells(); ++c) {
-    const Simplex<D> s = mesh.corners(c);
-    const Real volume = mesh.volume(c), ratio = mean_ratio<D>(s);
+  std::vector<CellQuality> of_cell(mesh.cells().size());
+  parallel_for(mesh.n_cells(), [&](Index c) { of_cell[c] = quality_of(mesh, c); });
+  Real largest_ratio = 1;
+  for (Index c = 0; c < mesh.n_cells(); ++c) {  // in the order of the cells, whatever the number of threads
+    const CellQuality& cell = of_cell[c];
+    const Real volume = mesh.volume(c);
     heights[c] = mesh.altitude(c);
     q.volume += volume;
     q.smallest_volume = std::min(q.smallest_volume, volume);
     q.largest_volume = std::max(q.largest_volume, volume);
-    q.average_mean_ratio += ratio / q.cells;
-    q.smallest_angle = std::min(q.smallest_angle, smallest_angle<D>(s));
-    if (ratio < q.smallest_mean_ratio) {
-      q.smallest_mean_ratio = ratio;
+    q.average_mean_ratio += cell.mean_ratio / q.cells;
+    q.smallest_angle = std::min(q.smallest_angle, cell.smallest_angle);
+    if (cell.mean_ratio < q.smallest_mean_ratio) {
+      q.smallest_mean_ratio = cell.mean_ratio;
       q.worst_cell = c;
-      q.worst_place = centroid<D>(s);
     }
-    for_each_edge<D>(s, [&](Real squared) {
-      q.shortest_edge = std::min(q.shortest_edge, std::sqrt(squared));
-      q.longest_edge = std::max(q.longest_edge, std::sqrt(squared));
-    });
-    for (const Index other : mesh.neighbours(c))
-      if (other != none)  // computed from both sides, so one of the two ratios is above one
-        q.gradation = std::max(q.gradation, std::pow(volume / mesh.volume(other), 1.0 / D));
+    q.shortest_edge = std::min(q.shortest_edge, cell.shortest_edge);
+    q.longest_edge = std::max(q.longest_edge, cell.longest_edge);
+    largest_ratio = std::max(largest_ratio, cell.largest_ratio);
   }
+  q.worst_place = centroid<D>(mesh.corners(q.worst_cell));
+  q.gradation = std::pow(largest_ratio, 1.0 / D);
   for (Index n = 0; n < mesh.n_nodes(); ++n)
     q.largest_ring = std::max(q.largest_ring, static_cast<Index>(mesh.ring_of_node()[n].size()));
   const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);

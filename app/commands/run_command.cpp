@@ -12,6 +12,7 @@
 #include "app/observers/results.hpp"
 #include "app/run/disk_space.hpp"
 #include "app/run/new_results.hpp"
+#include "app/run/run_phases.hpp"
 #include "app/run/summary.hpp"
 #include "app/run/thread_choice.hpp"
 #include "app/setup/quick.hpp"
@@ -20,7 +21,6 @@
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
 #include "core/print.hpp"
-#include "core/stop_watch.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"
 #include "io/load_mesh.hpp"
@@ -59,8 +59,9 @@ class Run {
   void operator()()
   {
     auto mesh = load_mesh<D>(scene_.mesh, folder_of(scene_));
-    watch_.lap(mesh_seconds_);
+    watch_.lap(phases_.mesh);
     auto setup = set_up(scene_, mesh, world());
+    watch_.lap(phases_.seeding);
     thread_choice_ = fit_threads(options_.threads, scene_, setup.n_particles);
     if (quick_)
       shorten(world().min(first_step(mesh, setup)), setup.stages, scene_.outputs);
@@ -83,22 +84,23 @@ class Run {
       whole_ = mesh;
     Recorder<D> recorder(folder_, scene_.outputs, stages_, options_.quiet, summary_.made_by());
     Checkpoints<D> checkpoints(folder_, scene_.outputs.checkpoint, identity, options_.until);
-    StopWatch of_step;
     RunCallbacks<D> callbacks{[&](const RunView<D>& view, RunEvent event) {
                                 Real seconds = 0;
-                                of_step.lap(seconds);
+                                watch_.lap(seconds);
+                                (event == RunEvent::stage_begins ? phases_.initial_stress : phases_.steps) += seconds;
                                 if (event == RunEvent::step_done)
                                   thread_choice_.took(seconds);
+                                const LapAtEnd observed(watch_, phases_.observers);
                                 recorder.watch(view, event);
                                 if (event == RunEvent::step_begins) {
                                   checkpoints.see(view, recorder);
                                   set_threads(thread_choice_.next());
-                                  of_step = {};
                                 }
                                 if (event == RunEvent::given_up)
                                   checkpoints.write(view, recorder);
                               },
                               [&](const RunView<D>& view, const StageResult& result) {
+                                const LapAtEnd observed(watch_, phases_.observers);
                                 recorder.stage_done(result);
                                 checkpoints.see_end_of_stage(view, recorder, static_cast<Index>(stages_.size()));
                               }};
@@ -110,28 +112,32 @@ class Run {
     };
     if (from_)
       callbacks.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
+    callbacks.kernel_made = [&](Real seconds) { phases_.kernel = seconds, phases_.build -= seconds; };
     // Only now: errors of the kernel, lack of memory and unreadable input are found before existing results are replaced.
     callbacks.ready = [&](const RunView<D>& view) {
       summary_.nodes_as_corners = world().sum(view.nodes_as_corners);
       check_disk_space(folder_, view, scene_.outputs, time_left(view));
+      watch_.lap(phases_.build);
       world().together([&] { prepare(view); });
+      watch_.lap(phases_.first_files);
       began_ = true;  // for the other ranks too
       whole_.reset();
       if (from_)
         go_on(view, taken, recorder);
-      watch_.lap(build_seconds_);
+      watch_.lap(phases_.build);
     };
     const auto failed = [&](const char* what, const std::string& way_back = {}) {
       std::string message = what;
       if (!began_)
         return message;
+      static_cast<void>(Communicator::caught([&] { recorder.finish_frame(); }));  // the first message is the relevant one
       if (!recorder.last_output().empty())
         message += "; last good output " + recorder.last_output();
       if (!checkpoints.last().empty())
         message += "; last checkpoint " + checkpoints.last().string();
       message += way_back;
       try {
-        finish(recorder, RunStatus::failed, message);
+        finish(recorder, checkpoints, RunStatus::failed, message);
       } catch (const EnvironmentError&) {  // a full disk stays full: the first message is the relevant one
       }
       return message;
@@ -140,10 +146,10 @@ class Run {
     try {
       std::optional<FloatingPointTraps> traps(std::in_place);
       simulate(scene_, std::move(mesh), std::move(setup), callbacks, load_balancing_of(mesh_digest, traps));
-      finish(recorder, RunStatus::done, "");
+      finish(recorder, checkpoints, RunStatus::done, "");
     } catch (const Stopped& e) {
       const std::string message = fmt::format("{}; go on with: talus run --resume {}", e.what(), shell_word(folder_));
-      finish(recorder, RunStatus::stopped, message);
+      finish(recorder, checkpoints, RunStatus::stopped, message);
       throw Stopped(message);
     } catch (const RunError& e) {
       throw RunError(failed(e.what(), way_back(checkpoints, recorder.last_seen().clock.step)));
@@ -290,34 +296,35 @@ class Run {
       return again;
     };
     const auto stayed = [this](const std::string& why) {
+      watch_.lap(phases_.rebalancing);
       summary_.warnings.push_back("the ranks cannot share the run out anew, and go on as they are: " + why);
       if (world().is_root())
         say(stderr, "warning: {}\n", summary_.warnings.back());
     };
-    return {options_.rebalance, whole_mesh, mesh_seconds_, [this](const Rebalanced& by) { note(by); }, stayed};
+    return {options_.rebalance, whole_mesh, phases_.mesh, [this](const Rebalanced& by) { note(by); }, stayed};
   }
 
   void note(const Rebalanced& by)
   {
+    watch_.lap(phases_.rebalancing);
     ++rebalances_;
     rebalancing_ += by.seconds;
     if (!options_.quiet)
       say_rebalanced(by);
   }
 
-  void finish(const Recorder<D>& recorder, RunStatus status, const std::string& message)
+  void finish(const Recorder<D>& recorder, const Checkpoints<D>& checkpoints, RunStatus status, const std::string& message)
   {
     if (!world().is_root())
       return;
     require_results(folder_);
-    Real steps = 0;
-    watch_.lap(steps);
+    watch_.lap(phases_.end);
     RunSummary summary = summary_;
     summary.threads = thread_choice_.chosen();
     summary.status = status;
     summary.message = message;
-    summary.wall_seconds = {{"mesh", mesh_seconds_, ""}, {"build", build_seconds_, ""}};
-    summary.wall_total = mesh_seconds_ + build_seconds_ + steps;
+    summary.wall_seconds = wall_by_phase(phases_, recorder.step_seconds(), recorder.output_seconds(), checkpoints.seconds());
+    summary.wall_total = phases_.total();
     complete(recorder, quick_, summary);
     if (status == RunStatus::done)
       failed_accounts_ = failed_accounts(summary, least_energy_);
@@ -341,7 +348,7 @@ class Run {
   const CheckpointList* from_;
   std::optional<std::int64_t> resumed_after_;  // number of steps
   StopWatch watch_;
-  Real mesh_seconds_ = 0, build_seconds_ = 0;
+  RunPhases phases_;
   std::int64_t rebalances_ = 0;
   Real rebalancing_ = 0;                               // time of redistributions [s]
   Index n_particles_ = 0, n_cells_ = 0, n_nodes_ = 0;  // numbers of the whole mesh

@@ -9,6 +9,7 @@
 #include "app/observers/rank_slices.hpp"
 #include "app/observers/results.hpp"
 #include "app/observers/validate_state.hpp"
+#include "core/stop_watch.hpp"
 #include "io/checkpoint/serialize.hpp"
 #include "io/files/atomic_file.hpp"
 #include "io/files/manifest.hpp"
@@ -163,7 +164,7 @@ bool Checkpoints<D>::due(const Clock& clock) const
 }
 
 template <int D>
-void Checkpoints<D>::see(const RunView<D>& view, const Recorder<D>& recorder)
+void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
 {
   if (!at_)
     at_ = view.state.clock;
@@ -187,15 +188,16 @@ void Checkpoints<D>::see(const RunView<D>& view, const Recorder<D>& recorder)
 }
 
 template <int D>
-void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, const Recorder<D>& recorder, Index n_stages)
+void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, Recorder<D>& recorder, Index n_stages)
 {
   if (spec_.at_end && view.state.stage.number + 1 == n_stages)
     write(view, recorder);
 }
 
 template <int D>
-void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
+void Checkpoints<D>::write(const RunView<D>& view, Recorder<D>& recorder)
 {
+  StopWatch watch;
   const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
   view.problem.ranks->together([&] {
     require_results(folder_);
@@ -224,8 +226,15 @@ void Checkpoints<D>::write(const RunView<D>& view, const Recorder<D>& recorder)
   last_ = file;
   at_ = view.state.clock;
   when_ = Watch::now();
-  if (!view.problem.ranks->is_root())
-    return;
+  if (view.problem.ranks->is_root())
+    remove_older();
+  watch.lap(seconds_);
+}
+
+/// Removes checkpoints beyond the number that the scene keeps.
+template <int D>
+void Checkpoints<D>::remove_older() const
+{
   const auto all = checkpoints_in(folder_ / checkpoint_folder);
   const auto manifest = Manifest::of(folder_);
   std::error_code stays;  // a file that cannot be removed does not end the run

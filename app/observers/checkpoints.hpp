@@ -43,18 +43,21 @@ class Checkpoints {
 
   /// To be called before each step: writes a checkpoint if it is due.  Throws Stopped after writing one because of a signal, or after
   /// `until` steps; EnvironmentError if it could not be written, with older ones unchanged.
-  void see(const RunView<D>& view, const Recorder<D>& recorder);
+  void see(const RunView<D>& view, Recorder<D>& recorder);
   /// To be called after a stage, when the recorder has its result: writes a checkpoint at the end of the run if the scene requests it.
-  void see_end_of_stage(const RunView<D>& view, const Recorder<D>& recorder, Index n_stages);
+  void see_end_of_stage(const RunView<D>& view, Recorder<D>& recorder, Index n_stages);
   /// Writes a checkpoint.  Throws EnvironmentError.
-  void write(const RunView<D>& view, const Recorder<D>& recorder);
+  void write(const RunView<D>& view, Recorder<D>& recorder);
   /// The last checkpoint written, empty if there is none, and its number of steps.
   const std::filesystem::path& last() const noexcept { return last_; }
   std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
+  /// Wall time of all that were written [s].
+  Real seconds() const noexcept { return seconds_; }
 
  private:
   using Watch = std::chrono::steady_clock;
   bool due(const Clock& clock) const;
+  void remove_older() const;
 
   std::filesystem::path folder_;
   CheckpointSpec spec_;
@@ -63,6 +66,7 @@ class Checkpoints {
   std::filesystem::path last_;
   std::optional<Clock> at_;  // time of the last one, or of the first call
   Watch::time_point when_ = Watch::now();
+  Real seconds_ = 0;
 };
 
 /// The sizes of a state of this scene.

@@ -8,6 +8,8 @@
 #include <stdexcept>
 
 #include "core/field_component.hpp"
+#include "core/parallel/parallel_sort.hpp"
+#include "core/parallel/threads.hpp"
 #include "io/output/output_fields.hpp"
 #include "materials/interface/any_law.hpp"
 
@@ -35,8 +37,10 @@ Column column_of(const Quantity<kind, Value>& field, const Of& of, std::span<con
 {
   constexpr auto width = static_cast<std::size_t>(components_of(kind));
   Column column{std::string(field.name), components_of(kind), std::vector<float>(width * rows.size()), unit_in(D, field.unit)};
-  for (std::size_t i = 0; i < rows.size(); ++i)
+  parallel_for(static_cast<Index>(rows.size()), [&](Index number) {
+    const auto i = static_cast<std::size_t>(number);
     put(value_of<D>(field, of, static_cast<std::size_t>(rows[i])), std::span(column.values).subspan(i * width, width));
+  });
   return column;
 }
 
@@ -111,10 +115,12 @@ Column node_column(const RunView<D>& view, std::string_view name)
 template <int D>
 std::vector<Index> rows_by_id(const Particles<D>& particles)
 {
-  std::vector<Index> rows(particles.id.size());
-  std::iota(rows.begin(), rows.end(), Index{0});
-  std::sort(rows.begin(), rows.end(),
-            [&](Index a, Index b) { return particles.id[static_cast<std::size_t>(a)] < particles.id[static_cast<std::size_t>(b)]; });
+  std::vector<std::pair<std::int64_t, Index>> id_and_row(particles.id.size());
+  for (std::size_t row = 0; row < id_and_row.size(); ++row)
+    id_and_row[row] = {particles.id[row], static_cast<Index>(row)};
+  parallel_sort(id_and_row);
+  std::vector<Index> rows(id_and_row.size());
+  std::ranges::transform(id_and_row, rows.begin(), &std::pair<std::int64_t, Index>::second);
   return rows;
 }
 
@@ -122,9 +128,11 @@ template <int D>
 std::vector<Real> positions(const Particles<D>& particles, std::span<const Index> rows)
 {
   std::vector<Real> places(3 * rows.size(), 0.0);
-  for (std::size_t i = 0; i < rows.size(); ++i)
+  parallel_for(static_cast<Index>(rows.size()), [&](Index number) {
+    const auto i = static_cast<std::size_t>(number);
     for (std::size_t d = 0; d < D; ++d)
       places[3 * i + d] = particles.x[static_cast<std::size_t>(rows[i])][static_cast<Index>(d)];
+  });
   return places;
 }
 

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include "app/observers/field_columns.hpp"
-#include "app/observers/rank_slices.hpp"
 #include "app/observers/results.hpp"
 #include "core/print.hpp"
 #include "io/files/manifest.hpp"
@@ -86,7 +84,6 @@ template <int D>
 Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, const std::vector<Stage>& stages, bool quiet,
                       std::string made_by)
     : folder_(std::move(folder)),
-      made_by_(std::move(made_by)),
       outputs_(outputs),
       stage_list_(stages),
       body_forces_(outputs.history && !outputs.history->bodies.empty()),
@@ -94,8 +91,7 @@ Recorder<D>::Recorder(std::filesystem::path folder, const OutputSpec& outputs, c
       particle_times_(every(outputs.particles)),
       mesh_times_(every(outputs.mesh)),
       history_times_(every(outputs.history)),
-      particle_series_(folder_ / "particles.pvd", made_by_),
-      mesh_series_(folder_ / "mesh.pvd", made_by_),
+      frames_(folder_, made_by),
       runout_(folder_, outputs.runout)
 {}
 
@@ -146,6 +142,7 @@ template <int D>
 void Recorder<D>::go_on(const RunView<D>& view)
 {
   traffic_begin_ = view.problem.ranks->traffic(), step_begin_ = view.state.clock.step;
+  timings_begin_ = view.state.timings, output_begin_ = output_seconds_;
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, view, history_state_);
   runout_.go_on(view);
@@ -170,16 +167,16 @@ std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& view)
       missing.push_back(fmt::format("{} is not there any more", (folder_ / file).string()));
   if (history_ && history_time_ > elsewhere_.time && history_->last_time() != history_time_)
     missing.push_back(fmt::format("{} lacks what was there up to t = {:.6g} s", (folder_ / "history.csv").string(), history_time_));
-  particle_series_.resume(view.state.clock.time);
-  mesh_series_.resume(view.state.clock.time);
+  frames_.particle_series().resume(view.state.clock.time);
+  frames_.mesh_series().resume(view.state.clock.time);
   const auto check_series = [&](const PvdSeries& series, int written, const char* name) {
     if (series.size() != static_cast<std::size_t>(written))
       missing.push_back(fmt::format("{} names {} files, {} had been written", (folder_ / name).string(), series.size(), written));
   };
   if (outputs_.particles)
-    check_series(particle_series_, particle_files_ - elsewhere_.particle_files, "particles.pvd");
+    check_series(frames_.particle_series(), particle_files_ - elsewhere_.particle_files, "particles.pvd");
   if (outputs_.mesh)
-    check_series(mesh_series_, mesh_files_ - elsewhere_.mesh_files, "mesh.pvd");
+    check_series(frames_.mesh_series(), mesh_files_ - elsewhere_.mesh_files, "mesh.pvd");
   if (!runout_.drop_later() && elsewhere_.time < 0)
     missing.push_back(fmt::format("{} lacks rows that had been written", (folder_ / "runout.csv").string()));
   const auto remove = [](const fs::path& file) {
@@ -216,8 +213,34 @@ bool Recorder<D>::fits(std::size_t walls, std::size_t bodies, Index particles) c
 }
 
 template <int D>
-void Recorder<D>::flush() const
+Timings Recorder<D>::step_seconds() const noexcept
 {
+  Timings seconds = last_.timings;
+  for (Real Timings::*const phase : {&Timings::locate, &Timings::scatter, &Timings::nodes, &Timings::gather, &Timings::stress})
+    seconds.*phase -= timings_begin_.*phase;
+  return seconds;
+}
+
+template <int D>
+void Recorder<D>::finish_frame()
+{
+  if (!frames_.is_pending())
+    return;
+  const std::exception_ptr failure = Communicator::caught([&] { frames_.wait(); });
+  const std::vector<std::string>& written = frames_.written();
+  if (frame_has_particles_ && !written.empty())  // the particles are written first
+    last_output_ = written.front();
+  std::erase_if(files_, [&](const std::string& file) {
+    return std::ranges::find(frame_, file) != frame_.end() && std::ranges::find(written, file) == written.end();
+  });
+  if (failure)
+    std::rethrow_exception(failure);
+}
+
+template <int D>
+void Recorder<D>::flush()
+{
+  finish_frame();
   if (history_)
     history_->flush();
   runout_.flush();
@@ -228,6 +251,8 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
 {
   if (event == RunEvent::step_begins || event == RunEvent::given_up)
     return;
+  if (frames_.is_done())  // so that a failure ends the run soon
+    finish_frame();
   accounts_.see(view, event);
   body_forces_.see(view, event);
   const bool first = event == RunEvent::stage_begins && view.state.stage.number == 0;
@@ -250,6 +275,8 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
   if (first || event != RunEvent::stage_begins)  // the beginning of a later stage is the end of the previous one
     write(view, event == RunEvent::stage_done);
   write_runout(view, event == RunEvent::stage_done);
+  if (event == RunEvent::stage_done && view.state.stage.number + 1 == static_cast<Index>(stage_list_.size()))
+    finish_frame();  // the run is not over before it is on the disk
   watch.lap(output_seconds_);
 
   warn(view);
@@ -294,10 +321,8 @@ void Recorder<D>::write(const RunView<D>& view, bool last)
   const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
   if (particles || mesh || history)
     view.problem.ranks->together([&] { require_results(folder_); });
-  if (particles)
-    write_particles_file(view);
-  if (mesh)
-    write_mesh_file(view);
+  if (particles || mesh)
+    write_frame(view, particles, mesh);
   if (history) {
     history_->append(view, accounts_, body_forces_);
     history_state_ = history_->state();
@@ -306,37 +331,27 @@ void Recorder<D>::write(const RunView<D>& view, bool last)
 }
 
 template <int D>
-void Recorder<D>::write_particles_file(const RunView<D>& view)
+void Recorder<D>::write_frame(const RunView<D>& view, bool particles, bool mesh)
 {
-  const auto file = particle_file(particle_files_++);
-  on_slices(view, [&](const State<D>& slice, const std::vector<Body>&, const Slice& of_file) {
-    const auto rows = rows_by_id(slice.particles);
-    std::vector<Column> columns;
-    for (const std::string& name : particle_fields_of(outputs_))
-      columns.push_back(particle_column(slice, rows, name));
-    std::vector<std::int64_t> ids;
-    ids.reserve(rows.size());
-    for (const Index row : rows)
-      ids.push_back(slice.particles.id[static_cast<std::size_t>(row)]);
-    write_particles(*view.problem.ranks, file, view.state.clock.time, of_file, positions(slice.particles, rows), ids, columns, made_by_);
-  });
-  view.problem.ranks->together([&] { particle_series_.append(view.state.clock.time, file); });
-  particle_time_ = view.state.clock.time;
-  files_.push_back(file.filename().string());
-  last_output_ = files_.back();
-}
-
-template <int D>
-void Recorder<D>::write_mesh_file(const RunView<D>& view)
-{
-  std::vector<Column> columns;
-  for (const std::string& name : outputs_.mesh->fields_wanted)
-    columns.push_back(slice_of_column(view, node_column(view, name)));
-  const auto file = mesh_file(mesh_files_++);
-  write_mesh(*view.problem.ranks, file, view.state.clock.time, slice_of_mesh(view), columns, {}, made_by_);
-  view.problem.ranks->together([&] { mesh_series_.append(view.state.clock.time, file); });
-  mesh_time_ = view.state.clock.time;
-  files_.push_back(file.filename().string());
+  finish_frame();
+  Frame frame;
+  frame.time = view.state.clock.time;
+  frame_.clear();
+  frame_has_particles_ = particles;
+  if (particles) {
+    frame.particles = particles_of_frame(view, outputs_, particle_file(particle_files_++));
+    frame_.push_back(frame.particles->file.filename().string());
+    particle_time_ = frame.time;
+  }
+  if (mesh) {
+    frame.mesh = mesh_of_frame(view, outputs_, mesh_file(mesh_files_++));
+    frame_.push_back(frame.mesh->file.filename().string());
+    mesh_time_ = frame.time;
+  }
+  files_.insert(files_.end(), frame_.begin(), frame_.end());
+  frames_.write(*view.problem.ranks, std::move(frame));
+  if (!view.problem.ranks->alone())  // it is written already
+    finish_frame();
 }
 
 template <int D>

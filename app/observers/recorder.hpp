@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "app/observers/body_forces.hpp"
+#include "app/observers/frame_output.hpp"
 #include "app/observers/history.hpp"
 #include "app/observers/progress.hpp"
 #include "app/observers/runout.hpp"
@@ -57,8 +58,10 @@ class Recorder {
   bool fits(std::size_t walls, std::size_t bodies, Index particles) const;
   /// Continues from such a state with new files in another folder.
   void begin_again(const RunView<D>& view);
-  /// Returns when everything written is on the disk.
-  void flush() const;
+  /// Returns when the frame that is being written is on the disk.  Throws EnvironmentError if it could not be written.
+  void finish_frame();
+  /// Returns when everything written is on the disk, the frame included.
+  void flush();
   void stage_done(const StageResult& result) { stages_.push_back(result); }
   /// Records the changes by a stage before it begins, one line each.
   void changed(const std::vector<std::string>& lines) { changes_.insert(changes_.end(), lines.begin(), lines.end()); }
@@ -69,7 +72,9 @@ class Recorder {
   /// The files written to the folder, relative to it.
   std::span<const std::string> files() const noexcept { return std::span(files_).subspan(static_cast<std::size_t>(elsewhere_.files)); }
   std::string last_output() const { return last_output_.empty() ? "" : (folder_ / last_output_).string(); }
-  Real output_seconds() const noexcept { return output_seconds_; }
+  /// Wall times of output, and of the phases of the steps, in this run: without those of an earlier one that it continues [s].
+  Real output_seconds() const noexcept { return output_seconds_ - output_begin_; }
+  Timings step_seconds() const noexcept;
   Real bytes_per_particle() const noexcept { return bytes_per_particle_; }
   const RanksSummary& ranks() const noexcept { return ranks_; }  ///< at the end of the last stage
   const std::vector<BodySummary>& bodies() const noexcept { return bodies_; }
@@ -109,15 +114,13 @@ class Recorder {
   void name_lists();
   void warn(const RunView<D>& view) const;
   void write(const RunView<D>& view, bool last);
-  void write_particles_file(const RunView<D>& view);
-  void write_mesh_file(const RunView<D>& view);
+  void write_frame(const RunView<D>& view, bool particles, bool mesh);
   void write_runout(const RunView<D>& view, bool last);
   void name(const std::string& file);
   std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
 
   std::filesystem::path folder_;
-  std::string made_by_;
   const OutputSpec& outputs_;
   const std::vector<Stage>& stage_list_;
   BalanceHistory<D> accounts_;
@@ -126,19 +129,23 @@ class Recorder {
   Schedule particle_times_, mesh_times_, history_times_;
   std::optional<HistoryWriter<D>> history_;
   HistoryState<D> history_state_;  // state of history_ at its last row
-  PvdSeries particle_series_, mesh_series_;
+  FrameOutput frames_;
   int particle_files_ = 0, mesh_files_ = 0;
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // times of the last files or rows [s]
   Real stage_start_ = 0, done_before_ = 0;
   RanksSummary ranks_;
   Traffic traffic_begin_;  // at the beginning of the first step
   std::int64_t step_begin_ = 0;
+  Timings timings_begin_;
+  Real output_begin_ = 0;
   LastSeen<D> last_;
   std::vector<StageResult> stages_;
   std::vector<std::string> changes_;
   std::vector<std::string> files_;
   FilesOfEarlierRun elsewhere_;
-  std::string last_output_;  // relative to the folder
+  std::string last_output_;         // relative to the folder
+  std::vector<std::string> frame_;  // files of the frame that is being written
+  bool frame_has_particles_ = false;
   std::vector<BodySummary> bodies_;
   Runout<D> runout_;
   Real output_seconds_ = 0, bytes_per_particle_ = 0;

@@ -38,11 +38,13 @@ Part<D> part_of(const Mesh<D>& mesh, std::span<const std::int64_t> particles_in_
   return cut(mesh, partition(mesh, particles_in_block, world().size()), world().rank(), rings_held);
 }
 
-/// The model of a rank, of its part of the mesh and with a set-up in the numbers of that.  Every rank has to call it.
+/// The model of a rank, of its part of the mesh and with a set-up in the numbers of that.  Adds the time of the set-up of the kernel [s].
+/// Every rank has to call it.
 template <int D>
-Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup)
+Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup, Real& kernel_seconds)
 {
   std::unique_ptr<Transfer<D>> transfer;
+  StopWatch watch;
   world().agree(Communicator::caught([&] {
     try {
       transfer = make_transfer(scene.kernel, kernel_options_of(scene), part.mesh);
@@ -50,6 +52,7 @@ Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup)
       throw SceneErrors(scene.mesh.where, fmt::format("kernel \"{}\": {}", scene.kernel, e.what()));
     }
   }));
+  watch.lap(kernel_seconds);
   Model<D> m(std::move(part.mesh), std::move(transfer));
   if (!part.subdomain.alone())
     m.join(world(), std::move(part.subdomain));
@@ -62,7 +65,7 @@ Model<D> build(const Scene& scene, Part<D> part, Setup<D> setup)
 
 /// The same of the whole mesh and a set-up by parts: subdomains are made by the particles, which go to their owners.
 template <int D>
-Model<D> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
+Model<D> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup, Real& kernel_seconds)
 {
   Part<D> part{std::move(mesh), {}};
   if (!world().alone()) {
@@ -71,7 +74,7 @@ Model<D> build(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     receive_owned_particles(world(), part.subdomain, state.bodies, state.materials, state.particles);
     restrict_to(part.subdomain, setup);
   }
-  return build(scene, std::move(part), std::move(setup));
+  return build(scene, std::move(part), std::move(setup), kernel_seconds);
 }
 
 }  // namespace
@@ -120,8 +123,10 @@ class Simulation {
     if (may_move())
       rest_ = without_particles(setup);
     StopWatch watch;
-    model_.emplace(build(scene, std::move(mesh), std::move(setup)));
+    Real kernel = 0;
+    model_.emplace(build(scene, std::move(mesh), std::move(setup), kernel));
     watch.lap(build_seconds_);
+    callbacks_.kernel_made(kernel);
   }
 
   void operator()()
@@ -274,7 +279,8 @@ class Simulation {
     model_.reset();
     Setup<D> setup = rest_;
     restrict_to(part.subdomain, setup);
-    model_.emplace(build(scene_, std::move(part), std::move(setup)));
+    Real kernel = 0;  // part of the time of the redistribution
+    model_.emplace(build(scene_, std::move(part), std::move(setup), kernel));
     BoundaryConditions<D> boundary = std::move(model_->state.boundary);  // those of the new part of the mesh
     boundary.continue_from(state.boundary);
     state.boundary = std::move(boundary);
@@ -326,7 +332,8 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   Estimate cost{};
   cost.dt = first_step(mesh, setup);
   const Stage first_stage = setup.stages.front();
-  const Model<D> m = build(scene, std::move(mesh), std::move(setup));
+  Real kernel = 0;  // of no interest here
+  const Model<D> m = build(scene, std::move(mesh), std::move(setup), kernel);
   const auto bytes = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
   cost.particle_bytes = static_cast<std::int64_t>(bytes_of(m.state.particles));
   for (const Material& material : m.state.materials)

@@ -21,6 +21,8 @@ struct RunCallbacks {
                                                                                         const StageReport&) {};
   /// Called when everything that the run needs exists, before the first step.
   std::function<void(const RunView<D>&)> ready = [](const RunView<D>&) {};
+  /// Called with the wall time [s] in which the kernel was set up, before `ready`.
+  std::function<void(Real seconds)> kernel_made = [](Real) {};
 };
 
 /// A redistribution of the work among ranks.

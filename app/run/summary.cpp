@@ -220,13 +220,6 @@ void complete(const Recorder<D>& recorder, bool quick, RunSummary& s)
   s.steps = last.clock.step;
   s.simulated_time = last.clock.time;
   const Timings& t = last.timings;
-  for (const auto& [name, value] : std::initializer_list<std::pair<const char*, Real>>{{"locate", t.locate},
-                                                                                       {"scatter", t.scatter},
-                                                                                       {"nodes", t.nodes},
-                                                                                       {"gather", t.gather},
-                                                                                       {"stress", t.stress},
-                                                                                       {"output", recorder.output_seconds()}})
-    s.wall_seconds.push_back({name, value, ""});
   const Real in_steps = t.locate + t.scatter + t.nodes + t.gather + t.stress;
   s.particle_steps_per_second = in_steps > 0 ? t.particle_steps / in_steps : 0;
   s.bytes_per_particle = recorder.bytes_per_particle();

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <mutex>
 
 #include "core/error.hpp"
 #include "core/print.hpp"
@@ -130,6 +131,8 @@ std::string line_of(Proof proof, std::uint64_t digest, std::uint64_t bytes, std:
 void append_line(const fs::path& list, const std::string& line, const fs::path& file)
 {
   const auto fail = [&] { throw EnvironmentError(fmt::format("cannot write {}: {}", file.string(), std::strerror(errno))); };
+  static std::mutex one_line_at_a_time;  // frames are written on a thread of their own
+  const std::scoped_lock lock(one_line_at_a_time);
   const FileDescriptor opened(list, O_RDWR | O_APPEND);
   if (!opened.is_open())
     fail();

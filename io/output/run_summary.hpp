@@ -134,7 +134,7 @@ struct RunSummary {
 
   std::int64_t steps{};
   Real simulated_time{};                 ///< simulated time [s]
-  std::vector<NamedValue> wall_seconds;  ///< wall time by phase: mesh, build, each phase of the step, output
+  std::vector<NamedValue> wall_seconds;  ///< wall time by phase: set-up, each phase of the step, output, checkpoints
   Real wall_total{};                     ///< wall time in total [s]
   Real particle_steps_per_second{};
   Real bytes_per_particle{};

@@ -66,6 +66,32 @@ TYPED_TEST(NodeOperatorsIn, ColumnsAreTheRowsTransposedToTheBit)
   EXPECT_EQ(in_columns, by_row.size());
 }
 
+TYPED_TEST(NodeOperatorsIn, AreTheSameToTheBitForAnyNumberOfThreads)
+{
+  constexpr int D = TypeParam::D;
+  const Mesh<D>& mesh = jittered_mesh<D>();
+  const int before = threads();
+  const auto numbers_of = [&](int n_threads) {
+    set_threads(n_threads);
+    const auto operators = operators_of(mesh);
+    std::vector<Real> numbers;
+    for (Index n = 0; n < mesh.n_nodes(); ++n) {
+      const auto add = [&](Index v, Real S, const Vec<D>& gradient) {
+        numbers.insert(numbers.end(), {static_cast<Real>(v), S});
+        numbers.insert(numbers.end(), gradient.begin(), gradient.end());
+      };
+      operators.for_each_in_row(n, add);
+      operators.for_each_in_column(n, add);
+      numbers.insert(numbers.end(), operators.centre(n).begin(), operators.centre(n).end());
+    }
+    return numbers;
+  };
+  const auto of_one = numbers_of(1);
+  for (const int n_threads : {2, 3, 7})
+    EXPECT_EQ(numbers_of(n_threads), of_one) << n_threads << " threads";
+  set_threads(before);
+}
+
 TYPED_TEST(NodeOperatorsIn, UniformStressPullsAtNoInteriorNode)
 {
   constexpr int D = TypeParam::D;
