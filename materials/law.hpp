@@ -136,15 +136,16 @@ concept Law = requires(const L law, const Increment& in, typename L::State& stat
   { law.wave_speed(in.F, constants) } noexcept -> std::same_as<Real>;
 };
 
-/// A law that updates several particles at once.
-template <class L>
-concept UpdatesInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
-  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
+/// Whether the wave speed depends on the history.
+template <class L, class T>
+concept WaveSpeedOfHistory = requires(const L law, const Mat3Of<T>& F, const StateOf<T, typename L::State>& state, const typename L::Constants& constants) {
+  { law.wave_speed(F, state, constants) } noexcept -> std::same_as<T>;
 };
 /// A law that answers for several particles at once.
 template <class L>
-concept LawInLanes = UpdatesInLanes<L> && requires(const L law, const IncrementOf<SimdReal>& in, const typename L::Constants& constants) {
-  { law.wave_speed(in.F, constants) } noexcept -> std::same_as<SimdReal>;
+concept LawInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
+  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
+  requires WaveSpeedOfHistory<L, SimdReal> || requires { { law.wave_speed(in.F, constants) } noexcept -> std::same_as<SimdReal>; };
 };
 // clang-format on
 
@@ -155,11 +156,10 @@ Mat3Of<T> no_answer() noexcept
   return Mat3Of<T>::Constant(std::numeric_limits<Real>::quiet_NaN());
 }
 
-namespace detail {
 /// The stresses of several particles computed one after the other.  Lanes beyond `count` are zero.
 template <class L>
-Mat3Of<SimdReal> update_alone(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
-                              const typename L::Constants& constants) noexcept
+Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
+                                   const typename L::Constants& constants) noexcept
 {
   Mat3Of<SimdReal> stress = Mat3Of<SimdReal>::Zero();
   for (int lane = 0; lane < rows.count; ++lane) {
@@ -169,19 +169,6 @@ Mat3Of<SimdReal> update_alone(const L& law, const IncrementOf<SimdReal>& in, con
       stress(k).set(lane, after(k));
   }
   return stress;
-}
-}  // namespace detail
-
-/// The stresses of several particles for a law that is not wholly written for lanes: at once if its update is, otherwise one after the
-/// other.
-template <class L>
-Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, StateRows<typename L::State> rows,
-                                   const typename L::Constants& constants) noexcept
-{
-  if constexpr (UpdatesInLanes<L>)
-    return law.update(in, rows, constants);
-  else
-    return detail::update_alone(law, in, rows, constants);
 }
 
 /// What a law answers where some lane has no answer: to the others it must, so it is asked one lane at a time.
@@ -194,7 +181,7 @@ template <class L>
 Mat3Of<SimdReal> no_answer_somewhere(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
                                      const typename L::Constants& constants) noexcept
 {
-  return detail::update_alone(law, in, rows, constants);
+  return update_one_by_one(law, in, rows, constants);
 }
 
 /// True if the law says that its flow keeps the volume, which locks simplices.

@@ -142,7 +142,9 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   Real wave_speed(const Mat3& F, const Real* history) const noexcept override { return wave_speed(F, state_of(history)); }
   SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateRows<State>& rows) const noexcept
   {
-    if constexpr (LawInLanes<L>) {
+    if constexpr (WaveSpeedOfHistory<L, SimdReal>) {
+      return law_.wave_speed(F, rows, constants_);
+    } else if constexpr (LawInLanes<L>) {
       return law_.wave_speed(F, constants_);
     } else {
       SimdReal speed = 1;

@@ -19,7 +19,7 @@ struct AllKinds<TypeList<L...>> {
   using Types = typename AsGtest<decltype(joined(kinds_of<L>()...))>::Types;
 };
 // What costs most is written for lanes; without this a change of signature would be noticed by nothing but the time of a run.
-static_assert(LawInLanes<DruckerPrager> && LawInLanes<MohrCoulomb> && LawInLanes<VonMises> && UpdatesInLanes<ModifiedCamClay>);
+static_assert(LawInLanes<DruckerPrager> && LawInLanes<MohrCoulomb> && LawInLanes<VonMises> && LawInLanes<ModifiedCamClay>);
 static_assert(LawInLanes<JohnsonCookOf<false, false>> && LawInLanes<JohnsonCookOf<true, true>>);
 
 /// Laws in all their kinds, for several particles at once.
