@@ -33,20 +33,20 @@ struct ParticlePack {
   {
     constexpr int n = ParticleColumn<Value>::components;
     With<SimdReal, Value> all;
-    Pack of[n];
-    load_rows<n>({column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, of);
-    for (int c = 0; c < n; ++c)
-      component(all, c) = of[c];
+    load_rows<n>(
+        {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, [&](int c, const Pack& of)
+                                                                                                  __attribute__((always_inline)) {
+                                                                                                    component(all, c) = of;
+                                                                                                  });
     return all;
   }
   template <class Value>
   [[gnu::always_inline]] void store(const With<SimdReal, Value>& value, ParticleColumn<Value>& column) const noexcept
   {
     constexpr int n = ParticleColumn<Value>::components;
-    Pack of[n];
-    for (int c = 0; c < n; ++c)
-      of[c] = component(value, c).of;
-    store_rows<n>(of, {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, count);
+    store_rows<n>(
+        [&](int c) __attribute__((always_inline)) { return component(value, c).of; },
+        {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, count);
   }
   [[gnu::always_inline]] SimdReal load(std::span<const Real> column) const noexcept
   {
@@ -60,14 +60,14 @@ struct ParticlePack {
   }
 
  private:
-  static auto& component(auto& one, int) noexcept { return one; }
+  [[gnu::always_inline]] static auto& component(auto& one, int) noexcept { return one; }
   template <class T, int R, int C>
-  static T& component(Eigen::Matrix<T, R, C, Eigen::DontAlign>& all, int c) noexcept
+  [[gnu::always_inline]] static T& component(Eigen::Matrix<T, R, C, Eigen::DontAlign>& all, int c) noexcept
   {
     return all(c);
   }
   template <class T, int R, int C>
-  static const T& component(const Eigen::Matrix<T, R, C, Eigen::DontAlign>& all, int c) noexcept
+  [[gnu::always_inline]] static const T& component(const Eigen::Matrix<T, R, C, Eigen::DontAlign>& all, int c) noexcept
   {
     return all(c);
   }

@@ -39,45 +39,44 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 /// Loads four numbers from any address.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
-/// Converts n consecutive numbers of four rows to one pack per number, with one row per lane.  A whole pack is read from any number on, so
-/// up to three numbers behind a row.
-template <int n>
-[[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Pack* to) noexcept
+/// Calls take(k, pack) for n consecutive numbers of four rows, with one row per lane, from number `begin` on.  A whole pack is read from any
+/// number on, so up to three numbers behind a row.  (Loops over arrays of packs would become calls of memcpy.)
+template <int n, int begin = 0, class Take>
+[[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Take&& take) noexcept
 {
-  constexpr int whole = n % pack_size == 1 ? n - 1 : n;  // a single number is not worth transposing
-  for (int k = 0; k < whole; k += pack_size) {
-    Pack of[pack_size];
-    for (int lane = 0; lane < pack_size; ++lane)
-      of[lane] = load_loose(row[lane] + k);
-    transpose(of[0], of[1], of[2], of[3]);
-    for (int i = k; i < std::min(k + pack_size, n); ++i)
-      to[i] = of[i - k];
+  if constexpr (n == begin + 1) {  // not worth transposing
+    take(begin, Pack{row[0][begin], row[1][begin], row[2][begin], row[3][begin]});
+  } else if constexpr (n > begin) {
+    Pack a = load_loose(row[0] + begin), b = load_loose(row[1] + begin), c = load_loose(row[2] + begin), d = load_loose(row[3] + begin);
+    transpose(a, b, c, d);
+    take(begin, a), take(begin + 1, b);
+    if constexpr (n > begin + 2)
+      take(begin + 2, c);
+    if constexpr (n > begin + 3)
+      take(begin + 3, d);
+    load_rows<n, begin + pack_size>(row, take);
   }
-  for (int k = whole; k < n; ++k)
-    to[k] = Pack{row[0][k], row[1][k], row[2][k], row[3][k]};
 }
-/// Converts back for the first `count` rows, of which n numbers are written.
-template <int n>
-[[gnu::always_inline]] inline void store_rows(const Pack* from, Real* const (&row)[pack_size], int count) noexcept
+/// Stores the packs give(begin) to give(n - 1) to n consecutive numbers of the first `count` of four rows.
+template <int n, int begin = 0, class Give>
+[[gnu::always_inline]] inline void store_rows(Give&& give, Real* const (&row)[pack_size], int count) noexcept
 {
-  constexpr int whole = n / pack_size * pack_size, rest = n - whole;
-  for (int k = 0; k < whole; k += pack_size) {
-    Pack of[pack_size] = {from[k], from[k + 1], from[k + 2], from[k + 3]};
+  if constexpr (n == begin + 1) {
+    const Pack last = give(begin);
+    for (int lane = 0; lane < count; ++lane)
+      row[lane][begin] = last[lane];
+  } else if constexpr (n > begin) {
+    Pack of[pack_size] = {give(begin), give(begin + 1), give(std::min(begin + 2, n - 1)), give(std::min(begin + 3, n - 1))};
     transpose(of[0], of[1], of[2], of[3]);
     for (int lane = 0; lane < count; ++lane)
-      store_loose(row[lane] + k, of[lane]);
-  }
-  if constexpr (rest > 1) {
-    Pack of[pack_size] = {from[whole], from[whole + 1], from[n - 1], from[n - 1]};
-    transpose(of[0], of[1], of[2], of[3]);
-    for (int lane = 0; lane < count; ++lane) {
-      *reinterpret_cast<LoosePair*>(row[lane] + whole) = __builtin_shufflevector(of[lane], of[lane], 0, 1);
-      if constexpr (rest == 3)
-        row[lane][n - 1] = of[lane][2];
-    }
-  } else if constexpr (rest == 1) {
-    for (int lane = 0; lane < count; ++lane)
-      row[lane][n - 1] = from[n - 1][lane];
+      if constexpr (n < begin + pack_size) {
+        *reinterpret_cast<LoosePair*>(row[lane] + begin) = __builtin_shufflevector(of[lane], of[lane], 0, 1);
+        if constexpr (n == begin + 3)
+          row[lane][begin + 2] = of[lane][2];
+      } else {
+        store_loose(row[lane] + begin, of[lane]);
+      }
+    store_rows<n, begin + pack_size>(give, row, count);
   }
 }
 static_assert(pack_size == 4);
