@@ -56,14 +56,13 @@ struct MomentumNow {
   Vec3 lost = Vec3::Zero();    ///< angular momentum lost between particles and nodes [kg m^2/s]
   static constexpr auto fields()
   {
-    return std::tuple{saved("start", &MomentumNow::start), saved("end", &MomentumNow::end),
-                      saved("given", &MomentumNow::given), saved("forces", &MomentumNow::forces),
-                      saved("lost", &MomentumNow::lost),   saved("most_linear_defect", &MomentumNow::most_linear_defect)};
+    return std::tuple{saved("start", &MomentumNow::start), saved("end", &MomentumNow::end), saved("given", &MomentumNow::given),
+                      saved("forces", &MomentumNow::forces), saved("lost", &MomentumNow::lost)};
   }
 
-  /// The unexplained momentum over the sum of all momentum at the start and given: round-off of the precision of the particles.
+  /// The unexplained momentum over the sum of all momentum at the start and given, and its limit: round-off.
   Real linear_defect() const noexcept;
-  Real most_linear_defect = 1e-9;
+  static constexpr Real most_linear_defect = 1e-9;
   /// The moment of internal forces, which should be zero, over the sum of all angular momentum at the start and given.
   Real angular_defect() const noexcept;
   /// The angular momentum lost between particles and nodes, relative to the same sum.
