@@ -105,16 +105,16 @@ template <int D>
 void share_columns(const std::string& path, const Particles<D>& particles, const Slice& rows, std::vector<SharedArray>& arrays)
 {
   particles.for_each_column([&](std::string_view name, std::string_view unit, const auto& column) {
-    using Column = std::decay_t<decltype(column)>;
+    using Kept = std::decay_t<decltype(column)>;
     Slice slice = rows;
     if (column.empty())
       slice.of_all = 0;
     const CopyRows copy = [&column](std::size_t from, std::span<std::byte> to) {
-      for (; !to.empty(); to = to.subspan(row_bytes<Column>))
+      for (; !to.empty(); to = to.subspan(row_bytes<Kept>))
         save_row(column, from++, to.data());
     };
-    arrays.push_back({below(path, name), number_kind<typename RowsOf<Column>::Number>(), RowsOf<Column>::components, std::string(unit),
-                      copy, column.size(), slice});
+    arrays.push_back({below(path, name), number_kind<typename RowsOf<Kept>::Number>(), RowsOf<Kept>::components, std::string(unit), copy,
+                      column.size(), slice});
   });
 }
 /// Back from the rows from `first` on, `n` of them, column by column by way of memory for one; columns without any in the file have none here.  EnvironmentError.
