@@ -26,22 +26,21 @@ struct With<T, Eigen::Matrix<Real, R, C, Eigen::DontAlign>> {
 template <class T, class Value>
 using With = typename detail::With<T, Value>::type;
 
-/// One row per particle: the numbers of a row lie side by side, row after row.  New rows are zero.  A whole pack may be read from any number
-/// on: there is room behind the last row.
+/// One row per particle: the numbers of a row lie side by side, row after row.  New rows are zero.  Packs of four numbers may be loaded from
+/// the address of any number: three more numbers are allocated after the last row.
 template <class Value>
 class ParticleColumn {
  public:
   using Number = Real;
   static constexpr int components = detail::With<Real, Value>::size;
 
-  std::size_t size() const noexcept { return size_; }
-  bool empty() const noexcept { return size_ == 0; }
+  std::size_t size() const noexcept { return numbers_.empty() ? 0 : (numbers_.size() - spare) / components; }
+  bool empty() const noexcept { return size() == 0; }
   void resize(std::size_t n)
   {
     constexpr auto width = static_cast<std::size_t>(components);
     numbers_.resize(n * width + spare);
-    std::fill_n(numbers_.end() - spare, spare, 0.0);  // rows that come later begin there
-    size_ = n;
+    std::fill_n(numbers_.end() - spare, spare, 0.0);  // a later resize() turns these numbers into rows, which must be zero
   }
 
   // const, so that writing to a copy does not compile
@@ -67,14 +66,14 @@ class ParticleColumn {
   }
   void push_back(const Value& value)
   {
-    resize(size_ + 1);
-    set(size_ - 1, value);
+    resize(size() + 1);
+    set(size() - 1, value);
   }
   /// All rows.
   std::vector<Value> values() const
   {
     std::vector<Value> all;
-    for (std::size_t row = 0; row < size_; ++row)
+    for (std::size_t row = 0; row < size(); ++row)
       all.push_back((*this)[row]);
     return all;
   }
@@ -84,10 +83,9 @@ class ParticleColumn {
   const Real* row_at(std::size_t row) const noexcept { return numbers_.data() + row * static_cast<std::size_t>(components); }
 
  private:
-  static constexpr std::size_t spare = 3;  ///< numbers of a pack beside its first
+  static constexpr std::size_t spare = 3;  ///< numbers after the last row, so that a pack may be loaded from the last number
 
   Rows<Real> numbers_;
-  std::size_t size_ = 0;
 };
 
 // The same functions for columns and for arrays of single numbers.

@@ -11,7 +11,7 @@ namespace talus {
 struct ParticlePack {
   std::size_t p[pack_size];  ///< rows; the last one is repeated if there are fewer than four
   int count;
-  const Index* listed;  ///< where the rows are listed
+  const Index* listed;  ///< address of the first of these rows in their list; CellOrder derives positions from it
 
   /// The pack of up to four of `rows` from `begin` on.
   ParticlePack(std::span<const Index> rows, std::size_t begin) noexcept

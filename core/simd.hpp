@@ -39,8 +39,8 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 /// Loads four numbers from any address.
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
-/// Calls take(k, pack) for n consecutive numbers of four rows, with one row per lane, from number `begin` on.  A whole pack is read from any
-/// number on, so up to three numbers behind a row.  (Loops over arrays of packs would become calls of memcpy.)
+/// Calls take(k, pack) for n consecutive numbers of four rows, with one row per lane, from number `begin` on.  Whole packs are read,
+/// so up to three numbers behind a row; another thread may be writing these, and they are never used.
 template <int n, int begin = 0, class Take>
 [[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Take&& take) noexcept
 {

@@ -68,16 +68,21 @@ std::vector<Real> hat_volumes(const Mesh<D>& mesh)
   return volumes;
 }
 
+/// The number of ranges of nodes computed side by side, each with an array of all nodes.
+constexpr Index most_ranges = 16;
+
 template <int D>
 std::vector<Vec<D>> averaged_gradients(const Mesh<D>& mesh)
 {
   const auto volumes = hat_volumes(mesh);
   const Csr& ring = mesh.ring_of_node();
   std::vector<Vec<D>> gradients(ring.item.size(), Vec<D>::Zero());
-  const Index n_nodes = mesh.n_nodes(), ranges = threads();
+  const Index n_nodes = mesh.n_nodes(), ranges = std::min(threads(), most_ranges);
   const auto first_of = [&](Index range) { return static_cast<Index>(std::int64_t{n_nodes} * range / ranges); };
+  // For each range, the entry of each node in the row of n, where it has one; allocated here, as threads must not throw.
+  std::vector<std::vector<Index>> entries(static_cast<std::size_t>(ranges), std::vector<Index>(static_cast<std::size_t>(n_nodes)));
   parallel_for(ranges, [&](Index range) {
-    std::vector<Index> entry_in_row(static_cast<std::size_t>(n_nodes));  // of each node in the row of n, where it has one
+    std::vector<Index>& entry_in_row = entries[static_cast<std::size_t>(range)];
     for (Index n = first_of(range); n < first_of(range + 1); ++n) {
       Index entry = ring.begin[static_cast<std::size_t>(n)];
       for (const Index v : ring[n])

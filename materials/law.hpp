@@ -141,7 +141,7 @@ template <class L, class T>
 concept WaveSpeedOfHistory = requires(const L law, const Mat3Of<T>& F, const StateOf<T, typename L::State>& state, const typename L::Constants& constants) {
   { law.wave_speed(F, state, constants) } noexcept -> std::same_as<T>;
 };
-/// A law that answers for several particles at once.
+/// A law that computes several particles at once.
 template <class L>
 concept LawInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
   { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;

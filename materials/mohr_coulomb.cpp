@@ -195,7 +195,7 @@ struct SofteningReturn {
     auto open = flows && high < c.softening_strain;
     if (!any_of(open))
       return {end, high};
-    const auto g = [&](const T& x) -> T {  // lanes that have ended are asked again for the same x, so that `end` stays theirs
+    const auto g = [&](const T& x) -> T {  // lanes that have converged are evaluated again at the same x, so that `end` is theirs
       end = land(c.strength_at(x));
       return start + plastic_strain(end) - x;
     };

@@ -191,14 +191,19 @@ template <int D>
 Csr nodes_around(std::span<const std::array<Index, D + 1>> cells, const Csr& cells_of_node)
 {
   const Index n_nodes = cells_of_node.size();
-  const Index ranges = threads();
+  constexpr Index most_ranges = 16;  // each needs an array of all nodes
+  const Index ranges = std::min(threads(), most_ranges);
   const auto first_of = [&](Index range) { return static_cast<Index>(std::int64_t{n_nodes} * range / ranges); };
+  // For each range, the last of its rings that has each node; allocated here, as are the usual rings: threads should not throw.
+  std::vector<std::vector<Index>> lasts(static_cast<std::size_t>(ranges), std::vector<Index>(static_cast<std::size_t>(n_nodes), none));
   std::vector<std::vector<Index>> rings(static_cast<std::size_t>(ranges));  // of the nodes of each range, one after the other
+  for (std::vector<Index>& ring : rings)
+    ring.reserve(static_cast<std::size_t>(n_nodes / ranges + 1) * (D == 2 ? 8 : 18));
   Csr around;
   around.begin.assign(static_cast<std::size_t>(n_nodes) + 1, 0);
   parallel_for(ranges, [&](Index range) {
     std::vector<Index>& ring = rings[static_cast<std::size_t>(range)];
-    std::vector<Index> last(static_cast<std::size_t>(n_nodes), none);  // the last ring of the range that has the node
+    std::vector<Index>& last = lasts[static_cast<std::size_t>(range)];
     for (Index n = first_of(range); n < first_of(range + 1); ++n) {
       const auto begin = static_cast<std::ptrdiff_t>(ring.size());
       for (const Index c : cells_of_node[n])

@@ -1,5 +1,5 @@
 #pragma once
-// Work on a thread of its own, beside that of the caller.
+// Runs a function on a second thread while the caller continues.
 #include <atomic>
 #include <exception>
 #include <functional>
@@ -19,7 +19,8 @@ class BackgroundTask {
   /// Returns when the work is finished; an exception of it is lost.
   ~BackgroundTask() { join(); }
 
-  /// Starts the work, after wait().  Does it at once where the system grants no thread.
+  /// Starts the work, after wait().  If no thread can be created, the work is done before start() returns, with all threads of the caller;
+  /// its exception is still thrown by wait().
   void start(std::function<void()> work)
   {
     wait();

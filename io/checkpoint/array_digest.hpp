@@ -37,6 +37,9 @@ struct Pieces {
   std::uint64_t digest(std::uint64_t meaning) const { return digest_of(std::as_bytes(std::span<const std::uint64_t>(words())), meaning); }
 };
 
+/// Copies rows of an array, from row number `from` on, as many as fit.
+void pack(const SharedArray& array, std::size_t from, std::size_t row_bytes, std::span<std::byte> to);
+
 /// The digests of the pieces of an array on this rank.
 std::vector<std::uint64_t> digests_of(const SharedArray& array, std::size_t number_bytes, std::uint64_t meaning);
 

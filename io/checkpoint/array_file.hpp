@@ -35,20 +35,15 @@ constexpr NumberKind number_kind()
   }
 }
 
-/// Copies rows of this rank, each of `columns` numbers, to memory: from row number `from` on, as many as fit.  Called by several threads.
-using CopyRows = std::function<void(std::size_t from, std::span<std::byte> to)>;
-/// Rows that lie in memory one after the other.
-CopyRows rows_in(std::span<const std::byte> memory, std::size_t row_bytes);
-
-/// An array that ranks write together.
+/// An array that ranks write together: the rows of this rank, as they lie in memory.
 struct SharedArray {
   std::string path;
   NumberKind kind;
   int columns;
   std::string unit;
-  CopyRows copy;
-  std::size_t rows;  ///< number of rows on this rank
-  Slice slice;       ///< the position of these rows in the array: whole pieces
+  const std::byte* first;    ///< first of the rows, each of `columns` numbers, at a distance of `stride` bytes
+  std::size_t rows, stride;  ///< number of rows on this rank; bytes from row to row
+  Slice slice;               ///< the position of these rows in the array: whole pieces
 };
 
 /// Writes a file in the format HDF5, which other programs can read.  Every array and every text also has a digest that ArrayReader checks,
@@ -83,7 +78,7 @@ class ArrayWriter {
 };
 
 /// Writes a file by all ranks together, as write_together(): rest(writer) on the root, and the rows of each rank at their positions.  The
-/// bytes do not depend on the number of ranks.
+/// bytes do not depend on the number of ranks or on the stride.
 void write_arrays(Communicator& ranks, const std::filesystem::path& file, std::span<const SharedArray> shared,
                   const std::function<void(ArrayWriter&)>& rest);
 

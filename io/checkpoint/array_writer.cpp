@@ -26,9 +26,11 @@ namespace fs = std::filesystem;
 void put_rows(const SharedArray& array, std::size_t row_bytes, std::uint64_t place, const PutBytes& put, std::span<std::byte> room)
 {
   place += static_cast<std::uint64_t>(array.slice.first) * row_bytes;
+  if (array.stride == row_bytes)
+    return put(place, {array.first, array.rows * row_bytes});
   for (std::size_t row = 0; row < array.rows;) {
     const std::size_t n = std::min(room.size() / row_bytes, array.rows - row);
-    array.copy(row, room.first(n * row_bytes));
+    pack(array, row, row_bytes, room.first(n * row_bytes));
     put(place + row * row_bytes, room.first(n * row_bytes));
     row += n;
   }
@@ -132,7 +134,7 @@ struct ArrayWriter::Opened {
   {
     const auto rows = static_cast<std::size_t>(shape.rows), row_bytes = values.size() / std::max<std::size_t>(rows, 1);
     const Slice all{0, static_cast<std::int64_t>(rows)};
-    const SharedArray bytes{path, NumberKind::uint8, static_cast<int>(row_bytes), {}, rows_in(values, row_bytes), rows, all};
+    const SharedArray bytes{path, NumberKind::uint8, static_cast<int>(row_bytes), {}, values.data(), rows, row_bytes, all};
     Handle array = make(path, type, shape, unit, {all, digests_of(bytes, 1, digest_of(path, type_word(type), shape, unit))});
     if ((!values.empty() && H5Dwrite(array.id(), type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0) || !array.close() ||
         disk.failure() != 0)

@@ -2,7 +2,6 @@
 // What is kept of a run, to the last bit: structs by their fields(), particles by their columns, laws by their histories.
 #include <fmt/format.h>
 
-#include <cstring>
 #include <string>
 #include <type_traits>
 #include <variant>
@@ -99,38 +98,29 @@ void load(const ArrayReader& file, const std::string& path, T& value)
   }
 }
 
-/// Every column, in the numbers it is kept in: `rows` tells which of the file are here.  Of arrays without rows there are none in the file
-/// either.
+/// Adds all columns; `rows` gives the position of the rows of this rank in the file.  A column without rows has none in the file either.
 template <int D>
 void share_columns(const std::string& path, const Particles<D>& particles, const Slice& rows, std::vector<SharedArray>& arrays)
 {
   particles.for_each_column([&](std::string_view name, std::string_view unit, const auto& column) {
-    using Kept = std::decay_t<decltype(column)>;
+    using Kept = RowsOf<std::decay_t<decltype(column)>>;
     Slice slice = rows;
     if (column.empty())
       slice.of_all = 0;
-    const CopyRows copy = [&column](std::size_t from, std::span<std::byte> to) {
-      for (; !to.empty(); to = to.subspan(row_bytes<Kept>))
-        save_row(column, from++, to.data());
-    };
-    arrays.push_back({below(path, name), number_kind<typename RowsOf<Kept>::Number>(), RowsOf<Kept>::components, std::string(unit), copy,
-                      column.size(), slice});
+    arrays.push_back({below(path, name), number_kind<typename Kept::Number>(), Kept::components, std::string(unit),
+                      reinterpret_cast<const std::byte*>(numbers_of(column, 0)), column.size(), row_bytes<std::decay_t<decltype(column)>>,
+                      slice});
   });
 }
-/// Back from the rows from `first` on, `n` of them, column by column by way of memory for one; columns without any in the file have none here.  EnvironmentError.
+/// Reads `n` rows from row `first` on; a column without rows in the file gets none.  EnvironmentError.
 template <int D>
 void recall_columns(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, Particles<D>& particles)
 {
   particles.for_each_column([&](std::string_view name, std::string_view, auto& column) {
-    using Number = typename RowsOf<std::decay_t<decltype(column)>>::Number;
-    constexpr int columns = RowsOf<std::decay_t<decltype(column)>>::components;
+    constexpr int components = RowsOf<std::decay_t<decltype(column)>>::components;
     const std::string at = below(path, name);
     column.resize(file.rows(at) > 0 ? n : 0);
-    std::vector<Number> numbers(column.size() * static_cast<std::size_t>(columns));
-    file.read_rows(at, column.empty() ? 0 : first, std::span(numbers), columns);
-    const auto bytes = std::as_bytes(std::span(numbers));
-    for (std::size_t row = 0; row < column.size(); ++row)
-      load_row(bytes.data() + row * row_bytes<std::decay_t<decltype(column)>>, column, row);
+    file.read_rows(at, column.empty() ? 0 : first, std::span(numbers_of(column, 0), column.size() * components), components);
   });
 }
 
@@ -138,15 +128,10 @@ void recall_columns(const ArrayReader& file, const std::string& path, std::size_
 inline void share_history(const std::string& path, const Material& material, const Slice& rows, std::vector<SharedArray>& arrays)
 {
   const HistoryRows& history = material.history;
-  for (const HistoryVariable& variable : material.law().variables()) {
-    const CopyRows copy = [&material, variable](std::size_t from, std::span<std::byte> to) {
-      const std::size_t bytes = static_cast<std::size_t>(variable.components) * sizeof(Real);
-      for (; !to.empty(); to = to.subspan(bytes))
-        std::memcpy(to.data(), &history_value(material, variable, static_cast<Index>(from++)), bytes);
-    };
-    arrays.push_back({below(path, variable.key), NumberKind::float64, variable.components, std::string(variable.unit), copy,
-                      static_cast<std::size_t>(history.size()), rows});
-  }
+  for (const HistoryVariable& variable : material.law().variables())
+    arrays.push_back({below(path, variable.key), NumberKind::float64, variable.components, std::string(variable.unit),
+                      history.size() > 0 ? reinterpret_cast<const std::byte*>(&history_value(material, variable, 0)) : nullptr,
+                      static_cast<std::size_t>(history.size()), history.row_bytes(), rows});
 }
 /// Back from the rows from `first` on, of a material whose range is right already, where the file has `n` of all ranks.
 inline void recall_history(const ArrayReader& file, const std::string& path, std::size_t first, std::size_t n, Material& material)

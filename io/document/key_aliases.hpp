@@ -18,7 +18,7 @@ constexpr std::string_view removed_choice(std::string_view choice) noexcept
   if (choice == "projected.values")
     return "the kernel has one kind of values, those of largest entropy (maxent): leave the key out";
   if (choice == "precision")
-    return "particles are kept in double precision; single precision saved little time and was taken away: leave the key out";
+    return "particles are kept in double precision; single precision saved little time and was removed: leave the key out";
   if (choice == "umls_projected")
     return "this kernel was taken away: take projected, which has the same gradient, or umls, which has the same values";
   return "";

@@ -23,7 +23,7 @@ template <int D>
 bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, std::vector<Body>& bodies,
               std::vector<Material>& materials, Particles<D>& particles, CellOrder& order, StepSums<D>& sums, ParticleErrors& errors);
 
-/// Lists the particles of a pack that are not deep inside their cell with those that may leave it.
+/// Adds the particles of a pack that are not well inside their cell to the list `leaving` of the order.
 template <int D>
 [[gnu::always_inline]] inline void add_leaving(const typename Locator<D>::Probe& probe, const ParticlePack& pack, const VecOf<D>& x,
                                                std::size_t key, CellOrder& order) noexcept

@@ -4,9 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
-#include <functional>
+#include <cstring>
 
 #include "core/parallel/exact_sum.hpp"
 #include "solver/particles/relocate.hpp"
@@ -15,11 +14,31 @@ namespace talus {
 
 namespace {
 
-/// Rows that come, of a column that is called by its number: save(row, to) copies one to an address.
+/// The arriving rows of one column.
 struct Coming {
+  const std::byte* rows;
   std::size_t count;
-  std::function<void(std::size_t row, std::byte* to)> save;
 };
+
+/// The rows of each body, those that were there and behind them those that come.
+template <class Column>
+void interleave(const Column& there, const std::byte* coming, const std::vector<Body>& bodies, const std::vector<Body>& of_crowd,
+                Column& all)
+{
+  constexpr std::size_t size = row_bytes<Column>;
+  auto* to = reinterpret_cast<std::byte*>(numbers_of(all, 0));
+  const auto* from = reinterpret_cast<const std::byte*>(numbers_of(there, 0));
+  const auto append = [&](const std::byte* rows, const Body& body) {
+    const std::size_t bytes = size * static_cast<std::size_t>(body.size());
+    if (bytes > 0)
+      std::memcpy(to, rows + size * static_cast<std::size_t>(body.begin), bytes);
+    to += bytes;
+  };
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    append(from, bodies[b]);
+    append(coming, of_crowd[b]);
+  }
+}
 
 }  // namespace
 
@@ -46,26 +65,16 @@ void insert_particles(ParticleSet<D> arriving, std::vector<Body>& bodies, std::v
     return;
   std::vector<Coming> coming;
   arriving.particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
-    coming.push_back({column.size(), [&column](std::size_t row, std::byte* to) { save_row(column, row, to); }});
+    coming.push_back({reinterpret_cast<const std::byte*>(numbers_of(column, 0)), column.size()});
   });
   std::size_t number = 0;
   particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
     const Coming& more = coming[number++];
     if (more.count == 0)
       return;
-    using Column = std::decay_t<decltype(column)>;
-    Column all;
+    std::decay_t<decltype(column)> all;
     all.resize(n);
-    std::array<std::byte, row_bytes<Column>> one;
-    std::size_t to = 0;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {  // of each body those that were there, then those that come
-      for (Index row = column.empty() ? bodies[b].end : bodies[b].begin; row < bodies[b].end; ++row)
-        copy_row(column, static_cast<std::size_t>(row), all, to++);
-      for (Index row = arriving.bodies[b].begin; row < arriving.bodies[b].end; ++row) {
-        more.save(static_cast<std::size_t>(row), one.data());
-        load_row(one.data(), all, to++);
-      }
-    }
+    interleave(column, more.rows, bodies, arriving.bodies, all);
     column = std::move(all);
   });
   Index begin = 0;

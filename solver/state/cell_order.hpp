@@ -59,8 +59,8 @@ struct CellOrder {
 void sort_by_cell(std::span<const Index> cell, std::span<const std::int64_t> id, std::span<const Body> bodies, Index n_cells,
                   CellOrder& order);
 
-/// Sorts after some particles have changed their cells: those in `leaving`, which is empty afterwards.  The result is that of
-/// sort_by_cell(), but only these are moved, in parallel.
+/// Sorts after some particles have changed their cells.  All of them must be in `leaving`, which is invalid afterwards; it may also contain
+/// particles whose cell is unchanged.  The result is that of sort_by_cell(), but only these are moved, in parallel.
 void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, CellOrder& order);
 
 /// Updates the order after all rows in the blocks `left` have been removed and other rows have moved to their places: `moves` lists the

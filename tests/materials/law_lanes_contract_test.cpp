@@ -1,4 +1,4 @@
-// The contract of laws that answer for several particles at once: each as if it were alone.
+// The contract of laws that compute several particles at once: each as if it were alone.
 #include "tests/materials/law_contract.hpp"
 
 namespace talus::law_contract_test {

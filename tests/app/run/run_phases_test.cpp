@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <map>
+#include <regex>
 #include <thread>
 
 #include "tests/app/program.hpp"

@@ -10,6 +10,8 @@ namespace {
 
 TEST(BackgroundTask, WorksBesideTheCallerOnOneThread)
 {
+  const int before = threads();
+  set_threads(3);
   BackgroundTask task;
   std::promise<void> go_on;
   int threads_there = 0;
@@ -25,6 +27,8 @@ TEST(BackgroundTask, WorksBesideTheCallerOnOneThread)
   task.wait();
   EXPECT_TRUE(task.is_done());
   EXPECT_EQ(threads_there, 1);
+  EXPECT_EQ(threads(), 3) << "the number of the caller";
+  set_threads(before);
   EXPECT_NE(where, std::this_thread::get_id());
 }
 

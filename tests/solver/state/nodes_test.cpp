@@ -238,7 +238,7 @@ TEST(CellOrder, SortingAgainGivesWhatSortingAnewDoes)
     again.begin_test();
     for (std::size_t key = 0; key < again.keys(); ++key)
       for (const Index& row : again.rows(key))
-        if (cell[static_cast<std::size_t>(row)] != before[static_cast<std::size_t>(row)])
+        if (cell[static_cast<std::size_t>(row)] != before[static_cast<std::size_t>(row)] || row % 7 == 0)  // some that stay
           again.add_leaving(key, &row);
     sort_again(cell, id, again);
     sort_by_cell(cell, id, bodies, n_cells, anew);
