@@ -64,8 +64,9 @@ TEST(PrincipalAxes, OfADiagonalTensorAreThoseOfTheCoordinatesExactly)
     const PrincipalAxes<Real> found = direction_of(a).axes();
     for (const auto& axis : {found.first, found.last})
       EXPECT_EQ(axis.cwiseAbs().maxCoeff(), 1) << values.transpose();
-    if (values[0] == values[1])
+    if (values[0] == values[1]) {
       EXPECT_EQ(found.tensor(found.values)[0], found.tensor(found.values)[1]);
+    }
   }
 }
 
@@ -110,9 +111,10 @@ TEST(PrincipalAxes, EveryLaneHasItsOwn)
       const Sym3 made = alone.tensor(Vec3(1, 5, 7));
       for (int k = 0; k < 3; ++k)
         EXPECT_NEAR(found.values[k][lane], alone.values[k], 10 * rounding) << lane;
-      if (n % 5 != lane && alone.values[0] - alone.values[1] > 0.01 && alone.values[1] - alone.values[2] > 0.01)
+      if (n % 5 != lane && alone.values[0] - alone.values[1] > 0.01 && alone.values[1] - alone.values[2] > 0.01) {
         for (int k = 0; k < 6; ++k)
           EXPECT_NEAR(found.tensor(Vec3Of<SimdReal>(1, 5, 7))[k][lane], made[k], 1e-12) << lane;
+      }
     }
   }
 }
