@@ -97,7 +97,8 @@ struct SmallRun {
       p.L.set(row, Mat<2>::Zero());
       p.F.set(row, Mat3::Identity());
       p.stress.set(row, Sym3::Zero());
-      p.volume0[row] = p.volume[row] = 0.1;
+      p.volume0.set(row, 0.1);
+      p.volume.set(row, 0.1);
       p.mass.set(row, 100);
     }
     sort();

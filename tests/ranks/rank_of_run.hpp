@@ -70,7 +70,7 @@ struct Maker {
     const Real number = 1 + static_cast<Real>(id);
     p.id.push_back(id);
     p.cell.push_back(cell(id));
-    p.x.emplace_back(number, -number);
+    p.x.push_back({number, -number});
     p.v.push_back({2 * number, 0});
     p.L.push_back(Mat<2>::Constant(number));
     p.F.push_back(Mat3::Identity());

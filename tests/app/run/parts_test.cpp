@@ -140,7 +140,7 @@ Particles<2> row_of_four()
   Particles<2> particles;
   for (const Real x : {3.0, 0.0, 2.0, 1.0}) {
     particles.id.push_back(static_cast<std::int64_t>(particles.id.size()));
-    particles.x.emplace_back(x, 0);
+    particles.x.push_back({x, 0});
     particles.mass.push_back(1);
   }
   return particles;
