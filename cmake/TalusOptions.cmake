@@ -6,10 +6,6 @@ set(TALUS_COMPILE_OPTIONS -fno-math-errno -fno-trapping-math)
 if(TALUS_TRAPS)   # the second lets the compiler do what may trap before it knows whether it is wanted
   list(REMOVE_ITEM TALUS_COMPILE_OPTIONS -fno-trapping-math)
 endif()
-# Copies of tensors of packs stay loops, which are unrolled; calls of memcpy in their place send every pack through memory.
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_BUILD_TYPE STREQUAL Release)
-  list(APPEND TALUS_COMPILE_OPTIONS -fno-tree-loop-distribute-patterns)
-endif()
 if(TALUS_LEVEL)
   list(APPEND TALUS_COMPILE_OPTIONS -march=${TALUS_LEVEL})
 elseif(TALUS_NATIVE)
