@@ -33,20 +33,16 @@ struct ParticlePack {
   {
     constexpr int n = ParticleColumn<Value>::components;
     With<SimdReal, Value> all;
-    load_rows<n>(
-        {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, [&](int c, const Pack& of)
-                                                                                                  __attribute__((always_inline)) {
-                                                                                                    component(all, c) = of;
-                                                                                                  });
+    const auto take = [&](int c, const Pack& of) __attribute__((always_inline)) { component(all, c) = of; };
+    load_rows<n>({column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, take);
     return all;
   }
   template <class Value>
   [[gnu::always_inline]] void store(const With<SimdReal, Value>& value, ParticleColumn<Value>& column) const noexcept
   {
     constexpr int n = ParticleColumn<Value>::components;
-    store_rows<n>(
-        [&](int c) __attribute__((always_inline)) { return component(value, c).of; },
-        {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, count);
+    const auto give = [&](int c) __attribute__((always_inline)) { return component(value, c).of; };
+    store_rows<n>(give, {column.row_at(p[0]), column.row_at(p[1]), column.row_at(p[2]), column.row_at(p[3])}, count);
   }
   [[gnu::always_inline]] SimdReal load(std::span<const Real> column) const noexcept
   {

@@ -167,7 +167,7 @@ void carry_history(const Material& from, std::span<const Index> rows, Material& 
 template <int D>
 Real settle_stress(const Body& body, std::string_view law_there, Real dt, Communicator& ranks, Material& material, Particles<D>& particles)
 {
-  constexpr Real round_off = 1e-6;  // of stresses, with a margin for logarithms of small strains
+  constexpr Real round_off = 1e-6;  // relative to the largest stress: chosen when stresses could be in single precision
   const auto compare = [&](bool take_over) {
     const StressFit here = fit_stress(body, material, dt, take_over, particles);
     return StressFit{ranks.max(here.largest), ranks.max(here.apart)};
