@@ -12,17 +12,6 @@ namespace talus {
 
 namespace {
 
-template <class Row>
-bool is_finite(const Row& row)
-{
-  if constexpr (std::is_floating_point_v<Row>)
-    return std::isfinite(row);
-  else if constexpr (std::is_integral_v<Row>)
-    return true;
-  else
-    return row.allFinite();
-}
-
 /// The lowest i in [0, n) with is_bad(i), or none.
 template <class F>
 Index first_bad(Index n, F&& is_bad)

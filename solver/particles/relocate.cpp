@@ -141,7 +141,7 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
 {
   const bool unsorted = order.row.size() != particles.id.size();
   std::atomic<bool> moved = unsorted, outside = false;
-  /// Whether a particle is elsewhere than in its cell, as far as is known.
+  // Whether a particle is not in its cell; takes the new cell over where there is one.
   const auto find = [&](std::size_t p) {
     if (!particles.x[p].allFinite()) {
       errors.report(particles.id[p], Trouble::not_finite);

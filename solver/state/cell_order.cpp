@@ -99,12 +99,13 @@ void sort_again(std::span<const Index> cell, std::span<const std::int64_t> id, C
     const auto rows = part(order.row, order.first, key), coming = part(order.arrived, arrivals, key);
     auto stay = rows.begin();  // the rows that stay close up
     auto next = rows.begin();
+    const auto close_up = [&](auto end) { return stay == next ? end : std::copy(next, end, stay); };
     for (const Index position : order.leaving_of(key)) {
       const auto gap = rows.begin() + (position - order.first[key]);
-      stay = std::copy(next, gap, stay);
+      stay = close_up(gap);
       next = gap + 1;
     }
-    stay = std::copy(next, rows.end(), stay);
+    stay = close_up(rows.end());
     std::sort(coming.begin(), coming.end(), in_order);
     auto to = part(order.next_row, order.count, key).begin();
     auto from = rows.begin();
