@@ -57,9 +57,9 @@ class ConstitutiveLaw {
 
   /// Cauchy stress [Pa] of one particle at the end of the step; changes its history.
   virtual Mat3 update(const Increment& step, Real* history) const noexcept = 0;
-  /// Deformation and stress of the particles of `material`, whose law this is, in a block: see update_stress() of material.hpp.
-  virtual StressSums update_stress(Material& material, const StressBlock<2>& block) const noexcept = 0;
-  virtual StressSums update_stress(Material& material, const StressBlock<3>& block) const noexcept = 0;
+  /// Deformation and stress of particles of `material`, whose law this is: see update_stress() of material.hpp.
+  virtual StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept = 0;
+  virtual StressSums update_stress(const Material& material, const StressStrip<3>& strip) const noexcept = 0;
 
   /// Upper bound of the speed of sound [m/s] under F, for any history.
   virtual Real wave_speed(const Mat3& F) const noexcept = 0;

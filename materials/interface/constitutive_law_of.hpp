@@ -129,13 +129,13 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
     else
       return update_one_by_one(law_, step, rows, constants_);
   }
-  StressSums update_stress(Material& material, const StressBlock<2>& block) const noexcept override
+  StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept override
   {
-    return update_block(material, block);
+    return update_strip(material, strip);
   }
-  StressSums update_stress(Material& material, const StressBlock<3>& block) const noexcept override
+  StressSums update_stress(const Material& material, const StressStrip<3>& strip) const noexcept override
   {
-    return update_block(material, block);
+    return update_strip(material, strip);
   }
 
   Real wave_speed(const Mat3& F) const noexcept override { return law_.wave_speed(F, constants_); }
@@ -198,86 +198,84 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
 
   template <int D>
-  StressSums update_block(Material& material, const StressBlock<D>& block) const noexcept
+  StressSums update_strip(const Material& material, const StressStrip<D>& strip) const noexcept
   {
     detail::StressLanes lanes;
-    for_each_pack(
-        block.rows, [&](const ParticlePack& pack) { update_pack(material, pack, block, lanes); },
-        [&](std::size_t p) {
-          const Particles<D>& particles = block.particles;
-          prefetch_row(p, particles.F, particles.stress, particles.volume, particles.volume0, particles.mass);
-        });
+    for (std::size_t i = 0; i < strip.n; i += pack_size)
+      update_pack(material, strip, i, lanes);
     return lanes.total();
   }
 
+  /// Particles i to i + 3 of the strip, or those up to its end.
   template <int D>
-  [[gnu::flatten]] void update_pack(Material& material, const ParticlePack& pack, const StressBlock<D>& block,
+  [[gnu::flatten]] void update_pack(const Material& material, const StressStrip<D>& strip, std::size_t i,
                                     detail::StressLanes& sums) const noexcept
   {
-    Particles<D>& particles = block.particles;
-    const Real dt = block.dt;
-    const auto rate = pack.load(particles.L);
+    const Real dt = strip.dt;
+    const int count = static_cast<int>(std::min<std::size_t>(pack_size, strip.n - i));
+    const auto report = [&](int lane, Trouble trouble) { strip.errors->report(strip.id[i + static_cast<std::size_t>(lane)], trouble); };
+    const auto rate = strip.L.load(i);
     const Mat3Of<SimdReal> velocity_gradient = embed(rate);
-    Mat3Of<SimdReal> F = pack.load(particles.F);
+    Mat3Of<SimdReal> F = strip.F.load(i);
     F.template topLeftCorner<D, D>() += SimdReal(dt) * (rate * F.template topLeftCorner<D, D>());
-    pack.store(F, particles.F);
+    strip.F.store(i, F);
     const SimdReal J = F.determinant();
     const auto good = J > 0;  // false for NaN
     if (!all_of(good))
-      for (int lane = 0; lane < pack.count; ++lane)
+      for (int lane = 0; lane < count; ++lane)
         if (!good[lane])
-          block.errors.report(particles.id[pack.p[lane]], std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
-    const SimdReal volume_before = pack.load(particles.volume), volume = J * pack.load(particles.volume0);
-    pack.store(volume, particles.volume);
+          report(lane, std::isfinite(J[lane]) ? Trouble::inverted : Trouble::not_finite);
+    const SimdReal volume_before = strip.volume.load(i), volume = J * strip.volume0.load(i);
+    strip.volume.store(i, volume);
     const SimdReal shrinking = max(-SimdReal(rate.trace()), 0);
-    const SimdReal h = pack.lanes([&](std::size_t p) { return block.altitudes[static_cast<std::size_t>(particles.cell[p])]; });
+    const SimdReal h = strip.altitude.load(i);
 
-    const Sym3Of<SimdReal> stored = pack.load(particles.stress);
+    const Sym3Of<SimdReal> stored = strip.stress.load(i);
     Mat3Of<SimdReal> F_of_law = F, L_of_law = velocity_gradient, stress_of_law = unpack(stored);
     if (material.averages_volume) {
-      const SimdReal to_average = pack.load(block.averaged) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
-      const SimdReal s = ratio / pack.load(particles.volume_ratio);
-      pack.store(ratio, particles.volume_ratio);
+      const SimdReal to_average = strip.averaged.load(i) / J, ratio = D == 2 ? sqrt(to_average) : pow(to_average, Real{1} / D);
+      const SimdReal s = ratio / strip.volume_ratio.load(i);
+      strip.volume_ratio.store(i, ratio);
       F_of_law = detail::scaled_in_plane<D>(F, ratio);
       L_of_law = detail::scaled_in_plane<D>(velocity_gradient, s);
       for (int d = 0; d < D; ++d)
         L_of_law(d, d) += (s - 1) / dt;
     }
-    StateRows<State> states{{}, pack.count};
+    StateRows<State> states{{}, count};
     for (int lane = 0; lane < pack_size; ++lane)
-      states.row[lane] = &state_of(material.history.row(static_cast<Index>(pack.p[lane]) - material.begin));
+      states.row[lane] = &state_of(strip.history[std::min(i + static_cast<std::size_t>(lane), strip.n - 1)]);
     const SimdReal speed_of_waves = wave_speed(F_of_law, states);
     SimdReal q = 0;
     if (material.viscosity) {
-      stress_of_law.diagonal().array() += pack.load(particles.viscous);
-      q = pack.load(particles.mass) / volume * h * shrinking *
+      stress_of_law.diagonal().array() += strip.viscous.load(i);
+      q = strip.mass.load(i) / volume * h * shrinking *
           (material.viscosity->quadratic * h * shrinking + material.viscosity->linear * speed_of_waves);
-      pack.store(q, particles.viscous);
+      strip.viscous.store(i, q);
     }
     SimdReal u = 0;
-    if (!block.pore_after.empty()) {
-      stress_of_law.diagonal().array() += pack.load(particles.pore);
-      u = pack.load(block.pore_after);
-      pack.store(u, particles.pore);
+    if (strip.pore_after) {
+      stress_of_law.diagonal().array() += strip.pore.load(i);
+      u = strip.pore_after.load(i);
+      strip.pore.store(i, u);
     }
-    Mat3Of<SimdReal> after = update({F_of_law, L_of_law, stress_of_law, dt, q, block.elastic}, states);
+    Mat3Of<SimdReal> after = update({F_of_law, L_of_law, stress_of_law, dt, q, strip.elastic}, states);
     after.diagonal().array() -= q + u;
     const Sym3Of<SimdReal> stress = talus::pack(after);
     const auto answered = isfinite(SimdReal(stress.sum()));
     if (!all_of(answered))
-      for (int lane = 0; lane < pack.count; ++lane)
+      for (int lane = 0; lane < count; ++lane)
         if (good[lane] && !answered[lane])
-          block.errors.report(particles.id[pack.p[lane]], Trouble::no_answer);
-    pack.store(stress, particles.stress);
+          report(lane, Trouble::no_answer);
+    strip.stress.store(i, stress);
 
     const SimdReal work =
         0.5 * dt * (volume_before * detail::stress_power<D>(stored, rate) + volume * detail::stress_power<D>(stress, rate));
-    const SimdReal speed = sqrt(SimdReal(pack.load(particles.v).squaredNorm()));
+    const SimdReal speed = sqrt(SimdReal(strip.v.load(i).squaredNorm()));
     const SimdReal crossing = crossing_time<D>(diffusivity(), material.viscosity, h, speed, speed_of_waves, shrinking);
-    const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(pack.count);
-    sums.work += where(counts, work, 0);  // lanes that repeat a particle change no extreme
-    sums.crossing = where(sound, min(sums.crossing, crossing), sums.crossing);
-    sums.speed = where(sound, max(sums.speed, speed), sums.speed);
+    const auto sound = good && answered, counts = sound && SimdReal(Pack{0, 1, 2, 3}) < static_cast<Real>(count);
+    sums.work += where(counts, work, 0);  // lanes beyond the last particle
+    sums.crossing = where(counts, min(sums.crossing, crossing), sums.crossing);
+    sums.speed = where(counts, max(sums.speed, speed), sums.speed);
   }
 
   L law_;

@@ -33,21 +33,128 @@ void begin_anew(Index begin, Index end, Material& material)
   parallel_for(material.size(), [&](Index i) { material.law().initial_history(material.history.row(i)); });
 }
 
+namespace {
+
+/// The columns of a strip that a law reads and writes, on the stack.
+template <int D>
+class CopiedStrip {
+ public:
+  static constexpr std::size_t room = 64;
+
+  /// `strip.errors` and the numbers of the step are set by the caller.
+  CopiedStrip(Material& material, const StressBlock<D>& block) : material_(material), block_(block), has_pore_(!block.pore_after.empty())
+  {
+    strip_.dt = block.dt, strip_.elastic = block.elastic, strip_.errors = &block.errors;
+    Real* next = numbers_.data();
+    const auto place = [&](auto& column) {
+      column.first = next, column.stride = room;
+      next += room * static_cast<std::size_t>(column.components);
+    };
+    place(strip_.v), place(strip_.L), place(strip_.F), place(strip_.stress);
+    place(strip_.mass), place(strip_.volume0), place(strip_.volume), place(strip_.altitude);
+    if (material.viscosity)
+      place(strip_.viscous);
+    if (material.averages_volume)
+      place(strip_.averaged), place(strip_.volume_ratio);
+    if (has_pore_)
+      place(strip_.pore), place(strip_.pore_after);
+    strip_.id = id_.data(), strip_.history = history_.data();
+  }
+
+  /// Copies up to `room` rows.
+  const StressStrip<D>& take(std::span<const Index> rows) noexcept
+  {
+    const Particles<D>& particles = block_.particles;
+    strip_.n = rows.size();
+    for_each(rows, [&](const ParticlePack& pack, std::size_t i) {
+      strip_.v.store(i, pack.load(particles.v)), strip_.L.store(i, pack.load(particles.L));
+      strip_.F.store(i, pack.load(particles.F)), strip_.stress.store(i, pack.load(particles.stress));
+      strip_.mass.store(i, pack.load(particles.mass)), strip_.volume0.store(i, pack.load(particles.volume0));
+      strip_.volume.store(i, pack.load(particles.volume));
+      strip_.altitude.store(i, pack.lanes([&](std::size_t p) { return block_.altitudes[static_cast<std::size_t>(particles.cell[p])]; }));
+      if (material_.viscosity)
+        strip_.viscous.store(i, pack.load(particles.viscous));
+      if (material_.averages_volume)
+        strip_.averaged.store(i, pack.load(block_.averaged)), strip_.volume_ratio.store(i, pack.load(particles.volume_ratio));
+      if (has_pore_)
+        strip_.pore.store(i, pack.load(particles.pore)), strip_.pore_after.store(i, pack.load(block_.pore_after));
+      for (std::size_t lane = 0; lane < pack_size; ++lane) {
+        id_[i + lane] = particles.id[pack.p[lane]];
+        history_[i + lane] = material_.history.row(static_cast<Index>(pack.p[lane]) - material_.begin);
+      }
+    });
+    return strip_;
+  }
+  /// Copies what has changed back.
+  void give(std::span<const Index> rows) noexcept
+  {
+    Particles<D>& particles = block_.particles;
+    for_each(rows, [&](const ParticlePack& pack, std::size_t i) {
+      pack.store(strip_.F.load(i), particles.F), pack.store(strip_.stress.load(i), particles.stress);
+      pack.store(strip_.volume.load(i), particles.volume);
+      if (material_.viscosity)
+        pack.store(strip_.viscous.load(i), particles.viscous);
+      if (material_.averages_volume)
+        pack.store(strip_.volume_ratio.load(i), particles.volume_ratio);
+      if (has_pore_)
+        pack.store(strip_.pore.load(i), particles.pore);
+    });
+  }
+
+ private:
+  template <class F>
+  static void for_each(std::span<const Index> rows, F&& f)
+  {
+    for (std::size_t i = 0; i < rows.size(); i += pack_size)
+      f(ParticlePack(rows, i), i);
+  }
+
+  Material& material_;
+  const StressBlock<D>& block_;
+  bool has_pore_;
+  StressStrip<D> strip_;
+  static constexpr std::size_t columns = D + D * D + 9 + 6 + 9;  ///< v, L, F, stress and nine numbers
+  alignas(64) std::array<Real, room * columns> numbers_;
+  std::array<std::int64_t, room> id_;
+  std::array<Real*, room> history_;
+};
+
+}  // namespace
+
+template <int D>
+StressSums update_stress(const Material& material, const StressStrip<D>& strip) noexcept
+{
+  return material.law().update_stress(material, strip);
+}
 template <int D>
 StressSums update_stress(Material& material, const StressBlock<D>& block) noexcept
 {
   const auto begin = std::chrono::steady_clock::now();
-  StressSums sums = material.law().update_stress(material, block);
+  CopiedStrip<D> copy(material, block);
+  StressSums sums;
+  for (std::size_t first = 0; first < block.rows.size(); first += CopiedStrip<D>::room) {
+    const auto rows = block.rows.subspan(first, std::min(CopiedStrip<D>::room, block.rows.size() - first));
+    const StressSums part = update_stress(std::as_const(material), copy.take(rows));
+    copy.give(rows);
+    sums.work += part.work;
+    sums.take_extremes(part);
+  }
   sums.seconds = std::chrono::duration<Real>(std::chrono::steady_clock::now() - begin).count();
   return sums;
 }
+template StressSums update_stress<2>(const Material&, const StressStrip<2>&) noexcept;
+template StressSums update_stress<3>(const Material&, const StressStrip<3>&) noexcept;
 template StressSums update_stress<2>(Material&, const StressBlock<2>&) noexcept;
 template StressSums update_stress<3>(Material&, const StressBlock<3>&) noexcept;
 
+Real plastic_work(const ConstitutiveLaw& law, const Real* history, Real volume0) noexcept
+{
+  const auto work = law.description().scalar_variable("plastic_work");
+  return work ? volume0 * history[*work] : 0;
+}
 Real plastic_work(const Material& material, Index i, Real volume0) noexcept
 {
-  const auto work = material.law().description().scalar_variable("plastic_work");
-  return work ? volume0 * material.history.row(i)[*work] : 0;
+  return plastic_work(material.law(), material.history.row(i), volume0);
 }
 
 }  // namespace talus

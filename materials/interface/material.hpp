@@ -47,7 +47,7 @@ Material make_material(const L& law, Index begin, Index end, std::string name, S
 /// Makes it the material of particles [begin, end) at rest.
 void begin_anew(Index begin, Index end, Material& material);
 
-/// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history) - (q_p + u_p) I for the particles of a body in a block, four at a time.
+/// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history) - (q_p + u_p) I for particles of a body, four at a time.
 ///
 /// A body that averages its volume (`averaged` holds the new ratios, see average_volume) gives its law F and I + dt L with their
 /// in-plane volume ratio replaced; F_p itself stays what the motion made it.  q_p is the artificial viscous pressure of a body that
@@ -57,6 +57,9 @@ void begin_anew(Index begin, Index end, Material& material);
 ///
 /// The crossing time counts viscosity nu and q by the damping of the wave of one cell: speed = Q + sqrt(Q^2 + c^2) with
 /// Q = D nu / h + quadratic h |d| + linear c, exact for a chain of equal cells.
+template <int D>
+StressSums update_stress(const Material& material, const StressStrip<D>& strip) noexcept;
+/// The same for rows of the columns of all particles, which are copied into strips and back.
 template <int D>
 StressSums update_stress(Material& material, const StressBlock<D>& block) noexcept;
 
@@ -90,7 +93,9 @@ inline const Real& history_value(const Material& material, const HistoryVariable
   return material.history.row(i)[variable.first + component];
 }
 
-/// Energy [J] dissipated so far in particle i of a body, whose initial volume was `volume0` [m^3].  0 for a law without "plastic_work".
+/// Energy [J] dissipated so far in a particle whose initial volume was `volume0` [m^3]: one with this history, or particle i of a body.  0
+/// for a law without "plastic_work".
+Real plastic_work(const ConstitutiveLaw& law, const Real* history, Real volume0) noexcept;
 Real plastic_work(const Material& material, Index i, Real volume0) noexcept;
 
 /// The group of bodies with which its volume is averaged; `none` as well where the body does not average.

@@ -1,10 +1,12 @@
 #pragma once
 // The particles of one body in one block of cells, and what their law needs to update their stress.
+#include <array>
 #include <limits>
 #include <span>
 
 #include "core/particle_errors.hpp"
 #include "core/particles.hpp"
+#include "core/strip_column.hpp"
 
 namespace talus {
 
@@ -23,7 +25,28 @@ struct StressSums {
   }
 };
 
-/// The particles of a body in a block, what a law reads of the mesh and of the step, and where it writes.
+/// Particles of a body side by side, what a law reads of the mesh and of the step, and where it writes.  Columns have room for whole packs;
+/// the last particle is repeated behind it, see StripColumn::pad().
+template <int D>
+struct StressStrip {
+  std::size_t n = 0;     ///< particles
+  Real dt = 0;           ///< [s]
+  bool elastic = false;  ///< a stage that suspends yielding
+  StripColumn<Vec<D>> v{};
+  StripColumn<Mat<D>> L{};
+  StripColumn<Mat3> F{};
+  StripColumn<Sym3> stress{};
+  StripColumn<Real> mass{}, volume0{}, volume{};
+  StripColumn<Real> altitude{};                  ///< least altitude of the cell of the particle [m]
+  StripColumn<Real> viscous{};                   ///< of a material with bulk viscosity
+  StripColumn<Real> averaged{}, volume_ratio{};  ///< of a material that averages its volume: the averaged ratio, see StressBlock
+  StripColumn<Real> pore{}, pore_after{};        ///< pore pressure before and after the step [Pa]; empty where there is none
+  const std::int64_t* id = nullptr;              ///< one per particle
+  Real* const* history = nullptr;                ///< the row of each particle
+  ParticleErrors* errors = nullptr;
+};
+
+/// The particles of a body in a block as rows of the columns of all particles.
 template <int D>
 struct StressBlock {
   std::span<const Index> rows;       ///< the particles
