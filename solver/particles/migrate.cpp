@@ -113,6 +113,31 @@ void Migration<D>::agree_on_columns(const Particles<D>& particles)
 }
 
 template <int D>
+void Migration<D>::add(const MigratingParticle::Head& head, Index block, std::span<const Real> numbers)
+{
+  static_assert(sizeof(head) == sizeof(Real));
+  std::vector<std::byte>& message = out_[static_cast<std::size_t>(border_of_block_[static_cast<std::size_t>(block)])];
+  append_bytes(head, message);
+  const auto bytes = std::as_bytes(numbers);
+  message.insert(message.end(), bytes.begin(), bytes.end());
+  ++moved_;
+}
+
+template <int D>
+void Migration<D>::receive()
+{
+  const auto messages = ranks_->neighbours(neighbours_, out_, static_cast<int>(MessageTag::particles));
+  in_.resize(messages.size());
+  for (std::size_t i = 0; i < messages.size(); ++i) {
+    in_[i].resize(messages[i].size() / sizeof(Real));
+    if (!messages[i].empty())
+      std::memcpy(in_[i].data(), messages[i].data(), messages[i].size());
+  }
+  for (auto& message : out_)
+    message.clear();
+}
+
+template <int D>
 bool Migration<D>::operator()(const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials,
                               Particles<D>& particles, CellOrder& order)
 {

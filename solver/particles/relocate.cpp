@@ -70,22 +70,42 @@ void drop_lost(std::vector<Body>& bodies, std::vector<Material>& materials, Part
 }
 
 template <int D>
+RemovedParticles<D> content_of(const Vec<D>& x, const Vec<D>& v, Real mass, Real plastic_work) noexcept
+{
+  RemovedParticles<D> gone{.mass = mass, .count = 1};
+  if (x.allFinite() && v.allFinite()) {
+    gone.momentum = ForceAndMoment<D>::at(x, mass * v);
+    gone.kinetic = 0.5 * mass * v.squaredNorm();
+  }
+  if (std::isfinite(plastic_work))
+    gone.plastic = plastic_work;
+  return gone;
+}
+
+template <int D>
 RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<Material>& materials, const Particles<D>& particles,
                                Index row)
 {
   const std::size_t p = z(row);
-  RemovedParticles<D> gone{.mass = particles.mass[p], .count = 1};
-  if (particles.x[p].allFinite() && particles.v[p].allFinite()) {
-    gone.momentum = ForceAndMoment<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
-    gone.kinetic = 0.5 * particles.mass[p] * particles.v[p].squaredNorm();
-  }
   std::size_t body = 0;
   while (row >= bodies[body].end)
     ++body;
-  const Real work = plastic_work(materials[body], row - bodies[body].begin, particles.volume0[p]);
-  if (std::isfinite(work))
-    gone.plastic = work;
-  return gone;
+  return content_of<D>(particles.x[p], particles.v[p], particles.mass[p],
+                       plastic_work(materials[body], row - bodies[body].begin, particles.volume0[p]));
+}
+
+template <int D>
+std::optional<SetBack<D>> set_back(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const Vec<D>& x) noexcept
+{
+  const auto nearest = locator.nearest(mesh, x);
+  const Real distance = (nearest.x - x).norm();
+  if ((exits.closed[z(nearest.cell)] >> nearest.facet.local & 1) == 0 || !(distance < mesh.altitude(nearest.cell)))
+    return std::nullopt;
+  Vec<D> centre = Vec<D>::Zero();
+  for (const Index n : mesh.cell(nearest.cell))
+    centre += mesh.node(n) / (D + 1);
+  const Vec<D> inside = nearest.x + inset * (centre - nearest.x);
+  return SetBack<D>{inside, locator(mesh, inside, nearest.cell).value_or(nearest.cell), distance};
 }
 
 namespace {
@@ -177,16 +197,11 @@ bool relocate(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits
       const std::size_t p = z(row);
       if (!particles.x[p].allFinite() || locator(mesh, particles.x[p], particles.cell[p]))
         continue;
-      const auto nearest = locator.nearest(mesh, particles.x[p]);
-      const Real distance = (nearest.x - particles.x[p]).norm();
-      if ((exits.closed[z(nearest.cell)] >> nearest.facet.local & 1) != 0 && distance < mesh.altitude(nearest.cell)) {
-        Vec<D> centre = Vec<D>::Zero();
-        for (const Index n : mesh.cell(nearest.cell))
-          centre += mesh.node(n) / (D + 1);
-        particles.x.set(p, nearest.x + inset * (centre - nearest.x));
-        particles.cell[p] = locator(mesh, particles.x[p], nearest.cell).value_or(nearest.cell);
+      if (const auto back = set_back(mesh, locator, exits, particles.x[p])) {
+        particles.x.set(p, back->x);
+        particles.cell[p] = back->cell;
         sums.removed.add({.held_count = 1});
-        sums.largest_set_back = std::max(sums.largest_set_back, distance);
+        sums.largest_set_back = std::max(sums.largest_set_back, back->distance);
         moved = true;
       } else if (exits.policy == OnExit::remove) {
         sums.removed.add(mark_deleted(bodies, materials, particles, row));
@@ -227,7 +242,11 @@ bool sort_by_cell(const std::vector<Body>& bodies, std::vector<Material>& materi
   return true;
 }
 
+template RemovedParticles<2> content_of<2>(const Vec<2>&, const Vec<2>&, Real, Real) noexcept;
+template std::optional<SetBack<2>> set_back<2>(const Mesh<2>&, const Locator<2>&, const Exits&, const Vec<2>&) noexcept;
 template RemovedParticles<2> content_of<2>(const std::vector<Body>&, const std::vector<Material>&, const Particles<2>&, Index);
+template RemovedParticles<3> content_of<3>(const Vec<3>&, const Vec<3>&, Real, Real) noexcept;
+template std::optional<SetBack<3>> set_back<3>(const Mesh<3>&, const Locator<3>&, const Exits&, const Vec<3>&) noexcept;
 template RemovedParticles<3> content_of<3>(const std::vector<Body>&, const std::vector<Material>&, const Particles<3>&, Index);
 template bool relocate<2>(const Mesh<2>&, const Locator<2>&, const Exits&, std::vector<Body>&, std::vector<Material>&, Particles<2>&,
                           CellOrder&, StepSums<2>&, ParticleErrors&);

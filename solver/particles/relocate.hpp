@@ -42,7 +42,20 @@ void drop_lost(std::vector<Body>& bodies, std::vector<Material>& materials, Part
 template <int D>
 bool sort_by_cell(const std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& order);
 
-/// What a particle takes along that goes, or brings that comes, as far as it is a number.
+/// A position on the inside of a wall.
+template <int D>
+struct SetBack {
+  Vec<D> x;
+  Index cell;
+  Real distance;  ///< from where the particle was [m]
+};
+/// Where a particle outside the mesh is set back to; nothing unless it is near a closed facet.
+template <int D>
+std::optional<SetBack<D>> set_back(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const Vec<D>& x) noexcept;
+
+/// What a particle takes along that goes, or brings that comes, as far as it is a number.  `plastic_work` [J] is that of its law.
+template <int D>
+RemovedParticles<D> content_of(const Vec<D>& x, const Vec<D>& v, Real mass, Real plastic_work) noexcept;
 template <int D>
 RemovedParticles<D> content_of(const std::vector<Body>& bodies, const std::vector<Material>& materials, const Particles<D>& particles,
                                Index row);
