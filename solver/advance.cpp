@@ -15,6 +15,8 @@ void locate_particles(Model<D>& m)
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
+  if (work.strips)
+    return work.strips->find_cells(problem.mesh, problem.locator, problem.exits, state.materials, work.sums, work.errors);
   bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
                           work.sums, work.errors);
   changed |= work.migration(problem.subdomain, state.bodies, state.materials, state.particles, work.order);
@@ -30,9 +32,23 @@ bool particles_valid(Model<D>& m)
   m.work.errors.take(m.problem.ranks->min(m.work.errors.word()));
   if (!m.work.errors.worst())
     return true;
+  if (m.work.strips) {  // what has been found is lost with the strips
+    end_sweeps(m);
+    m.work.sums.clear();
+    locate_particles(m);
+    m.work.errors.take(m.problem.ranks->min(m.work.errors.word()));
+  }
   m.problem.ranks->sum(m.work.sums.removed);
   record_removed(m.work.sums.removed.value(), m.state.mass, m.state.energy);
   return false;
+}
+
+/// Takes particles in strips to their new cells and ranks.
+template <int D>
+void send_leavers(Model<D>& m)
+{
+  if (m.work.strips)
+    m.work.strips->send_leavers(m.problem.subdomain, m.work.migration);
 }
 
 /// Computes forces on single particles.
@@ -190,7 +206,7 @@ void update_balances(Model<D>& m)
   Workspace<D>& work = m.work;
   StepSums<D>& sums = work.sums;
   add_work(work.order, state.particles, sums.work_on_particles);
-  sums.particles.add(static_cast<Real>(state.particles.size()));
+  sums.particles.add(static_cast<Real>(n_particles(m)));
   problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
                      sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed());
   state.boundary.keep_impulses();
@@ -208,10 +224,21 @@ void update_balances(Model<D>& m)
 
 }  // namespace
 
-// The numbers are those of the rows in docs/theory/algorithm.md.
 template <int D>
 void advance(Model<D>& m, Real dt)
 {
+  make_step(m, dt);
+  end_sweeps(m);
+}
+
+// The numbers are those of the rows in docs/theory/algorithm.md.  Where particles are in strips, the transfer to them (9 to 12) does 3 for
+// the next step too.
+template <int D>
+void make_step(Model<D>& m, Real dt)
+{
+  drop_copy(m);
+  if (may_sweep(m))
+    begin_sweeps(m);
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
@@ -223,6 +250,7 @@ void advance(Model<D>& m, Real dt)
   locate_particles(m);  //  1
   if (!particles_valid(m))
     return;
+  send_leavers(m);
   apply_particle_loads(m);  //  2
   watch.lap(state.timings.locate);
   transfer.particles_to_nodes(m);  //  3
@@ -245,6 +273,8 @@ void advance(Model<D>& m, Real dt)
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};
 }
 
+template void make_step(Model<2>&, Real);
+template void make_step(Model<3>&, Real);
 template void advance(Model<2>&, Real);
 template void advance(Model<3>&, Real);
 

@@ -48,9 +48,11 @@ std::optional<std::string> exceeded_limit(Model<D>& m, Look look)
   seen.fastest = std::max(seen.fastest, seen.speed);
   if (seen.speed > limit.speed) {
     ++seen.speeding;
-    if (limit.speed_stops)
+    if (limit.speed_stops) {
+      end_sweeps(m);
       return fmt::format("{} moves at {:.4g} m/s, beyond watch.speed = {:.4g} m/s", describe_least(m, fastest_particle(m.state.particles)),
                          seen.speed, limit.speed);
+    }
   }
   if (look == Look::between_steps && m.state.clock.step % steps_between_sums != 0)
     return std::nullopt;
@@ -71,10 +73,12 @@ std::optional<std::string> exceeded_limit(Model<D>& m, Look look)
   seen.gain = std::max(seen.gain, gain);
   if (gain > limit.gain) {
     ++seen.gaining;
-    if (limit.gain_stops)
+    if (limit.gain_stops) {
+      end_sweeps(m);
       return fmt::format(
           "the energy grows by what nothing did work for, {:.3g} of its largest term, beyond watch.energy_gain = {:.3g}; the fastest is {}",
           gain, limit.gain, describe_least(m, fastest_particle(m.state.particles)));
+    }
   }
   return std::nullopt;
 }

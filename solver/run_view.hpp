@@ -1,6 +1,7 @@
 #pragma once
 // Read-only view of a run for observers.
 #include <algorithm>
+#include <functional>
 #include <string_view>
 
 #include "solver/stages.hpp"
@@ -10,12 +11,15 @@ namespace talus {
 template <int D>
 struct RunView {
   const Problem<D>& problem;
+  /// Its particles, and the order, are there only after fetch_particles().
   const State<D>& state;
   const CellOrder& order;  ///< order of the particles of `state`
   const Nodes<D>& nodes;
   std::string_view stage_name;
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
+  const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
+  std::function<void()> fetch_particles = [] {};  ///< to be called by whoever reads particles during a stage
 };
 
 template <int D>
@@ -27,7 +31,8 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
           .nodes = m.work.nodes,
           .stage_name = stage.name,
           .migrated = m.work.migration.moved(),
-          .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own)};
+          .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own),
+          .strips = m.work.strips ? &*m.work.strips : nullptr};
 }
 
 /// Mass [kg], momentum [kg m/s] and energy [J] of the particles of all ranks.  Collective.
@@ -43,14 +48,23 @@ Real plastic_work(const RunView<D>& view)
   return plastic_work(view.state.materials, view.order, view.state.particles, *view.problem.ranks);
 }
 
-/// Memory of columns and history of a particle [B]; 0 without particles.  Collective.
+/// The number of particles on this rank, wherever they are.
+template <int D>
+Index n_particles(const RunView<D>& view) noexcept
+{
+  return view.strips != nullptr ? view.strips->size() : view.state.particles.size();
+}
+
+/// Memory of a particle [B], of columns and history or of strips; 0 without particles.  Collective.
 template <int D>
 Real bytes_per_particle(const RunView<D>& view)
 {
   std::size_t bytes = bytes_of(view.state.particles);
   for (const Material& material : view.state.materials)
     bytes += material.history.bytes();
-  return view.problem.ranks->max(static_cast<Real>(bytes) / static_cast<Real>(std::max(view.state.particles.size(), Index{1})));
+  if (view.strips != nullptr)
+    bytes = view.strips->bytes();
+  return view.problem.ranks->max(static_cast<Real>(bytes) / static_cast<Real>(std::max(n_particles(view), Index{1})));
 }
 
 /// The body of a particle row.

@@ -11,6 +11,9 @@
 
 namespace talus {
 
+/// Steps in balance that end a stage: an oscillation passes through balance; this many steps in a row do not.
+constexpr int steps_in_balance = 20;
+
 /// The worst that particles report of themselves, in words.
 template <int D>
 std::string describe(const Model<D>& m, const ParticleErrors::Finding& finding)
@@ -41,6 +44,7 @@ void stop_if_invalid(Model<D>& m, bool step_is_done)
   const auto finding = m.work.errors.worst();
   if (!finding)
     return;
+  end_sweeps(m);
   std::string what = m.problem.ranks->first(describe(m, *finding));
   const bool may_go = step_is_done && m.problem.limits.failed > 0;
   if (may_go) {
@@ -112,11 +116,22 @@ Real wanted_step(const Model<D>& m, const StepLimits& limits)
   return std::min(limits.cfl * std::min(m.state.crossing, of_loads), limits.longest);
 }
 
+/// Calls whoever watches.
+template <int D>
+void show(Model<D>& m, const Watch<D>& watch, RunEvent event)
+{
+  if (!watch.copies_particles)
+    end_sweeps(m);
+  watch.see(m, event);
+  drop_copy(m);
+}
+
 /// Why the run cannot take its next step, if so.
 template <int D>
 std::optional<std::string> reason_to_stop(Model<D>& m, const StepLimits& limits)
 {
   if (const Real wanted = wanted_step(m, limits); !(wanted >= limits.shortest)) {
+    end_sweeps(m);
     const std::string who = describe_least(m, slowest_particle(m.problem.mesh, m.state.materials, m.state.particles));
     return fmt::format("{} needs a step of {:.3g} s, below time.min_step = {:.3g} s", who.empty() ? "the run" : who, wanted,
                        limits.shortest);
@@ -130,7 +145,7 @@ template <int D>
 [[noreturn]] void abort_run(Model<D>& m, const LimitMonitor& before, const Watch<D>& watch, const std::string& why)
 {
   m.state.monitor = before;
-  watch(m, RunEvent::given_up);
+  show(m, watch, RunEvent::given_up);
   throw RunError(fmt::format("step {}, t = {:.6g} s: {}", m.state.clock.step, m.state.clock.time, why));
 }
 
@@ -164,28 +179,41 @@ std::string why_not_at_rest(const RestConditions& state, int balanced, int wante
   return fmt::format("{} and {}, asked {:.3g} of both", force, motion, state.asked);
 }
 
+/// Steps until the stage has ended.
 template <int D>
-StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limits, const std::type_identity_t<Watch<D>>& watch)
+void make_steps(Model<D>& m, const Stage& stage, const StepLimits& limits, const Watch<D>& watch)
 {
-  constexpr int steps_in_balance = 20;  // an oscillation passes through balance; this many steps in a row do not
   const Real begin = m.state.stage.begin, end = begin + stage.duration;
   while (m.state.clock.time < end * (1 - 1e-14) && m.state.stage.balanced < steps_in_balance) {
-    watch(m, RunEvent::step_begins);
+    show(m, watch, RunEvent::step_begins);
     const LimitMonitor before = m.state.monitor;
     if (const auto why = reason_to_stop(m, limits))
       abort_run(m, before, watch, *why);
     const Real wanted = wanted_step(m, limits), left = end - m.state.clock.time;
     const Real dt = left <= wanted ? left : left < 2 * wanted ? left / 2 : wanted;  // no sliver of a step at the end
     const std::int64_t step = m.state.clock.step;
-    advance(m, dt);
+    make_step(m, dt);
     stop_if_invalid(m, m.state.clock.step > step);
     if (step == m.state.stage.first_step)
       m.state.stage.first_residual = m.state.residual;
     // Energies of all particles are added up only where the rest is as it should be.
     const bool may_rest = stage.residual && m.state.clock.time >= begin + stage.ramp && m.state.residual < *stage.residual;
     m.state.stage.balanced = may_rest && rest_conditions(m, stage).met() ? m.state.stage.balanced + 1 : 0;
-    watch(m, RunEvent::step_done);
+    show(m, watch, RunEvent::step_done);
   }
+  end_sweeps(m);
+}
+
+template <int D>
+StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limits, const std::type_identity_t<Watch<D>>& watch)
+{
+  try {
+    make_steps(m, stage, limits, watch);
+  } catch (...) {
+    end_sweeps(m);
+    throw;
+  }
+  const Real begin = m.state.stage.begin;
   const LimitMonitor before = m.state.monitor;
   if (const auto why = exceeded_limit(m, Look::at_end_of_stage))
     abort_run(m, before, watch, *why);
@@ -216,7 +244,7 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
   if (stage.reset_displacement && !m.state.particles.x0.empty())
     m.state.particles.x0 = m.state.particles.x;
   m.state.stage.done = true;
-  watch(m, RunEvent::stage_done);
+  show(m, watch, RunEvent::stage_done);
   return result;
 }
 
@@ -224,7 +252,7 @@ template <int D>
 StageResult run_stage(Model<D>& m, const Stage& stage, const StepLimits& limits, const std::type_identity_t<Watch<D>>& watch, Index number)
 {
   begin_stage(m, stage, number);
-  watch(m, RunEvent::stage_begins);
+  show(m, watch, RunEvent::stage_begins);
   return finish_stage(m, stage, limits, watch);
 }
 

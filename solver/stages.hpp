@@ -1,5 +1,6 @@
 #pragma once
 // Stages, the loop over steps, and what stops it.
+#include <concepts>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -77,7 +78,19 @@ struct RestConditions {
 
 /// Called before and after each step, at the beginning and at the end of a stage.
 template <int D>
-using Watch = std::function<void(const Model<D>&, RunEvent)>;
+struct Watch {
+  std::function<void(const Model<D>&, RunEvent)> see;
+  /// Whether `see` copies the particles into their columns itself where it reads them, see copy_to_columns().  Otherwise they are there.
+  bool copies_particles = false;
+
+  template <class F>
+  requires std::invocable < F&, const Model<D>
+  &,
+      RunEvent > Watch(F f, bool copies = false)  // NOLINT(google-explicit-constructor): any function that watches
+      : see(std::move(f)),
+  copies_particles(copies)
+  {}
+};
 
 /// Sets the model up for the stage of that number.
 template <int D>

@@ -26,6 +26,7 @@ void BodyForces<D>::see(const RunView<D>& view, RunEvent event)
 {
   if (!wanted_ || event == RunEvent::step_begins || event == RunEvent::given_up)
     return;
+  view.fetch_particles();
   std::vector<BodySums<D>> now;
   for (std::size_t b = 0; b < view.state.bodies.size(); ++b)
     now.push_back(sums_of_body(view, static_cast<Index>(b)));

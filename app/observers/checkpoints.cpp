@@ -198,6 +198,7 @@ template <int D>
 void Checkpoints<D>::write(const RunView<D>& view, Recorder<D>& recorder)
 {
   StopWatch watch;
+  view.fetch_particles();
   const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
   view.problem.ranks->together([&] {
     require_results(folder_);

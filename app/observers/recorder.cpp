@@ -253,6 +253,8 @@ void Recorder<D>::watch(const RunView<D>& view, RunEvent event)
     return;
   if (frames_.is_done())  // so that a failure ends the run soon
     finish_frame();
+  if (event != RunEvent::step_done)
+    view.fetch_particles();
   accounts_.see(view, event);
   body_forces_.see(view, event);
   const bool first = event == RunEvent::stage_begins && view.state.stage.number == 0;
@@ -319,6 +321,8 @@ void Recorder<D>::write(const RunView<D>& view, bool last)
   const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
   const bool mesh = view.state.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
   const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
+  if (particles || mesh || history)
+    view.fetch_particles();
   if (particles || mesh || history)
     view.problem.ranks->together([&] { require_results(folder_); });
   if (particles || mesh)

@@ -267,6 +267,7 @@ std::vector<std::string> Runout<D>::see(const RunView<D>& view, bool last)
   const bool due = times_.due(since_start), frame_due = frame_times_.due(since_start);
   if ((due || frame_due || last) && time_ != view.state.clock.time) {
     view.problem.ranks->together([&] { require_results(folder_); });
+    view.fetch_particles();
     look(view, frame_due);
   }
   if (!frame_due)

@@ -152,7 +152,12 @@ class Simulation {
  private:
   bool may_move() const { return !world().alone() && moves_.every != 0; }
   const Stage& stage_at_hand() const { return stages_[static_cast<std::size_t>(model_->state.stage.number)]; }
-  RunView<D> view() const { return view_of(*model_, stage_at_hand()); }
+  RunView<D> view()
+  {
+    RunView<D> all = view_of(*model_, stage_at_hand());
+    all.fetch_particles = [this] { copy_to_columns(*model_); };
+    return all;
+  }
 
   /// All that the stage of that number changes between two steps.
   void enter(Index number)
@@ -188,11 +193,13 @@ class Simulation {
 
   std::optional<StageResult> run_until_shares_move(std::optional<Index> begins)
   {
-    const auto watch = [&](const Model<D>&, RunEvent event) {
-      if (event == RunEvent::step_begins && should_move())
-        throw RebalanceRequest();
-      callbacks_.watch(view(), event);
-    };
+    const Watch<D> watch(
+        [&](const Model<D>&, RunEvent event) {
+          if (event == RunEvent::step_begins && should_move())
+            throw RebalanceRequest();
+          callbacks_.watch(view(), event);
+        },
+        true);
     try {
       if (begins)
         return run_stage(*model_, stages_[static_cast<std::size_t>(*begins)], limits_, watch, *begins);
@@ -236,10 +243,11 @@ class Simulation {
       return true;
     const Real here = (seconds_in_steps() - seconds_then_) / static_cast<Real>(step - looked_at_);
     looked_at_ = step, seconds_then_ = seconds_in_steps();
-    const std::int64_t work = cells_per_particle * m.state.particles.size() + own_cells_, all = world().sum(work), most = world().max(work);
+    const std::int64_t work = cells_per_particle * n_particles(m) + own_cells_, all = world().sum(work), most = world().max(work);
     const Real busiest_over_mean = static_cast<Real>(most) * world().size() / static_cast<Real>(all);
     if (!rule_->has_lost_enough(step, world().max(here), busiest_over_mean))
       return false;
+    copy_to_columns(*model_);
     const auto costs =
         costs_of_blocks(particles_in_blocks(whole_cells(), m.problem.subdomain.whole_cells), m.problem.subdomain.whole_cells);
     return rule_->gains(imbalance(costs, m.problem.subdomain.rank_of_whole_block, world().size()),
@@ -333,11 +341,16 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   cost.dt = first_step(mesh, setup);
   const Stage first_stage = setup.stages.front();
   Real kernel = 0;  // of no interest here
-  const Model<D> m = build(scene, std::move(mesh), std::move(setup), kernel);
+  Model<D> m = build(scene, std::move(mesh), std::move(setup), kernel);
   const auto bytes = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
   cost.particle_bytes = static_cast<std::int64_t>(bytes_of(m.state.particles));
   for (const Material& material : m.state.materials)
     cost.particle_bytes += static_cast<std::int64_t>(material.history.bytes());
+  if (may_sweep(m)) {  // columns are there where particles are read, beside the strips
+    begin_sweeps(m);
+    cost.particle_bytes += static_cast<std::int64_t>(m.work.strips->bytes());
+    end_sweeps(m);
+  }
   const Mesh<D>& whole = m.problem.mesh;
   cost.mesh_bytes = static_cast<std::int64_t>(whole.nodes().size_bytes() + whole.cells().size_bytes()) +
                     whole.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(whole.cells_of_node().item) +

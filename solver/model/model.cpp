@@ -120,8 +120,53 @@ std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time)
 }
 
 template <int D>
+bool may_sweep(const Model<D>& m)
+{
+  const WantedColumns& has = m.problem.columns;
+  return m.transfer->can_sweep() && !has.applied && !has.volume_ratio && !has.pore && !m.work.heat;
+}
+
+template <int D>
+void begin_sweeps(Model<D>& m)
+{
+  if (m.work.strips)
+    return;
+  m.work.strips.emplace();
+  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.state.bodies, m.state.materials, m.state.particles, m.work.order);
+  m.transfer->sum_strips(m);
+}
+
+template <int D>
+void copy_to_columns(Model<D>& m)
+{
+  if (m.work.strips && m.state.particles.id.empty())
+    m.work.strips->store(
+        m.state.bodies, m.state.materials, m.state.particles, m.work.order,
+        [&m](std::size_t key, Index strip, StripColumns<D>& columns) { m.transfer->find_gradients(m, key, strip, columns); });
+}
+
+template <int D>
+void drop_copy(Model<D>& m)
+{
+  if (m.work.strips && !m.state.particles.id.empty())
+    m.work.strips->clear(m.state.materials, m.state.particles, m.work.order);
+}
+
+template <int D>
+void end_sweeps(Model<D>& m)
+{
+  if (!m.work.strips)
+    return;
+  copy_to_columns(m);
+  m.work.strips.reset();
+  update_tracked_rows(m);
+}
+
+template <int D>
 Totals<D> totals(const Model<D>& m)
 {
+  if (m.work.strips)
+    return totals(*m.work.strips, *m.problem.ranks);
   return totals(m.state.particles, m.work.order, *m.problem.ranks);
 }
 
@@ -144,6 +189,11 @@ Real plastic_work(const std::vector<Material>& materials, const CellOrder& order
   template void adopt_state(Model<D>&);                                        \
   template void bind_boundary_conditions(Model<D>&);                           \
   template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);  \
+  template bool may_sweep(const Model<D>&);                                    \
+  template void begin_sweeps(Model<D>&);                                       \
+  template void end_sweeps(Model<D>&);                                         \
+  template void copy_to_columns(Model<D>&);                                    \
+  template void drop_copy(Model<D>&);                                          \
   template Totals<D> totals(const Model<D>&);                                  \
   template Real plastic_work(const std::vector<Material>&, const CellOrder&, const Particles<D>&, Communicator&);
 TALUS_INSTANTIATE(2)

@@ -53,6 +53,28 @@ void adopt_state(Model<D>& m);
 template <int D>
 void bind_boundary_conditions(Model<D>& m);
 
+/// Whether steps may keep the particles in strips and pass over them once: the kernel has node operators, and nothing between two passes
+/// needs all particles (averaged volumes, heat, loads on particles, pore water).
+template <int D>
+bool may_sweep(const Model<D>& m);
+/// Moves the particles into strips, unless they are there.  Collective.
+template <int D>
+void begin_sweeps(Model<D>& m);
+/// Moves them back into their columns.
+template <int D>
+void end_sweeps(Model<D>& m);
+/// Copies the particles into their columns for somebody who reads them, and forgets the copy.
+template <int D>
+void copy_to_columns(Model<D>& m);
+template <int D>
+void drop_copy(Model<D>& m);
+/// The number of particles on this rank, wherever they are.
+template <int D>
+Index n_particles(const Model<D>& m) noexcept
+{
+  return m.work.strips ? m.work.strips->size() : m.state.particles.size();
+}
+
 /// The pore water for the law of a body at a time; nothing where the law uses total stress.
 template <int D>
 std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time);

@@ -37,7 +37,14 @@ class Transfer {
   /// Allocates what depends on the options of the run; to be called once, before the first step.
   virtual void prepare(const TransferOptions& options) = 0;
 
-  /// Adds mass, momentum and force of every particle to the rows of its block (P2G).
+  /// Whether the transfer can do both ways in one pass over strips of particles.
+  virtual bool can_sweep() const = 0;
+  /// Adds the particles that are in strips, as they are, to the rows of their blocks; to be called before the first sweep.
+  virtual void sum_strips(Model<D>& m) = 0;
+  /// Sets L and C of the columns of a strip to what they were at the end of the last step, in memory of the calling thread.
+  virtual void find_gradients(Model<D>& m, std::size_t key, Index strip, StripColumns<D>& columns) = 0;
+  /// Adds mass, momentum and force of every particle to the rows of its block (P2G).  Of particles in strips only those that have changed
+  /// their cell: the others were added by the sweep of the step before.
   virtual void particles_to_nodes(Model<D>& m) = 0;
   /// Adds the rows of blocks and ranks to sums of the nodes, in a fixed order.
   virtual void assemble_nodes(Model<D>& m) = 0;

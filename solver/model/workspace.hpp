@@ -6,17 +6,18 @@
 #include "core/particle_errors.hpp"
 #include "materials/interface/stress_block.hpp"
 #include "solver/boundary/small_mass_nodes.hpp"
-#include "solver/particles/migrate.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/step_sums.hpp"
 #include "solver/state/tracked_particles.hpp"
 #include "solver/stress/conduct_heat.hpp"
+#include "solver/strips/particle_strips.hpp"
 
 namespace talus {
 
 template <int D>
 struct Workspace {
+  std::optional<ParticleStrips<D>> strips;  ///< between begin_sweeps() and end_sweeps(): the particles, instead of their columns
   CellOrder order;
   FollowedRows followed;  ///< rows of particles that carry tractions
   Migration<D> migration;

@@ -201,13 +201,16 @@ struct Totals {
   }
 };
 
-/// The contribution of one particle.
+/// The contribution of one particle; not inlined, so that it has the same bits everywhere.
+template <int D>
+[[gnu::noinline]] Totals<D> totals_of(Real m, const Vec<D>& x, const Vec<D>& v) noexcept
+{
+  return {m, 0.5 * m * v.squaredNorm(), m * v, m * moment<D>(x, v), m * x};
+}
 template <int D>
 Totals<D> totals_of(const Particles<D>& particles, std::size_t p) noexcept
 {
-  const Real m = particles.mass[p];
-  const Vec<D> x = particles.x[p], v = particles.v[p];
-  return {m, 0.5 * m * v.squaredNorm(), m * v, m * moment<D>(x, v), m * x};
+  return totals_of<D>(particles.mass[p], particles.x[p], particles.v[p]);
 }
 
 }  // namespace talus

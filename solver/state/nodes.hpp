@@ -19,8 +19,8 @@ struct alignas(64) NodeSum {
   float lightest = unseen;  ///< mass of the lightest particle whose stencil contains the node [kg]
   /// Reference for `mass` [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around.
   float gross{};
-  Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
+  Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
   void clear_momentum() noexcept { momentum.setZero(); }
   void add_momentum(const NodeSum& other) noexcept { momentum += other.momentum; }
   bool has_momentum() const noexcept { return !momentum.isZero(0); }

@@ -133,17 +133,16 @@ void project_motion(const NodeOperators<D>& operators, const NodesInUse& in_use,
   });
 }
 
-/// The gradient of remapped velocities; the velocity of the step is stored in `change`.
-template <int D, class Arrive>
+/// Calls f(n, gradient of remapped velocities) for the linear shape functions that particles use.
+template <int D, class Arrive, class F>
 void project_gradient(const NodeOperators<D>& operators, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& remapped,
-                      Arrive&& arrive, ProjectedNodes<D>& projected)
+                      Arrive&& arrive, ProjectedNodes<D>& projected, F&& f)
 {
-  for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& projected_node) {
+  for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>&) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
         n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });
-    projected_node.change = projected_node.v;
-    projected_node.L = L;
+    f(n, std::as_const(L));
   });
 }
 

@@ -115,10 +115,21 @@ template <bool affine, bool loaded, bool forces, int D>
   sums.template add<Of::size>(shares, quantities);
 }
 
+/// to[i] += from[i] for n numbers at any addresses.
+template <int n>
+[[gnu::always_inline]] inline void add_numbers(const Real* from, Real* to) noexcept
+{
+  int i = 0;
+  for (; i + pack_size <= n; i += pack_size)
+    store_loose(to + i, load_loose(to + i) + load_loose(from + i));
+  for (; i < n; ++i)
+    to[i] += from[i];
+}
+
 /// Adds the sums of a cell batch to the rows of its block.  `arms`: centres of the linear shape functions relative to the origin of the
 /// cell [m].
-template <bool affine, bool loaded, bool forces, int D>
-void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
+template <bool affine, bool loaded, bool forces, int D, int most>
+void add_to(const CornerSums<D, most>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
             std::span<const std::uint16_t> slots, float lightest) noexcept
 {
   using Of = Deposit<D, affine, loaded, forces>;
@@ -128,14 +139,14 @@ void add_to(const HatSums<D>& sums, const std::array<Vec<D>, D + 1>& arms, std::
     row.lightest = std::min(row.lightest, lightest);
     row.momentum += Eigen::Map<const Vec<D>>(of);
     if constexpr (affine) {
-      const Eigen::Map<const Mat<D>> K(of + Of::field);
-      row.affine += K;
-      row.momentum += K * arms[a];
+      add_numbers<D * D>(of + Of::field, row.affine.data());
+      for (int j = 0; j < D; ++j)
+        for (int i = 0; i < D; ++i)
+          row.momentum[i] += of[Of::field + j * D + i] * arms[a][j];
     }
     if constexpr (forces) {
       row.mass += of[Of::mass];
-      for (int k = 0; k < Symmetric<D>::size; ++k)
-        row.tension.entry[k] += of[Of::tension + k];
+      add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
     }
     if constexpr (loaded)
       row.force += Eigen::Map<const Vec<D>>(of + Of::load);

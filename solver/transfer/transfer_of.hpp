@@ -7,6 +7,7 @@
 #include "solver/state/integrate.hpp"
 #include "solver/transfer/gather.hpp"
 #include "solver/transfer/make_transfer.hpp"
+#include "solver/transfer/sweep.hpp"
 
 namespace talus {
 
@@ -62,7 +63,34 @@ class TransferOf final : public Transfer<D> {
       rows_.remapped.resize(static_cast<std::size_t>(rows_.blocks.rows_of_node.size()));
   }
 
-  void particles_to_nodes(Model<D>& m) override { scatter(m, rows_); }
+  bool can_sweep() const override { return Rows::projects; }
+
+  void sum_strips([[maybe_unused]] Model<D>& m) override
+  {
+    if constexpr (Rows::projects) {
+      if (m.problem.transfer.uses_musl()) {
+        sweep_.gradient.resize(rows_.projected.motion.size());
+        sweep_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
+      }
+      for_each_reading_block(
+          rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, sweep_, b).sum(); });
+    }
+  }
+
+  void find_gradients([[maybe_unused]] Model<D>& m, [[maybe_unused]] std::size_t key, [[maybe_unused]] Index strip,
+                      [[maybe_unused]] StripColumns<D>& columns) override
+  {
+    if constexpr (Rows::projects)
+      BlockSweep<D, K>(m, rows_, sweep_, 0).find_gradients_again(key, strip, columns);
+  }
+
+  void particles_to_nodes(Model<D>& m) override
+  {
+    if constexpr (Rows::projects)
+      if (m.work.strips)
+        return for_each_own_block<Whole>(rows_.blocks, rows_.halo, [&](Index b) { BlockSweep<D, K>(m, rows_, sweep_, b).add_arrivals(); });
+    scatter(m, rows_);
+  }
 
   void assemble_nodes(Model<D>& m) override
   {
@@ -92,6 +120,9 @@ class TransferOf final : public Transfer<D> {
   void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const typename Transfer<D>::StressUpdate& update) override
   {
     project_to_particles(m, kick);
+    if constexpr (Rows::projects)
+      if (m.work.strips)
+        return sweep(m, kick.to, dt);
     m.work.order.begin_test();
     if (m.problem.transfer.uses_musl()) {
       gather_and_return_momentum(m, rows_, dt);
@@ -130,7 +161,8 @@ class TransferOf final : public Transfer<D> {
   std::int64_t bytes() const override
   {
     const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
-    std::int64_t bytes = of(rows_.projected.sum) + of(rows_.projected.motion) + of(rows_.blocks.row) + of(rows_.blocks.slot);
+    std::int64_t bytes = of(sweep_.moments) + of(sweep_.gradient) + of(rows_.projected.sum) + of(rows_.projected.motion) +
+                         of(rows_.blocks.row) + of(rows_.blocks.slot);
     if constexpr (Rows::projects)
       bytes += static_cast<std::int64_t>(rows_.kernel.node_operators().size_bytes());
     return bytes;
@@ -149,9 +181,49 @@ class TransferOf final : public Transfer<D> {
   }
 
  private:
-  /// MUSL: puts the momentum of the new particle velocities on the nodes, under the boundary conditions; then computes L_p from these
-  /// velocities, while the particles move with the velocities of the step.
+  /// The same in one pass over the particles; MUSL needs none for the momentum of the new velocities.
+  void sweep(Model<D>& m, Real mid, Real dt) requires Rows::projects
+  {
+    const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
+    if (m.problem.transfer.uses_musl()) {
+      const Real from_nodes = m.problem.transfer.increments() ? pic : 1;
+      for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) { add_new_momentum(m, rows_, sweep_, b, from_nodes); });
+      find_remapped_velocity(m, mid);
+      for_each_remapped_gradient(m, [this](Index n, const Mat<D>& L) { sweep_.gradient[static_cast<std::size_t>(n)] = L; });
+    }
+    m.work.strips->drop_loaded_gradients();
+    for_each_reading_block(
+        rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, sweep_, b).advance(dt, pic); });
+  }
+
+  /// MUSL: computes L_p from remapped velocities, while the particles move with the velocities of the step.
   void gather_from_remapped(Model<D>& m, Real mid, Real dt, const typename Transfer<D>::StressUpdate& update)
+  {
+    find_remapped_velocity(m, mid);
+    if constexpr (Rows::projects) {
+      std::vector<ProjectedNodeMotion<D>>& motion = rows_.projected.motion;
+      for_each_remapped_gradient(m, [&](Index n, const Mat<D>& L) {
+        motion[static_cast<std::size_t>(n)].change = motion[static_cast<std::size_t>(n)].v;
+        motion[static_cast<std::size_t>(n)].L = L;
+      });
+      gather_gradient(
+          m, rows_, motion, [] {}, dt, update);
+    } else {
+      gather_gradient(
+          m, rows_, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); }, dt, update);
+    }
+  }
+
+  template <class F>
+  requires Rows::projects void for_each_remapped_gradient(Model<D>& m, F&& f)
+  {
+    project_gradient(
+        rows_.kernel.node_operators(), m.work.nodes.in_use, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); },
+        rows_.projected, f);
+  }
+
+  /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes, under the boundary conditions.
+  void find_remapped_velocity(Model<D>& m, Real mid)
   {
     Problem<D>& problem = m.problem;
     State<D>& state = m.state;
@@ -176,17 +248,10 @@ class TransferOf final : public Transfer<D> {
     work.small_mass_nodes.extrapolate_velocity(mesh, own, state.boundary, mid, remapped);
     rows_.ghosts.motion.send(remapped, Whole{});
     add_ranges(nodes.in_use.own(), work.sums.remap, [&](Index n) { return remap_work(nodes, remapped, n); });
-    const auto arrive = [&] { rows_.ghosts.motion.take(remapped, Whole{}); };
-    if constexpr (Rows::projects) {
-      project_gradient(rows_.kernel.node_operators(), nodes.in_use, remapped, arrive, rows_.projected);
-      gather_gradient(
-          m, rows_, rows_.projected.motion, [] {}, dt, update);
-    } else {
-      gather_gradient(m, rows_, remapped, arrive, dt, update);
-    }
   }
 
   Rows rows_;
+  SweepData<D> sweep_;
 };
 
 template <class K, int D>

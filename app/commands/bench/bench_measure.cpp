@@ -51,7 +51,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
               {[&](const RunView<D>& view, RunEvent event) {
                  if (recorder)
                    recorder->watch(view, event);
-                 if (event == RunEvent::stage_done) {
+                 if (event == RunEvent::step_done && view.state.clock.step == 1) {
                    result.bytes_held = bytes_per_particle(view);
                    result.bytes_moved = bytes_moved(view);
                  }
@@ -116,14 +116,16 @@ Real bytes_moved(const RunView<D>& view)
 {
   constexpr std::array<std::string_view, 5> constants{"id", "cell", "mass", "volume0", "start"};
   const auto bytes = [](const auto& column) { return static_cast<Real>(column.size() * sizeof(column[0])); };
-  Real total = 0;
+  const Real of_nodes = 2 * (bytes(view.nodes.sum) + bytes(view.nodes.motion));
+  if (view.strips != nullptr)
+    return (static_cast<Real>(view.strips->bytes_moved()) + of_nodes) / static_cast<Real>(view.strips->size());
+  Real total = of_nodes;
   view.state.particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
     const bool changes = std::find(constants.begin(), constants.end(), name) == constants.end();
     total += (changes ? 2 : 1) * static_cast<Real>(bytes_of(column));
   });
   for (const Material& material : view.state.materials)
     total += 2 * static_cast<Real>(material.history.bytes());
-  total += 2 * (bytes(view.nodes.sum) + bytes(view.nodes.motion));
   return total / static_cast<Real>(view.state.particles.size());
 }
 

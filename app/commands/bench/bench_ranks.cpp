@@ -60,7 +60,7 @@ std::vector<Real> holdings(const RunView<D>& view, const RankMark& from, const R
   }
   const auto a_step = [&](std::int64_t before, std::int64_t now) { return static_cast<Real>(now - before) / steps; };
   const Traffic &before = from.traffic, &now = to.traffic;
-  return {static_cast<Real>(view.state.particles.size()),
+  return {static_cast<Real>(n_particles(view)),
           static_cast<Real>(cells),
           static_cast<Real>(view.problem.mesh.n_cells()),
           static_cast<Real>(nodes),

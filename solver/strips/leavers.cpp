@@ -1,0 +1,181 @@
+#include "solver/strips/particle_strips.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace talus {
+
+namespace {
+
+std::int64_t id_at(const Real* of) noexcept
+{
+  std::int64_t id{};
+  std::memcpy(&id, of, sizeof(id));
+  return id;
+}
+
+}  // namespace
+
+template <int D>
+void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripColumns<D>& from, Index i, Index cell)
+{
+  BlockOfStrips& block = block_[key];
+  const Strip& strip = block.strips[to_size(number)];
+  block.leaving.all.push_back({number, i, cell, false});
+  std::vector<Real>& numbers = block.leaving.numbers;
+  const std::size_t first = numbers.size();
+  numbers.resize(first + record_width(key));
+  Real* to = numbers.data() + first;
+  for (Index k = 0; k < layout_.width(); ++k)
+    std::memcpy(to++, strip.array(k) + i, sizeof(Real));
+  for (const StripColumn<Mat<D>>* const column : {&from.L, &from.C})
+    for (int c = 0; *column && c < D * D; ++c)
+      *to++ = column->component(c)[i];
+  std::copy_n(history(key, strip, i), history_width_[key / to_size(blocks_)], to);
+}
+
+template <int D>
+void ParticleStrips<D>::find_arrivals_within(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key,
+                                             std::vector<Arrival>& arrivals_within)
+{
+  arrivals_within.clear();
+  Leavers& leavers = block_[key].leaving;
+  for (std::size_t i = 0; i < leavers.all.size(); ++i) {
+    const Real* const record = leavers.numbers.data() + i * record_width(key);
+    Vec<D> x;
+    for (int d = 0; d < D; ++d)
+      x[d] = record[static_cast<Index>(named_.x.stride) - 1 + d];
+    Leavers::Leaver& leaver = leavers.all[i];
+    const auto cell = locator(mesh, x, leaver.cell);
+    if (!cell || *cell / block_cells != leaver.cell / block_cells)
+      continue;
+    leaver.cell = *cell;
+    leaver.is_summed = true;
+    arrivals_within.push_back({*cell, id_at(record + layout_.at(std::size_t{0})), record, true});
+  }
+}
+
+template <int D>
+void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits,
+                                   const std::vector<Material>& materials, StepSums<D>& sums, ParticleErrors& errors)
+{
+  // A leaver as a strip of one particle.
+  const auto columns_of = [&](std::size_t key, std::size_t i) {
+    Strip one;
+    one.numbers = block_[key].leaving.numbers.data() + i * record_width(key);
+    one.room = 1;
+    return columns(one);
+  };
+  std::atomic<bool> outside = false;
+  parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
+    std::vector<Leavers::Leaver>& leavers = block_[to_size(k)].leaving.all;
+    for (std::size_t i = 0; i < leavers.size(); ++i) {
+      if (leavers[i].is_summed)
+        continue;
+      const StripColumns<D> all = columns_of(to_size(k), i);
+      const Vec<D> x = all.x.of(0);
+      if (!x.allFinite())
+        errors.report(*all.id, Trouble::not_finite);
+      else if (const auto cell = locator(mesh, x, leavers[i].cell))
+        leavers[i].cell = *cell;
+      else
+        leavers[i].cell = none, outside = true;
+    }
+  });
+  if (!outside)
+    return;
+  for (std::size_t key = 0; key < block_.size(); ++key)  // rare
+    for (std::size_t i = 0; i < block_[key].leaving.all.size(); ++i) {
+      Leavers::Leaver& leaver = block_[key].leaving.all[i];
+      if (leaver.cell != none)
+        continue;
+      const StripColumns<D> all = columns_of(key, i);
+      const Vec<D> x = all.x.of(0);
+      if (const auto back = set_back(mesh, locator, exits, x)) {
+        all.x.set(0, back->x);
+        leaver.cell = back->cell;
+        sums.removed.add({.held_count = 1});
+        sums.largest_set_back = std::max(sums.largest_set_back, back->distance);
+      } else if (exits.policy == OnExit::remove) {
+        const Material& material = materials[key / to_size(blocks_)];
+        const Real* const remembered = block_[key].leaving.numbers.data() + i * record_width(key) + layout_.width() + layout_.gradients();
+        sums.removed.add(content_of<D>(x, all.v.of(0), all.mass.of(0), plastic_work(material.law(), remembered, all.volume0.of(0))));
+      } else {
+        errors.report(*all.id, Trouble::lost);
+        const Strip& strip = block_[key].strips[to_size(leaver.strip)];
+        Index c = 0;
+        for (Index end = strip.count[0]; end <= leaver.position; end += strip.count[to_size(c)])
+          ++c;
+        leaver.cell = first_cell(key, leaver.strip) + c;  // it stays where it was
+      }
+    }
+}
+
+template <int D>
+void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& migration)
+{
+  unsorted_.clear();
+  for (std::size_t key = 0; key < block_.size(); ++key) {
+    BlockOfStrips& block = block_[key];
+    std::swap(block.left, block.leaving);
+    block.leaving.clear();
+    const auto body = static_cast<Index>(key / to_size(blocks_));
+    const std::span<const Real> numbers(block.left.numbers);
+    for (std::size_t i = 0; i < block.left.all.size(); ++i) {
+      const Index cell = block.left.all[i].cell;
+      const auto record = numbers.subspan(i * record_width(key), record_width(key));
+      if (cell == none)
+        continue;
+      if (!subdomain.alone() && !subdomain.owns_cell(cell))
+        migration.add({body, subdomain.whole_cell(cell)}, cell / block_cells, record);
+      else
+        unsorted_.push_back(
+            {key_of(body, cell), {cell, id_at(record.data() + layout_.at(std::size_t{0})), record.data(), block.left.all[i].is_summed}});
+    }
+  }
+  if (!subdomain.alone())
+    for (const MigratingParticle& one :
+         migration.exchange([&](Index body) { return layout_.width() + layout_.gradients() + history_width(body); })) {
+      const Index cell = subdomain.local_cell(one.head.whole_cell);
+      unsorted_.push_back({key_of(one.head.body, cell), {cell, id_at(one.numbers + layout_.at(std::size_t{0})), one.numbers, false}});
+    }
+  sort_arrivals();
+}
+
+template <int D>
+void ParticleStrips<D>::sort_arrivals()
+{
+  for (BlockOfStrips& block : block_)
+    block.arrivals = 0;
+  for (const auto& [key, arrival] : unsorted_)
+    ++block_[key].arrivals;
+  std::size_t first = 0;
+  for (BlockOfStrips& block : block_) {
+    block.first_arrival = first;
+    first += std::exchange(block.arrivals, 0);
+  }
+  arrivals_.resize(first);
+  for (const auto& [key, arrival] : unsorted_) {
+    BlockOfStrips& block = block_[key];
+    block.strips.resize(to_size(strips_in_block));
+    arrivals_[block.first_arrival + block.arrivals++] = arrival;
+  }
+  parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
+    const auto here = std::span(arrivals_).subspan(block_[to_size(k)].first_arrival, block_[to_size(k)].arrivals);
+    std::ranges::sort(here, [](const Arrival& a, const Arrival& b) { return a.cell != b.cell ? a.cell < b.cell : a.id < b.id; });
+  });
+}
+
+template void ParticleStrips<2>::add_leaver(std::size_t, Index, const StripColumns<2>&, Index, Index);
+template void ParticleStrips<2>::find_arrivals_within(const Mesh<2>&, const Locator<2>&, std::size_t, std::vector<Arrival>&);
+template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, StepSums<2>&,
+                                            ParticleErrors&);
+template void ParticleStrips<2>::send_leavers(const Subdomain&, Migration<2>&);
+template void ParticleStrips<3>::add_leaver(std::size_t, Index, const StripColumns<3>&, Index, Index);
+template void ParticleStrips<3>::find_arrivals_within(const Mesh<3>&, const Locator<3>&, std::size_t, std::vector<Arrival>&);
+template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, StepSums<3>&,
+                                            ParticleErrors&);
+template void ParticleStrips<3>::send_leavers(const Subdomain&, Migration<3>&);
+
+}  // namespace talus

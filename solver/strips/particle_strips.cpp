@@ -1,0 +1,109 @@
+#include "solver/strips/particle_strips.hpp"
+
+namespace talus {
+
+template <int D>
+Index ParticleStrips<D>::size() const noexcept
+{
+  Index n = 0;
+  for (const BlockOfStrips& block : block_)
+    for (const Strip& strip : block.strips)
+      n += strip.n;
+  return n;
+}
+
+template <int D>
+std::size_t ParticleStrips<D>::bytes_moved() const noexcept
+{
+  const auto has = [&](std::string_view name, Index numbers) { return layout_.at(name) == none ? 0 : numbers; };
+  const Index constant = has("mass", 1) + has("volume0", 1), untouched = has("id", 1) + has("start", D);
+  const auto of_columns = to_size(2 * (layout_.width() - D - constant - untouched) + constant + D);  // the position before is only written
+  std::size_t numbers = 0;
+  for (std::size_t key = 0; key < block_.size(); ++key)
+    for (const Strip& strip : block_[key].strips)
+      numbers += to_size(strip.n) * (of_columns + 2 * to_size(history_width_[key / to_size(blocks_)]));
+  return numbers * sizeof(Real);
+}
+
+template <int D>
+StripColumns<D> ParticleStrips<D>::columns(const Strip& strip) const noexcept
+{
+  StripColumns<D> all;
+  const auto find = [&](const auto& named, auto& column) {
+    if (named.stride > 0)
+      column.first = strip.array(static_cast<Index>(named.stride - 1)), column.stride = to_size(strip.room);
+  };
+  find(named_.x, all.x), find(named_.before, all.before), find(named_.v, all.v), find(named_.F, all.F);
+  find(named_.stress, all.stress), find(named_.mass, all.mass), find(named_.volume0, all.volume0), find(named_.volume, all.volume);
+  find(named_.viscous, all.viscous);
+  all.id = reinterpret_cast<std::int64_t*>(strip.array(layout_.at(std::size_t{0})));  // the first column of particles
+  if (!loaded_gradients_.empty())
+    set_gradients(strip.loaded_gradients, to_size(strip.room), all);
+  return all;
+}
+
+template <int D>
+StripColumns<D> ParticleStrips<D>::columns_of_records(const Strip& records) const noexcept
+{
+  StripColumns<D> all = columns(records);
+  set_gradients(records.array(layout_.width()), to_size(records.room), all);
+  return all;
+}
+
+template <int D>
+void ParticleStrips<D>::set_gradients(Real* first, std::size_t stride, StripColumns<D>& all) const noexcept
+{
+  all.L = {first, stride};
+  if (layout_.has_affine())
+    all.C = {first + D * D * stride, stride};
+}
+
+template <int D>
+void ParticleStrips<D>::drop_loaded_gradients() noexcept
+{
+  loaded_gradients_ = {};
+}
+
+template <int D>
+Index ParticleStrips<D>::size_in_order(std::size_t key) const noexcept
+{
+  const BlockOfStrips& block = block_[key];
+  Index n = static_cast<Index>(block.arrivals) - static_cast<Index>(block.left.all.size());
+  for (const Strip& strip : block.strips)
+    n += strip.n;
+  return n;
+}
+
+template <int D>
+Totals<D> totals(const ParticleStrips<D>& strips, Communicator& ranks)
+{
+  ExactSums<Totals<D>> sum;
+  add_parts(static_cast<Index>(strips.keys()), sum, [&](Index key) {
+    Totals<D> part{};
+    for (const Strip& strip : strips.strips(to_size(key))) {
+      const StripColumns<D> all = strips.columns(strip);
+      for (std::size_t i = 0; i < to_size(strip.n); ++i)
+        part += totals_of<D>(all.mass.of(i), all.x.of(i), all.v.of(i));
+    }
+    return part;
+  });
+  ranks.sum(sum);
+  return sum.value();
+}
+
+template Totals<2> totals(const ParticleStrips<2>&, Communicator&);
+template Index ParticleStrips<2>::size() const noexcept;
+template std::size_t ParticleStrips<2>::bytes_moved() const noexcept;
+template std::size_t ParticleStrips<3>::bytes_moved() const noexcept;
+template Index ParticleStrips<2>::size_in_order(std::size_t) const noexcept;
+template StripColumns<2> ParticleStrips<2>::columns(const Strip&) const noexcept;
+template StripColumns<2> ParticleStrips<2>::columns_of_records(const Strip&) const noexcept;
+template void ParticleStrips<2>::drop_loaded_gradients() noexcept;
+template Totals<3> totals(const ParticleStrips<3>&, Communicator&);
+template Index ParticleStrips<3>::size() const noexcept;
+template Index ParticleStrips<3>::size_in_order(std::size_t) const noexcept;
+template StripColumns<3> ParticleStrips<3>::columns(const Strip&) const noexcept;
+template StripColumns<3> ParticleStrips<3>::columns_of_records(const Strip&) const noexcept;
+template void ParticleStrips<3>::drop_loaded_gradients() noexcept;
+
+}  // namespace talus

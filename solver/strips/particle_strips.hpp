@@ -1,0 +1,145 @@
+#pragma once
+// All particles of a rank in strips.
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/huge_page_allocator.hpp"
+#include "materials/interface/material.hpp"
+#include "mesh/locate.hpp"
+#include "mesh/part.hpp"
+#include "solver/particles/migrate.hpp"
+#include "solver/particles/relocate.hpp"
+#include "solver/state/cell_order.hpp"
+#include "solver/state/sums.hpp"
+#include "solver/strips/strip.hpp"
+
+namespace talus {
+
+/// The particles between load() and store().  A key is the number of a body and a block of cells, as in CellOrder.
+///
+/// A step moves the particles, and lists those that have left their cell.  They stay where they are in the strip until the next step has
+/// found their new cells: order() then puts them there.  So the strips between two steps follow from the particles alone, and a run that
+/// goes on from a checkpoint has the same ones.
+template <int D>
+class ParticleStrips {
+ public:
+  /// Takes the particles over; their columns and histories are empty afterwards.  Sorts them by cell.  Collective.
+  void load(Communicator& ranks, Index n_cells, const std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
+            CellOrder& order);
+  /// Writes the particles into columns, sorted by cell; the strips keep them too.  find_gradients(key, strip, columns) sets L and C to arrays
+  /// of the gradients of the particles of a strip; called by several threads.
+  using FindGradients = std::function<void(std::size_t key, Index strip, StripColumns<D>& columns)>;
+  void store(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& order,
+             const FindGradients& find_gradients) const;
+
+  /// Empties the columns and histories, as load() does.
+  static void clear(std::vector<Material>& materials, Particles<D>& particles, CellOrder& order);
+
+  std::size_t key(Index body, Index block) const noexcept
+  {
+    return static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(block);
+  }
+  std::size_t keys() const noexcept { return block_.size(); }
+  Index size() const noexcept;
+  /// The bytes that a step must read and write of the particles: each number that changes twice, mass and initial volume once.
+  std::size_t bytes_moved() const noexcept;
+  /// The memory of the strips [B].
+  std::size_t bytes() const noexcept { return memory_.size() * sizeof(Real) + pool_->bytes(); }
+
+  /// The strips of a body in a block; none where it has no particles.
+  std::span<Strip> strips(std::size_t key) noexcept { return block_[key].strips; }
+  std::span<const Strip> strips(std::size_t key) const noexcept { return block_[key].strips; }
+  /// Without gradients, unless those that were loaded still hold.
+  StripColumns<D> columns(const Strip& strip) const noexcept;
+  /// The same of an array of records, see Arrival: with gradients.
+  StripColumns<D> columns_of_records(const Strip& records) const noexcept;
+  /// To be called when nodes move the particles: what has been loaded of gradients holds no longer.
+  void drop_loaded_gradients() noexcept;
+  Real* history(std::size_t key, const Strip& strip, Index i) const noexcept
+  {
+    return strip.history(layout_.width(), i, history_width_[key / static_cast<std::size_t>(blocks_)]);
+  }
+  Index history_width(Index body) const noexcept { return history_width_[static_cast<std::size_t>(body)]; }
+  const StripLayout& layout() const noexcept { return layout_; }
+  /// The memory of a strip.
+  std::span<const Real> memory(std::size_t key, const Strip& strip) const noexcept
+  {
+    return {strip.numbers, static_cast<std::size_t>(strip.room) * strip_width(key)};
+  }
+  /// The strip that is likely to be used next; nullptr if there is none.
+  const Strip* next_strip(std::size_t key, Index strip) const noexcept
+  {
+    const auto next = static_cast<std::size_t>(strip) + 1;
+    if (next < block_[key].strips.size())
+      return &block_[key].strips[next];
+    return key + 1 < block_.size() && !block_[key + 1].strips.empty() ? &block_[key + 1].strips.front() : nullptr;
+  }
+  /// The first cell of a strip.
+  Index first_cell(std::size_t key, Index strip) const noexcept
+  {
+    return static_cast<Index>(key % static_cast<std::size_t>(blocks_)) * block_cells + strip * strip_cells;
+  }
+
+  /// Lists particle i of a strip, in this cell, as one that leaves; to be called in the order of strips and positions.  `columns` are those
+  /// of the strip, with gradients.
+  void add_leaver(std::size_t key, Index strip, const StripColumns<D>& columns, Index i, Index cell);
+  /// Finds the new cells of those who leave for a cell of the same block, and lists them: add_leaver() has been called for all of the key.
+  void find_arrivals_within(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& arrivals);
+  /// The particles of a key once its strips are in order.
+  Index size_in_order(std::size_t key) const noexcept;
+  /// Those that come to its cells, in the order of cells and ids.
+  std::span<const Arrival> arriving(std::size_t key) const noexcept
+  {
+    return std::span(arrivals_).subspan(block_[key].first_arrival, block_[key].arrivals);
+  }
+
+  /// Finds the new cells of all particles that leave, as relocate() does.
+  void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const std::vector<Material>& materials,
+                  StepSums<D>& sums, ParticleErrors& errors);
+  /// Makes arrivals of the particles that leave, of this rank and of others.  Collective.
+  void send_leavers(const Subdomain& subdomain, Migration<D>& migration);
+  /// Puts a strip in order: without those who have left, with those who come.
+  void order(std::size_t key, Index strip);
+
+ private:
+  struct BlockOfStrips {
+    std::vector<Strip> strips;
+    Leavers leaving;  ///< since the last call of send_leavers()
+    Leavers left;     ///< those before, whose places order() gives to others
+    std::size_t first_arrival = 0, arrivals = 0;
+  };
+  struct Run;
+
+  std::size_t key_of(Index body, Index cell) const noexcept { return key(body, cell / block_cells); }
+  /// Numbers of a record.
+  std::size_t record_width(std::size_t key) const noexcept { return strip_width(key) + static_cast<std::size_t>(layout_.gradients()); }
+  /// Numbers of a particle in its strip.
+  std::size_t strip_width(std::size_t key) const noexcept
+  {
+    return static_cast<std::size_t>(layout_.width() + history_width_[key / static_cast<std::size_t>(blocks_)]);
+  }
+  void set_gradients(Real* first, std::size_t stride, StripColumns<D>& columns) const noexcept;
+  void grow(Strip& strip, Index n, std::size_t width);
+  static void move_runs(std::span<const Run> runs, Real* array, Index numbers, Index first) noexcept;
+  void sort_arrivals();
+
+  StripLayout layout_;
+  StripColumns<D> named_;  ///< `stride` holds the number of the array
+  std::vector<Index> history_width_;
+  Index blocks_ = 0;
+  std::vector<BlockOfStrips> block_;  ///< one per key
+  Rows<Real> memory_;                 ///< of the strips at the beginning
+  Rows<Real> loaded_gradients_;
+  std::unique_ptr<LinePool> pool_ = std::make_unique<LinePool>();  ///< of those that have grown
+
+  std::vector<std::pair<std::size_t, Arrival>> unsorted_;  ///< with their keys
+  std::vector<Arrival> arrivals_;
+};
+
+/// The totals over all ranks, with the bits of those of particles in columns.  Collective.
+template <int D>
+Totals<D> totals(const ParticleStrips<D>& strips, Communicator& ranks);
+
+}  // namespace talus

@@ -1,0 +1,160 @@
+#pragma once
+// A strip: the particles of a body in eight neighbouring cells, in one piece of memory.
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <new>
+#include <string_view>
+#include <vector>
+
+#include "core/strip_column.hpp"
+#include "mesh/blocks.hpp"
+
+namespace talus {
+
+constexpr std::size_t to_size(Index i) noexcept { return static_cast<std::size_t>(i); }
+
+inline constexpr Index strip_cells = 8, strips_in_block = block_cells / strip_cells;
+static_assert(block_cells % strip_cells == 0);
+/// Packs begin at any particle of a strip and so end up to three particles behind the last one; whole packs also pad the strip.
+inline constexpr Index strip_padding = pack_size;
+
+/// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place; the
+/// velocity gradient and the affine field follow from the nodes and the position before the last step, which has arrays of its own.
+class StripLayout {
+ public:
+  StripLayout() = default;
+  /// The columns of particles that some rank has, see count_keepers().
+  template <int D>
+  StripLayout(const Particles<D>& particles, std::span<const std::int64_t> keepers)
+  {
+    std::size_t number = 0;
+    particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
+      using Kind = std::decay_t<decltype(column)>;
+      const bool is_gradient = name == gradient || name == affine;
+      if (is_gradient && keepers[number] > 0)
+        gradients_ += RowsOf<Kind>::components;
+      has_affine_ |= name == affine && keepers[number] > 0;
+      const bool has = keepers[number++] > 0 && name != "cell" && !is_gradient;
+      at_.push_back(has ? width_ : none);
+      names_.push_back(name);
+      if (has)
+        width_ += RowsOf<Kind>::components;
+    });
+    before_ = std::exchange(width_, width_ + D);
+  }
+  static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
+  /// Arrays of a strip, without those of its law.
+  Index width() const noexcept { return width_; }
+  /// Numbers of the gradients of a particle.
+  Index gradients() const noexcept { return gradients_; }
+  bool has_affine() const noexcept { return has_affine_; }
+  /// The first array of the positions before the last step.
+  Index before() const noexcept { return before_; }
+  /// The first array of a column by its number in Particles, or by its name; `none` without.
+  Index at(std::size_t number) const noexcept { return at_[number]; }
+  Index at(std::string_view name) const noexcept
+  {
+    for (std::size_t number = 0; number < names_.size(); ++number)
+      if (names_[number] == name)
+        return at_[number];
+    return none;
+  }
+
+ private:
+  std::vector<Index> at_;
+  std::vector<std::string_view> names_;
+  Index width_ = 0, gradients_ = 0, before_ = 0;
+  bool has_affine_ = false;
+};
+
+/// Memory that begins at a cache line.
+struct FreeLines {
+  void operator()(Real* numbers) const noexcept { ::operator delete[](numbers, std::align_val_t{64}); }
+};
+using Lines = std::unique_ptr<Real[], FreeLines>;
+inline Lines allocate_lines(std::size_t numbers)
+{
+  return Lines(static_cast<Real*>(::operator new[](numbers * sizeof(Real), std::align_val_t{64})));
+}
+
+/// Memory of strips, used again when a strip has outgrown it or has become empty: a body that travels needs no more of it on its way.
+class LinePool {
+ public:
+  /// The contents are not defined.
+  Real* take(std::size_t numbers)
+  {
+    const std::lock_guard guard(mutex_);
+    if (std::vector<Real*>& free = free_[numbers]; !free.empty()) {
+      Real* const first = free.back();
+      free.pop_back();
+      return first;
+    }
+    lines_.push_back(allocate_lines(numbers));
+    numbers_ += numbers;
+    return lines_.back().get();
+  }
+  void give_back(Real* first, std::size_t numbers)
+  {
+    const std::lock_guard guard(mutex_);
+    free_[numbers].push_back(first);
+  }
+  std::size_t bytes() const noexcept { return numbers_ * sizeof(Real); }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::size_t, std::vector<Real*>> free_;  ///< pieces by size
+  std::vector<Lines> lines_;
+  std::size_t numbers_ = 0;
+};
+
+/// Arrays of `room` numbers, one after the other, then the histories of the law, particle by particle.  Particles stand in the order of cells
+/// and ids.
+struct Strip {
+  Real* numbers = nullptr;
+  Index room = 0, n = 0;
+  std::array<Index, strip_cells> count{};  ///< particles of each cell
+  Real* loaded_gradients = nullptr;        ///< arrays of gradients before the first sweep
+
+  Real* array(Index k) const noexcept { return numbers + static_cast<std::size_t>(k) * static_cast<std::size_t>(room); }
+  Real* history(Index width, Index i, Index history_width) const noexcept
+  {
+    return array(width) + static_cast<std::size_t>(i) * static_cast<std::size_t>(history_width);
+  }
+};
+/// Room for n particles and some more, in whole cache lines.
+constexpr Index room_for(Index n) noexcept { return (n + n / 8 + strip_padding + 7) / 8 * 8; }
+
+/// The columns of a strip that a step uses.
+template <int D>
+struct StripColumns {
+  StripColumn<Vec<D>> x{}, before{}, v{};
+  StripColumn<Mat<D>> L{}, C{};  ///< not in the strip; C is empty where the affine field is L
+  StripColumn<Mat3> F{};
+  StripColumn<Sym3> stress{};
+  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{};
+  std::int64_t* id = nullptr;
+  const StripColumn<Mat<D>>& affine_field() const noexcept { return C ? C : L; }
+};
+
+/// Particles that are to leave their cells, with copies of their numbers as in Arrival, one after the other.
+struct Leavers {
+  struct Leaver {
+    Index strip, position;  ///< where it is in its block
+    Index cell;             ///< where it is; once cells have been found, where it goes; `none`: it is deleted
+    bool is_summed;         ///< it goes to a cell of the same block, whose sums contain it already
+  };
+  std::vector<Leaver> all;  ///< in the order of strips and positions
+  std::vector<Real> numbers;
+  void clear() noexcept { all.clear(), numbers.clear(); }
+};
+/// A particle that comes to a cell: its numbers in the order of the arrays, its gradients, then those of its law.
+struct Arrival {
+  Index cell;
+  std::int64_t id;
+  const Real* numbers;
+  bool is_summed;  ///< see Leaver
+};
+
+}  // namespace talus

@@ -1,0 +1,191 @@
+#include "solver/strips/particle_strips.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "solver/state/saved_columns.hpp"
+
+namespace talus {
+
+namespace {
+
+/// The numbers of a row of a column; an id has the size of a number.
+template <class Column>
+void read_row(const Column& column, std::size_t row, Real* first, std::size_t stride) noexcept
+{
+  static_assert(sizeof(typename RowsOf<Column>::Number) == sizeof(Real));
+  const auto* const numbers = numbers_of(column, row);
+  for (int c = 0; c < RowsOf<Column>::components; ++c)
+    std::memcpy(first + static_cast<std::size_t>(c) * stride, numbers + c, sizeof(Real));
+}
+template <class Column>
+void write_row(const Real* first, std::size_t stride, Column& column, std::size_t row) noexcept
+{
+  auto* const numbers = numbers_of(column, row);
+  for (int c = 0; c < RowsOf<Column>::components; ++c)
+    std::memcpy(numbers + c, first + static_cast<std::size_t>(c) * stride, sizeof(Real));
+}
+
+}  // namespace
+
+template <int D>
+void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, const std::vector<Body>& bodies, std::vector<Material>& materials,
+                             Particles<D>& particles, CellOrder& sorted)
+{
+  sort_by_cell(particles.cell, particles.id, bodies, n_cells, sorted);
+  layout_ = StripLayout(particles, count_keepers(ranks, particles));
+  const auto name = [&](auto& column, std::string_view of) {
+    const Index at = layout_.at(of);
+    column.first = nullptr, column.stride = at == none ? 0 : to_size(at) + 1;
+  };
+  name(named_.x, "position"), name(named_.v, "velocity");
+  named_.before.stride = to_size(layout_.before()) + 1;
+  name(named_.F, "deformation_gradient"), name(named_.stress, "stress"), name(named_.mass, "mass"), name(named_.volume0, "volume0");
+  name(named_.volume, "volume"), name(named_.viscous, "viscous_pressure");
+  history_width_.clear();
+  for (const Material& material : materials)
+    history_width_.push_back(material.history.width());
+  blocks_ = sorted.blocks;
+
+  block_ = std::vector<BlockOfStrips>(sorted.keys());
+  std::size_t numbers = 0, gradients = 0;
+  for (std::size_t key = 0; key < block_.size(); ++key) {
+    if (sorted.rows(key).empty())
+      continue;
+    std::vector<Strip>& strips = block_[key].strips;
+    strips.resize(to_size(strips_in_block));
+    const Index first = first_cell(key, 0);
+    for (const Index row : sorted.rows(key)) {
+      const Index cell = particles.cell[to_size(row)] - first;
+      ++strips[to_size(cell / strip_cells)].count[to_size(cell % strip_cells)];
+    }
+    for (Strip& strip : strips) {
+      strip.n = std::accumulate(strip.count.begin(), strip.count.end(), Index{0});
+      strip.room = strip.n > 0 ? room_for(strip.n) : 0;
+      numbers += to_size(strip.room) * strip_width(key);
+      gradients += to_size(strip.room) * to_size(layout_.gradients());
+    }
+  }
+  memory_.assign(numbers + 8, 0);
+  loaded_gradients_.assign(gradients, 0);
+  Real* next_gradients = loaded_gradients_.data();
+  Real* next = memory_.data();
+  while (reinterpret_cast<std::uintptr_t>(next) % 64 != 0)
+    ++next;
+  for (std::size_t key = 0; key < block_.size(); ++key)
+    for (Strip& strip : block_[key].strips) {
+      strip.numbers = next;
+      next += to_size(strip.room) * strip_width(key);
+      strip.loaded_gradients = next_gradients;
+      next_gradients += to_size(strip.room) * to_size(layout_.gradients());
+    }
+
+  parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
+    const auto rows = sorted.rows(to_size(k));
+    Material& material = materials[to_size(k) / to_size(blocks_)];
+    std::size_t first = 0;
+    for (Strip& strip : block_[to_size(k)].strips) {
+      const auto here = rows.subspan(first, to_size(strip.n));
+      first += to_size(strip.n);
+      std::size_t number = 0;
+      particles.for_each_column([&](std::string_view, std::string_view, const auto& column) {
+        if constexpr (sizeof(typename RowsOf<std::decay_t<decltype(column)>>::Number) == sizeof(Real))
+          if (const Index at = layout_.at(number); at != none)
+            for (std::size_t i = 0; i < here.size(); ++i)
+              read_row(column, to_size(here[i]), strip.array(at) + i, to_size(strip.room));
+        ++number;
+      });
+      const StripColumns<D> all = columns(strip);
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        all.before.set(i, all.x.of(i));
+        all.L.set(i, particles.L[to_size(here[i])]);
+        if (all.C)
+          all.C.set(i, particles.C[to_size(here[i])]);
+      }
+      for (std::size_t i = 0; i < here.size() && material.history.width() > 0; ++i)
+        std::copy_n(material.history.row(here[i] - material.begin), material.history.width(),
+                    history(to_size(k), strip, static_cast<Index>(i)));
+    }
+  });
+  clear(materials, particles, sorted);
+}
+
+template <int D>
+void ParticleStrips<D>::clear(std::vector<Material>& materials, Particles<D>& particles, CellOrder& sorted)
+{
+  particles.for_each_column([](std::string_view, std::string_view, auto& column) { column = {}; });
+  for (Material& material : materials)
+    material.history = HistoryRows(material.history.width());
+  sorted.row = {};
+}
+
+template <int D>
+void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& sorted,
+                              const FindGradients& find_gradients) const
+{
+  sorted.first.assign(block_.size() + 1, 0);
+  for (std::size_t key = 0; key < block_.size(); ++key) {
+    Index n = 0;
+    for (const Strip& strip : block_[key].strips)
+      n += strip.n;
+    sorted.first[key + 1] = sorted.first[key] + n;
+  }
+  sorted.blocks = blocks_;
+  sorted.is_new = sorted.is_tested = false;
+  const auto n = to_size(sorted.first.back());
+  sorted.row.resize(n);
+  std::iota(sorted.row.begin(), sorted.row.end(), 0);
+  std::size_t number = 0;
+  particles.for_each_column([&](std::string_view name, std::string_view, auto& column) {
+    if (layout_.at(number++) != none || name == "cell" || name == StripLayout::gradient ||
+        (name == StripLayout::affine && layout_.has_affine()))
+      column.resize(n);
+  });
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    bodies[b].begin = sorted.first[b * to_size(blocks_)], bodies[b].end = sorted.first[(b + 1) * to_size(blocks_)];
+    materials[b].set_range(bodies[b]);
+    materials[b].history.resize(bodies[b].size());
+  }
+  parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
+    Material& material = materials[to_size(k) / to_size(blocks_)];
+    auto first = to_size(sorted.first[to_size(k)]);
+    for (std::size_t s = 0; s < block_[to_size(k)].strips.size(); ++s) {
+      const Strip& strip = block_[to_size(k)].strips[s];
+      std::size_t at_column = 0;
+      particles.for_each_column([&](std::string_view, std::string_view, auto& column) {
+        if constexpr (sizeof(typename RowsOf<std::decay_t<decltype(column)>>::Number) == sizeof(Real))
+          if (const Index at = layout_.at(at_column); at != none)
+            for (std::size_t i = 0; i < to_size(strip.n); ++i)
+              write_row(strip.array(at) + i, to_size(strip.room), column, first + i);
+        ++at_column;
+      });
+      if (StripColumns<D> all = columns(strip); strip.n > 0) {
+        if (!all.L)
+          find_gradients(to_size(k), static_cast<Index>(s), all);
+        for (std::size_t i = 0; i < to_size(strip.n); ++i) {
+          particles.L.set(first + i, all.L.of(i));
+          if (all.C)
+            particles.C.set(first + i, all.C.of(i));
+        }
+      }
+      auto row = static_cast<Index>(first);
+      for (Index c = 0; c < strip_cells; ++c)
+        for (Index i = 0; i < strip.count[to_size(c)]; ++i)
+          particles.cell[to_size(row++)] = first_cell(to_size(k), static_cast<Index>(s)) + c;
+      for (Index i = 0; i < strip.n && material.history.width() > 0; ++i)
+        std::copy_n(history(to_size(k), strip, i), material.history.width(),
+                    material.history.row(static_cast<Index>(first) + i - material.begin));
+      first += to_size(strip.n);
+    }
+  });
+}
+
+template void ParticleStrips<2>::load(Communicator&, Index, const std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&);
+template void ParticleStrips<2>::clear(std::vector<Material>&, Particles<2>&, CellOrder&);
+template void ParticleStrips<2>::store(std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&, const FindGradients&) const;
+template void ParticleStrips<3>::load(Communicator&, Index, const std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&);
+template void ParticleStrips<3>::clear(std::vector<Material>&, Particles<3>&, CellOrder&);
+template void ParticleStrips<3>::store(std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&, const FindGradients&) const;
+
+}  // namespace talus

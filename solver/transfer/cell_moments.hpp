@@ -1,0 +1,77 @@
+#pragma once
+// MUSL without a second pass over the particles: the momentum that the new velocities of the particles of a cell put on its vertices,
+// from moments of their mass.
+#include "solver/transfer/projected_transfer.hpp"
+
+namespace talus {
+
+/// With B_n the barycentric coordinates of particle p in its cell, sums over the particles of a cell for each vertex n:
+/// sum m B_n v_p [kg m/s] with the velocity before the step, then sum m B_n B_j B_k [kg] for j <= k.
+///
+/// The new velocity of a particle and its gradient are linear in nodal data, v = (1 - b) (v_p + sum B dv) + b sum B v and A = sum B L.  So
+/// with w = (1 - b) dv + b v, T_njk = sum m B_n B_j B_k, M_nj = sum_k T_njk and the arms c_k of the vertices
+///
+///     sum_p m B_n (v - A c_p) = (1 - b) sum_p m B_n v_p + sum_j [M_nj w_j - L_j sum_k T_njk c_k]        sum_p m B_n A = sum_j M_nj L_j
+///
+/// where c_p = sum_k B_k c_k: exact, in about a seventh of the operations of a sum over eight particles.
+template <int D>
+struct CellMoments {
+  static constexpr int products = (D + 1) * (D + 2) / 2;
+  /// The number of the product of coordinates j and k.
+  static constexpr int product(int j, int k) noexcept { return j <= k ? j * (2 * D + 3 - j) / 2 + k - j : product(k, j); }
+
+  static constexpr int numbers = D + products;
+  Real of[D + 1][numbers];
+  Real behind[pack_size];  ///< whole packs are read
+};
+static_assert(CellMoments<3>::product(0, 3) == 3 && CellMoments<3>::product(1, 1) == 4 && CellMoments<3>::product(3, 3) == 9);
+static_assert(CellMoments<2>::product(0, 2) == 2 && CellMoments<2>::product(1, 1) == 3 && CellMoments<2>::product(2, 2) == 5);
+
+/// Adds the momentum of the new velocities of the particles of a cell to the rows of its vertices: `motion` of these with `pic`, the share b
+/// above.  Without `affine` A is zero.
+template <bool affine, int D>
+void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D + 1>& arms,
+                      const std::array<const ProjectedNodeMotion<D>*, D + 1>& motion, Real pic, std::span<ProjectedNodeSum<D>> rows,
+                      std::span<const std::uint16_t> slots) noexcept
+{
+  Pack q[CellMoments<D>::numbers];  // vertex n in lane n
+  load_rows<CellMoments<D>::numbers>(
+      {moments.of[0], moments.of[1], moments.of[2], moments.of[D]}, [&](int k, const Pack& of)
+                                                                        __attribute__((always_inline)) { q[k] = of; });
+  const Pack* const T = q + D;
+  Pack p[D], K[D][D]{}, arm[D];
+  for (int i = 0; i < D; ++i)
+    p[i] = (1 - pic) * q[i];
+  for (int d = 0; d < D; ++d)
+    arm[d] = Pack{arms[0][d], arms[1][d], arms[2][d], D == 3 ? arms[D][d] : 0};
+  for (int j = 0; j <= D; ++j) {
+    const ProjectedNodeMotion<D>& of = *motion[static_cast<std::size_t>(j)];
+    Pack M{}, first[D]{};
+    for (int k = 0; k <= D; ++k) {
+      const Pack& of_pair = T[CellMoments<D>::product(j, k)];
+      M += of_pair;
+      for (int d = 0; d < D; ++d)
+        first[d] += of_pair * arms[static_cast<std::size_t>(k)][d];
+    }
+    for (int i = 0; i < D; ++i) {
+      p[i] += M * ((1 - pic) * of.change[i] + pic * of.v[i]);
+      for (int d = 0; affine && d < D; ++d) {
+        K[i][d] += M * of.L(i, d);
+        p[i] -= first[d] * of.L(i, d);
+      }
+    }
+  }
+  for (int i = 0; affine && i < D; ++i)
+    for (int d = 0; d < D; ++d)
+      p[i] += K[i][d] * arm[d];
+  for (int a = 0; a <= D; ++a) {
+    ProjectedNodeSum<D>& row = rows[slots[static_cast<std::size_t>(a)]];
+    for (int i = 0; i < D; ++i) {
+      row.momentum[i] += p[i][a];
+      for (int d = 0; affine && d < D; ++d)
+        row.affine(i, d) += K[i][d][a];
+    }
+  }
+}
+
+}  // namespace talus
