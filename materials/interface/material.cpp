@@ -39,7 +39,7 @@ namespace {
 template <int D>
 class CopiedStrip {
  public:
-  static constexpr std::size_t room = 64;
+  static constexpr std::size_t room = 32;
 
   /// `strip.errors` and the numbers of the step are set by the caller.
   CopiedStrip(Material& material, const StressBlock<D>& block) : material_(material), block_(block), has_pore_(!block.pore_after.empty())
@@ -61,12 +61,17 @@ class CopiedStrip {
     strip_.id = id_.data(), strip_.history = history_.data();
   }
 
-  /// Copies up to `room` rows.
+  /// Copies up to `room` rows; those of the block behind them are prefetched.
   const StressStrip<D>& take(std::span<const Index> rows) noexcept
   {
     const Particles<D>& particles = block_.particles;
+    const auto first = static_cast<std::size_t>(rows.data() - block_.rows.data());
     strip_.n = rows.size();
     for_each(rows, [&](const ParticlePack& pack, std::size_t i) {
+      const std::size_t begin = first + i + distance, end = std::min(begin + pack_size, block_.rows.size());
+      for (std::size_t k = begin; k < end; ++k)
+        prefetch_row(static_cast<std::size_t>(block_.rows[k]), particles.F, particles.stress, particles.volume, particles.volume0,
+                     particles.mass);
       strip_.v.store(i, pack.load(particles.v)), strip_.L.store(i, pack.load(particles.L));
       strip_.F.store(i, pack.load(particles.F)), strip_.stress.store(i, pack.load(particles.stress));
       strip_.mass.store(i, pack.load(particles.mass)), strip_.volume0.store(i, pack.load(particles.volume0));
@@ -108,6 +113,8 @@ class CopiedStrip {
     for (std::size_t i = 0; i < rows.size(); i += pack_size)
       f(ParticlePack(rows, i), i);
   }
+
+  static constexpr std::size_t distance = 32;  // rows
 
   Material& material_;
   const StressBlock<D>& block_;
