@@ -16,7 +16,7 @@ void locate_particles(Model<D>& m)
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
   if (work.strips)
-    return work.strips->find_cells(problem.mesh, problem.locator, problem.exits, state.materials, work.sums, work.errors);
+    return work.strips->take_exits(problem.mesh, problem.locator, problem.exits, state.materials, work.sums, work.errors);
   bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
                           work.sums, work.errors);
   changed |= work.migration(problem.subdomain, state.bodies, state.materials, state.particles, work.order);

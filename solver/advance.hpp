@@ -10,7 +10,7 @@ namespace talus {
 /// state is valid.
 template <int D>
 void advance(Model<D>& m, Real dt);
-/// The same, but afterwards the particles may be in strips, ready for the next step: see begin_sweeps().  The bits are those of advance().
+/// The same, but afterwards the particles may be in strips, ready for the next step: see begin_sweeps().  The result is bitwise identical.
 template <int D>
 void make_step(Model<D>& m, Real dt);
 

@@ -19,7 +19,7 @@ struct RunView {
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
   const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
-  std::function<void()> fetch_particles = [] {};  ///< to be called by whoever reads particles during a stage
+  std::function<void()> fetch_particles = [] {};  ///< to be called before particles are read during a stage
 };
 
 template <int D>

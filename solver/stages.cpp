@@ -116,7 +116,7 @@ Real wanted_step(const Model<D>& m, const StepLimits& limits)
   return std::min(limits.cfl * std::min(m.state.crossing, of_loads), limits.longest);
 }
 
-/// Calls whoever watches.
+/// Calls `watch`, with the particles in their columns unless it copies them itself.
 template <int D>
 void show(Model<D>& m, const Watch<D>& watch, RunEvent event)
 {

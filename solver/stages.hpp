@@ -1,6 +1,5 @@
 #pragma once
 // Stages, the loop over steps, and what stops it.
-#include <concepts>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -84,11 +83,8 @@ struct Watch {
   bool copies_particles = false;
 
   template <class F>
-  requires std::invocable < F&, const Model<D>
-  &,
-      RunEvent > Watch(F f, bool copies = false)  // NOLINT(google-explicit-constructor): any function that watches
-      : see(std::move(f)),
-  copies_particles(copies)
+  Watch(F f, bool copies = false)  // NOLINT(google-explicit-constructor): any function that watches
+      : see(std::move(f)), copies_particles(copies)
   {}
 };
 

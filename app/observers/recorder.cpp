@@ -321,10 +321,10 @@ void Recorder<D>::write(const RunView<D>& view, bool last)
   const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
   const bool mesh = view.state.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
   const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
-  if (particles || mesh || history)
+  if (particles || mesh || history) {
     view.fetch_particles();
-  if (particles || mesh || history)
     view.problem.ranks->together([&] { require_results(folder_); });
+  }
   if (particles || mesh)
     write_frame(view, particles, mesh);
   if (history) {

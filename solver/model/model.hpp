@@ -63,7 +63,7 @@ void begin_sweeps(Model<D>& m);
 /// Moves them back into their columns.
 template <int D>
 void end_sweeps(Model<D>& m);
-/// Copies the particles into their columns for somebody who reads them, and forgets the copy.
+/// Copies the particles into their columns, to be read, and drops the copy.
 template <int D>
 void copy_to_columns(Model<D>& m);
 template <int D>

@@ -201,7 +201,7 @@ struct Totals {
   }
 };
 
-/// The contribution of one particle; not inlined, so that it has the same bits everywhere.
+/// The contribution of one particle; not inlined, so that it is bitwise identical everywhere.
 template <int D>
 [[gnu::noinline]] Totals<D> totals_of(Real m, const Vec<D>& x, const Vec<D>& v) noexcept
 {

@@ -22,7 +22,7 @@ void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripCol
 {
   BlockOfStrips& block = block_[key];
   const Strip& strip = block.strips[to_size(number)];
-  block.leaving.all.push_back({number, i, cell, false});
+  block.leaving.all.push_back({number, i, cell});
   std::vector<Real>& numbers = block.leaving.numbers;
   const std::size_t first = numbers.size();
   numbers.resize(first + record_width(key));
@@ -36,8 +36,7 @@ void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripCol
 }
 
 template <int D>
-void ParticleStrips<D>::find_arrivals_within(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key,
-                                             std::vector<Arrival>& arrivals_within)
+void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& arrivals_within)
 {
   arrivals_within.clear();
   Leavers& leavers = block_[key].leaving;
@@ -45,19 +44,17 @@ void ParticleStrips<D>::find_arrivals_within(const Mesh<D>& mesh, const Locator<
     const Real* const record = leavers.numbers.data() + i * record_width(key);
     Vec<D> x;
     for (int d = 0; d < D; ++d)
-      x[d] = record[static_cast<Index>(named_.x.stride) - 1 + d];
+      x[d] = record[layout_.step_arrays().x + d];
     Leavers::Leaver& leaver = leavers.all[i];
-    const auto cell = locator(mesh, x, leaver.cell);
-    if (!cell || *cell / block_cells != leaver.cell / block_cells)
-      continue;
-    leaver.cell = *cell;
-    leaver.is_summed = true;
-    arrivals_within.push_back({*cell, id_at(record + layout_.at(std::size_t{0})), record, true});
+    leaver.to = locator(mesh, x, leaver.cell).value_or(none);  // also nothing for a position that is not finite
+    leaver.is_summed = leaver.to != none && leaver.to / block_cells == leaver.cell / block_cells;
+    if (leaver.is_summed)
+      arrivals_within.push_back({leaver.to, id_at(record + layout_.step_arrays().id), record, true});
   }
 }
 
 template <int D>
-void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits,
+void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits,
                                    const std::vector<Material>& materials, StepSums<D>& sums, ParticleErrors& errors)
 {
   // A leaver as a strip of one particle.
@@ -67,34 +64,19 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
     one.room = 1;
     return columns(one);
   };
-  std::atomic<bool> outside = false;
-  parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
-    std::vector<Leavers::Leaver>& leavers = block_[to_size(k)].leaving.all;
-    for (std::size_t i = 0; i < leavers.size(); ++i) {
-      if (leavers[i].is_summed)
-        continue;
-      const StripColumns<D> all = columns_of(to_size(k), i);
-      const Vec<D> x = all.x.of(0);
-      if (!x.allFinite())
-        errors.report(*all.id, Trouble::not_finite);
-      else if (const auto cell = locator(mesh, x, leavers[i].cell))
-        leavers[i].cell = *cell;
-      else
-        leavers[i].cell = none, outside = true;
-    }
-  });
-  if (!outside)
-    return;
-  for (std::size_t key = 0; key < block_.size(); ++key)  // rare
+  for (std::size_t key = 0; key < block_.size(); ++key)
     for (std::size_t i = 0; i < block_[key].leaving.all.size(); ++i) {
       Leavers::Leaver& leaver = block_[key].leaving.all[i];
-      if (leaver.cell != none)
+      if (leaver.to != none)
         continue;
+      // Rare: outside the mesh.
       const StripColumns<D> all = columns_of(key, i);
       const Vec<D> x = all.x.of(0);
-      if (const auto back = set_back(mesh, locator, exits, x)) {
+      if (!x.allFinite()) {
+        errors.report(*all.id, Trouble::not_finite);
+      } else if (const auto back = set_back(mesh, locator, exits, x)) {
         all.x.set(0, back->x);
-        leaver.cell = back->cell;
+        leaver.to = back->cell;
         sums.removed.add({.held_count = 1});
         sums.largest_set_back = std::max(sums.largest_set_back, back->distance);
       } else if (exits.policy == OnExit::remove) {
@@ -103,11 +85,6 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
         sums.removed.add(content_of<D>(x, all.v.of(0), all.mass.of(0), plastic_work(material.law(), remembered, all.volume0.of(0))));
       } else {
         errors.report(*all.id, Trouble::lost);
-        const Strip& strip = block_[key].strips[to_size(leaver.strip)];
-        Index c = 0;
-        for (Index end = strip.count[0]; end <= leaver.position; end += strip.count[to_size(c)])
-          ++c;
-        leaver.cell = first_cell(key, leaver.strip) + c;  // it stays where it was
       }
     }
 }
@@ -123,7 +100,7 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
     const auto body = static_cast<Index>(key / to_size(blocks_));
     const std::span<const Real> numbers(block.left.numbers);
     for (std::size_t i = 0; i < block.left.all.size(); ++i) {
-      const Index cell = block.left.all[i].cell;
+      const Index cell = block.left.all[i].to;
       const auto record = numbers.subspan(i * record_width(key), record_width(key));
       if (cell == none)
         continue;
@@ -131,14 +108,14 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
         migration.add({body, subdomain.whole_cell(cell)}, cell / block_cells, record);
       else
         unsorted_.push_back(
-            {key_of(body, cell), {cell, id_at(record.data() + layout_.at(std::size_t{0})), record.data(), block.left.all[i].is_summed}});
+            {key_of(body, cell), {cell, id_at(record.data() + layout_.step_arrays().id), record.data(), block.left.all[i].is_summed}});
     }
   }
   if (!subdomain.alone())
     for (const MigratingParticle& one :
          migration.exchange([&](Index body) { return layout_.width() + layout_.gradients() + history_width(body); })) {
       const Index cell = subdomain.local_cell(one.head.whole_cell);
-      unsorted_.push_back({key_of(one.head.body, cell), {cell, id_at(one.numbers + layout_.at(std::size_t{0})), one.numbers, false}});
+      unsorted_.push_back({key_of(one.head.body, cell), {cell, id_at(one.numbers + layout_.step_arrays().id), one.numbers, false}});
     }
   sort_arrivals();
 }
@@ -168,13 +145,13 @@ void ParticleStrips<D>::sort_arrivals()
 }
 
 template void ParticleStrips<2>::add_leaver(std::size_t, Index, const StripColumns<2>&, Index, Index);
-template void ParticleStrips<2>::find_arrivals_within(const Mesh<2>&, const Locator<2>&, std::size_t, std::vector<Arrival>&);
-template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, StepSums<2>&,
+template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, std::size_t, std::vector<Arrival>&);
+template void ParticleStrips<2>::take_exits(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, StepSums<2>&,
                                             ParticleErrors&);
 template void ParticleStrips<2>::send_leavers(const Subdomain&, Migration<2>&);
 template void ParticleStrips<3>::add_leaver(std::size_t, Index, const StripColumns<3>&, Index, Index);
-template void ParticleStrips<3>::find_arrivals_within(const Mesh<3>&, const Locator<3>&, std::size_t, std::vector<Arrival>&);
-template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, StepSums<3>&,
+template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, std::size_t, std::vector<Arrival>&);
+template void ParticleStrips<3>::take_exits(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, StepSums<3>&,
                                             ParticleErrors&);
 template void ParticleStrips<3>::send_leavers(const Subdomain&, Migration<3>&);
 

@@ -29,14 +29,14 @@ template <int D>
 StripColumns<D> ParticleStrips<D>::columns(const Strip& strip) const noexcept
 {
   StripColumns<D> all;
-  const auto find = [&](const auto& named, auto& column) {
-    if (named.stride > 0)
-      column.first = strip.array(static_cast<Index>(named.stride - 1)), column.stride = to_size(strip.room);
+  const StepArrays& at = layout_.step_arrays();
+  const auto find = [&](Index array, auto& column) {
+    if (array != none)
+      column.first = strip.array(array), column.stride = to_size(strip.room);
   };
-  find(named_.x, all.x), find(named_.before, all.before), find(named_.v, all.v), find(named_.F, all.F);
-  find(named_.stress, all.stress), find(named_.mass, all.mass), find(named_.volume0, all.volume0), find(named_.volume, all.volume);
-  find(named_.viscous, all.viscous);
-  all.id = reinterpret_cast<std::int64_t*>(strip.array(layout_.at(std::size_t{0})));  // the first column of particles
+  find(at.x, all.x), find(at.before, all.before), find(at.v, all.v), find(at.F, all.F), find(at.stress, all.stress);
+  find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume), find(at.viscous, all.viscous);
+  all.id = reinterpret_cast<std::int64_t*>(strip.array(at.id));
   if (!loaded_gradients_.empty())
     set_gradients(strip.loaded_gradients, to_size(strip.room), all);
   return all;

@@ -85,18 +85,18 @@ class ParticleStrips {
   /// Lists particle i of a strip, in this cell, as one that leaves; to be called in the order of strips and positions.  `columns` are those
   /// of the strip, with gradients.
   void add_leaver(std::size_t key, Index strip, const StripColumns<D>& columns, Index i, Index cell);
-  /// Finds the new cells of those who leave for a cell of the same block, and lists them: add_leaver() has been called for all of the key.
-  void find_arrivals_within(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& arrivals);
+  /// Finds the new cells of the particles of a key that leave, once all are listed, and lists those that stay in the block.
+  void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& within);
   /// The particles of a key once its strips are in order.
   Index size_in_order(std::size_t key) const noexcept;
-  /// Those that come to its cells, in the order of cells and ids.
+  /// The particles that come to its cells, in the order of cells and ids.
   std::span<const Arrival> arriving(std::size_t key) const noexcept
   {
     return std::span(arrivals_).subspan(block_[key].first_arrival, block_[key].arrivals);
   }
 
-  /// Finds the new cells of all particles that leave, as relocate() does.
-  void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const std::vector<Material>& materials,
+  /// Particles outside the mesh are set back, deleted or reported, as by relocate().
+  void take_exits(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const std::vector<Material>& materials,
                   StepSums<D>& sums, ParticleErrors& errors);
   /// Makes arrivals of the particles that leave, of this rank and of others.  Collective.
   void send_leavers(const Subdomain& subdomain, Migration<D>& migration);
@@ -126,7 +126,6 @@ class ParticleStrips {
   void sort_arrivals();
 
   StripLayout layout_;
-  StripColumns<D> named_;  ///< `stride` holds the number of the array
   std::vector<Index> history_width_;
   Index blocks_ = 0;
   std::vector<BlockOfStrips> block_;  ///< one per key
@@ -138,7 +137,7 @@ class ParticleStrips {
   std::vector<Arrival> arrivals_;
 };
 
-/// The totals over all ranks, with the bits of those of particles in columns.  Collective.
+/// The totals over all ranks, bitwise identical to those of particles in columns.  Collective.
 template <int D>
 Totals<D> totals(const ParticleStrips<D>& strips, Communicator& ranks);
 

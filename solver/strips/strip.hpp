@@ -20,6 +20,11 @@ static_assert(block_cells % strip_cells == 0);
 /// Packs begin at any particle of a strip and so end up to three particles behind the last one; whole packs also pad the strip.
 inline constexpr Index strip_padding = pack_size;
 
+/// The first array of each column that a step uses; `none` without.
+struct StepArrays {
+  Index id, x, before, v, F, stress, mass, volume0, volume, viscous;
+};
+
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place; the
 /// velocity gradient and the affine field follow from the nodes and the position before the last step, which has arrays of its own.
 class StripLayout {
@@ -42,7 +47,9 @@ class StripLayout {
       if (has)
         width_ += RowsOf<Kind>::components;
     });
-    before_ = std::exchange(width_, width_ + D);
+    width_ += D;  // positions before the last step
+    arrays_ = {at("id"),     at("position"), width_ - D,    at("velocity"), at("deformation_gradient"),
+               at("stress"), at("mass"),     at("volume0"), at("volume"),   at("viscous_pressure")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
   /// Arrays of a strip, without those of its law.
@@ -50,8 +57,7 @@ class StripLayout {
   /// Numbers of the gradients of a particle.
   Index gradients() const noexcept { return gradients_; }
   bool has_affine() const noexcept { return has_affine_; }
-  /// The first array of the positions before the last step.
-  Index before() const noexcept { return before_; }
+  const StepArrays& step_arrays() const noexcept { return arrays_; }
   /// The first array of a column by its number in Particles, or by its name; `none` without.
   Index at(std::size_t number) const noexcept { return at_[number]; }
   Index at(std::string_view name) const noexcept
@@ -65,7 +71,8 @@ class StripLayout {
  private:
   std::vector<Index> at_;
   std::vector<std::string_view> names_;
-  Index width_ = 0, gradients_ = 0, before_ = 0;
+  Index width_ = 0, gradients_ = 0;
+  StepArrays arrays_{};
   bool has_affine_ = false;
 };
 
@@ -141,9 +148,10 @@ struct StripColumns {
 /// Particles that are to leave their cells, with copies of their numbers as in Arrival, one after the other.
 struct Leavers {
   struct Leaver {
-    Index strip, position;  ///< where it is in its block
-    Index cell;             ///< where it is; once cells have been found, where it goes; `none`: it is deleted
-    bool is_summed;         ///< it goes to a cell of the same block, whose sums contain it already
+    Index strip, position;   ///< where it is in its block
+    Index cell;              ///< where it is
+    Index to = none;         ///< where it goes, once that has been found; `none` afterwards: it is deleted
+    bool is_summed = false;  ///< it goes to a cell of the same block, whose sums contain it already
   };
   std::vector<Leaver> all;  ///< in the order of strips and positions
   std::vector<Real> numbers;

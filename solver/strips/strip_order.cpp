@@ -69,7 +69,7 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
   // Iterators: clang 14 does not know the ranges of this library.
   const auto of_strip = [](const Leavers::Leaver& a, const Leavers::Leaver& b) { return a.strip < b.strip; };
   const auto [first_leaver, last_leaver] =
-      std::equal_range(block.left.all.begin(), block.left.all.end(), Leavers::Leaver{number, 0, 0, false}, of_strip);
+      std::equal_range(block.left.all.begin(), block.left.all.end(), Leavers::Leaver{number, 0, 0}, of_strip);
   const Index first = first_cell(key, number);
   const auto all_arriving = arriving(key);
   const auto begin = std::ranges::lower_bound(all_arriving, first, {}, &Arrival::cell);
@@ -116,7 +116,7 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
 
   if (n + strip_padding > strip.room)
     grow(strip, n, strip_width(key));
-  for (Index k = 0; k < layout_.before(); ++k)  // positions before the step are about to be written
+  for (Index k = 0; k < layout_.step_arrays().before; ++k)  // positions before the step are about to be written
     move_runs(runs, strip.array(k), 1, k);
   const Index width = layout_.width();
   if (const Index numbers = history_width_[key / to_size(blocks_)]; numbers > 0)

@@ -35,14 +35,6 @@ void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, const std::vect
 {
   sort_by_cell(particles.cell, particles.id, bodies, n_cells, sorted);
   layout_ = StripLayout(particles, count_keepers(ranks, particles));
-  const auto name = [&](auto& column, std::string_view of) {
-    const Index at = layout_.at(of);
-    column.first = nullptr, column.stride = at == none ? 0 : to_size(at) + 1;
-  };
-  name(named_.x, "position"), name(named_.v, "velocity");
-  named_.before.stride = to_size(layout_.before()) + 1;
-  name(named_.F, "deformation_gradient"), name(named_.stress, "stress"), name(named_.mass, "mass"), name(named_.volume0, "volume0");
-  name(named_.volume, "volume"), name(named_.viscous, "viscous_pressure");
   history_width_.clear();
   for (const Material& material : materials)
     history_width_.push_back(material.history.width());

@@ -13,7 +13,7 @@ namespace talus {
 ///
 ///     sum_p m B_n (v - A c_p) = (1 - b) sum_p m B_n v_p + sum_j [M_nj w_j - L_j sum_k T_njk c_k]        sum_p m B_n A = sum_j M_nj L_j
 ///
-/// where c_p = sum_k B_k c_k: exact, in about a seventh of the operations of a sum over eight particles.
+/// where c_p = sum_k B_k c_k: exact.
 template <int D>
 struct CellMoments {
   static constexpr int products = (D + 1) * (D + 2) / 2;
@@ -35,9 +35,8 @@ void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D 
                       std::span<const std::uint16_t> slots) noexcept
 {
   Pack q[CellMoments<D>::numbers];  // vertex n in lane n
-  load_rows<CellMoments<D>::numbers>(
-      {moments.of[0], moments.of[1], moments.of[2], moments.of[D]}, [&](int k, const Pack& of)
-                                                                        __attribute__((always_inline)) { q[k] = of; });
+  const auto take = [&](int k, const Pack& of) __attribute__((always_inline)) { q[k] = of; };
+  load_rows<CellMoments<D>::numbers>({moments.of[0], moments.of[1], moments.of[2], moments.of[D]}, take);
   const Pack* const T = q + D;
   Pack p[D], K[D][D]{}, arm[D];
   for (int i = 0; i < D; ++i)

@@ -7,7 +7,19 @@
 
 namespace talus {
 
-/// Barycentric coordinates of four particles, one vertex per pack; zero in lanes beyond `count`.
+/// Barycentric coordinates of four particles at x [m] in a cell, one vertex per pack.
+template <int D>
+[[gnu::always_inline]] inline void barycentric_coordinates(const Real (&slope)[D][pack_size], const Vec<D>& centroid, const Pack (&x)[D],
+                                                           Pack (&of)[D + 1]) noexcept
+{
+  for (int a = 0; a <= D; ++a) {
+    of[a] = broadcast(1.0 / (D + 1));
+    for (int d = 0; d < D; ++d)
+      of[a] += slope[d][a] * (x[d] - centroid[d]);
+  }
+}
+
+/// The same; zero in lanes beyond `count`.
 template <int D>
 struct CornerWeights {
   Pack of[D + 1];
@@ -20,12 +32,9 @@ template <int D>
   for (int lane = 0; lane < count; ++lane)
     there[lane] = 1;
   CornerWeights<D> shares;
-  for (int a = 0; a <= D; ++a) {
-    Pack share = broadcast(1.0 / (D + 1));
-    for (int d = 0; d < D; ++d)
-      share += slope[d][a] * (x[d] - centroid[d]);
-    shares.of[a] = share * there;
-  }
+  barycentric_coordinates<D>(slope, centroid, x, shares.of);
+  for (Pack& share : shares.of)
+    share *= there;
   return shares;
 }
 

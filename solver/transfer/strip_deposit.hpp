@@ -16,14 +16,13 @@ struct CellFrame {
   Real altitude;                         ///< smallest altitude [m]
   Real least;                            ///< a particle whose barycentric coordinates are all above this lies in no other cell
 
-  /// Barycentric coordinates of four particles at x [m].
-  void shares(const VecOf<D>& x, Pack (&of)[D + 1]) const noexcept
+  /// Barycentric coordinates of particles i to i + 3 of a column of positions.
+  void shares(const StripColumn<Vec<D>>& positions, std::size_t i, Pack (&of)[D + 1]) const noexcept
   {
-    for (int a = 0; a <= D; ++a) {
-      of[a] = broadcast(1.0 / (D + 1));
-      for (int d = 0; d < D; ++d)
-        of[a] += slope[d][a] * (x[d].of - origin[d]);
-    }
+    Pack x[D];
+    for (int d = 0; d < D; ++d)
+      x[d] = load_loose(positions.component(d) + i);
+    barycentric_coordinates<D>(slope, origin, x, of);
   }
 };
 
@@ -119,8 +118,8 @@ struct DepositColumns {
   StripColumn<Real> mass, volume;
 };
 
-// The functions below exist once, in no inlined or specialised copies: a particle must contribute the same bits wherever it is summed, and a
-// compiler may round a b + c differently in each copy.
+// The functions below exist once, in no inlined or specialised copies: contributions must be bitwise identical wherever a particle is summed,
+// and a compiler may round a b + c differently in each copy.
 #if defined(__clang__)
 #define TALUS_ONE_COPY [[gnu::noinline]]
 #else
@@ -136,7 +135,7 @@ TALUS_ONE_COPY void find_shares(const StripColumn<Vec<D>>& x, StripScratch<D>& s
     const CellFrame<D>& frame = *run.frame;
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       Pack share[D + 1];
-      frame.shares(x.load(i), share);
+      frame.shares(x, i, share);
       Pack least = share[0];
       for (int a = 1; a <= D; ++a)
         least = share[a] < least ? share[a] : least;
@@ -148,7 +147,6 @@ TALUS_ONE_COPY void find_shares(const StripColumn<Vec<D>>& x, StripScratch<D>& s
           centre += share[a] * frame.arms[static_cast<std::size_t>(a)][d];
         store_loose(scratch.centre[d] + i, centre);
       }
-      store_loose(scratch.altitude + i, broadcast(frame.altitude));
       if (const SimdReal::Mask deep = SimdReal(least) > frame.least; !all_of(deep))
         for (std::size_t lane = 0; lane < pack_size && i + lane < run.end; ++lane)
           if (!deep[static_cast<int>(lane)])
@@ -172,7 +170,7 @@ TALUS_ONE_COPY void read_gradients(const StripColumn<Vec<D>>& x, const std::vect
     }
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       Pack share[D + 1];
-      run.frame->shares(x.load(i), share);
+      run.frame->shares(x, i, share);
       const auto store_sum = [&](const Mat<D>* const(&of)[D + 1], const StripColumn<Mat<D>>& to) __attribute__((always_inline))
       {
         for (int k = 0; k < D * D; ++k) {
@@ -233,29 +231,38 @@ TALUS_ONE_COPY void find_contributions(const DepositColumns<D>& columns, std::si
   }
 }
 
+/// Sums over a run, on each vertex of its cell, of so many packs of contributions from number k on.  Two packs leave room for the sums in
+/// the registers of a processor with AVX2.
+template <int packs, int size, int D>
+[[gnu::always_inline]] inline void sum_packs(const CellRun<D>& run, const StripScratch<D>& scratch, int k,
+                                             Real (&sums)[D + 1][size]) noexcept
+{
+  Pack sum[D + 1][packs]{};
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    Pack q[packs];
+    for (int p = 0; p < packs; ++p)
+      q[p] = load(scratch.quantities + i * size + k + p * pack_size);
+    for (int n = 0; n <= D; ++n) {
+      const Pack share = broadcast(scratch.share[n][i]);
+      for (int p = 0; p < packs; ++p)
+        sum[n][p] += share * q[p];
+    }
+  }
+  for (int n = 0; n <= D; ++n)
+    for (int p = 0; p < packs; ++p)
+      store(sums[n] + k + p * pack_size, sum[n][p]);
+}
+
 /// Sums of the contributions of a run on each vertex of its cell.
 template <bool affine, bool moments, int D>
 void sum_run(const CellRun<D>& run, const StripScratch<D>& scratch, CornerSums<D, Contribution<D, affine, moments>::size>& sums) noexcept
 {
   constexpr int size = Contribution<D, affine, moments>::padded_size, both = 2 * pack_size;
-  for (int k = 0; k < size; k += both) {
-    const bool second = k + pack_size < size;
-    Pack one[D + 1]{}, two[D + 1]{};
-    for (std::size_t i = run.begin; i < run.end; ++i) {
-      const Real* const q = scratch.quantities + i * size + k;
-      const Pack a = load(q), b = load(second ? q + pack_size : q);
-      for (int n = 0; n <= D; ++n) {
-        const Pack share = broadcast(scratch.share[n][i]);
-        one[n] += share * a;
-        two[n] += share * b;
-      }
-    }
-    for (int n = 0; n <= D; ++n) {
-      store(sums.of[n] + k, one[n]);
-      if (second)
-        store(sums.of[n] + k + pack_size, two[n]);
-    }
-  }
+  int k = 0;
+  for (; k + both <= size; k += both)
+    sum_packs<2, size>(run, scratch, k, sums.of);
+  if constexpr (size % both != 0)
+    sum_packs<1, size>(run, scratch, k, sums.of);
 }
 
 /// Adds the contributions of the first n particles to the rows of their block, and to the moments of their cells; find_shares() has been

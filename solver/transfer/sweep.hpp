@@ -127,7 +127,7 @@ class BlockSweep {
   void add_arrivals_within()
   {
     for (Index body = 0; body < m_.n_bodies(); ++body) {
-      strips_.find_arrivals_within(m_.problem.mesh, m_.problem.locator, strips_.key(body, block_), scratch_.arrivals);
+      strips_.find_cells(m_.problem.mesh, m_.problem.locator, strips_.key(body, block_), scratch_.arrivals);
       add_arrivals(scratch_.arrivals);
     }
   }
@@ -194,7 +194,7 @@ class BlockSweep {
         scratch_.ahead.next();
         const VecOf<D> x = columns.x.load(i);
         Pack share[D + 1];
-        run.frame->shares(x, share);
+        run.frame->shares(columns.x, i, share);
         // The next run has not read its places and velocities yet: they must stay behind the end of this one.
         SimdReal::Mask mine;
         for (int lane = 0; lane < pack_size; ++lane)

@@ -81,7 +81,7 @@ class TransferOf final : public Transfer<D> {
                       [[maybe_unused]] StripColumns<D>& columns) override
   {
     if constexpr (Rows::projects)
-      BlockSweep<D, K>(m, rows_, sweep_, 0).find_gradients_again(key, strip, columns);
+      BlockSweep<D, K>(m, rows_, sweep_, m.work.strips->first_cell(key, 0) / block_cells).find_gradients_again(key, strip, columns);
   }
 
   void particles_to_nodes(Model<D>& m) override
@@ -215,7 +215,7 @@ class TransferOf final : public Transfer<D> {
   }
 
   template <class F>
-  requires Rows::projects void for_each_remapped_gradient(Model<D>& m, F&& f)
+  void for_each_remapped_gradient(Model<D>& m, F&& f) requires Rows::projects
   {
     project_gradient(
         rows_.kernel.node_operators(), m.work.nodes.in_use, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); },

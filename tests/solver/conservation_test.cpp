@@ -133,6 +133,20 @@ TYPED_TEST(EveryKernelAndTransfer, AllocateNothingInAStep)
   set_threads(1);
 }
 
+TYPED_TEST(EveryKernelAndTransfer, AllocateNothingWhileParticlesKeepTheirCells)
+{
+  set_threads(2);
+  auto m = flying_block<TypeParam>();
+  const Real dt = 1e-6 * shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles);
+  for (int step = 0; step < 5; ++step)
+    make_step(m, dt);
+  const long before = allocations;
+  for (int step = 0; step < 30; ++step)
+    make_step(m, dt);
+  EXPECT_EQ(allocations - before, 0);
+  set_threads(1);
+}
+
 TYPED_TEST(EveryKernelAndTransfer, CloseTheEnergyBalanceWhileStable)
 {
   if (!stable<TypeParam>)

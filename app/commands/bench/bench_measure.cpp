@@ -51,7 +51,7 @@ BenchResult measure_block(const BenchSetting& setting, const BenchPlan& plan)
               {[&](const RunView<D>& view, RunEvent event) {
                  if (recorder)
                    recorder->watch(view, event);
-                 if (event == RunEvent::step_done && view.state.clock.step == 1) {
+                 if (event == RunEvent::step_done && view.state.clock.step == plan.all_steps()) {
                    result.bytes_held = bytes_per_particle(view);
                    result.bytes_moved = bytes_moved(view);
                  }
