@@ -35,19 +35,6 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
           .strips = m.work.strips ? &*m.work.strips : nullptr};
 }
 
-/// Mass [kg], momentum [kg m/s] and energy [J] of the particles of all ranks.  Collective.
-template <int D>
-Totals<D> totals(const RunView<D>& view)
-{
-  return totals(view.state.particles, view.order, *view.problem.ranks);
-}
-/// Energy dissipated by the laws so far, over all ranks [J].  Collective.
-template <int D>
-Real plastic_work(const RunView<D>& view)
-{
-  return plastic_work(view.state.materials, view.order, view.state.particles, *view.problem.ranks);
-}
-
 /// The number of particles on this rank, wherever they are.
 template <int D>
 Index n_particles(const RunView<D>& view) noexcept

@@ -21,11 +21,7 @@ namespace {
 template <int D>
 ForceAndMoment<D> momentum_of(const RunView<D>& view)
 {
-  const Particles<D>& particles = view.state.particles;
-  return sum_particles<ForceAndMoment<D>>(view.order, *view.problem.ranks, [&](Index row) {
-    const auto p = static_cast<std::size_t>(row);
-    return ForceAndMoment<D>::at(particles.x[p], particles.mass[p] * particles.v[p]);
-  });
+  return sum_particles<ForceAndMoment<D>>(view, [](const auto& p) { return ForceAndMoment<D>::at(p.x(), p.mass() * p.v()); });
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "io/output/run_summary.hpp"
-#include "solver/run_view.hpp"
+#include "solver/each_particle.hpp"
 
 namespace talus {
 

@@ -7,13 +7,9 @@ namespace {
 template <int D>
 BodySums<D> sums_of_body(const RunView<D>& view, Index body)
 {
-  const Particles<D>& particles = view.state.particles;
   ExactSums<BodySums<D>> sum;
-  add_particles(view.order, {body, body + 1}, sum, [&](Index row) {
-    const auto p = static_cast<std::size_t>(row);
-    const Real m = particles.mass[p];
-    const Vec<D> v = particles.v[p], load = particles.applied.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(particles.applied[p]);
-    return BodySums<D>{m, 0.5 * m * v.squaredNorm(), m * v, load};
+  add_particles(view, {body, body + 1}, sum, [](const auto& p) {
+    return BodySums<D>{p.mass(), 0.5 * p.mass() * p.v().squaredNorm(), p.mass() * p.v(), p.load()};
   });
   view.problem.ranks->sum(sum);
   return sum.value();
@@ -26,7 +22,6 @@ void BodyForces<D>::see(const RunView<D>& view, RunEvent event)
 {
   if (!wanted_ || event == RunEvent::step_begins || event == RunEvent::given_up)
     return;
-  view.fetch_particles();
   std::vector<BodySums<D>> now;
   for (std::size_t b = 0; b < view.state.bodies.size(); ++b)
     now.push_back(sums_of_body(view, static_cast<Index>(b)));

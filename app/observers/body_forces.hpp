@@ -1,6 +1,6 @@
 #pragma once
 // The forces of walls and other bodies on each body, from the balance of its momentum.
-#include "solver/run_view.hpp"
+#include "solver/each_particle.hpp"
 
 namespace talus {
 

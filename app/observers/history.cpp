@@ -11,16 +11,6 @@ namespace {
 
 constexpr Real empty_entry = std::numeric_limits<Real>::quiet_NaN();
 
-/// Calls f(row) for the particles of one body, or of all.
-template <class F>
-void for_each_row(const std::string& body, const std::vector<Body>& bodies, F&& f)
-{
-  for (const Body& b : bodies)
-    if (body.empty() || b.name == body)
-      for (Index row = b.begin; row < b.end; ++row)
-        f(static_cast<std::size_t>(row));
-}
-
 /// The value that the fraction `share` of the mass does not exceed, from value and mass of particles of all ranks.  NaN if there are none,
 /// and on ranks other than the root.
 Real not_exceeded_by(Real share, const std::vector<Vec<2>>& here, Communicator& ranks)
@@ -116,14 +106,13 @@ Vec<D> attack(const Vec<D>& force, const Vec3& moment, const Vec<D>& normal, con
 }  // namespace
 
 template <int D>
-std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks)
+std::int64_t nearest_particle(const PointSpec& spec, const RunView<D>& view)
 {
   const Vec<D> at = Eigen::Map<const Vec<D>>(spec.at.data());
   constexpr auto nobody = std::numeric_limits<std::int64_t>::max();
   std::pair<Real, std::int64_t> best{std::numeric_limits<Real>::infinity(), nobody};
-  for_each_row(spec.body, bodies, [&](std::size_t p) {
-    best = std::min(best, std::pair{(particles.x[p] - at).squaredNorm(), particles.id[p]});
-  });
+  for_each_particle_of(view, spec.body, [&](const auto& p) { best = std::min(best, std::pair{(p.x() - at).squaredNorm(), p.id()}); });
+  Communicator& ranks = *view.problem.ranks;
   const Real nearest = ranks.min(best.first);
   const std::int64_t id = ranks.min(best.first == nearest ? best.second : nobody);
   return id == nobody ? 0 : id;
@@ -137,21 +126,21 @@ std::optional<std::vector<Facet>> facets_of_wall(const Mesh<D>& mesh, const std:
 }
 
 template <int D>
-Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks)
+Real front(const FrontSpec& spec, const RunView<D>& view)
 {
   const auto axis = static_cast<Index>(spec.direction) / 2;
   const Real sign = static_cast<Index>(spec.direction) % 2 == 0 ? 1 : -1;
   std::vector<Vec<2>> here;  // coordinate along the direction, mass
-  for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({sign * particles.x[p][axis], particles.mass[p]}); });
-  return sign * not_exceeded_by(spec.mass_share, here, ranks);
+  for_each_particle_of(view, spec.body, [&](const auto& p) { here.push_back({sign * p.x()[axis], p.mass()}); });
+  return sign * not_exceeded_by(spec.mass_share, here, *view.problem.ranks);
 }
 
 template <int D>
-Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks)
+Real moved(const MovedSpec& spec, const RunView<D>& view)
 {
   std::vector<Vec<2>> here;  // length of displacement, mass
-  for_each_row(spec.body, bodies, [&](std::size_t p) { here.push_back({(particles.x[p] - particles.x0[p]).norm(), particles.mass[p]}); });
-  return not_exceeded_by(spec.mass_share, here, ranks);
+  for_each_particle_of(view, spec.body, [&](const auto& p) { here.push_back({p.displacement().norm(), p.mass()}); });
+  return not_exceeded_by(spec.mass_share, here, *view.problem.ranks);
 }
 
 template <int D>
@@ -186,7 +175,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
   state_.angular.assign(start.state.boundary.conditions().size(), Vec3::Zero());
   state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
-    state_.followed.push_back(nearest_particle(point, start.state.bodies, start.state.particles, *start.problem.ranks));
+    state_.followed.push_back(nearest_particle(point, start));
 }
 
 template <int D>
@@ -209,12 +198,9 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
     const Vec<D> reaction = elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero());
     put_all<D>(reaction_columns(), ReactionNow<D>{reaction}, row);
   }
-  FollowedRows followed(state_.followed);
-  followed.find(view.state.particles.id);
-  for (std::size_t k = 0; k < spec_.points.size(); ++k)
-    add_point(view, spec_.points[k], followed.row(state_.followed[k]), row);
+  add_points(view, row);
   for (const FrontSpec& spec : spec_.fronts)
-    put_all<D>(front_columns(), front(spec, view.state.bodies, view.state.particles, *view.problem.ranks), row);
+    put_all<D>(front_columns(), front(spec, view), row);
   for (const WallSpec& spec : spec_.walls)
     add_wall(view, spec, elapsed, row);
   for (std::size_t w = 0; w < state_.impulse.size(); ++w) {
@@ -222,7 +208,7 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
     state_.angular[w] = view.state.boundary.conditions()[w].angular;
   }
   for (const MovedSpec& spec : spec_.moved)
-    put_all<D>(moved_columns(), moved(spec, view.state.bodies, view.state.particles, *view.problem.ranks), row);
+    put_all<D>(moved_columns(), moved(spec, view), row);
   for (std::size_t k = 0; k < spec_.bodies.size(); ++k)
     add_body(view, forces, k, elapsed, row);
   view.problem.ranks->together([&] { file_->append(row); });
@@ -236,15 +222,14 @@ void HistoryWriter<D>::add_body(const RunView<D>& view, const BodyForces<D>& for
   const auto b = static_cast<std::size_t>(named - view.state.bodies.begin());
   const BodySums<D>& sums = forces.sums()[b];
   const BodyImpulse<D>&before = state_.given[k], &now = forces.impulses()[b];
-  ExactSums<Real> plastic;
-  add_plastic_work(view.state.materials[b], view.order, static_cast<Index>(b), view.state.particles.volume0, plastic);
-  view.problem.ranks->sum(plastic);
+  const auto number = static_cast<Index>(b);
+  const Real plastic = plastic_work(view, {number, number + 1});
   Vec<D> force = Vec<D>::Zero();
   if (now.unknown != before.unknown)
     force = Vec<D>::Constant(empty_entry);
   else if (elapsed > 0)
     force = (now.given - before.given) / elapsed;
-  put_all<D>(body_columns(), BodyNow<D>{sums.mass, sums.kinetic, plastic.value(), sums.momentum, force}, row);
+  put_all<D>(body_columns(), BodyNow<D>{sums.mass, sums.kinetic, plastic, sums.momentum, force}, row);
   state_.given[k] = now;
 }
 
@@ -286,35 +271,48 @@ void HistoryWriter<D>::follow_anew(const std::string& body, const RunView<D>& no
 {
   for (std::size_t k = 0; k < spec_.points.size(); ++k)
     if (spec_.points[k].body == body)
-      state_.followed[k] = nearest_particle(spec_.points[k], now.state.bodies, now.state.particles, *now.problem.ranks);
+      state_.followed[k] = nearest_particle(spec_.points[k], now);
 }
 
+/// Adds position, displacement, velocity and stress of the particles of the points; no entries for those that are gone.
 template <int D>
-void HistoryWriter<D>::add_point(const RunView<D>& view, const PointSpec& point_spec, Index at, std::vector<Real>& row)
+void HistoryWriter<D>::add_points(const RunView<D>& view, std::vector<Real>& row)
 {
-  std::vector<Real> here;
-  const bool is_there =
-      at != none && (point_spec.body.empty() || view.state.bodies[body_of(view.state.bodies, at)].name == point_spec.body);
-  if (is_there) {
-    const auto p = static_cast<std::size_t>(at);
-    const Particles<D>& particles = view.state.particles;
-    put_all<D>(point_columns(), PointNow<D>{particles.x[p], particles.x[p] - particles.x0[p], particles.v[p], particles.stress[p]}, here);
+  const FollowedRows followed(state_.followed);
+  struct Found {
+    std::size_t body = 0;
+    std::vector<Real> values;
+  };
+  std::vector<Found> here(followed.size());  // of each id
+  if (!followed.empty())
+    parallel_for_uneven(static_cast<Index>(view.order.keys()), [&](Index key) {
+      for_each_particle(view, static_cast<std::size_t>(key), [&](const auto& p) {
+        if (const auto place = followed.place(p.id())) {  // ids are unique: no other thread writes here
+          here[*place].body = static_cast<std::size_t>(key / view.order.blocks);
+          put_all<D>(point_columns(), PointNow<D>{p.x(), p.displacement(), p.v(), p.stress()}, here[*place].values);
+        }
+      });
+    });
+  for (std::size_t k = 0; k < spec_.points.size(); ++k) {
+    const Found& found = here[*followed.place(state_.followed[k])];
+    const std::string& body = spec_.points[k].body;
+    const bool is_there = body.empty() || view.state.bodies[found.body].name == body;
+    std::vector<Real> point(csv_columns(point_columns(), "", D).size(), empty_entry);
+    for (const std::vector<Real>& of_rank : gather_rows<Real>(*view.problem.ranks, is_there ? found.values : std::vector<Real>()))
+      if (!of_rank.empty())
+        point = of_rank;
+    row.insert(row.end(), point.begin(), point.end());
   }
-  std::vector<Real> point(csv_columns(point_columns(), "", D).size(), empty_entry);
-  for (const std::vector<Real>& of_rank : gather_rows<Real>(*view.problem.ranks, here))
-    if (!of_rank.empty())
-      point = of_rank;
-  row.insert(row.end(), point.begin(), point.end());
 }
 
 template std::optional<std::vector<Facet>> facets_of_wall<2>(const Mesh<2>&, const std::string&);
 template std::optional<std::vector<Facet>> facets_of_wall<3>(const Mesh<3>&, const std::string&);
-template std::int64_t nearest_particle<2>(const PointSpec&, const std::vector<Body>&, const Particles<2>&, Communicator&);
-template std::int64_t nearest_particle<3>(const PointSpec&, const std::vector<Body>&, const Particles<3>&, Communicator&);
-template Real front<2>(const FrontSpec&, const std::vector<Body>&, const Particles<2>&, Communicator&);
-template Real front<3>(const FrontSpec&, const std::vector<Body>&, const Particles<3>&, Communicator&);
-template Real moved<2>(const MovedSpec&, const std::vector<Body>&, const Particles<2>&, Communicator&);
-template Real moved<3>(const MovedSpec&, const std::vector<Body>&, const Particles<3>&, Communicator&);
+template std::int64_t nearest_particle<2>(const PointSpec&, const RunView<2>&);
+template std::int64_t nearest_particle<3>(const PointSpec&, const RunView<3>&);
+template Real front<2>(const FrontSpec&, const RunView<2>&);
+template Real front<3>(const FrontSpec&, const RunView<3>&);
+template Real moved<2>(const MovedSpec&, const RunView<2>&);
+template Real moved<3>(const MovedSpec&, const RunView<3>&);
 template class HistoryWriter<2>;
 template class HistoryWriter<3>;
 

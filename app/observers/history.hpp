@@ -9,17 +9,16 @@ namespace talus {
 
 /// The id of the particle of `spec.body` (any body, if empty) nearest to `spec.at`; the lowest of several equally near ones.  Collective.
 template <int D>
-std::int64_t nearest_particle(const PointSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles,
-                              Communicator& ranks = one_rank());
+std::int64_t nearest_particle(const PointSpec& spec, const RunView<D>& view);
 
 /// The coordinate [m] along the direction of `spec` that the given fraction of the mass does not exceed.  NaN without particles.  Over all
 /// ranks, on the root.  Collective.
 template <int D>
-Real front(const FrontSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks = one_rank());
+Real front(const FrontSpec& spec, const RunView<D>& view);
 
 /// The length of displacement [m] that the given fraction of the mass does not exceed.  Over all ranks, on the root.  Collective.
 template <int D>
-Real moved(const MovedSpec& spec, const std::vector<Body>& bodies, const Particles<D>& particles, Communicator& ranks = one_rank());
+Real moved(const MovedSpec& spec, const RunView<D>& view);
 
 /// The facets of a wall of the history; the second wall on a group is called GROUP_2.
 template <int D>
@@ -61,7 +60,7 @@ class HistoryWriter {
   /// Adds the columns of a body: its sums, and the mean force on it; no force if that is unknown for a step.
   void add_body(const RunView<D>& view, const BodyForces<D>& forces, std::size_t k, Real elapsed, std::vector<Real>& row);
   void add_wall(const RunView<D>& view, const WallSpec& spec, Real elapsed, std::vector<Real>& row) const;
-  static void add_point(const RunView<D>& view, const PointSpec& point, Index at, std::vector<Real>& row);
+  void add_points(const RunView<D>& view, std::vector<Real>& row);
 
   HistoryOutputSpec spec_;
   HistoryState<D> state_;

@@ -44,9 +44,7 @@ BodySummary summary_of(const RunView<D>& view, std::size_t b)
   const Body& body = view.state.bodies[b];
   ExactSums<Content> sum;
   const auto number = static_cast<Index>(b);
-  add_particles(view.order, {number, number + 1}, sum, [&](Index row) {
-    return Content{1, view.state.particles.mass[static_cast<std::size_t>(row)]};
-  });
+  add_particles(view, {number, number + 1}, sum, [](const auto& p) { return Content{1, p.mass()}; });
   view.problem.ranks->sum(sum);
   const Content content = sum.value();
   const Material& material = view.state.materials[b];
@@ -321,10 +319,8 @@ void Recorder<D>::write(const RunView<D>& view, bool last)
   const bool particles = particle_times_.due(time) || (last && outputs_.particles && particle_time_ != time);
   const bool mesh = view.state.clock.step > 0 && (mesh_times_.due(time) || (last && outputs_.mesh && mesh_time_ != time));
   const bool history = history_ && (history_times_.due(time) || (last && history_time_ != time));
-  if (particles || mesh || history) {
-    view.fetch_particles();
+  if (particles || mesh || history)
     view.problem.ranks->together([&] { require_results(folder_); });
-  }
   if (particles || mesh)
     write_frame(view, particles, mesh);
   if (history) {
@@ -338,6 +334,7 @@ template <int D>
 void Recorder<D>::write_frame(const RunView<D>& view, bool particles, bool mesh)
 {
   finish_frame();
+  view.fetch_particles();
   Frame frame;
   frame.time = view.state.clock.time;
   frame_.clear();

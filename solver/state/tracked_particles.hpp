@@ -2,6 +2,7 @@
 // The rows of single particles that are tracked by id; they may be deleted or on another rank.
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,27 +37,31 @@ class FollowedRows {
       return;
     parallel_for(static_cast<Index>(id.size()), [&](Index row) {
       const std::int64_t here = id[static_cast<std::size_t>(row)];
-      if ((maybe_[word_of(here)] & bit_of(here)) != 0)
-        if (const std::size_t place = place_of(here); place < ids_.size())
-          rows_[place] = row;  // ids are unique: no other thread writes here
+      if (const auto tracked = place(here))
+        rows_[*tracked] = row;  // ids are unique: no other thread writes here
     });
+  }
+  std::size_t size() const noexcept { return ids_.size(); }
+  /// The number of an id among the tracked ones; nothing if it is not tracked.
+  std::optional<std::size_t> place(std::int64_t id) const noexcept
+  {
+    if (empty() || (maybe_[word_of(id)] & bit_of(id)) == 0)
+      return std::nullopt;
+    const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
+    if (found == ids_.end() || *found != id)
+      return std::nullopt;
+    return static_cast<std::size_t>(found - ids_.begin());
   }
   /// The row of a particle; `none` if it is not on this rank or not tracked.
   Index row(std::int64_t id) const noexcept
   {
-    const std::size_t place = place_of(id);
-    return place < ids_.size() ? rows_[place] : none;
+    const auto tracked = place(id);
+    return tracked ? rows_[*tracked] : none;
   }
 
  private:
   static constexpr std::size_t bits_in_word = 64;
 
-  /// The index of an id among the tracked ones; their number if it is not tracked.
-  std::size_t place_of(std::int64_t id) const noexcept
-  {
-    const auto found = std::lower_bound(ids_.begin(), ids_.end(), id);
-    return found != ids_.end() && *found == id ? static_cast<std::size_t>(found - ids_.begin()) : ids_.size();
-  }
   std::size_t word_of(std::int64_t id) const noexcept { return static_cast<std::uint64_t>(id) / bits_in_word % maybe_.size(); }
   static std::uint64_t bit_of(std::int64_t id) noexcept { return std::uint64_t{1} << (static_cast<std::uint64_t>(id) % bits_in_word); }
 

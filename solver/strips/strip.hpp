@@ -22,7 +22,7 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, v, F, stress, mass, volume0, volume, viscous;
+  Index id, x, before, start, v, F, stress, mass, volume0, volume, viscous;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place; the
@@ -48,8 +48,8 @@ class StripLayout {
         width_ += RowsOf<Kind>::components;
     });
     width_ += D;  // positions before the last step
-    arrays_ = {at("id"),     at("position"), width_ - D,    at("velocity"), at("deformation_gradient"),
-               at("stress"), at("mass"),     at("volume0"), at("volume"),   at("viscous_pressure")};
+    arrays_ = {at("id"),     at("position"), width_ - D,    at("start"),  at("velocity"),        at("deformation_gradient"),
+               at("stress"), at("mass"),     at("volume0"), at("volume"), at("viscous_pressure")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
   /// Arrays of a strip, without those of its law.
@@ -136,7 +136,7 @@ constexpr Index room_for(Index n) noexcept { return (n + n / 8 + strip_padding +
 /// The columns of a strip that a step uses.
 template <int D>
 struct StripColumns {
-  StripColumn<Vec<D>> x{}, before{}, v{};
+  StripColumn<Vec<D>> x{}, before{}, x0{}, v{};
   StripColumn<Mat<D>> L{}, C{};  ///< not in the strip; C is empty where the affine field is L
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};

@@ -12,6 +12,9 @@
 #include "core/parallel/threads.hpp"
 #include "io/scene/manual/formula_words.hpp"
 #include "io/scene/manual/manual.hpp"
+#include "materials/interface/constitutive_law_of.hpp"
+#include "materials/law_examples.hpp"
+#include "mesh/generate/generate.hpp"
 
 namespace talus::parts_test {
 
@@ -135,61 +138,71 @@ TEST(Expression, JumpsAndKinksHaveNoGradientOfTheirOwn)
   EXPECT_NEAR(at("sqrt(x - 1) * 0 + 2 * x", 1), 2, round_off) << "finite to the right only";
 }
 
-Particles<2> row_of_four()
-{
-  Particles<2> particles;
-  for (const Real x : {3.0, 0.0, 2.0, 1.0}) {
-    particles.id.push_back(static_cast<std::int64_t>(particles.id.size()));
-    particles.x.push_back({x, 0});
-    particles.mass.push_back(1);
+/// Two particles of "left" and two of "right" on a line.
+struct RowOfFour {
+  Problem<2> problem{Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {1, 1}))};
+  State<2> state;
+  CellOrder order;
+  Nodes<2> nodes;
+
+  RowOfFour()
+  {
+    for (const Real x : {3.0, 0.0, 2.0, 1.0}) {
+      state.particles.id.push_back(static_cast<std::int64_t>(state.particles.id.size()));
+      state.particles.x.push_back({x, 0});
+      state.particles.mass.push_back(1);
+    }
+    state.bodies = {{"left", 0, 2, {}}, {"right", 2, 4, {}}};
+    for (const Body& body : state.bodies)
+      state.materials.push_back(make_material(law_example<NeoHookean>(), body.begin, body.end, body.name));
+    order.row = {0, 1, 2, 3}, order.first = {0, 2, 4}, order.blocks = 1;
   }
-  return particles;
-}
+  RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }
+};
 
 TEST(Front, IsTheCoordinateThatAShareOfTheMassDoesNotPass)
 {
-  const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};
-  const auto particles = row_of_four();
+  const RowOfFour row;
   FrontSpec spec;
   spec.direction = Direction::x_plus;
   spec.mass_share = 1;
-  EXPECT_EQ(front(spec, bodies, particles), 3);
+  EXPECT_EQ(front(spec, row.view()), 3);
   spec.mass_share = 0.5;
-  EXPECT_EQ(front(spec, bodies, particles), 1);
+  EXPECT_EQ(front(spec, row.view()), 1);
   spec.direction = Direction::x_minus;
-  EXPECT_EQ(front(spec, bodies, particles), 2);
+  EXPECT_EQ(front(spec, row.view()), 2);
   spec.mass_share = 1;
   spec.body = "right";
-  EXPECT_EQ(front(spec, bodies, particles), 1);
+  EXPECT_EQ(front(spec, row.view()), 1);
 }
 
 TEST(Moved, IsTheDisplacementThatAShareOfTheMassDoesNotExceed)
 {
-  const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};
-  auto particles = row_of_four();
+  RowOfFour row;
+  Particles<2>& particles = row.state.particles;
   particles.x0 = particles.x;
   for (std::size_t p = 0; p < 4; ++p)
     particles.x0.set(p, particles.x0[p] - Vec<2>(3, 4) * std::vector<Real>{0.2, 0, 0.6, 0.4}[p]);
   MovedSpec spec;
   spec.mass_share = 1;
-  EXPECT_NEAR(moved(spec, bodies, particles), 3, 1e-14);
+  EXPECT_NEAR(moved(spec, row.view()), 3, 1e-14);
   spec.mass_share = 0.5;
-  EXPECT_NEAR(moved(spec, bodies, particles), 1, 1e-14);
+  EXPECT_NEAR(moved(spec, row.view()), 1, 1e-14);
   spec.body = "right";
-  EXPECT_NEAR(moved(spec, bodies, particles), 2, 1e-14);
+  EXPECT_NEAR(moved(spec, row.view()), 2, 1e-14);
 }
 
 TEST(NearestParticle, IsLookedForInItsBody)
 {
-  const std::vector<Body> bodies{{"left", 0, 2, {}}, {"right", 2, 4, {}}};
+  const RowOfFour row;
   PointSpec spec;
   spec.at = {2.9, 0};
-  EXPECT_EQ(nearest_particle<2>(spec, bodies, row_of_four()), 0);
+  EXPECT_EQ(nearest_particle(spec, row.view()), 0);
   spec.body = "right";
-  EXPECT_EQ(nearest_particle<2>(spec, bodies, row_of_four()), 2);
+  EXPECT_EQ(nearest_particle(spec, row.view()), 2);
   spec = {};
   spec.at = {0.5, 0};
-  EXPECT_EQ(nearest_particle<2>(spec, bodies, row_of_four()), 1) << "the lower id of two equally near ones";
+  EXPECT_EQ(nearest_particle(spec, row.view()), 1) << "the lower id of two equally near ones";
 }
 
 TEST(Schedule, ComesOncePerIntervalHoweverLongTheSteps)
