@@ -12,12 +12,12 @@ struct ColumnParticle {
   const Real* remembered;
 
   std::int64_t id() const noexcept { return all.id[p]; }
-  Real mass() const noexcept { return all.mass[p]; }               ///< [kg]
-  Real volume0() const noexcept { return all.volume0[p]; }         ///< at the start [m^D]
-  Vec<D> x() const noexcept { return all.x[p]; }                   ///< [m]
+  Real mass() const noexcept { return all.mass[p]; }                     ///< [kg]
+  Real volume0() const noexcept { return all.volume0[p]; }               ///< at the start [m^D]
+  Vec<D> x() const noexcept { return all.x[p]; }                         ///< [m]
   Vec<D> displacement() const noexcept { return all.x[p] - all.x0[p]; }  ///< [m]; with start positions only
-  Vec<D> v() const noexcept { return all.v[p]; }                   ///< [m/s]
-  Sym3 stress() const noexcept { return all.stress[p]; }           ///< [Pa]
+  Vec<D> v() const noexcept { return all.v[p]; }                         ///< [m/s]
+  Sym3 stress() const noexcept { return all.stress[p]; }                 ///< [Pa]
   /// Force of loads other than gravity [N].
   Vec<D> load() const noexcept { return all.applied.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(all.applied[p]); }
   const Real* history() const noexcept { return remembered; }  ///< the row of its law
