@@ -103,15 +103,12 @@ template <class... Values>
   (lines(columns), ...);
 }
 
-/// Calls f(pack) for all rows, four at a time, and ask(p) for each row before it is used.
-template <class F, class Ask = AskForNothing>
-void for_each_pack(std::span<const Index> rows, F&& f, Ask ask = {})
+/// Calls f(pack) for all rows, four at a time.
+template <class F>
+void for_each_pack(std::span<const Index> rows, F&& f)
 {
-  PrefetchRows ahead(rows, ask);
-  for (std::size_t begin = 0; begin < rows.size(); begin += pack_size) {
-    ahead.until(begin + pack_size);
+  for (std::size_t begin = 0; begin < rows.size(); begin += pack_size)
     f(ParticlePack(rows, begin));
-  }
 }
 /// Vectors and tensors of four particles.
 template <int D>

@@ -1,6 +1,9 @@
 #pragma once
 // Columns of a few particles that stand side by side: each component of a number, vector or tensor is an array of its own, so that a pack
 // is loaded from consecutive addresses.
+#include <bit>
+#include <cstdint>
+
 #include "core/particle_pack.hpp"
 
 namespace talus {
@@ -61,6 +64,13 @@ struct StripColumn {
       for (int c = 0; c < components; ++c)
         component(c)[i] = value(c);
   }
+};
+
+/// Ids in an array of numbers, which have their bits.
+struct StripIds {
+  const Real* first = nullptr;
+  std::int64_t operator[](std::size_t i) const noexcept { return id_of(first[i]); }
+  static std::int64_t id_of(const Real& number) noexcept { return std::bit_cast<std::int64_t>(number); }
 };
 
 }  // namespace talus

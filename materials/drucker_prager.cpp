@@ -170,7 +170,7 @@ Mat3Of<T> DruckerPrager::update(const IncrementOf<T>& in, StateOf<T, State>& sta
   return unpack(scale_and_shift(2 * c.shear * remaining * per_volume, shear_strain, end.mean * per_volume));
 }
 template Mat3 DruckerPrager::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<SimdReal> DruckerPrager::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> DruckerPrager::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
 Real DruckerPrager::yield(const Mat3&, const State& state) const noexcept
 {

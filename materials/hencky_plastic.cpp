@@ -20,8 +20,9 @@ Sym3 HenckyPlastic::elastic_left_under(const Mat3& stress) const noexcept
 template <class T>
 T HenckyPlastic::wave_speed_of(const Mat3Of<T>& F, Real bulk, Real shear) const noexcept
 {
-  using std::log, std::max, std::sqrt;
-  return sqrt(T((bulk + 4 * shear / 3) * (1 + max(T(-log(T(F.determinant()))), T(0))) / density));
+  using std::max, std::sqrt;
+  const T J = F.determinant(), compression = 0.5 * (1 / J - J);  // for J <= 1 above -ln J, by (1 - J)^3 / 6
+  return sqrt(T((bulk + 4 * shear / 3) * (1 + max(compression, T(0))) / density));
 }
 template Real HenckyPlastic::wave_speed_of(const Mat3&, Real, Real) const noexcept;
 template SimdReal HenckyPlastic::wave_speed_of(const Mat3Of<SimdReal>&, Real, Real) const noexcept;

@@ -40,15 +40,49 @@ struct NoHistory {
   static constexpr auto fields() { return std::tuple{}; }
 };
 
-/// The history of several particles, one per lane.  Lanes beyond `count` repeat the last particle and are not written.
+/// Numbers of a history.
 template <class State>
-struct StateRows {
-  State* row[pack_size];
+inline constexpr int numbers_of_state = std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(Real));
+
+/// The history of several particles, one per lane.  Lanes beyond `count` repeat the last particle.
+template <class State>
+struct StateLanes {
+  Real* first;         ///< number k of the history stands, for all lanes side by side, at first + k * stride
+  std::size_t stride;  ///< at least pack_size
   int count;
+
+  Real* number(int k) const noexcept { return first + static_cast<std::size_t>(k) * stride; }
+  State of(int lane) const noexcept
+  {
+    State one{};
+    if constexpr (constexpr int numbers = numbers_of_state<State>; numbers > 0) {
+      auto* const to = reinterpret_cast<Real*>(&one);
+      for (int k = 0; k < numbers; ++k)
+        to[k] = number(k)[lane];
+    }
+    return one;
+  }
+  void set(int lane, const State& one) const noexcept
+  {
+    if constexpr (constexpr int numbers = numbers_of_state<State>; numbers > 0) {
+      const auto* const from = reinterpret_cast<const Real*>(&one);
+      for (int k = 0; k < numbers; ++k)
+        number(k)[lane] = from[k];
+    }
+  }
 };
 /// What a law for T changes.
 template <class T, class State>
-using StateOf = std::conditional_t<std::is_same_v<T, SimdReal>, StateRows<State>, State>;
+using StateOf = std::conditional_t<std::is_same_v<T, SimdReal>, StateLanes<State>, State>;
+
+/// The place of a variable among the numbers of a history.
+template <class State, class Value, class Owner>
+int place_in_state(Value Owner::*member) noexcept
+{
+  const State state{};
+  const auto bytes = reinterpret_cast<const std::byte*>(&(state.*member)) - reinterpret_cast<const std::byte*>(&state);
+  return static_cast<int>(bytes / static_cast<std::ptrdiff_t>(sizeof(Real)));
+}
 
 /// One variable of a history, for a law that is written once for Real and SimdReal.
 template <class State, class Owner>
@@ -62,16 +96,16 @@ Sym3 get(const State& state, Sym3 Owner::*member) noexcept
   return state.*member;
 }
 template <class State, class Owner>
-SimdReal get(const StateRows<State>& rows, Real Owner::*member) noexcept
+SimdReal get(const StateLanes<State>& lanes, Real Owner::*member) noexcept
 {
-  return in_each_lane([&](int i) { return rows.row[i]->*member; });
+  return load_loose(lanes.number(place_in_state<State>(member)));
 }
 template <class State, class Owner>
-Sym3Of<SimdReal> get(const StateRows<State>& rows, Sym3 Owner::*member) noexcept
+Sym3Of<SimdReal> get(const StateLanes<State>& lanes, Sym3 Owner::*member) noexcept
 {
   Sym3Of<SimdReal> all;
   for (int k = 0; k < 6; ++k)
-    all[k] = in_each_lane([&](int i) { return (rows.row[i]->*member)[k]; });
+    all[k] = load_loose(lanes.number(place_in_state<State>(member) + k));
   return all;
 }
 template <class State, class Owner, class Value>
@@ -79,31 +113,16 @@ void put(State& state, Value Owner::*member, const Value& value) noexcept
 {
   state.*member = value;
 }
-namespace detail {
-/// f(lane) of the lanes that are written; mostly these are all.
-template <class F>
-void for_each_lane(int count, F&& f) noexcept
-{
-  if (count == pack_size) {
-    f(0), f(1), f(2), f(3);
-  } else {
-    for (int i = 0; i < count; ++i)
-      f(i);
-  }
-}
-}  // namespace detail
 template <class State, class Owner>
-void put(StateRows<State>& rows, Real Owner::*member, const SimdReal& value) noexcept
+void put(StateLanes<State>& lanes, Real Owner::*member, const SimdReal& value) noexcept
 {
-  detail::for_each_lane(rows.count, [&](int i) { rows.row[i]->*member = value[i]; });
+  store_loose(lanes.number(place_in_state<State>(member)), value.of);
 }
 template <class State, class Owner>
-void put(StateRows<State>& rows, Sym3 Owner::*member, const Sym3Of<SimdReal>& value) noexcept
+void put(StateLanes<State>& lanes, Sym3 Owner::*member, const Sym3Of<SimdReal>& value) noexcept
 {
-  detail::for_each_lane(rows.count, [&](int i) {
-    for (int k = 0; k < 6; ++k)
-      (rows.row[i]->*member)[k] = value[k][i];
-  });
+  for (int k = 0; k < 6; ++k)
+    store_loose(lanes.number(place_in_state<State>(member) + k), value[k].of);
 }
 
 /// A law.  `constants` is what follows from the parameters alone, worked out once per body.  `update` returns the Cauchy stress [Pa] at the
@@ -143,8 +162,8 @@ concept WaveSpeedOfHistory = requires(const L law, const Mat3Of<T>& F, const Sta
 };
 /// A law that computes several particles at once.
 template <class L>
-concept LawInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateRows<typename L::State>& rows, const typename L::Constants& constants) {
-  { law.update(in, rows, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
+concept LawInLanes = requires(const L law, const IncrementOf<SimdReal>& in, StateLanes<typename L::State>& state, const typename L::Constants& constants) {
+  { law.update(in, state, constants) } noexcept -> std::same_as<Mat3Of<SimdReal>>;
   requires WaveSpeedOfHistory<L, SimdReal> || requires { { law.wave_speed(in.F, constants) } noexcept -> std::same_as<SimdReal>; };
 };
 // clang-format on
@@ -158,13 +177,15 @@ Mat3Of<T> no_answer() noexcept
 
 /// The stresses of several particles computed one after the other.  Lanes beyond `count` are zero.
 template <class L>
-Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
+Mat3Of<SimdReal> update_one_by_one(const L& law, const IncrementOf<SimdReal>& in, const StateLanes<typename L::State>& states,
                                    const typename L::Constants& constants) noexcept
 {
   Mat3Of<SimdReal> stress = Mat3Of<SimdReal>::Zero();
-  for (int lane = 0; lane < rows.count; ++lane) {
+  for (int lane = 0; lane < states.count; ++lane) {
     const Mat3 F = lane_of(in.F, lane), rate = lane_of(in.L, lane), before = lane_of(in.stress, lane);
-    const Mat3 after = law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic}, *rows.row[lane], constants);
+    typename L::State state = states.of(lane);
+    const Mat3 after = law.update(Increment{F, rate, before, in.dt, in.viscous[lane], in.elastic}, state, constants);
+    states.set(lane, state);
     for (Index k = 0; k < 9; ++k)
       stress(k).set(lane, after(k));
   }
@@ -178,10 +199,10 @@ Mat3 no_answer_somewhere(const L&, const Increment&, const typename L::State&, c
   return no_answer();
 }
 template <class L>
-Mat3Of<SimdReal> no_answer_somewhere(const L& law, const IncrementOf<SimdReal>& in, const StateRows<typename L::State>& rows,
+Mat3Of<SimdReal> no_answer_somewhere(const L& law, const IncrementOf<SimdReal>& in, const StateLanes<typename L::State>& states,
                                      const typename L::Constants& constants) noexcept
 {
-  return update_one_by_one(law, in, rows, constants);
+  return update_one_by_one(law, in, states, constants);
 }
 
 /// True if the law says that its flow keeps the volume, which locks simplices.

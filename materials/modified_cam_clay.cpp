@@ -138,7 +138,7 @@ Mat3Of<T> ModifiedCamClay::update(const IncrementOf<T>& in, StateOf<T, State>& s
   return unpack(where<T>(loose, Sym3Of<T>::Zero(), stress));
 }
 template Mat3 ModifiedCamClay::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<SimdReal> ModifiedCamClay::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> ModifiedCamClay::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
 void ModifiedCamClay::prestress(const Mat3& stress, State& state) const noexcept
 {
@@ -175,7 +175,7 @@ T ModifiedCamClay::wave_speed(const Mat3Of<T>&, const StateOf<T, State>& state, 
   return sqrt(T(((p + c.reference) / c.swelling + max(p, T(0)) + c.shear * (4.0 / 3 + 2 * shear)) / density));
 }
 template Real ModifiedCamClay::wave_speed(const Mat3&, const State&, const Constants&) const noexcept;
-template SimdReal ModifiedCamClay::wave_speed(const Mat3Of<SimdReal>&, const StateRows<State>&, const Constants&) const noexcept;
+template SimdReal ModifiedCamClay::wave_speed(const Mat3Of<SimdReal>&, const StateLanes<State>&, const Constants&) const noexcept;
 
 void ModifiedCamClay::check(std::vector<std::string>& problems) const
 {

@@ -316,7 +316,7 @@ Mat3Of<T> MohrCoulomb::update(const IncrementOf<T>& in, StateOf<T, State>& state
   return unpack(where<T>(changed, axes.tensor(end.stress * per_volume), elastic_stress));
 }
 template Mat3 MohrCoulomb::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<SimdReal> MohrCoulomb::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> MohrCoulomb::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
 Real MohrCoulomb::yield(const Mat3&, const State& state) const noexcept
 {

@@ -63,7 +63,7 @@ Mat3Of<T> MuI::update(const IncrementOf<T>& in, StateOf<T, State>& state, const 
   return unpack(scale_and_shift(2 * c.shear * remaining / J, shear_strain, -p / J));
 }
 template Mat3 MuI::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<SimdReal> MuI::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> MuI::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
 Real MuI::yield(const Mat3&, const State& state) const noexcept
 {

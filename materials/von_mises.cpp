@@ -131,7 +131,7 @@ Mat3Of<T> VonMises::update(const IncrementOf<T>& in, StateOf<T, State>& state, c
   return stress_with(trial, J, remaining, c);
 }
 template Mat3 VonMises::update(const Increment&, State&, const Constants&) const noexcept;
-template Mat3Of<SimdReal> VonMises::update(const IncrementOf<SimdReal>&, StateRows<State>&, const Constants&) const noexcept;
+template Mat3Of<SimdReal> VonMises::update(const IncrementOf<SimdReal>&, StateLanes<State>&, const Constants&) const noexcept;
 
 Real VonMises::yield(const Mat3& stress, const State& state) const noexcept
 {

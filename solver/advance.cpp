@@ -32,7 +32,7 @@ bool particles_valid(Model<D>& m)
   m.work.errors.take(m.problem.ranks->min(m.work.errors.word()));
   if (!m.work.errors.worst())
     return true;
-  if (m.work.strips) {  // what has been found is lost with the strips
+  if (m.work.strips) {  // columns do not hold the new cells that were found
     end_sweeps(m);
     m.work.sums.clear();
     locate_particles(m);

@@ -9,7 +9,7 @@ template <int D>
 struct ColumnParticle {
   const Particles<D>& all;
   std::size_t p;
-  const Real* remembered;
+  const Real* of_law;
 
   std::int64_t id() const noexcept { return all.id[p]; }
   Real mass() const noexcept { return all.mass[p]; }                     ///< [kg]
@@ -20,7 +20,7 @@ struct ColumnParticle {
   Sym3 stress() const noexcept { return all.stress[p]; }                 ///< [Pa]
   /// Force of loads other than gravity [N].
   Vec<D> load() const noexcept { return all.applied.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(all.applied[p]); }
-  const Real* history() const noexcept { return remembered; }  ///< the row of its law
+  Real history(int number) const noexcept { return of_law[number]; }
 };
 
 /// The same in a strip.  Scenes with loads on particles have none.
@@ -28,7 +28,7 @@ template <int D>
 struct StripParticle {
   const StripColumns<D>& all;
   std::size_t p;
-  const Real* remembered;
+  const StripColumn<Real>& of_law;
 
   std::int64_t id() const noexcept { return all.id[p]; }
   Real mass() const noexcept { return all.mass.of(p); }
@@ -38,7 +38,7 @@ struct StripParticle {
   Vec<D> v() const noexcept { return all.v.of(p); }
   Sym3 stress() const noexcept { return all.stress.of(p); }
   Vec<D> load() const noexcept { return Vec<D>::Zero(); }
-  const Real* history() const noexcept { return remembered; }
+  Real history(int number) const noexcept { return of_law.component(number)[p]; }
 };
 
 /// Calls f(particle) for the particles of a body in a block of cells, in the order of cells and ids; `key` is CellOrder::key().
@@ -48,8 +48,9 @@ void for_each_particle(const RunView<D>& view, std::size_t key, F&& f)
   if (view.strips != nullptr) {
     for (const Strip& strip : view.strips->strips(key)) {
       const StripColumns<D> columns = view.strips->columns(strip);
+      const StripColumn<Real> history = view.strips->history(strip);
       for (Index i = 0; i < strip.n; ++i)
-        f(StripParticle<D>{columns, static_cast<std::size_t>(i), view.strips->history(key, strip, i)});
+        f(StripParticle<D>{columns, static_cast<std::size_t>(i), history});
     }
     return;
   }
@@ -104,7 +105,8 @@ Real plastic_work(const RunView<D>& view, std::pair<Index, Index> bodies)
   ExactSums<Real> sum;
   for (Index body = bodies.first; body < bodies.second; ++body) {
     const ConstitutiveLaw& law = view.state.materials[static_cast<std::size_t>(body)].law();
-    add_particles(view, {body, body + 1}, sum, [&](const auto& p) { return plastic_work(law, p.history(), p.volume0()); });
+    if (const auto work = law.description().scalar_variable("plastic_work"))
+      add_particles(view, {body, body + 1}, sum, [&](const auto& p) { return p.volume0() * p.history(*work); });
   }
   view.problem.ranks->sum(sum);
   return sum.value();

@@ -11,7 +11,8 @@ namespace talus {
 template <int D>
 struct RunView {
   const Problem<D>& problem;
-  /// Its particles, and the order, are there only after fetch_particles().
+  /// Its particles, their ranges in bodies and materials, and the rows of `order` are those of the steps only after fetch_particles();
+  /// order.blocks and order.key() always hold.
   const State<D>& state;
   const CellOrder& order;  ///< order of the particles of `state`
   const Nodes<D>& nodes;

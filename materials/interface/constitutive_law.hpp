@@ -39,7 +39,7 @@ struct LawDescription {
   }
 };
 
-/// Called once per step and block (update_stress) or outside the time step (everything else).  It does not change after it was made, so
+/// Called once per step and strip of particles (update_stress) or outside the time step (everything else).  It does not change after it was made, so
 /// that bodies share it.  `history` is the row of a particle, with the numbers that variables() describes.
 class ConstitutiveLaw {
  public:

@@ -50,12 +50,10 @@ auto variables_of()
 {
   constexpr std::size_t n = std::tuple_size_v<decltype(State::fields())>;
   std::array<HistoryVariable, n> all{};
-  const State state{};
   std::size_t number = 0;
   for_each_field<State>([&]<class Owner, class Value>(const History<Owner, Value>& field) {
     static_assert(std::is_same_v<Value, Real> || std::is_same_v<Value, Sym3>);
-    const auto bytes = reinterpret_cast<const std::byte*>(&(state.*field.member)) - reinterpret_cast<const std::byte*>(&state);
-    all[number++] = {field.key, field.unit, field.meaning, static_cast<int>(bytes / static_cast<std::ptrdiff_t>(sizeof(Real))),
+    all[number++] = {field.key, field.unit, field.meaning, place_in_state<State>(field.member),
                      static_cast<int>(sizeof(Value) / sizeof(Real))};
   });
   return all;
@@ -77,7 +75,7 @@ const LawDescription& law_description() noexcept
   static const LawDescription description{.name = L::name,
                                           .summary = L::summary,
                                           .variables = variables,
-                                          .history_width = std::is_empty_v<State> ? 0 : static_cast<int>(sizeof(State) / sizeof(Real)),
+                                          .history_width = numbers_of_state<State>,
                                           .starts_from_stress = has_prestress<L>,
                                           .has_strength = HasStrength<L>,
                                           .is_isochoric = is_isochoric<L>(),
@@ -120,14 +118,14 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
   }
 
   Mat3 update(const Increment& step, Real* history) const noexcept override { return law_.update(step, state_of(history), constants_); }
-  /// Of several particles, one per lane; lanes beyond `count` repeat the last one and are not changed.  Where the law is not written for
-  /// lanes, one after the other.
-  Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& step, StateRows<State>& rows) const noexcept
+  /// Of several particles, one per lane; lanes beyond `count` repeat the last one.  Where the law is not written for lanes, one after the
+  /// other.
+  Mat3Of<SimdReal> update(const IncrementOf<SimdReal>& step, StateLanes<State>& states) const noexcept
   {
     if constexpr (LawInLanes<L>)
-      return law_.update(step, rows, constants_);
+      return law_.update(step, states, constants_);
     else
-      return update_one_by_one(law_, step, rows, constants_);
+      return update_one_by_one(law_, step, states, constants_);
   }
   StressSums update_stress(const Material& material, const StressStrip<2>& strip) const noexcept override
   {
@@ -140,16 +138,16 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
 
   Real wave_speed(const Mat3& F) const noexcept override { return law_.wave_speed(F, constants_); }
   Real wave_speed(const Mat3& F, const Real* history) const noexcept override { return wave_speed(F, state_of(history)); }
-  SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateRows<State>& rows) const noexcept
+  SimdReal wave_speed(const Mat3Of<SimdReal>& F, const StateLanes<State>& states) const noexcept
   {
     if constexpr (WaveSpeedOfHistory<L, SimdReal>) {
-      return law_.wave_speed(F, rows, constants_);
+      return law_.wave_speed(F, states, constants_);
     } else if constexpr (LawInLanes<L>) {
       return law_.wave_speed(F, constants_);
     } else {
       SimdReal speed = 1;
-      for (int lane = 0; lane < rows.count; ++lane)
-        speed.set(lane, wave_speed(lane_of(F, lane), *rows.row[lane]));
+      for (int lane = 0; lane < states.count; ++lane)
+        speed.set(lane, wave_speed(lane_of(F, lane), states.of(lane)));
       return speed;
     }
   }
@@ -241,9 +239,7 @@ class ConstitutiveLawOf final : public ConstitutiveLaw {
       for (int d = 0; d < D; ++d)
         L_of_law(d, d) += (s - 1) / dt;
     }
-    StateRows<State> states{{}, count};
-    for (int lane = 0; lane < pack_size; ++lane)
-      states.row[lane] = &state_of(strip.history[std::min(i + static_cast<std::size_t>(lane), strip.n - 1)]);
+    StateLanes<State> states{strip.history.first + i, strip.history.stride, count};
     const SimdReal speed_of_waves = wave_speed(F_of_law, states);
     SimdReal q = 0;
     if (material.viscosity) {

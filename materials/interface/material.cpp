@@ -1,5 +1,7 @@
 #include "materials/interface/material.hpp"
 
+#include <algorithm>
+#include <bit>
 #include <chrono>
 
 namespace talus {
@@ -42,7 +44,8 @@ class CopiedStrip {
   static constexpr std::size_t room = 32;
 
   /// `strip.errors` and the numbers of the step are set by the caller.
-  CopiedStrip(Material& material, const StressBlock<D>& block) : material_(material), block_(block), has_pore_(!block.pore_after.empty())
+  CopiedStrip(Material& material, const StressBlock<D>& block)
+      : material_(material), block_(block), ahead_(block.rows, {block.particles}), has_pore_(!block.pore_after.empty())
   {
     strip_.dt = block.dt, strip_.elastic = block.elastic, strip_.errors = &block.errors;
     Real* next = numbers_.data();
@@ -58,7 +61,9 @@ class CopiedStrip {
       place(strip_.averaged), place(strip_.volume_ratio);
     if (has_pore_)
       place(strip_.pore), place(strip_.pore_after);
-    strip_.id = id_.data(), strip_.history = history_.data();
+    static thread_local std::vector<Real> histories;
+    histories.resize(room * std::max<std::size_t>(1, width()));
+    strip_.id = {id_.data()}, strip_.history = {histories.data(), room};
   }
 
   /// Copies up to `room` rows; those of the block behind them are prefetched.
@@ -68,10 +73,7 @@ class CopiedStrip {
     const auto first = static_cast<std::size_t>(rows.data() - block_.rows.data());
     strip_.n = rows.size();
     for_each(rows, [&](const ParticlePack& pack, std::size_t i) {
-      const std::size_t begin = first + i + distance, end = std::min(begin + pack_size, block_.rows.size());
-      for (std::size_t k = begin; k < end; ++k)
-        prefetch_row(static_cast<std::size_t>(block_.rows[k]), particles.F, particles.stress, particles.volume, particles.volume0,
-                     particles.mass);
+      ahead_.until(first + i + pack_size);
       strip_.v.store(i, pack.load(particles.v)), strip_.L.store(i, pack.load(particles.L));
       strip_.F.store(i, pack.load(particles.F)), strip_.stress.store(i, pack.load(particles.stress));
       strip_.mass.store(i, pack.load(particles.mass)), strip_.volume0.store(i, pack.load(particles.volume0));
@@ -84,8 +86,10 @@ class CopiedStrip {
       if (has_pore_)
         strip_.pore.store(i, pack.load(particles.pore)), strip_.pore_after.store(i, pack.load(block_.pore_after));
       for (std::size_t lane = 0; lane < pack_size; ++lane) {
-        id_[i + lane] = particles.id[pack.p[lane]];
-        history_[i + lane] = material_.history.row(static_cast<Index>(pack.p[lane]) - material_.begin);
+        id_[i + lane] = std::bit_cast<Real>(particles.id[pack.p[lane]]);
+        const Real* const history = history_of(pack.p[lane]);
+        for (std::size_t k = 0; k < width(); ++k)
+          strip_.history.first[k * room + i + lane] = history[k];
       }
     });
     return strip_;
@@ -103,6 +107,11 @@ class CopiedStrip {
         pack.store(strip_.volume_ratio.load(i), particles.volume_ratio);
       if (has_pore_)
         pack.store(strip_.pore.load(i), particles.pore);
+      for (std::size_t lane = 0; lane < static_cast<std::size_t>(pack.count); ++lane) {
+        Real* const history = history_of(pack.p[lane]);
+        for (std::size_t k = 0; k < width(); ++k)
+          history[k] = strip_.history.first[k * room + i + lane];
+      }
     });
   }
 
@@ -114,16 +123,21 @@ class CopiedStrip {
       f(ParticlePack(rows, i), i);
   }
 
-  static constexpr std::size_t distance = 32;  // rows
+  std::size_t width() const noexcept { return static_cast<std::size_t>(material_.history.width()); }
+  Real* history_of(std::size_t p) noexcept { return material_.history.row(static_cast<Index>(p) - material_.begin); }
 
   Material& material_;
   const StressBlock<D>& block_;
+  struct Prefetch {
+    const Particles<D>& of;
+    void operator()(std::size_t p) const noexcept { prefetch_row(p, of.F, of.stress, of.volume, of.volume0, of.mass); }
+  };
+  PrefetchRows<Prefetch> ahead_;
   bool has_pore_;
   StressStrip<D> strip_;
   static constexpr std::size_t columns = D + D * D + 9 + 6 + 9;  ///< v, L, F, stress and nine numbers
   alignas(64) std::array<Real, room * columns> numbers_;
-  std::array<std::int64_t, room> id_;
-  std::array<Real*, room> history_;
+  std::array<Real, room> id_;
 };
 
 }  // namespace

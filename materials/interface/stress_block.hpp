@@ -1,6 +1,6 @@
 #pragma once
-// The particles of one body in one block of cells, and what their law needs to update their stress.
-#include <array>
+// Particles of one body, in strips or as rows of columns, and what their law needs to update their stress.
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -41,8 +41,8 @@ struct StressStrip {
   StripColumn<Real> viscous{};                   ///< of a material with bulk viscosity
   StripColumn<Real> averaged{}, volume_ratio{};  ///< of a material that averages its volume: the averaged ratio, see StressBlock
   StripColumn<Real> pore{}, pore_after{};        ///< pore pressure before and after the step [Pa]; empty where there is none
-  const std::int64_t* id = nullptr;              ///< one per particle
-  Real* const* history = nullptr;                ///< the row of each particle
+  StripIds id{};
+  StripColumn<Real> history{};  ///< of the law: component(k) is the array of its number k
   ParticleErrors* errors = nullptr;
 };
 

@@ -123,7 +123,7 @@ template <int D>
 bool may_sweep(const Model<D>& m)
 {
   const WantedColumns& has = m.problem.columns;
-  return m.transfer->can_sweep() && !has.applied && !has.volume_ratio && !has.pore && !m.work.heat;
+  return m.transfer->can_sweep() && !has.applied && !has.volume_ratio && !m.work.heat;
 }
 
 template <int D>

@@ -54,7 +54,7 @@ template <int D>
 void bind_boundary_conditions(Model<D>& m);
 
 /// Whether steps may keep the particles in strips and pass over them once: the kernel has node operators, and nothing between two passes
-/// needs all particles (averaged volumes, heat, loads on particles, pore water).
+/// needs all particles (averaged volumes, heat, loads on particles).
 template <int D>
 bool may_sweep(const Model<D>& m);
 /// Moves the particles into strips, unless they are there.  Collective.

@@ -19,8 +19,8 @@ struct LeastShares {
   Real of_gross;      ///< relative to the sum of absolute masses
 };
 
-/// Transfer between particles and nodes by the shape functions of one kernel.  Each function is called at most once per step and contains
-/// the loop over particles.
+/// Transfer between particles and nodes by the shape functions of one kernel.  The functions of a step are called once in it and
+/// contain the loop over particles.
 template <int D>
 class Transfer {
  public:
@@ -41,7 +41,8 @@ class Transfer {
   virtual bool can_sweep() const = 0;
   /// Adds the particles that are in strips, as they are, to the rows of their blocks; to be called before the first sweep.
   virtual void sum_strips(Model<D>& m) = 0;
-  /// Sets L and C of the columns of a strip to what they were at the end of the last step, in memory of the calling thread.
+  /// Sets L and C of the columns of a strip to what they were at the end of the last step, in memory of the calling thread.  May be
+  /// called by several threads.
   virtual void find_gradients(Model<D>& m, std::size_t key, Index strip, StripColumns<D>& columns) = 0;
   /// Adds mass, momentum and force of every particle to the rows of its block (P2G).  Of particles in strips only those that have changed
   /// their cell: the others were added by the sweep of the step before.
@@ -53,7 +54,7 @@ class Transfer {
   /// Starts to send the motion of nodes to other ranks.
   virtual void send_motion(Model<D>& m) = 0;
   /// Computes velocity, velocity gradient and position of every particle (G2P), with or without the second pass of MUSL; `to` is the time
-  /// of prescribed velocities.
+  /// of prescribed velocities.  `update` is not called for particles in strips: the sweep updates their stress.
   virtual void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const StressUpdate& update) = 0;
 
   virtual LeastShares least_shares() const = 0;

@@ -53,7 +53,7 @@ struct SetBack {
 template <int D>
 std::optional<SetBack<D>> set_back(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const Vec<D>& x) noexcept;
 
-/// What a particle takes along that goes, or brings that comes, as far as it is a number.  `plastic_work` [J] is that of its law.
+/// Count, mass, momentum and energy of a particle that is removed or added.  `plastic_work` [J] is that of its law.
 template <int D>
 RemovedParticles<D> content_of(const Vec<D>& x, const Vec<D>& v, Real mass, Real plastic_work) noexcept;
 template <int D>

@@ -1,21 +1,10 @@
 #include "solver/strips/particle_strips.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace talus {
-
-namespace {
-
-std::int64_t id_at(const Real* of) noexcept
-{
-  std::int64_t id{};
-  std::memcpy(&id, of, sizeof(id));
-  return id;
-}
-
-}  // namespace
 
 template <int D>
 void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripColumns<D>& from, Index i, Index cell)
@@ -32,7 +21,8 @@ void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripCol
   for (const StripColumn<Mat<D>>* const column : {&from.L, &from.C})
     for (int c = 0; *column && c < D * D; ++c)
       *to++ = column->component(c)[i];
-  std::copy_n(history(key, strip, i), history_width_[key / to_size(blocks_)], to);
+  for (int k = 0; k < history_width_[key / to_size(blocks_)]; ++k)
+    *to++ = history(strip).component(k)[i];
 }
 
 template <int D>
@@ -49,7 +39,7 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
     leaver.to = locator(mesh, x, leaver.cell).value_or(none);  // also nothing for a position that is not finite
     leaver.is_summed = leaver.to != none && leaver.to / block_cells == leaver.cell / block_cells;
     if (leaver.is_summed)
-      arrivals_within.push_back({leaver.to, id_at(record + layout_.step_arrays().id), record, true});
+      arrivals_within.push_back({leaver.to, StripIds::id_of(record[layout_.step_arrays().id]), record, true});
   }
 }
 
@@ -57,23 +47,18 @@ template <int D>
 void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits,
                                    const std::vector<Material>& materials, StepSums<D>& sums, ParticleErrors& errors)
 {
-  // A leaver as a strip of one particle.
-  const auto columns_of = [&](std::size_t key, std::size_t i) {
-    Strip one;
-    one.numbers = block_[key].leaving.numbers.data() + i * record_width(key);
-    one.room = 1;
-    return columns(one);
-  };
   for (std::size_t key = 0; key < block_.size(); ++key)
     for (std::size_t i = 0; i < block_[key].leaving.all.size(); ++i) {
       Leavers::Leaver& leaver = block_[key].leaving.all[i];
       if (leaver.to != none)
         continue;
       // Rare: outside the mesh.
-      const StripColumns<D> all = columns_of(key, i);
+      Strip one;
+      one.numbers = block_[key].leaving.numbers.data() + i * record_width(key), one.room = 1;
+      const StripColumns<D> all = columns(one);
       const Vec<D> x = all.x.of(0);
       if (!x.allFinite()) {
-        errors.report(*all.id, Trouble::not_finite);
+        errors.report(all.id[0], Trouble::not_finite);
       } else if (const auto back = set_back(mesh, locator, exits, x)) {
         all.x.set(0, back->x);
         leaver.to = back->cell;
@@ -81,10 +66,10 @@ void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locato
         sums.largest_set_back = std::max(sums.largest_set_back, back->distance);
       } else if (exits.policy == OnExit::remove) {
         const Material& material = materials[key / to_size(blocks_)];
-        const Real* const remembered = block_[key].leaving.numbers.data() + i * record_width(key) + layout_.width() + layout_.gradients();
-        sums.removed.add(content_of<D>(x, all.v.of(0), all.mass.of(0), plastic_work(material.law(), remembered, all.volume0.of(0))));
+        const Real* const of_law = one.numbers + layout_.width() + layout_.gradients();
+        sums.removed.add(content_of<D>(x, all.v.of(0), all.mass.of(0), plastic_work(material.law(), of_law, all.volume0.of(0))));
       } else {
-        errors.report(*all.id, Trouble::lost);
+        errors.report(all.id[0], Trouble::lost);
       }
     }
 }
@@ -108,14 +93,16 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
         migration.add({body, subdomain.whole_cell(cell)}, cell / block_cells, record);
       else
         unsorted_.push_back(
-            {key_of(body, cell), {cell, id_at(record.data() + layout_.step_arrays().id), record.data(), block.left.all[i].is_summed}});
+            {key_of(body, cell),
+             {cell, StripIds::id_of(record[to_size(layout_.step_arrays().id)]), record.data(), block.left.all[i].is_summed}});
     }
   }
   if (!subdomain.alone())
     for (const MigratingParticle& one :
          migration.exchange([&](Index body) { return layout_.width() + layout_.gradients() + history_width(body); })) {
       const Index cell = subdomain.local_cell(one.head.whole_cell);
-      unsorted_.push_back({key_of(one.head.body, cell), {cell, id_at(one.numbers + layout_.step_arrays().id), one.numbers, false}});
+      unsorted_.push_back(
+          {key_of(one.head.body, cell), {cell, StripIds::id_of(one.numbers[layout_.step_arrays().id]), one.numbers, false}});
     }
   sort_arrivals();
 }

@@ -16,8 +16,8 @@ template <int D>
 std::size_t ParticleStrips<D>::bytes_moved() const noexcept
 {
   const auto has = [&](std::string_view name, Index numbers) { return layout_.at(name) == none ? 0 : numbers; };
-  const Index constant = has("mass", 1) + has("volume0", 1), untouched = has("id", 1) + has("start", D);
-  const auto of_columns = to_size(2 * (layout_.width() - D - constant - untouched) + constant + D);  // the position before is only written
+  const Index constant = has("mass", 1) + has("volume0", 1) + has("id", 1) + has("start", D);
+  const auto of_columns = to_size(2 * (layout_.width() - D - constant) + constant + D);  // the position before is only written
   std::size_t numbers = 0;
   for (std::size_t key = 0; key < block_.size(); ++key)
     for (const Strip& strip : block_[key].strips)
@@ -35,8 +35,9 @@ StripColumns<D> ParticleStrips<D>::columns(const Strip& strip) const noexcept
       column.first = strip.array(array), column.stride = to_size(strip.room);
   };
   find(at.x, all.x), find(at.before, all.before), find(at.start, all.x0), find(at.v, all.v), find(at.F, all.F), find(at.stress, all.stress);
-  find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume), find(at.viscous, all.viscous);
-  all.id = reinterpret_cast<std::int64_t*>(strip.array(at.id));
+  find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume), find(at.viscous, all.viscous),
+      find(at.pore, all.pore);
+  all.id = {strip.array(at.id)};
   if (!loaded_gradients_.empty())
     set_gradients(strip.loaded_gradients, to_size(strip.room), all);
   return all;

@@ -43,7 +43,7 @@ class ParticleStrips {
   }
   std::size_t keys() const noexcept { return block_.size(); }
   Index size() const noexcept;
-  /// The bytes that a step must read and write of the particles: each number that changes twice, mass and initial volume once.
+  /// The bytes that a step must read and write of the particles: each number that changes twice, mass, initial volume, id and start position once.
   std::size_t bytes_moved() const noexcept;
   /// The memory of the strips [B].
   std::size_t bytes() const noexcept { return memory_.size() * sizeof(Real) + pool_->bytes(); }
@@ -55,12 +55,10 @@ class ParticleStrips {
   StripColumns<D> columns(const Strip& strip) const noexcept;
   /// The same of an array of records, see Arrival: with gradients.
   StripColumns<D> columns_of_records(const Strip& records) const noexcept;
-  /// To be called when nodes move the particles: what has been loaded of gradients holds no longer.
+  /// Frees the gradients that load() has taken over; to be called when nodes move the particles, as gradients then follow from the nodes.
   void drop_loaded_gradients() noexcept;
-  Real* history(std::size_t key, const Strip& strip, Index i) const noexcept
-  {
-    return strip.history(layout_.width(), i, history_width_[key / static_cast<std::size_t>(blocks_)]);
-  }
+  /// component(k) is the array of number k of the history of the law.
+  StripColumn<Real> history(const Strip& strip) const noexcept { return {strip.array(layout_.width()), to_size(strip.room)}; }
   Index history_width(Index body) const noexcept { return history_width_[static_cast<std::size_t>(body)]; }
   const StripLayout& layout() const noexcept { return layout_; }
   /// The memory of a strip.
@@ -68,13 +66,15 @@ class ParticleStrips {
   {
     return {strip.numbers, static_cast<std::size_t>(strip.room) * strip_width(key)};
   }
-  /// The strip that is likely to be used next; nullptr if there is none.
-  const Strip* next_strip(std::size_t key, Index strip) const noexcept
+  /// The memory of the next strip of the block, of this body or the next; empty if there is none.  Strips of other blocks may be changing.
+  std::span<const Real> memory_of_next(std::size_t key, Index strip) const noexcept
   {
-    const auto next = static_cast<std::size_t>(strip) + 1;
+    const std::size_t next = to_size(strip) + 1, of_next_body = key + to_size(blocks_);
     if (next < block_[key].strips.size())
-      return &block_[key].strips[next];
-    return key + 1 < block_.size() && !block_[key + 1].strips.empty() ? &block_[key + 1].strips.front() : nullptr;
+      return memory(key, block_[key].strips[next]);
+    if (of_next_body < block_.size() && !block_[of_next_body].strips.empty())
+      return memory(of_next_body, block_[of_next_body].strips.front());
+    return {};
   }
   /// The first cell of a strip.
   Index first_cell(std::size_t key, Index strip) const noexcept
@@ -122,7 +122,7 @@ class ParticleStrips {
   }
   void set_gradients(Real* first, std::size_t stride, StripColumns<D>& columns) const noexcept;
   void grow(Strip& strip, Index n, std::size_t width);
-  static void move_runs(std::span<const Run> runs, Real* array, Index numbers, Index first) noexcept;
+  static void move_runs(std::span<const Run> runs, Real* array, Index number) noexcept;
   void sort_arrivals();
 
   StripLayout layout_;
@@ -131,7 +131,7 @@ class ParticleStrips {
   std::vector<BlockOfStrips> block_;  ///< one per key
   Rows<Real> memory_;                 ///< of the strips at the beginning
   Rows<Real> loaded_gradients_;
-  std::unique_ptr<LinePool> pool_ = std::make_unique<LinePool>();  ///< of those that have grown
+  std::unique_ptr<StripMemory> pool_ = std::make_unique<StripMemory>();  ///< of those that have grown
 
   std::vector<std::pair<std::size_t, Arrival>> unsorted_;  ///< with their keys
   std::vector<Arrival> arrivals_;

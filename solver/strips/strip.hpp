@@ -1,10 +1,12 @@
 #pragma once
 // A strip: the particles of a body in eight neighbouring cells, in one piece of memory.
 #include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <new>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -22,7 +24,7 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, start, v, F, stress, mass, volume0, volume, viscous;
+  Index id, x, before, start, v, F, stress, mass, volume0, volume, viscous, pore;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place; the
@@ -48,8 +50,8 @@ class StripLayout {
         width_ += RowsOf<Kind>::components;
     });
     width_ += D;  // positions before the last step
-    arrays_ = {at("id"),     at("position"), width_ - D,    at("start"),  at("velocity"),        at("deformation_gradient"),
-               at("stress"), at("mass"),     at("volume0"), at("volume"), at("viscous_pressure")};
+    arrays_ = {at("id"),     at("position"), width_ - D,    at("start"),  at("velocity"),         at("deformation_gradient"),
+               at("stress"), at("mass"),     at("volume0"), at("volume"), at("viscous_pressure"), at("pore_pressure")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
   /// Arrays of a strip, without those of its law.
@@ -77,17 +79,17 @@ class StripLayout {
 };
 
 /// Memory that begins at a cache line.
-struct FreeLines {
+struct FreeAligned {
   void operator()(Real* numbers) const noexcept { ::operator delete[](numbers, std::align_val_t{64}); }
 };
-using Lines = std::unique_ptr<Real[], FreeLines>;
-inline Lines allocate_lines(std::size_t numbers)
+using AlignedNumbers = std::unique_ptr<Real[], FreeAligned>;
+inline AlignedNumbers allocate_aligned(std::size_t numbers)
 {
-  return Lines(static_cast<Real*>(::operator new[](numbers * sizeof(Real), std::align_val_t{64})));
+  return AlignedNumbers(static_cast<Real*>(::operator new[](numbers * sizeof(Real), std::align_val_t{64})));
 }
 
-/// Memory of strips, used again when a strip has outgrown it or has become empty: a body that travels needs no more of it on its way.
-class LinePool {
+/// Memory of strips, used again when a strip has outgrown it or has become empty, so that a body that moves does not add memory.
+class StripMemory {
  public:
   /// The contents are not defined.
   Real* take(std::size_t numbers)
@@ -98,7 +100,7 @@ class LinePool {
       free.pop_back();
       return first;
     }
-    lines_.push_back(allocate_lines(numbers));
+    lines_.push_back(allocate_aligned(numbers));
     numbers_ += numbers;
     return lines_.back().get();
   }
@@ -112,12 +114,11 @@ class LinePool {
  private:
   std::mutex mutex_;
   std::map<std::size_t, std::vector<Real*>> free_;  ///< pieces by size
-  std::vector<Lines> lines_;
+  std::vector<AlignedNumbers> lines_;
   std::size_t numbers_ = 0;
 };
 
-/// Arrays of `room` numbers, one after the other, then the histories of the law, particle by particle.  Particles stand in the order of cells
-/// and ids.
+/// Arrays of `room` numbers, one after the other: those of the layout, then those of the law.  Particles stand in the order of cells and ids.
 struct Strip {
   Real* numbers = nullptr;
   Index room = 0, n = 0;
@@ -125,10 +126,6 @@ struct Strip {
   Real* loaded_gradients = nullptr;        ///< arrays of gradients before the first sweep
 
   Real* array(Index k) const noexcept { return numbers + static_cast<std::size_t>(k) * static_cast<std::size_t>(room); }
-  Real* history(Index width, Index i, Index history_width) const noexcept
-  {
-    return array(width) + static_cast<std::size_t>(i) * static_cast<std::size_t>(history_width);
-  }
 };
 /// Room for n particles and some more, in whole cache lines.
 constexpr Index room_for(Index n) noexcept { return (n + n / 8 + strip_padding + 7) / 8 * 8; }
@@ -140,8 +137,8 @@ struct StripColumns {
   StripColumn<Mat<D>> L{}, C{};  ///< not in the strip; C is empty where the affine field is L
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};
-  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{};
-  std::int64_t* id = nullptr;
+  StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{};
+  StripIds id{};
   const StripColumn<Mat<D>>& affine_field() const noexcept { return C ? C : L; }
 };
 
@@ -150,7 +147,7 @@ struct Leavers {
   struct Leaver {
     Index strip, position;   ///< where it is in its block
     Index cell;              ///< where it is
-    Index to = none;         ///< where it goes, once that has been found; `none` afterwards: it is deleted
+    Index to = none;         ///< its new cell; `none`: not found yet, or it is deleted
     bool is_summed = false;  ///< it goes to a cell of the same block, whose sums contain it already
   };
   std::vector<Leaver> all;  ///< in the order of strips and positions

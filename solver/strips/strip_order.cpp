@@ -17,40 +17,36 @@ void ParticleStrips<D>::grow(Strip& strip, Index n, std::size_t width)
 {
   const Index room = room_for(n);
   Real* const numbers = pool_->take(to_size(room) * width);
-  for (Index k = 0; k < layout_.width(); ++k) {
-    Real* const to = numbers + to_size(k) * to_size(room);
-    std::fill(std::copy_n(strip.array(k), strip.n, to), to + room, 0.0);
+  for (std::size_t k = 0; k < width; ++k) {
+    Real* const to = numbers + k * to_size(room);
+    std::fill(std::copy_n(strip.array(static_cast<Index>(k)), strip.n, to), to + room, 0.0);
   }
-  const std::size_t histories = width - to_size(layout_.width());
-  Real* const to = numbers + to_size(layout_.width()) * to_size(room);
-  std::fill(std::copy_n(strip.array(layout_.width()), to_size(strip.n) * histories, to), to + to_size(room) * histories, 0.0);
   if (strip.room > 0)
     pool_->give_back(strip.numbers, to_size(strip.room) * width);
   strip.numbers = numbers, strip.room = room;
 }
 
-/// Moves particles with so many numbers each to their new places in an array; those of arrivals begin at number `first` of their records.
+/// Moves particles to their new places in an array; `number` is the place of its number in the record of an arrival.
 /// Runs are in order before and afterwards, so none is written over if those that move down come first, ascending, then those that move up,
 /// descending.
 template <int D>
-void ParticleStrips<D>::move_runs(std::span<const Run> runs, Real* array, Index numbers, Index first) noexcept
+void ParticleStrips<D>::move_runs(std::span<const Run> runs, Real* array, Index number) noexcept
 {
   for (const Run& run : runs)
     if (run.to < run.from) {
-      const Real* const from = array + run.from * numbers;
-      Real* const to = array + run.to * numbers;
-      const Index n = run.count * numbers;
+      const Real* const from = array + run.from;
+      Real* const to = array + run.to;
       Index i = 0;
-      for (; i + pack_size <= n; i += pack_size)
+      for (; i + pack_size <= run.count; i += pack_size)
         store_loose(to + i, load_loose(from + i));
-      for (; i < n; ++i)
+      for (; i < run.count; ++i)
         to[i] = from[i];
     }
   for (auto run = runs.rbegin(); run != runs.rend(); ++run)
     if (run->arriving == nullptr && run->to > run->from) {
-      const Real* const from = array + run->from * numbers;
-      Real* const to = array + run->to * numbers;
-      Index i = run->count * numbers;
+      const Real* const from = array + run->from;
+      Real* const to = array + run->to;
+      Index i = run->count;
       for (; i >= pack_size; i -= pack_size)
         store_loose(to + i - pack_size, load_loose(from + i - pack_size));
       for (; i > 0; --i)
@@ -58,7 +54,7 @@ void ParticleStrips<D>::move_runs(std::span<const Run> runs, Real* array, Index 
     }
   for (const Run& run : runs)
     if (run.arriving != nullptr)
-      std::memcpy(array + run.to * numbers, run.arriving + first, static_cast<std::size_t>(numbers) * sizeof(Real));
+      std::memcpy(array + run.to, run.arriving + number, sizeof(Real));
 }
 
 template <int D>
@@ -89,7 +85,8 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
       runs.push_back({from, n, to - from, nullptr});
     n += to - from;
   };
-  const std::int64_t* const id = columns(strip).id;
+  const Real* const id = strip.array(layout_.step_arrays().id);
+  const auto is_less = [](const Real& a, std::int64_t b) { return StripIds::id_of(a) < b; };
   auto leaver = first_leaver;
   auto arrival = begin;
   Index old = 0;
@@ -102,7 +99,7 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
       }
       const Index limit = leaver != last_leaver ? std::min(leaver->position, last) : last;
       const bool comes = arrival != end && arrival->cell == first + c;
-      const Index stop = comes ? static_cast<Index>(std::lower_bound(id + old, id + limit, arrival->id) - id) : limit;
+      const Index stop = comes ? static_cast<Index>(std::lower_bound(id + old, id + limit, arrival->id, is_less) - id) : limit;
       add(old, stop);
       old = stop;
       if (comes && (stop < limit || limit == last)) {
@@ -117,10 +114,9 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
   if (n + strip_padding > strip.room)
     grow(strip, n, strip_width(key));
   for (Index k = 0; k < layout_.step_arrays().before; ++k)  // positions before the step are about to be written
-    move_runs(runs, strip.array(k), 1, k);
-  const Index width = layout_.width();
-  if (const Index numbers = history_width_[key / to_size(blocks_)]; numbers > 0)
-    move_runs(runs, strip.array(width), numbers, width + layout_.gradients());
+    move_runs(runs, strip.array(k), k);
+  for (Index k = layout_.width(); k < static_cast<Index>(strip_width(key)); ++k)
+    move_runs(runs, strip.array(k), k + layout_.gradients());
   strip.n = n;
   if (n == 0 && strip.room > 0) {
     pool_->give_back(strip.numbers, to_size(strip.room) * strip_width(key));

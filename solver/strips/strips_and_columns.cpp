@@ -1,6 +1,5 @@
 #include "solver/strips/particle_strips.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <numeric>
 
@@ -95,9 +94,11 @@ void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, const std::vect
         if (all.C)
           all.C.set(i, particles.C[to_size(here[i])]);
       }
-      for (std::size_t i = 0; i < here.size() && material.history.width() > 0; ++i)
-        std::copy_n(material.history.row(here[i] - material.begin), material.history.width(),
-                    history(to_size(k), strip, static_cast<Index>(i)));
+      for (std::size_t i = 0; i < here.size() && material.history.width() > 0; ++i) {
+        const Real* const from = material.history.row(here[i] - material.begin);
+        for (int of_law = 0; of_law < material.history.width(); ++of_law)
+          history(strip).component(of_law)[i] = from[of_law];
+      }
     }
   });
   clear(materials, particles, sorted);
@@ -165,9 +166,11 @@ void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& 
       for (Index c = 0; c < strip_cells; ++c)
         for (Index i = 0; i < strip.count[to_size(c)]; ++i)
           particles.cell[to_size(row++)] = first_cell(to_size(k), static_cast<Index>(s)) + c;
-      for (Index i = 0; i < strip.n && material.history.width() > 0; ++i)
-        std::copy_n(history(to_size(k), strip, i), material.history.width(),
-                    material.history.row(static_cast<Index>(first) + i - material.begin));
+      for (Index i = 0; i < strip.n && material.history.width() > 0; ++i) {
+        Real* const to = material.history.row(static_cast<Index>(first) + i - material.begin);
+        for (int of_law = 0; of_law < material.history.width(); ++of_law)
+          to[of_law] = history(strip).component(of_law)[i];
+      }
       first += to_size(strip.n);
     }
   });

@@ -19,7 +19,7 @@ template <int D>
   }
 }
 
-/// The same; zero in lanes beyond `count`.
+/// Barycentric coordinates of four particles, one vertex per pack; zero in lanes beyond `count`.
 template <int D>
 struct CornerWeights {
   Pack of[D + 1];

@@ -37,11 +37,11 @@ struct CellRun {
 template <int D, bool affine, bool moments>
 struct Contribution : Deposit<D, affine, false, true> {
   using Base = Deposit<D, affine, false, true>;
-  static constexpr int velocity = Base::size, products = velocity + D, size = moments ? products + CellMoments<D>::products : Base::size,
+  static constexpr int momentum = Base::size, products = momentum + D, size = moments ? products + CellMoments<D>::products : Base::size,
                        padded_size = padded(size);
 };
 
-/// Prefetches the memory of a strip in small parts, while another one is computed: many requests at once wait for one another.
+/// Prefetches the memory of a strip in small parts, while another one is computed: too many outstanding requests stall a core.
 class PrefetchAhead {
  public:
   void begin(std::span<const Real> memory, std::size_t calls) noexcept
@@ -69,29 +69,28 @@ class StripScratch {
   Real* share[D + 1];        ///< barycentric coordinates; zero for particles that leave
   Real* centre[D];           ///< sum_a B_a arm_a, relative to the origin of the cell [m]
   Real* altitude;            ///< of the cell [m]
+  Real* pore_after;          ///< pore pressure at the end of the step [Pa]
   StripColumn<Mat<D>> L, C;  ///< gradients [1/s]
   Real* quantities;          ///< Contribution, particle by particle
-  std::vector<Real*> history;
-  std::vector<Index> left;  ///< particles that may have left their cells, ascending
+  std::vector<Index> left;   ///< particles that may have left their cells, ascending
   std::vector<std::uint8_t> stays;
   std::vector<CellFrame<D>> frames;
   std::vector<CellRun<D>> runs;
   PrefetchAhead ahead;
   std::vector<Arrival> arrivals;
   Strip arriving;  ///< particles that come to a block
-  Lines arriving_lines;
+  AlignedNumbers arriving_lines;
   Index arriving_width = 0;
 
   void resize(std::size_t n)
   {
     const std::size_t room = (n + strip_padding + pack_size - 1) / pack_size * pack_size;
     stays.assign(room, 1);
-    history.resize(room);
     if (room <= room_)
       return;
     room_ = room;
-    constexpr std::size_t arrays = (D + 1) + D + 1 + 2 * D * D;
-    lines_ = allocate_lines(room * (arrays + Contribution<D, true, true>::padded_size));
+    constexpr std::size_t arrays = (D + 1) + D + 2 + 2 * D * D;
+    lines_ = allocate_aligned(room * (arrays + Contribution<D, true, true>::padded_size));
     std::fill_n(lines_.get(), room * arrays, 0.0);
     Real* next = lines_.get();
     for (Real*& array : share)
@@ -99,13 +98,14 @@ class StripScratch {
     for (Real*& array : centre)
       array = std::exchange(next, next + room);
     altitude = std::exchange(next, next + room);
+    pore_after = std::exchange(next, next + room);
     L = {std::exchange(next, next + D * D * room), room};
     C = {std::exchange(next, next + D * D * room), room};
     quantities = next;
   }
 
  private:
-  Lines lines_;
+  AlignedNumbers lines_;
   std::size_t room_ = 0;
 };
 
@@ -200,7 +200,7 @@ TALUS_ONE_COPY void find_contributions(const DepositColumns<D>& columns, std::si
     for (int d = 0; d < D; ++d) {
       v[d] = load_loose(columns.v.component(d) + i);
       if constexpr (moments)
-        q[Of::velocity + d] = m * v[d];
+        q[Of::momentum + d] = m * v[d];
     }
     if constexpr (affine)
       for (int j = 0; j < D; ++j) {
@@ -288,7 +288,7 @@ TALUS_ONE_COPY void deposit_strip(const DepositColumns<D>& columns, std::size_t 
     if constexpr (with_moments) {
       CellMoments<D>& cell = moments[static_cast<std::size_t>(run.frame->cell)];
       for (int a = 0; a <= D; ++a)
-        add_numbers<CellMoments<D>::numbers>(sums.of[a] + Of::velocity, cell.of[a]);
+        add_numbers<CellMoments<D>::numbers>(sums.of[a] + Of::momentum, cell.of[a]);
     }
   }
 }

@@ -2,6 +2,8 @@
 // One pass over the particles of a block: they read the motion of the nodes, deform and move, and are summed for the next step while their
 // strip is in the cache.
 #include <chrono>
+#include <cstring>
+#include <iterator>
 
 #include "solver/transfer/scatter.hpp"
 #include "solver/transfer/strip_deposit.hpp"
@@ -103,8 +105,7 @@ class BlockSweep {
           strips_.order(key, number);
         if (strip.n == 0)
           continue;
-        if (const Strip* const next = strips_.next_strip(key, number))
-          scratch_.ahead.begin(strips_.memory(key, *next), 2 * static_cast<std::size_t>(strip.n) / pack_size + 2 * strip_cells);
+        scratch_.ahead.begin(strips_.memory_of_next(key, number), 2 * static_cast<std::size_t>(strip.n) / pack_size + 2 * strip_cells);
         open_cells(key, number);
         StripColumns<D> columns = strips_.columns(strip);
         f(key, number, columns);
@@ -224,15 +225,20 @@ class BlockSweep {
   {
     const Strip& strip = strips_.strips(key)[static_cast<std::size_t>(number)];
     const auto n = static_cast<std::size_t>(strip.n);
-    const Material& material = m_.state.materials[key / static_cast<std::size_t>(m_.work.order.blocks)];
-    for (Index i = 0; i < strip.n; ++i)
-      scratch_.history[static_cast<std::size_t>(i)] = strips_.history(key, strip, i);
+    const std::size_t body = key / static_cast<std::size_t>(m_.work.order.blocks);
+    const Material& material = m_.state.materials[body];
     for (const CellRun<D>& run : scratch_.runs)
       std::fill(scratch_.altitude + run.begin, scratch_.altitude + run.end + strip_padding - 1, run.frame->altitude);
+    const StripColumn<Real> pore_after = find_pore_pressures(static_cast<Index>(body), columns, dt);
     columns.v.pad(n), columns.L.pad(n), columns.F.pad(n), columns.stress.pad(n);
     columns.mass.pad(n), columns.volume0.pad(n), columns.volume.pad(n);
     if (columns.viscous)
       columns.viscous.pad(n);
+    if (pore_after)
+      columns.pore.pad(n), pore_after.pad(n);
+    const StripColumn<Real> history = strips_.history(strip);
+    for (int k = 0; k < material.history.width(); ++k)
+      StripColumn<Real>{history.component(k), history.stride}.pad(n);
     const auto start = std::chrono::steady_clock::now();
     const StressSums sums = update_stress(material, StressStrip<D>{.n = n,
                                                                    .dt = dt,
@@ -246,13 +252,27 @@ class BlockSweep {
                                                                    .volume = columns.volume,
                                                                    .altitude = {scratch_.altitude, n},
                                                                    .viscous = columns.viscous,
+                                                                   .pore = columns.pore,
+                                                                   .pore_after = pore_after,
                                                                    .id = columns.id,
-                                                                   .history = scratch_.history.data(),
+                                                                   .history = history,
                                                                    .errors = &m_.work.errors});
     StressSums& all = m_.work.stress_sums[key];
     all.work += sums.work;
     all.take_extremes(sums);
     all.seconds += std::chrono::duration<Real>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  /// Pore pressures at the new positions; nothing where the law of the body uses total stress.
+  StripColumn<Real> find_pore_pressures(Index body, const StripColumns<D>& columns, Real dt) noexcept
+  {
+    const auto water = pore_water(m_, body, m_.state.clock.time + dt);
+    if (!water)
+      return {};
+    for (const CellRun<D>& run : scratch_.runs)
+      for (std::size_t i = run.begin; i < run.end; ++i)
+        scratch_.pore_after[i] = water->pressure(m_.problem.mesh, run.frame->cell, columns.x.of(i));
+    return {scratch_.pore_after, 0};
   }
 
   /// Lists the particles that have left their cells, and sums the others.
@@ -289,7 +309,7 @@ class BlockSweep {
     const auto n = static_cast<Index>(arriving.size());
     if (n + strip_padding > strip.room || scratch_.arriving_width != width) {
       strip.room = room_for(n), scratch_.arriving_width = width;
-      scratch_.arriving_lines = allocate_lines(static_cast<std::size_t>(strip.room) * static_cast<std::size_t>(width));
+      scratch_.arriving_lines = allocate_aligned(static_cast<std::size_t>(strip.room) * static_cast<std::size_t>(width));
       strip.numbers = scratch_.arriving_lines.get();
     }
     for (Index k = 0; k < width; ++k)

@@ -374,17 +374,16 @@ TEST(ModifiedCamClay, WaveSpeedsOfFourAtOnceAreThoseOfEach)
   const ModifiedCamClay law = clay();
   const ModifiedCamClay::Constants constants = law.constants();
   Dice dice(7);
-  std::array<ModifiedCamClay::State, pack_size> each;
-  StateRows<ModifiedCamClay::State> rows{{}, pack_size};
+  std::array<Real, static_cast<std::size_t>(numbers_of_state<ModifiedCamClay::State>) * pack_size> history;
+  const StateLanes<ModifiedCamClay::State> states{history.data(), pack_size, pack_size};
   for (int lane = 0; lane < pack_size; ++lane) {
     Point<ModifiedCamClay> point = consolidated(law, p0 * lane);
     point.step(Mat3::Identity() + dice.matrix(0.01));
-    each[static_cast<std::size_t>(lane)] = point.state;
-    rows.row[lane] = &each[static_cast<std::size_t>(lane)];
+    states.set(lane, point.state);
   }
-  const SimdReal together = law.wave_speed(Mat3Of<SimdReal>(Mat3Of<SimdReal>::Identity()), rows, constants);
+  const SimdReal together = law.wave_speed(Mat3Of<SimdReal>(Mat3Of<SimdReal>::Identity()), states, constants);
   for (int lane = 0; lane < pack_size; ++lane) {
-    const Real alone = law.wave_speed(Mat3(Mat3::Identity()), *rows.row[lane], constants);
+    const Real alone = law.wave_speed(Mat3(Mat3::Identity()), states.of(lane), constants);
     EXPECT_NEAR(together[lane], alone, 1e-13 * alone) << lane;
   }
 }

@@ -81,14 +81,17 @@ void update_in_lanes(benchmark::State& timer, Regime regime)
   };
   const auto gradient = packed(body.gradient), F = packed(body.F);
   auto stress = packed(body.stress);
-  const auto start = body.history;
+  std::vector<Real> start(body.history.size() * std::max<std::size_t>(1, numbers_of_state<typename L::State>));
+  const auto lanes_at = [&](Real* numbers, Index i) { return StateLanes<typename L::State>{numbers + i, body.history.size(), pack_size}; };
+  for (Index i = 0; i < body.n; ++i)
+    lanes_at(start.data(), i).set(0, body.history[static_cast<std::size_t>(i)]);
+  std::vector<Real> history;
   for (auto _ : timer) {
-    body.history = start;
+    history = start;
     for (Index i = 0; i < body.n; i += pack_size) {
       const auto p = static_cast<std::size_t>(i / pack_size);
-      auto* const first = &body.history[static_cast<std::size_t>(i)];
-      StateRows<typename L::State> rows{{first, first + 1, first + 2, first + 3}, pack_size};
-      stress[p] = body.law.update(IncrementOf<SimdReal>{F[p], gradient[p], stress[p], 1.0, 0, false}, rows);
+      auto states = lanes_at(history.data(), i);
+      stress[p] = body.law.update(IncrementOf<SimdReal>{F[p], gradient[p], stress[p], 1.0, 0, false}, states);
     }
     benchmark::DoNotOptimize(stress.data());
   }

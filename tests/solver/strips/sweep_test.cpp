@@ -8,6 +8,7 @@
 
 #include "core/parallel/threads.hpp"
 #include "materials/law_examples.hpp"
+#include "solver/each_particle.hpp"
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::sweep_test {
@@ -58,7 +59,7 @@ std::set<std::string> differences(const std::map<std::int64_t, Stored>& a, const
 }
 const std::set<std::string> none_differ;
 
-/// Two bodies that swirl in a closed box, fast enough to change cells in each step.
+/// Two bodies, one with pore water, that swirl in a closed box, fast enough to change cells in each step.
 template <int D>
 Model<D> swirl(TransferOptions transfer, Index cells = 6, OnExit policy = OnExit::stop)
 {
@@ -74,6 +75,9 @@ Model<D> swirl(TransferOptions transfer, Index cells = 6, OnExit policy = OnExit
       m, "soil", law_example<DruckerPrager>(), D == 2 ? 6 : 8, [](const Vec<D>& x) { return x[0] > 0.5 && x[1] < 0.8; }, turn);
   m.state.particles.x0 = m.state.particles.x;
   m.state.materials[0].viscosity = BulkViscosity{};
+  for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
+    m.problem.water.table.push_back(0.6 + 0.3 * m.problem.mesh.node(n)[0]);
+  m.problem.water.drained = {0, 1}, m.problem.water.unit_weight = 1e4, m.problem.water.suction = 1e3;
   m.problem.transfer = transfer;
   m.problem.exits.policy = policy;
   if (policy == OnExit::stop)
@@ -108,6 +112,7 @@ void same_as_two_passes(TransferOptions transfer)
   };
   const auto a = row_of(one), b = row_of(two);
   ASSERT_EQ(a.size(), b.size());
+  Real wettest = 0;
   for (const auto& [id, p] : a) {
     const std::size_t q = b.at(id);
     const Particles<D>&x = one.state.particles, &y = two.state.particles;
@@ -122,7 +127,10 @@ void same_as_two_passes(TransferOptions transfer)
     EXPECT_NEAR(x.volume[p], y.volume[q], 1e-12);
     EXPECT_EQ(x.mass[p], y.mass[q]);
     EXPECT_EQ((x.x0[p] - y.x0[q]).norm(), 0);
+    EXPECT_NEAR(x.pore[p], y.pore[q], 1e-7);
+    wettest = std::max(wettest, x.pore[p]);
   }
+  EXPECT_GT(wettest, 1e3);
   EXPECT_NEAR(one.state.energy.internal, two.state.energy.internal, 1e-9 * std::abs(two.state.energy.internal));
   EXPECT_NEAR(one.state.energy.remap, two.state.energy.remap, 1e-9 * std::abs(two.state.energy.internal));
   EXPECT_NEAR(one.state.crossing, two.state.crossing, 1e-12);
@@ -238,6 +246,73 @@ TEST(Sweep, TellsWhichParticleIsLostAndKeepsTheState)
   EXPECT_EQ(finding->trouble, Trouble::lost);
   EXPECT_EQ(m.state.clock.step, 0);
   EXPECT_EQ(m.state.particles.size(), before);  // in their columns, for the message
+}
+
+TEST(Sweep, SetsBackWhatCrossesAWall)
+{
+  auto kept = swirl<2>({.scheme = Scheme::aflip}), restarted = swirl<2>({.scheme = Scheme::aflip});
+  for (Model<2>* const m : {&kept, &restarted})
+    for (std::size_t p = 0; p < m->state.particles.id.size(); ++p)
+      if (m->state.particles.x[p].x() < 0.1)
+        m->state.particles.x.set(p, Vec<2>(m->state.particles.x[p].x() - 0.1, m->state.particles.x[p].y()));
+  for (int step = 0; step < 10; ++step) {
+    make_step(kept, dt);
+    advance(restarted, dt);
+  }
+  ASSERT_FALSE(kept.work.errors.worst().has_value());
+  EXPECT_GT(kept.state.mass.held_count, 0);
+  EXPECT_EQ(kept.state.mass.held_count, restarted.state.mass.held_count);
+  EXPECT_EQ(kept.state.mass.largest_set_back, restarted.state.mass.largest_set_back);
+  end_sweeps(kept);
+  EXPECT_EQ(differences(particles_by_id(kept), particles_by_id(restarted)), none_differ);
+}
+
+TEST(Sweep, IsForScenesThatNeedNoPassBetween)
+{
+  auto plain = swirl<2>({.scheme = Scheme::aflip});  // with viscosity and pore water
+  EXPECT_TRUE(may_sweep(plain));
+  auto averaged = swirl<2>({.scheme = Scheme::aflip});
+  averaged.problem.columns.volume_ratio = true;
+  EXPECT_FALSE(may_sweep(averaged));
+  auto hot = swirl<2>({.scheme = Scheme::aflip});
+  hot.work.heat.emplace(hot.problem.mesh);
+  EXPECT_FALSE(may_sweep(hot));
+  EXPECT_FALSE(may_sweep(make_model<Linear<2>>(unit_box<2>(2, 0.1))));
+  EXPECT_FALSE(may_sweep(make_model<Umls<2>>(unit_box<2>(2, 0.1))));
+}
+
+/// What observers read of the particles of a view, in the order in which they read them.
+template <int D>
+std::vector<Real> read_by_observers(const RunView<D>& view)
+{
+  std::vector<Real> all;
+  const auto add = [&](const auto& tensor) { all.insert(all.end(), tensor.data(), tensor.data() + tensor.size()); };
+  for (std::size_t key = 0; key < view.order.keys(); ++key) {
+    const int width = view.state.materials[key / static_cast<std::size_t>(view.order.blocks)].history.width();
+    for_each_particle(view, key, [&](const auto& p) {
+      all.insert(all.end(), {static_cast<Real>(p.id()), p.mass(), p.volume0()});
+      add(p.x()), add(p.displacement()), add(p.v()), add(p.stress()), add(p.load());
+      for (int k = 0; k < width; ++k)
+        all.push_back(p.history(k));
+    });
+  }
+  const Totals<D> sums = totals(view);
+  all.insert(all.end(), {sums.mass, sums.kinetic, plastic_work(view)});
+  return all;
+}
+
+TEST(ParticleStrips, AreReadByObserversLikeColumns)
+{
+  auto m = swirl<3>({.scheme = Scheme::aflip});
+  for (int step = 0; step < 10; ++step)
+    make_step(m, dt);
+  const Stage stage = testing::test_stage(1);
+  ASSERT_NE(view_of(m, stage).strips, nullptr);
+  const std::vector<Real> of_strips = read_by_observers(view_of(m, stage));
+  end_sweeps(m);
+  ASSERT_EQ(view_of(m, stage).strips, nullptr);
+  EXPECT_EQ(of_strips, read_by_observers(view_of(m, stage)));
+  EXPECT_GT(of_strips.back(), 0) << "the soil flows";
 }
 
 TEST(ParticleStrips, GiveBackEveryNumber)
