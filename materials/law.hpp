@@ -1,6 +1,8 @@
 #pragma once
 // What a constitutive law is: a small value that knows no mesh, no kernel and no dimension.
+#include <array>
 #include <concepts>
+#include <cstring>
 #include <limits>
 #include <string_view>
 #include <tuple>
@@ -55,21 +57,26 @@ struct StateLanes {
   State of(int lane) const noexcept
   {
     State one{};
-    if constexpr (constexpr int numbers = numbers_of_state<State>; numbers > 0) {
-      auto* const to = reinterpret_cast<Real*>(&one);
-      for (int k = 0; k < numbers; ++k)
-        to[k] = number(k)[lane];
+    if constexpr (numbers > 0) {
+      std::array<Real, numbers> all;
+      for (std::size_t k = 0; k < numbers; ++k)
+        all[k] = number(static_cast<int>(k))[lane];
+      std::memcpy(static_cast<void*>(&one), all.data(), sizeof(all));
     }
     return one;
   }
   void set(int lane, const State& one) const noexcept
   {
-    if constexpr (constexpr int numbers = numbers_of_state<State>; numbers > 0) {
-      const auto* const from = reinterpret_cast<const Real*>(&one);
-      for (int k = 0; k < numbers; ++k)
-        number(k)[lane] = from[k];
+    if constexpr (numbers > 0) {
+      std::array<Real, numbers> all;
+      std::memcpy(all.data(), static_cast<const void*>(&one), sizeof(all));
+      for (std::size_t k = 0; k < numbers; ++k)
+        number(static_cast<int>(k))[lane] = all[k];
     }
   }
+
+ private:
+  static constexpr std::size_t numbers = numbers_of_state<State>;
 };
 /// What a law for T changes.
 template <class T, class State>
