@@ -95,7 +95,8 @@ T sum_particles(const RunView<D>& view, F&& f)
 template <int D>
 Totals<D> totals(const RunView<D>& view)
 {
-  return sum_particles<Totals<D>>(view, [](const auto& p) { return totals_of<D>(p.mass(), p.x(), p.v()); });
+  Communicator& ranks = *view.problem.ranks;
+  return view.strips != nullptr ? totals(*view.strips, ranks) : totals(view.state.particles, view.order, ranks);
 }
 
 /// Energy dissipated by the laws of bodies [first, last) so far, over all ranks [J].  Collective.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "solver/advance.hpp"
+#include "solver/each_particle.hpp"
 #include "solver/run_limits.hpp"
 #include "solver/stable_step.hpp"
 
@@ -95,7 +96,7 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
   m.state.energy = {.loads = m.state.energy.loads_ahead,
                     .internal = m.state.energy.internal_ahead,
                     .kinetic_start = kinetic,
-                    .plastic_start = plastic_work(m),
+                    .plastic_start = plastic_work(view_of(m, stage)),
                     .largest_before = m.state.energy.largest_term(kinetic),
                     .largest_seen = std::max(m.state.energy.largest_seen, m.state.energy.largest_term(kinetic))};
   m.state.crossing = m.problem.ranks->min(shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles));
@@ -226,7 +227,7 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
                            m.state.residual,
                            m.state.energy.at_velocities(),
                            now.kinetic,
-                           plastic_work(m),
+                           plastic_work(view_of(m, stage)),
                            m.state.stage.first_residual};
   if (stage.residual && m.state.stage.balanced < steps_in_balance)
     abort_run(m, before, watch,

@@ -170,16 +170,6 @@ Totals<D> totals(const Model<D>& m)
   return totals(m.state.particles, m.work.order, *m.problem.ranks);
 }
 
-template <int D>
-Real plastic_work(const std::vector<Material>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks)
-{
-  ExactSums<Real> sum;
-  for (std::size_t b = 0; b < materials.size(); ++b)
-    add_plastic_work(materials[b], order, static_cast<Index>(b), particles.volume0, sum);
-  ranks.sum(sum);
-  return sum.value();
-}
-
 #define TALUS_INSTANTIATE(D)                                                   \
   template struct Model<D>;                                                    \
   template void fill_columns(const WantedColumns&, Particles<D>&);             \
@@ -194,8 +184,7 @@ Real plastic_work(const std::vector<Material>& materials, const CellOrder& order
   template void end_sweeps(Model<D>&);                                         \
   template void copy_to_columns(Model<D>&);                                    \
   template void drop_copy(Model<D>&);                                          \
-  template Totals<D> totals(const Model<D>&);                                  \
-  template Real plastic_work(const std::vector<Material>&, const CellOrder&, const Particles<D>&, Communicator&);
+  template Totals<D> totals(const Model<D>&);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)
 #undef TALUS_INSTANTIATE

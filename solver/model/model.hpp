@@ -83,13 +83,4 @@ std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time);
 template <int D>
 Totals<D> totals(const Model<D>& m);
 
-/// Energy dissipated by the laws so far, over all ranks [J].  Collective.
-template <int D>
-Real plastic_work(const std::vector<Material>& materials, const CellOrder& order, const Particles<D>& particles, Communicator& ranks);
-template <int D>
-Real plastic_work(const Model<D>& m)
-{
-  return plastic_work(m.state.materials, m.work.order, m.state.particles, *m.problem.ranks);
-}
-
 }  // namespace talus

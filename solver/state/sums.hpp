@@ -56,14 +56,6 @@ void add_particles(const CellOrder& order, ExactSums<T>& sum, F&& f)
     add_particles(order, {0, static_cast<Index>(order.keys()) / order.blocks}, sum, f);
 }
 
-/// Adds the energy [J] that the law of a body has dissipated.
-inline void add_plastic_work(const Material& material, const CellOrder& order, Index body, const ParticleColumn<Real>& volume0,
-                             ExactSums<Real>& sum)
-{
-  add_particles(order, {body, body + 1}, sum,
-                [&](Index row) { return plastic_work(material, row - material.begin, volume0[static_cast<std::size_t>(row)]); });
-}
-
 /// The sum over the particles of all ranks.  Collective.
 template <class T, class F>
 T sum_particles(const CellOrder& order, Communicator& ranks, F&& f)

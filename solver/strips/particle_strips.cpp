@@ -34,9 +34,9 @@ StripColumns<D> ParticleStrips<D>::columns(const Strip& strip) const noexcept
     if (array != none)
       column.first = strip.array(array), column.stride = to_size(strip.room);
   };
-  find(at.x, all.x), find(at.before, all.before), find(at.start, all.x0), find(at.v, all.v), find(at.F, all.F), find(at.stress, all.stress);
-  find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume), find(at.viscous, all.viscous),
-      find(at.pore, all.pore);
+  find(at.x, all.x), find(at.before, all.before), find(at.x0, all.x0), find(at.v, all.v), find(at.F, all.F), find(at.stress, all.stress);
+  find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume);
+  find(at.viscous, all.viscous), find(at.pore, all.pore);
   all.id = {strip.array(at.id)};
   if (!loaded_gradients_.empty())
     set_gradients(strip.loaded_gradients, to_size(strip.room), all);

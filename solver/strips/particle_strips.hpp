@@ -43,7 +43,8 @@ class ParticleStrips {
   }
   std::size_t keys() const noexcept { return block_.size(); }
   Index size() const noexcept;
-  /// The bytes that a step must read and write of the particles: each number that changes twice, mass, initial volume, id and start position once.
+  /// The bytes that a step must read and write of the particles: each number that changes twice, mass, initial volume, id and start
+  /// position once.
   std::size_t bytes_moved() const noexcept;
   /// The memory of the strips [B].
   std::size_t bytes() const noexcept { return memory_.size() * sizeof(Real) + pool_->bytes(); }

@@ -24,7 +24,7 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, start, v, F, stress, mass, volume0, volume, viscous, pore;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, viscous, pore;
 };
 
 /// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place; the
@@ -100,9 +100,9 @@ class StripMemory {
       free.pop_back();
       return first;
     }
-    lines_.push_back(allocate_aligned(numbers));
+    pieces_.push_back(allocate_aligned(numbers));
     numbers_ += numbers;
-    return lines_.back().get();
+    return pieces_.back().get();
   }
   void give_back(Real* first, std::size_t numbers)
   {
@@ -114,11 +114,12 @@ class StripMemory {
  private:
   std::mutex mutex_;
   std::map<std::size_t, std::vector<Real*>> free_;  ///< pieces by size
-  std::vector<AlignedNumbers> lines_;
+  std::vector<AlignedNumbers> pieces_;
   std::size_t numbers_ = 0;
 };
 
-/// Arrays of `room` numbers, one after the other: those of the layout, then those of the law.  Particles stand in the order of cells and ids.
+/// Arrays of `room` numbers, one after the other: those of the layout, then those of the law.  Particles stand in the order of cells and
+/// ids.
 struct Strip {
   Real* numbers = nullptr;
   Index room = 0, n = 0;

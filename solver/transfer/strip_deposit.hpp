@@ -79,7 +79,7 @@ class StripScratch {
   PrefetchAhead ahead;
   std::vector<Arrival> arrivals;
   Strip arriving;  ///< particles that come to a block
-  AlignedNumbers arriving_lines;
+  AlignedNumbers arriving_memory;
   Index arriving_width = 0;
 
   void resize(std::size_t n)
@@ -90,9 +90,9 @@ class StripScratch {
       return;
     room_ = room;
     constexpr std::size_t arrays = (D + 1) + D + 2 + 2 * D * D;
-    lines_ = allocate_aligned(room * (arrays + Contribution<D, true, true>::padded_size));
-    std::fill_n(lines_.get(), room * arrays, 0.0);
-    Real* next = lines_.get();
+    memory_ = allocate_aligned(room * (arrays + Contribution<D, true, true>::padded_size));
+    std::fill_n(memory_.get(), room * arrays, 0.0);
+    Real* next = memory_.get();
     for (Real*& array : share)
       array = std::exchange(next, next + room);
     for (Real*& array : centre)
@@ -105,7 +105,7 @@ class StripScratch {
   }
 
  private:
-  AlignedNumbers lines_;
+  AlignedNumbers memory_;
   std::size_t room_ = 0;
 };
 

@@ -309,8 +309,8 @@ class BlockSweep {
     const auto n = static_cast<Index>(arriving.size());
     if (n + strip_padding > strip.room || scratch_.arriving_width != width) {
       strip.room = room_for(n), scratch_.arriving_width = width;
-      scratch_.arriving_lines = allocate_aligned(static_cast<std::size_t>(strip.room) * static_cast<std::size_t>(width));
-      strip.numbers = scratch_.arriving_lines.get();
+      scratch_.arriving_memory = allocate_aligned(static_cast<std::size_t>(strip.room) * static_cast<std::size_t>(width));
+      strip.numbers = scratch_.arriving_memory.get();
     }
     for (Index k = 0; k < width; ++k)
       for (Index i = 0; i < n + strip_padding; ++i)

@@ -5,8 +5,6 @@
 
 #include <array>
 
-#include "materials/interface/constitutive_law_of.hpp"
-#include "materials/von_mises.hpp"
 #include "solver/state/sums.hpp"
 
 namespace talus::testing::ledger_test {
@@ -196,22 +194,6 @@ TEST(SumsByHand, TakeTheRangesAndBodiesThatAreAskedFor)
   const std::array<IndexRange, 3> some{IndexRange{0, 2}, IndexRange{3, 3}, IndexRange{4, 5}};
   add_ranges<Real>(some, ranges, power);
   EXPECT_EQ(ranges.value(), 1 + 2 + 16);
-}
-
-TEST(SumsByHand, PlasticWorkIsThatOfTheBodyAlone)
-{
-  VonMises law;
-  law.density = 1000, law.youngs_modulus = 1e6, law.poisson_ratio = 0.3, law.yield_stress = 1e4;
-  Material second = make_material(law, 200, 202, "second");
-  state_of<VonMises>(second, 0).plastic_work = 10, state_of<VonMises>(second, 1).plastic_work = 1000;
-  ParticleColumn<Real> volume0;
-  volume0.assign(202, 7);
-  volume0.set(200, 2), volume0.set(201, 3);
-  CellOrder order;
-  order.row = {0, 200, 201}, order.first = {0, 1, 3}, order.blocks = 1;
-  ExactSums<Real> sum;
-  add_plastic_work(second, order, 1, volume0, sum);
-  EXPECT_EQ(sum.value(), 10 * 2 + 1000 * 3);
 }
 
 }  // namespace
