@@ -37,13 +37,11 @@ struct Particles {
   ParticleColumn<Mat<D>> C;           ///< affine velocity field, where it differs from L [1/s]
   ParticleColumn<Vec<D>> x0;          ///< position from which the displacement counts [m]
   ParticleColumn<Vec<D>> applied;     ///< force of loads other than gravity [N]
-  std::vector<Real> applied_at;       ///< applied . x before the move [J]
   ParticleColumn<Real> volume_ratio;  ///< bodies with averaged volumes: (averaged / own volume ratio)^(1/D)
   ParticleColumn<Real> viscous;       ///< artificial viscous pressure, part of `stress` [Pa]
   ParticleColumn<Real> pore;          ///< pore pressure, part of `stress`; 0 in bodies whose laws use total stress [Pa]
 
   Index size() const noexcept { return static_cast<Index>(id.size()); }
-  const ParticleColumn<Mat<D>>& affine_fields() const noexcept { return C.empty() ? L : C; }
 
   /// Calls f(name, unit, column) for every column, including empty ones: for resizing, sorting and counting of bytes.  A column is a
   /// ParticleColumn or an array of numbers; particle_column.hpp has functions for both.
@@ -65,7 +63,7 @@ struct Particles {
     f("id", "-", self.id), f("cell", "-", self.cell), f("position", "m", self.x), f("velocity", "m/s", self.v);
     f("velocity_gradient", "1/s", self.L), f("deformation_gradient", "-", self.F), f("stress", "Pa", self.stress);
     f("mass", "kg", self.mass), f("volume0", "m^D", self.volume0), f("volume", "m^D", self.volume);
-    f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied), f("applied_at", "J", self.applied_at);
+    f("affine", "1/s", self.C), f("start", "m", self.x0), f("applied", "N", self.applied);
     f("volume_ratio", "-", self.volume_ratio), f("viscous_pressure", "Pa", self.viscous), f("pore_pressure", "Pa", self.pore);
   }
 };

@@ -24,7 +24,6 @@ inline void store(Real* to, const Pack& pack) noexcept { *reinterpret_cast<Pack*
 inline Real sum(const Pack& a) noexcept { return (a[0] + a[1]) + (a[2] + a[3]); }
 /// A pack at any address.  (The compiler would split a memcpy into halves, and the following load would wait for both.)
 using LoosePack = Real __attribute__((vector_size(sizeof(Pack)), aligned(sizeof(Real)), may_alias));
-using LoosePair = Real __attribute__((vector_size(2 * sizeof(Real)), aligned(sizeof(Real)), may_alias));
 
 /// Transposes four by four numbers.
 inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
@@ -55,28 +54,6 @@ template <int n, int begin = 0, class Take>
     if constexpr (n > begin + 3)
       take(begin + 3, d);
     load_rows<n, begin + pack_size>(row, take);
-  }
-}
-/// Stores the packs give(begin) to give(n - 1) to n consecutive numbers of the first `count` of four rows.
-template <int n, int begin = 0, class Give>
-[[gnu::always_inline]] inline void store_rows(Give&& give, Real* const (&row)[pack_size], int count) noexcept
-{
-  if constexpr (n == begin + 1) {
-    const Pack last = give(begin);
-    for (int lane = 0; lane < count; ++lane)
-      row[lane][begin] = last[lane];
-  } else if constexpr (n > begin) {
-    Pack of[pack_size] = {give(begin), give(begin + 1), give(std::min(begin + 2, n - 1)), give(std::min(begin + 3, n - 1))};
-    transpose(of[0], of[1], of[2], of[3]);
-    for (int lane = 0; lane < count; ++lane)
-      if constexpr (n < begin + pack_size) {
-        *reinterpret_cast<LoosePair*>(row[lane] + begin) = __builtin_shufflevector(of[lane], of[lane], 0, 1);
-        if constexpr (n == begin + 3)
-          row[lane][begin + 2] = of[lane][2];
-      } else {
-        store_loose(row[lane] + begin, of[lane]);
-      }
-    store_rows<n, begin + pack_size>(give, row, count);
   }
 }
 static_assert(pack_size == 4);

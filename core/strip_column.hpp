@@ -4,9 +4,17 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/particle_pack.hpp"
+#include "core/particle_column.hpp"
+#include "core/simd.hpp"
+#include "core/tensor.hpp"
 
 namespace talus {
+
+/// Vectors and tensors of four particles.
+template <int D>
+using VecOf = Eigen::Matrix<SimdReal, D, 1, Eigen::DontAlign>;
+template <int D>
+using MatOf = Eigen::Matrix<SimdReal, D, D, Eigen::DontAlign>;
 
 /// A column of a strip: component c of particle i stands at first[c * stride + i].  Empty where the scene does not have it.
 template <class Value>

@@ -8,55 +8,19 @@ namespace talus {
 
 namespace {
 
-/// Updates cells, ranks and order of the particles.
+/// Whether the step can begin on all ranks: every particle has a cell, or a reason to be removed.  Otherwise the particles are in their
+/// columns, as they were.
 template <int D>
-void locate_particles(Model<D>& m)
+bool locate_particles(Model<D>& m)
 {
-  Problem<D>& problem = m.problem;
-  State<D>& state = m.state;
   Workspace<D>& work = m.work;
-  if (work.strips)
-    return work.strips->take_exits(problem.mesh, problem.locator, problem.exits, state.materials, work.sums, work.errors);
-  bool changed = relocate(problem.mesh, problem.locator, problem.exits, state.bodies, state.materials, state.particles, work.order,
-                          work.sums, work.errors);
-  changed |= work.migration(problem.subdomain, state.bodies, state.materials, state.particles, work.order);
-  changed |= sort_by_cell(state.bodies, state.materials, state.particles, work.order);
-  if (changed)
-    update_tracked_rows(m);
-}
-
-/// Whether all ranks continue; checked before the step makes changes that could not be undone.
-template <int D>
-bool particles_valid(Model<D>& m)
-{
-  m.work.errors.take(m.problem.ranks->min(m.work.errors.word()));
-  if (!m.work.errors.worst())
+  work.strips->take_exits(m.problem.mesh, m.problem.locator, m.problem.exits, m.state.materials, work.sums, work.errors);
+  work.errors.take(m.problem.ranks->min(work.errors.word()));
+  if (!work.errors.worst())
     return true;
-  if (m.work.strips) {  // columns do not hold the new cells that were found
-    end_sweeps(m);
-    m.work.sums.clear();
-    locate_particles(m);
-    m.work.errors.take(m.problem.ranks->min(m.work.errors.word()));
-  }
-  m.problem.ranks->sum(m.work.sums.removed);
-  record_removed(m.work.sums.removed.value(), m.state.mass, m.state.energy);
+  end_sweeps(m);
+  work.sums.clear();
   return false;
-}
-
-/// Takes particles in strips to their new cells and ranks.
-template <int D>
-void send_leavers(Model<D>& m)
-{
-  if (m.work.strips)
-    m.work.strips->send_leavers(m.problem.subdomain, m.work.migration);
-}
-
-/// Computes forces on single particles.
-template <int D>
-void apply_particle_loads(Model<D>& m)
-{
-  const Real time = m.state.clock.time;
-  apply(m.problem.loads, time, m.state.stage.ramp(time), m.work.followed, m.work.order, m.state.particles, m.work.sums.on_particles);
 }
 
 /// Adds tractions on facets of the mesh.
@@ -117,40 +81,6 @@ void record_node_sums(Model<D>& m)
   add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
 }
 
-/// Updates the stress of the particles of a body in a block.
-template <int D>
-void update_stress_block(Model<D>& m, Index body, Index block, Real dt)
-{
-  const Mesh<D>& mesh = m.problem.mesh;
-  Particles<D>& particles = m.state.particles;
-  Workspace<D>& work = m.work;
-  const auto rows = work.order.rows(body, block);
-  const auto water = pore_water(m, body, m.state.clock.time + dt);
-  if (water)
-    for (const Index row : rows) {
-      const auto p = static_cast<std::size_t>(row);
-      work.pore_after[p] = water->pressure(mesh, particles.cell[p], particles.x[p]);
-    }
-  work.stress_sums[work.order.key(body, block)] =
-      update_stress(m.state.materials[static_cast<std::size_t>(body)],
-                    StressBlock<D>{.rows = rows,
-                                   .dt = dt,
-                                   .elastic = m.state.stage.elastic,
-                                   .altitudes = mesh.altitudes(),
-                                   .averaged = work.averaged,
-                                   .pore_after = water ? std::span<const Real>(work.pore_after) : std::span<const Real>(),
-                                   .particles = particles,
-                                   .errors = work.errors});
-}
-
-/// Updates the stress as above, unless the law needs data of other blocks first.
-template <int D>
-void update_stress_while_cached(Model<D>& m, Index body, Index block, Real dt)
-{
-  if (!m.work.order.rows(body, block).empty() && !m.state.materials[static_cast<std::size_t>(body)].averages_volume)
-    update_stress_block(m, body, block, dt);
-}
-
 /// Whether the volume ratios of the body have already been averaged together with bodies before it; otherwise sets `bodies` to it and those
 /// after it with which they are averaged.
 template <int D>
@@ -169,28 +99,59 @@ bool averages_with_earlier(const Model<D>& m, Index body, std::vector<Index>& bo
   return false;
 }
 
-/// Updates that need a whole body: averaged volumes before the stress, heat after it; then collects the extremes that particles report.
+/// Averages the volumes of particles that have moved, of the bodies whose laws receive them.
 template <int D>
-void update_stress_bodies(Model<D>& m, Real dt)
+void average_volumes(Model<D>& m)
 {
-  Problem<D>& problem = m.problem;
+  Workspace<D>& work = m.work;
+  for (Index body = 0; body < m.n_bodies(); ++body)
+    if (m.state.materials[static_cast<std::size_t>(body)].averages_volume && !averages_with_earlier(m, body, work.averaged_bodies))
+      average_volume(m.problem.mesh, *work.strips, work.averaged_bodies, *work.patch_sums);
+}
+
+/// Conducts heat within each body whose law has temperature.
+template <int D>
+void conduct_heat(Model<D>& m, Real dt)
+{
+  for (Index body = 0; body < m.n_bodies(); ++body)
+    conduct_heat(m.problem.mesh, m.state.materials[static_cast<std::size_t>(body)].law(), *m.work.strips, body, dt, *m.work.heat);
+}
+
+/// Averaged volumes are needed before the stress, heat is conducted after it.
+template <int D>
+BetweenParts between_parts(Model<D>& m, Real dt)
+{
+  BetweenParts between;
+  if (m.work.patch_sums)
+    between.before_stress = [&m] { average_volumes(m); };
+  if (m.work.heat)
+    between.after_stress = [&m, dt] { conduct_heat(m, dt); };
+  return between;
+}
+
+template <int D>
+void clear_particle_sums(Model<D>& m)
+{
+  m.work.stress_sums.assign(m.work.strips->keys(), {});
+  m.work.load_sums.assign(m.problem.columns.applied ? m.work.strips->keys() : 0, {});
+}
+
+/// Collects what particles report of their stress and loads.
+template <int D>
+void record_particle_sums(Model<D>& m)
+{
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
-  for (Index body = 0; body < m.n_bodies(); ++body) {
-    Material& material = state.materials[static_cast<std::size_t>(body)];
-    if (material.averages_volume) {
-      if (!averages_with_earlier(m, body, work.averaged_bodies))
-        average_volume(problem.mesh, work.order, work.averaged_bodies, dt, state.particles, *work.patch_sums, work.averaged);
-      parallel_for_uneven(work.order.blocks, [&](Index block) { update_stress_block(m, body, block, dt); });
-    }
-    if (work.heat)
-      conduct_heat(problem.mesh, material, work.order, body, dt, state.particles, *work.heat);
-  }
   StressSums most;
   for (const StressSums& sums : work.stress_sums) {
     work.sums.internal.add(sums.work);
     most.take_extremes(sums);
   }
+  for (const ParticleLoadSums<D>& sums : work.load_sums) {
+    work.sums.on_particles.add(sums.force);
+    work.sums.work_on_particles.add(sums.work);
+  }
+  work.sums.particles.add(static_cast<Real>(n_particles(m)));
   state.crossing = most.crossing;
   state.monitor.speed = most.speed;
   state.timings.stress += most.seconds / threads();
@@ -205,8 +166,6 @@ void update_balances(Model<D>& m)
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
   StepSums<D>& sums = work.sums;
-  add_work(work.order, state.particles, sums.work_on_particles);
-  sums.particles.add(static_cast<Real>(n_particles(m)));
   problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
                      sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed());
   state.boundary.keep_impulses();
@@ -231,14 +190,13 @@ void advance(Model<D>& m, Real dt)
   end_sweeps(m);
 }
 
-// The numbers are those of the rows in docs/theory/algorithm.md.  Where particles are in strips, the transfer to them (9 to 12) does 3 for
-// the next step too.
+// The numbers are those of the rows in docs/theory/algorithm.md.  The sums of the particles (2 and 3) were made at the end of the step before;
+// particles that have changed their block are missing.
 template <int D>
 void make_step(Model<D>& m, Real dt)
 {
   drop_copy(m);
-  if (may_sweep(m))
-    begin_sweeps(m);
+  begin_sweeps(m);
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
@@ -247,11 +205,9 @@ void make_step(Model<D>& m, Real dt)
   StopWatch watch;
 
   work.sums.clear();
-  locate_particles(m);  //  1
-  if (!particles_valid(m))
+  if (!locate_particles(m))  //  1
     return;
-  send_leavers(m);
-  apply_particle_loads(m);  //  2
+  work.strips->send_leavers(problem.subdomain, work.migration);
   watch.lap(state.timings.locate);
   transfer.particles_to_nodes(m);  //  3
   watch.lap(state.timings.scatter);
@@ -264,12 +220,11 @@ void make_step(Model<D>& m, Real dt)
   extrapolate_to_small_masses(m, kick);  //  8
   record_node_sums(m);
   watch.lap(state.timings.nodes);
-  work.stress_sums.assign(work.order.first.size(), {});
-  transfer.nodes_to_particles(m, kick, dt,
-                              [&m, dt](Index body, Index block) { update_stress_while_cached(m, body, block, dt); });  //  9 to 12
-  update_stress_bodies(m, dt);                                                                                         // 12
+  clear_particle_sums(m);
+  transfer.nodes_to_particles(m, kick, dt, between_parts(m, dt));  //  9 to 12, and 2 and 3 of the next step
+  record_particle_sums(m);
   update_balances(m);
-  watch.lap(state.timings.gather);  // update_stress_bodies() measures the time of the stress update itself
+  watch.lap(state.timings.gather);  // without the stress, whose time particles measure
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};
 }
 

@@ -23,7 +23,7 @@ struct ColumnParticle {
   Real history(int number) const noexcept { return of_law[number]; }
 };
 
-/// The same in a strip.  Scenes with loads on particles have none.
+/// The same in a strip.
 template <int D>
 struct StripParticle {
   const StripColumns<D>& all;
@@ -37,7 +37,7 @@ struct StripParticle {
   Vec<D> displacement() const noexcept { return all.x.of(p) - all.x0.of(p); }
   Vec<D> v() const noexcept { return all.v.of(p); }
   Sym3 stress() const noexcept { return all.stress.of(p); }
-  Vec<D> load() const noexcept { return Vec<D>::Zero(); }
+  Vec<D> load() const noexcept { return all.applied ? all.applied.of(p) : Vec<D>(Vec<D>::Zero()); }
   Real history(int number) const noexcept { return of_law.component(number)[p]; }
 };
 

@@ -33,7 +33,7 @@ Real least_altitude(const Mesh<D>& mesh, const Particles<D>& particles)
   return parallel_min(particles.size(), std::numeric_limits<Real>::infinity(),
                       [&](Index row) { return mesh.altitude(particles.cell[static_cast<std::size_t>(row)]); });
 }
-/// Largest force over mass of a particle, of those that apply(loads) has left [m/s^2].
+/// Largest force over mass of a particle, of forces of loads [m/s^2].
 template <int D>
 Real largest_pull(const Particles<D>& particles)
 {

@@ -53,7 +53,6 @@ void stop_if_invalid(Model<D>& m, bool step_is_done)
     remove_failed(m.problem.mesh, m.state.bodies, m.state.materials, m.state.particles, m.work.order, removed);
     m.problem.ranks->sum(removed);
     record_removed(removed.value(), m.state.mass, m.state.energy);
-    update_tracked_rows(m);
     m.work.errors.clear();
     m.state.monitor.failure = what;
     if (m.state.mass.failed <= m.problem.limits.failed * m.state.mass.start)
@@ -100,8 +99,10 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
                     .largest_before = m.state.energy.largest_term(kinetic),
                     .largest_seen = std::max(m.state.energy.largest_seen, m.state.energy.largest_term(kinetic))};
   m.state.crossing = m.problem.ranks->min(shortest_crossing(m.problem.mesh, m.state.materials, m.state.particles));
-  ExactSums<ForceAndMoment<D>> total;
-  apply(m.problem.loads, time, m.state.stage.ramp(time), m.work.followed, m.work.order, m.state.particles, total);
+  if (m.problem.columns.applied) {  // strips compute the forces
+    begin_sweeps(m);
+    end_sweeps(m);
+  }
   m.state.stage.altitude = m.problem.ranks->min(least_altitude(m.problem.mesh, m.state.particles));
   m.state.stage.pull = m.problem.ranks->max(largest_pull(m.state.particles));
 }

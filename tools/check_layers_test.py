@@ -57,10 +57,10 @@ class Layers(unittest.TestCase):
 
     def test_threads_have_one_file(self):
         self.passes("core/parallel/threads.hpp", "#pragma omp parallel for")
-        self.passes("solver/transfer/gather.hpp", "#pragma omp simd reduction(+ : sum)")
-        self.fails("solver/transfer/gather.hpp", "#pragma omp parallel for")
-        self.fails("solver/transfer/gather.hpp", '_Pragma("omp atomic")')
-        self.fails("solver/transfer/gather.hpp", "#include <omp.h>")
+        self.passes("solver/transfer/sweep.hpp", "#pragma omp simd reduction(+ : sum)")
+        self.fails("solver/transfer/sweep.hpp", "#pragma omp parallel for")
+        self.fails("solver/transfer/sweep.hpp", '_Pragma("omp atomic")')
+        self.fails("solver/transfer/sweep.hpp", "#include <omp.h>")
 
     def test_folders_include_each_other_in_no_circle(self):
         self.assertEqual(circle_in(FOLDERS), [])

@@ -57,7 +57,7 @@ OF_THE_PROGRAM = "AccountsByHand.*:Run.*:Stages.*:Restart.*-*Nightly*"
 GROUPS = {
     "laws": Group(("materials/*.cpp", "materials/*.hpp"), (("talus_materials_tests", ALL),)),
     "kernels": Group(("kernels/*.cpp", "kernels/*.hpp"), (("talus_kernels_tests", ALL), ("talus_solver_tests", ALL))),
-    "transfers": Group(("solver/transfer/scatter.hpp", "solver/transfer/gather.hpp", "solver/transfer/*.hpp", "solver/strips/*.hpp", "solver/strips/*.cpp", "solver/state/nodes.hpp", "solver/options/transfer_options.hpp",
+    "transfers": Group(("solver/transfer/*.hpp", "solver/strips/*.hpp", "solver/strips/*.cpp", "solver/state/nodes.hpp", "solver/options/transfer_options.hpp",
                         "solver/boundary/small_mass_nodes.*"),
                        (("talus_solver_tests", ALL), ("talus_app_tests", OF_THE_PROGRAM))),
     "walls": Group(("mesh/conditions/*.hpp", "mesh/conditions/*.cpp", "solver/boundary/boundary_conditions.*", "solver/boundary/dashpots.*", "solver/loads/loads.*"),

@@ -43,15 +43,17 @@ void BodyForces<D>::add_step(const RunView<D>& view, const std::vector<BodySums<
   for (std::size_t b = 0; b < now.size(); ++b)
     losers += lost(b) ? 1 : 0;
   const Real failed = view.state.mass.failed - failed_;  // they took part in the step in which they failed, with their loads
+  // Those that have left the mesh did not: their loads are not known any more.
+  const auto left = [&](std::size_t b) { return sums_[b].mass - now[b].mass > failed + 1e-9 * (sums_[b].mass - now[b].mass); };
   for (std::size_t b = 0; b < now.size(); ++b) {
     BodyImpulse<D>& impulse = impulses_[b];
-    if (lost(b) && (losers > 1 || (failed > 0 && !view.state.particles.applied.empty()))) {
+    if (lost(b) && (losers > 1 || (left(b) && view.problem.columns.applied))) {
       ++impulse.unknown;
       continue;
     }
     const Vec<D> deleted = lost(b) ? Vec<D>(view.state.mass.carried_away.linear - deleted_) : Vec<D>(Vec<D>::Zero());
     const Real mass = now[b].mass + (lost(b) ? failed : 0);
-    impulse.given += now[b].momentum - sums_[b].momentum + deleted - kick * (mass * gravity + now[b].load);
+    impulse.given += now[b].momentum - sums_[b].momentum + deleted - kick * (mass * gravity + sums_[b].load);
   }
 }
 

@@ -9,7 +9,7 @@ template <int D>
 struct BodySums {
   Real mass{}, kinetic{};            ///< [kg], [J]
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
-  Vec<D> load = Vec<D>::Zero();      ///< forces that its particles carried in the last step: tractions and body forces [N]
+  Vec<D> load = Vec<D>::Zero();      ///< tractions and body forces on its particles where they are, which act in the next step [N]
   static constexpr auto fields()
   {
     return std::tuple{saved("mass", &BodySums::mass), saved("kinetic", &BodySums::kinetic), saved("momentum", &BodySums::momentum),

@@ -278,7 +278,7 @@ void HistoryWriter<D>::follow_anew(const std::string& body, const RunView<D>& no
 template <int D>
 void HistoryWriter<D>::add_points(const RunView<D>& view, std::vector<Real>& row)
 {
-  const FollowedRows followed(state_.followed);
+  const TrackedIds followed(state_.followed);
   struct Found {
     std::size_t body = 0;
     std::vector<Real> values;

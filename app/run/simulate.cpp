@@ -346,11 +346,9 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   cost.particle_bytes = static_cast<std::int64_t>(bytes_of(m.state.particles));
   for (const Material& material : m.state.materials)
     cost.particle_bytes += static_cast<std::int64_t>(material.history.bytes());
-  if (may_sweep(m)) {  // columns are there where particles are read, beside the strips
-    begin_sweeps(m);
-    cost.particle_bytes += static_cast<std::int64_t>(m.work.strips->bytes());
-    end_sweeps(m);
-  }
+  begin_sweeps(m);  // columns are there where particles are read, beside the strips
+  cost.particle_bytes += static_cast<std::int64_t>(m.work.strips->bytes());
+  end_sweeps(m);
   const Mesh<D>& whole = m.problem.mesh;
   cost.mesh_bytes = static_cast<std::int64_t>(whole.nodes().size_bytes() + whole.cells().size_bytes()) +
                     whole.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(whole.cells_of_node().item) +

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "materials/interface/history_rows.hpp"
-#include "materials/interface/stress_block.hpp"
+#include "materials/interface/stress_strip.hpp"
 #include "materials/law.hpp"
 
 namespace talus {

@@ -5,7 +5,7 @@
 #include <type_traits>
 #include <variant>
 
-#include "core/particle_pack.hpp"
+#include "core/strip_column.hpp"
 #include "core/type_list.hpp"
 #include "materials/interface/material.hpp"
 #include "materials/strength.hpp"

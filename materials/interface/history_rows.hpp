@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include "core/huge_page_allocator.hpp"
-#include "core/parallel/threads.hpp"
 #include "core/types.hpp"
 
 namespace talus {
@@ -38,15 +37,6 @@ class HistoryRows {
     numbers_.resize(offset(n));
   }
   void copy_row(Index from, Index to) noexcept { std::copy_n(row(from), width_, row(to)); }
-  /// Row `by` becomes the first one; those before it come last.
-  void rotate(Index by) { std::rotate(numbers_.begin(), numbers_.begin() + static_cast<std::ptrdiff_t>(offset(by)), numbers_.end()); }
-  /// Re-orders: afterwards row i is the former row order[i].  Allocates at its first call only.
-  void permute(std::span<const Index> order)
-  {
-    scratch_.resize(numbers_.size());
-    parallel_for(size_, [&](Index i) { std::copy_n(row(order[static_cast<std::size_t>(i)]), width_, scratch_.data() + offset(i)); });
-    std::swap(numbers_, scratch_);
-  }
   /// Adds rows of the same width at the end.
   void append(const HistoryRows& more)
   {
@@ -60,7 +50,6 @@ class HistoryRows {
   int width_;
   Index size_ = 0;
   Rows<Real> numbers_;
-  Rows<Real> scratch_;  ///< of permute()
 };
 
 }  // namespace talus

@@ -59,9 +59,6 @@ void begin_anew(Index begin, Index end, Material& material);
 /// Q = D nu / h + quadratic h |d| + linear c, exact for a chain of equal cells.
 template <int D>
 StressSums update_stress(const Material& material, const StressStrip<D>& strip) noexcept;
-/// The same for rows of the columns of all particles, which are copied into strips and back.
-template <int D>
-StressSums update_stress(Material& material, const StressBlock<D>& block) noexcept;
 
 /// Altitude h [m] / (effective wave speed + |v|) of a particle [s].  `shrinking` is max(-tr L, 0) [1/s].  T is Real or SimdReal.
 template <int D, class T>

@@ -66,46 +66,45 @@ void restrict_to(const Subdomain& subdomain, MeshTraction<D>& load)
   load.node.resize(count), load.area.resize(count), load.measure.resize(count);
 }
 
+namespace {
+
+/// Force of a traction on particle i of a strip that carries the area [m^(D-1)].
 template <int D>
-void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
-           ExactSums<ForceAndMoment<D>>& total)
+Vec<D> force_of(const ParticleTraction<D>& load, const Vec<D>& area0, const Mat3& deformation) noexcept
 {
-  if (particles.applied.empty())
-    return;
-  particles.applied.assign(particles.applied.size(), Vec<D>::Zero());
-  const auto add = [&](std::size_t p, const Vec<D>& force) { particles.applied.set(p, particles.applied[p] + force); };
-  for (const auto& load : loads.on_particles) {
-    const Real factor = ramp * load.table(time);
-    for (std::size_t k = 0; k < load.id.size(); ++k) {
-      const Index row = followed.row(load.id[k]);
-      if (row == none)
-        continue;
-      const auto p = static_cast<std::size_t>(row);
-      const Mat<D> F = particles.F[p].template topLeftCorner<D, D>();
-      const Vec<D> area = particles.F[p].determinant() * F.inverse().transpose() * load.area[k];
-      add(p, factor * (load.area[k].norm() * load.traction - load.pressure * area));
-    }
+  const Mat<D> F = deformation.template topLeftCorner<D, D>();
+  const Vec<D> area = deformation.determinant() * F.inverse().transpose() * area0;
+  return area0.norm() * load.traction - load.pressure * area;
+}
+
+}  // namespace
+
+template <int D>
+void find_forces(const Loads<D>& loads, Real time, Real ramp, const TrackedIds& carriers, const StripColumns<D>& columns, std::size_t n)
+{
+  const auto add = [&](std::size_t i, const Vec<D>& force) { columns.applied.set(i, columns.applied.of(i) + force); };
+  for (std::size_t i = 0; i < n; ++i) {
+    columns.applied.set(i, Vec<D>::Zero());
+    if (!carriers.place(columns.id[i]))
+      continue;
+    for (const auto& load : loads.on_particles)
+      if (const auto found = std::lower_bound(load.id.begin(), load.id.end(), columns.id[i]);
+          found != load.id.end() && *found == columns.id[i])
+        add(i, ramp * load.table(time) * force_of(load, load.area[static_cast<std::size_t>(found - load.id.begin())], columns.F.of(i)));
   }
   for (const auto& load : loads.of_place) {
-    const ParticleColumn<Vec<D>>& place = load.at_start ? particles.x0 : particles.x;
-    constexpr std::size_t at_once = 256;
-    const std::size_t n = particles.applied.size();
-    parallel_for(static_cast<Index>((n + at_once - 1) / at_once), [&](Index chunk) {
-      const std::size_t begin = static_cast<std::size_t>(chunk) * at_once, count = std::min(at_once, n - begin);
-      std::array<Vec<D>, at_once> places, accelerations;
+    const StripColumn<Vec<D>>& place = load.at_start ? columns.x0 : columns.x;
+    constexpr std::size_t at_once = 64;
+    std::array<Vec<D>, at_once> places, accelerations;
+    for (std::size_t begin = 0; begin < n; begin += at_once) {
+      const std::size_t count = std::min(at_once, n - begin);
       for (std::size_t i = 0; i < count; ++i)
-        places[i] = place[begin + i];
+        places[i] = place.of(begin + i);
       load.acceleration(std::span(places).first(count), time, std::span(accelerations).first(count));
       for (std::size_t i = 0; i < count; ++i)
-        add(begin + i, ramp * particles.mass[begin + i] * accelerations[i]);
-    });
+        add(begin + i, ramp * columns.mass.of(begin + i) * accelerations[i]);
+    }
   }
-  add_particles(order, total, [&](Index row) {
-    const auto p = static_cast<std::size_t>(row);
-    const Vec<D> x = particles.x[p], force = particles.applied[p];
-    particles.applied_at[p] = force.dot(x);
-    return ForceAndMoment<D>::at(x, force);
-  });
 }
 
 namespace {
@@ -149,12 +148,12 @@ template ParticleTraction<2> carried_by_particles<2>(const Mesh<2>&, std::span<c
 template MeshTraction<2> carried_by_mesh<2>(const Mesh<2>&, std::span<const Facet>);
 template void restrict_to<2>(const Subdomain&, MeshTraction<2>&);
 template void restrict_to<3>(const Subdomain&, MeshTraction<3>&);
-template void apply<2>(const Loads<2>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<2>&, ExactSums<ForceAndMoment<2>>&);
+template void find_forces<2>(const Loads<2>&, Real, Real, const TrackedIds&, const StripColumns<2>&, std::size_t);
 template void apply<2>(const Loads<2>&, Real, Real, const Mesh<2>&, const OwnNodes&, std::span<NodeSum<2>>, ExactSums<ForceAndMoment<2>>&);
 template void add_work<2>(const Loads<2>&, Real, Real, const OwnNodes&, const Nodes<2>&, ExactSums<Real>&);
 template ParticleTraction<3> carried_by_particles<3>(const Mesh<3>&, std::span<const Facet>, const Particles<3>&);
 template MeshTraction<3> carried_by_mesh<3>(const Mesh<3>&, std::span<const Facet>);
-template void apply<3>(const Loads<3>&, Real, Real, const FollowedRows&, const CellOrder&, Particles<3>&, ExactSums<ForceAndMoment<3>>&);
+template void find_forces<3>(const Loads<3>&, Real, Real, const TrackedIds&, const StripColumns<3>&, std::size_t);
 template void apply<3>(const Loads<3>&, Real, Real, const Mesh<3>&, const OwnNodes&, std::span<NodeSum<3>>, ExactSums<ForceAndMoment<3>>&);
 template void add_work<3>(const Loads<3>&, Real, Real, const OwnNodes&, const Nodes<3>&, ExactSums<Real>&);
 

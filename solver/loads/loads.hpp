@@ -12,7 +12,8 @@
 #include "solver/state/nodes.hpp"
 #include "solver/state/owned_nodes.hpp"
 #include "solver/state/sums.hpp"
-#include "solver/state/tracked_particles.hpp"
+#include "solver/state/tracked_ids.hpp"
+#include "solver/strips/strip.hpp"
 
 namespace talus {
 
@@ -40,7 +41,7 @@ struct ParticleTraction {
   Real pressure{};                   ///< pressure [Pa], positive in compression
   Table table;
   SourceLocation where;
-  std::vector<std::int64_t> id;  ///< ids of the particles that carry it
+  std::vector<std::int64_t> id;  ///< ids of the particles that carry it, ascending
   std::vector<Vec<D>> area;      ///< share of each particle in the initial outward area vector [m^(D-1)]
 };
 
@@ -87,11 +88,30 @@ std::vector<std::int64_t> ids_of(const std::vector<ParticleTraction<D>>& loads)
   return ids;
 }
 
-/// Computes particles.applied [N]; does nothing for a scene without forces on particles.  `followed` finds the particles that carry
-/// tractions.  The forces are added to `total`.
+/// Computes the forces [N] on n particles of a strip at their present positions, into columns.applied.  `carriers` are the ids of particles
+/// that carry tractions.
 template <int D>
-void apply(const Loads<D>& loads, Real time, Real ramp, const FollowedRows& followed, const CellOrder& order, Particles<D>& particles,
-           ExactSums<ForceAndMoment<D>>& total);
+void find_forces(const Loads<D>& loads, Real time, Real ramp, const TrackedIds& carriers, const StripColumns<D>& columns, std::size_t n);
+
+/// Sums over the particles of a body in a block of the forces that act on them in a step.
+template <int D>
+struct ParticleLoadSums {
+  ForceAndMoment<D> force{};
+  Real work = 0;  ///< force times displacement [J]
+
+  /// Adds n particles of a strip, which are where the forces were computed.
+  void add_forces(const StripColumns<D>& columns, std::size_t n) noexcept
+  {
+    for (std::size_t i = 0; i < n; ++i)
+      force += ForceAndMoment<D>::at(columns.x.of(i), columns.applied.of(i));
+  }
+  /// Adds n particles that have moved since.
+  void add_work(const StripColumns<D>& columns, std::size_t n) noexcept
+  {
+    for (std::size_t i = 0; i < n; ++i)
+      work += columns.applied.of(i).dot(columns.x.of(i)) - columns.applied.of(i).dot(columns.before.of(i));
+  }
+};
 
 /// Adds the work [J] of mesh tractions over a step: impulse times the mean of old and new velocity of the `own` nodes.
 template <int D>
@@ -101,17 +121,5 @@ void add_work(const Loads<D>& loads, Real time, Real ramp, const OwnNodes& own, 
 template <int D>
 void apply(const Loads<D>& loads, Real time, Real ramp, const Mesh<D>& mesh, const OwnNodes& own, std::span<NodeSum<D>> sum,
            ExactSums<ForceAndMoment<D>>& total);
-
-/// Adds the work [J] of the forces on particles since apply(): force times displacement.
-template <int D>
-void add_work(const CellOrder& order, const Particles<D>& particles, ExactSums<Real>& total)
-{
-  if (particles.applied.empty())
-    return;
-  add_particles(order, total, [&](Index row) {
-    const auto p = static_cast<std::size_t>(row);
-    return particles.applied[p].dot(particles.x[p]) - particles.applied_at[p];
-  });
-}
 
 }  // namespace talus

@@ -25,7 +25,7 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
   if (wanted.affine && particles.C.empty())
     particles.C = particles.L;
   if (wanted.applied)
-    particles.applied.assign(n, Vec<D>::Zero()), particles.applied_at.assign(n, 0);
+    particles.applied.assign(n, Vec<D>::Zero());
   if (wanted.volume_ratio && particles.volume_ratio.empty())
     particles.volume_ratio.assign(n, 1);
   if (wanted.viscous && particles.viscous.empty())
@@ -35,23 +35,9 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles)
 }
 
 template <int D>
-void update_tracked_rows(Model<D>& m)
-{
-  m.work.averaged_bodies.reserve(m.state.bodies.size());
-  if (m.work.patch_sums)
-    m.work.averaged.resize(m.state.particles.id.size());
-  if (!m.state.particles.pore.empty())
-    m.work.pore_after.resize(m.state.particles.id.size());
-  m.work.followed.find(m.state.particles.id);
-}
-
-template <int D>
 void update_rows(Model<D>& m)
 {
   sort_by_cell(m.state.particles.cell, m.state.particles.id, m.state.bodies, m.problem.mesh.n_cells(), m.work.order);
-  update_tracked_rows(m);
-  if (!m.problem.subdomain.alone())
-    m.work.migration.agree_on_columns(m.state.particles);
 }
 
 template <int D>
@@ -102,7 +88,8 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
   if (problem.columns.volume_ratio)
     alone ? work.patch_sums.emplace(problem.mesh) : work.patch_sums.emplace(*problem.ranks, problem.mesh, problem.subdomain);
   transfer.prepare(problem.transfer);
-  work.followed = FollowedRows(ids_of(problem.loads.on_particles));
+  work.carriers = TrackedIds(ids_of(problem.loads.on_particles));
+  work.averaged_bodies.reserve(state.bodies.size());
   bind_boundary_conditions(m);
   const LeastShares least = transfer.least_shares();
   work.nodes.least_share_of_gross = least.of_gross;
@@ -120,19 +107,13 @@ std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time)
 }
 
 template <int D>
-bool may_sweep(const Model<D>& m)
-{
-  const WantedColumns& has = m.problem.columns;
-  return m.transfer->can_sweep() && !has.applied && !has.volume_ratio && !m.work.heat;
-}
-
-template <int D>
 void begin_sweeps(Model<D>& m)
 {
   if (m.work.strips)
     return;
   m.work.strips.emplace();
-  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.state.bodies, m.state.materials, m.state.particles, m.work.order);
+  m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients(), m.state.bodies, m.state.materials,
+                      m.state.particles, m.work.order);
   m.transfer->sum_strips(m);
 }
 
@@ -159,7 +140,6 @@ void end_sweeps(Model<D>& m)
     return;
   copy_to_columns(m);
   m.work.strips.reset();
-  update_tracked_rows(m);
 }
 
 template <int D>
@@ -174,12 +154,10 @@ Totals<D> totals(const Model<D>& m)
   template struct Model<D>;                                                    \
   template void fill_columns(const WantedColumns&, Particles<D>&);             \
   template void make_ready(Model<D>&, std::span<const std::vector<Material>>); \
-  template void update_tracked_rows(Model<D>&);                                \
   template void update_rows(Model<D>&);                                        \
   template void adopt_state(Model<D>&);                                        \
   template void bind_boundary_conditions(Model<D>&);                           \
   template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);  \
-  template bool may_sweep(const Model<D>&);                                    \
   template void begin_sweeps(Model<D>&);                                       \
   template void end_sweeps(Model<D>&);                                         \
   template void copy_to_columns(Model<D>&);                                    \

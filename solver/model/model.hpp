@@ -36,11 +36,7 @@ void fill_columns(const WantedColumns& wanted, Particles<D>& particles);
 template <int D>
 void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come = {});
 
-/// To be called after rows of particles have changed: finds the rows of tracked particles.
-template <int D>
-void update_tracked_rows(Model<D>& m);
-
-/// To be called after particles have been replaced and their cells are known.  Collective.
+/// To be called after particles have been replaced and their cells are known.
 template <int D>
 void update_rows(Model<D>& m);
 
@@ -53,11 +49,7 @@ void adopt_state(Model<D>& m);
 template <int D>
 void bind_boundary_conditions(Model<D>& m);
 
-/// Whether steps may keep the particles in strips and pass over them once: the kernel has node operators, and nothing between two passes
-/// needs all particles (averaged volumes, heat, loads on particles).
-template <int D>
-bool may_sweep(const Model<D>& m);
-/// Moves the particles into strips, unless they are there.  Collective.
+/// Moves the particles into strips, in which steps keep them, unless they are there.  Collective.
 template <int D>
 void begin_sweeps(Model<D>& m);
 /// Moves them back into their columns.

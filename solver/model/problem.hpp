@@ -10,7 +10,7 @@
 #include "solver/loads/water.hpp"
 #include "solver/options/limit_options.hpp"
 #include "solver/options/transfer_options.hpp"
-#include "solver/particles/relocate.hpp"
+#include "solver/particles/removal.hpp"
 #include "solver/state/owned_nodes.hpp"
 
 namespace talus {

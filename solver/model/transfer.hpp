@@ -19,14 +19,17 @@ struct LeastShares {
   Real of_gross;      ///< relative to the sum of absolute masses
 };
 
+/// What needs the particles of other blocks between two parts of the pass over particles; empty where there is nothing.
+struct BetweenParts {
+  std::function<void()> before_stress;  ///< particles have moved
+  std::function<void()> after_stress;
+};
+
 /// Transfer between particles and nodes by the shape functions of one kernel.  The functions of a step are called once in it and
 /// contain the loop over particles.
 template <int D>
 class Transfer {
  public:
-  /// To be called when the velocity gradients of a body in a block of cells have been computed, while its particles are in the cache.
-  using StressUpdate = std::function<void(Index body, Index block)>;
-
   Transfer() = default;
   Transfer(const Transfer&) = delete;
   Transfer& operator=(const Transfer&) = delete;
@@ -37,15 +40,15 @@ class Transfer {
   /// Allocates what depends on the options of the run; to be called once, before the first step.
   virtual void prepare(const TransferOptions& options) = 0;
 
-  /// Whether the transfer can do both ways in one pass over strips of particles.
-  virtual bool can_sweep() const = 0;
-  /// Adds the particles that are in strips, as they are, to the rows of their blocks; to be called before the first sweep.
+  /// Whether strips are to hold the gradients of particles; otherwise find_gradients() computes them again.
+  virtual bool keeps_gradients() const = 0;
+  /// Adds the particles, as they are, to the rows of their blocks; to be called before the first step after they came into strips.
   virtual void sum_strips(Model<D>& m) = 0;
   /// Sets L and C of the columns of a strip to what they were at the end of the last step, in memory of the calling thread.  May be
   /// called by several threads.
   virtual void find_gradients(Model<D>& m, std::size_t key, Index strip, StripColumns<D>& columns) = 0;
-  /// Adds mass, momentum and force of every particle to the rows of its block (P2G).  Of particles in strips only those that have changed
-  /// their cell: the others were added by the sweep of the step before.
+  /// Completes the sums of mass, momentum and force of the particles in the rows of their blocks (P2G): adds those that have changed their
+  /// block.  The others were added by the step before.
   virtual void particles_to_nodes(Model<D>& m) = 0;
   /// Adds the rows of blocks and ranks to sums of the nodes, in a fixed order.
   virtual void assemble_nodes(Model<D>& m) = 0;
@@ -53,9 +56,9 @@ class Transfer {
   virtual void filter_acceleration(Model<D>& m) = 0;
   /// Starts to send the motion of nodes to other ranks.
   virtual void send_motion(Model<D>& m) = 0;
-  /// Computes velocity, velocity gradient and position of every particle (G2P), with or without the second pass of MUSL; `to` is the time
-  /// of prescribed velocities.  `update` is not called for particles in strips: the sweep updates their stress.
-  virtual void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const StressUpdate& update) = 0;
+  /// Computes velocity, velocity gradient and position of every particle (G2P), with or without MUSL, its stress, and its contributions to
+  /// the sums of the next step; `to` is the time of prescribed velocities.
+  virtual void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const BetweenParts& between) = 0;
 
   virtual LeastShares least_shares() const = 0;
   /// Appends the nodes on which the motion of particles in a cell depends.

@@ -4,12 +4,13 @@
 #include <vector>
 
 #include "core/particle_errors.hpp"
-#include "materials/interface/stress_block.hpp"
+#include "materials/interface/stress_strip.hpp"
 #include "solver/boundary/small_mass_nodes.hpp"
+#include "solver/loads/loads.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/step_sums.hpp"
-#include "solver/state/tracked_particles.hpp"
+#include "solver/state/tracked_ids.hpp"
 #include "solver/stress/conduct_heat.hpp"
 #include "solver/strips/particle_strips.hpp"
 
@@ -19,18 +20,18 @@ template <int D>
 struct Workspace {
   std::optional<ParticleStrips<D>> strips;  ///< between begin_sweeps() and end_sweeps(): the particles, instead of their columns
   CellOrder order;
-  FollowedRows followed;  ///< rows of particles that carry tractions
+  TrackedIds carriers;  ///< particles that carry tractions
   Migration<D> migration;
   ParticleErrors errors;
 
   Nodes<D> nodes;
   SmallMassNodes<D> small_mass_nodes;
-  StepSums<D> sums;                     ///< sums of the present step
-  std::vector<StressSums> stress_sums;  ///< sums over the particles of each body in each block
+  StepSums<D> sums;  ///< sums of the present step
+  // Sums over the particles of each body in each block.
+  std::vector<StressSums> stress_sums;
+  std::vector<ParticleLoadSums<D>> load_sums;  ///< used if loads act on particles
 
   std::optional<NodePatchSums<D, 2>> patch_sums;  ///< used if a body averages its volume
-  std::vector<Real> averaged;                     ///< volume ratios of average_volume()
-  std::vector<Real> pore_after;                   ///< pore pressure of each particle at the end of the step [Pa]
   std::vector<Index> averaged_bodies;             ///< bodies that average_volume() treats as one
   std::optional<HeatSums<D>> heat;                ///< used if a body conducts heat
 

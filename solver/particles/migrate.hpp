@@ -5,9 +5,7 @@
 #include <vector>
 
 #include "core/parallel/communicator.hpp"
-#include "materials/interface/material.hpp"
 #include "mesh/part.hpp"
-#include "solver/state/cell_order.hpp"
 
 namespace talus {
 
@@ -26,12 +24,6 @@ class Migration {
   Migration() = default;
   Migration(Communicator& ranks, const Subdomain& subdomain);
 
-  /// Columns that some rank keeps are kept by all: one that has no particles yet cannot tell.  Once, every rank has to.
-  void agree_on_columns(const Particles<D>& particles);
-  /// `order` is that of the cells, those of other ranks included; so it is afterwards, without them.  Neighbours have to ask alike.
-  /// True if rows changed place.
-  bool operator()(const Subdomain& subdomain, std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
-                  CellOrder& order);
   /// Adds a particle that goes to the owner of a block to the message for that rank.
   void add(const MigratingParticle::Head& head, Index block, std::span<const Real> numbers);
   /// Sends all that has been added; returns what comes, valid until the next call.  width(body): how many numbers a particle of it has.
@@ -61,12 +53,10 @@ class Migration {
 
   Communicator* ranks_ = nullptr;
   std::vector<int> neighbours_;         // ranks, ascending
-  std::vector<Index> foreign_;          // local blocks of others
   std::vector<Index> border_of_block_;  // local block -> number of its rank among the neighbours
   std::vector<std::vector<std::byte>> out_;
   std::vector<std::vector<Real>> in_;  // messages of exchange()
   std::vector<MigratingParticle> came_;
-  std::vector<std::int64_t> keepers_;  // how many ranks keep each column
   std::int64_t moved_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "core/parallel/exact_sum.hpp"
-#include "solver/particles/relocate.hpp"
+#include "solver/particles/removal.hpp"
 
 namespace talus {
 

@@ -22,28 +22,27 @@ struct HeatSums {
 /// at the places of the particles after their move.  Rates are interpolated, not temperatures, so that nothing is smeared at rest; the
 /// sum of m_p c T_p is kept to round-off.  Nothing happens under a law without temperature or without conductivity.
 template <int D>
-void conduct_heat(const Mesh<D>& mesh, Material& material, const CellOrder& order, Index body, Real dt, const Particles<D>& particles,
-                  HeatSums<D>& sums)
+void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const ParticleStrips<D>& strips, Index body, Real dt, HeatSums<D>& sums)
 {
-  const std::optional<HeatConduction> heat = material.law().heat();
+  const std::optional<HeatConduction> heat = law.heat();
   if (!heat)
     return;
   const Real conductivity = heat->conductivity, specific_heat = heat->specific_heat;
-  const auto temperature = [&](std::size_t p) -> Real& {
-    return material.history.row(static_cast<Index>(p) - material.begin)[heat->temperature];
+  const auto temperature = [&](const ParticlesInCell<D>& run, std::size_t p) -> Real& {
+    return run.history.component(heat->temperature)[p];
   };
-  sums.content.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
-    for (const Index row : run) {
-      const auto p = static_cast<std::size_t>(row);
-      const auto shape = barycentric_inside(mesh, c, particles.x[p]);
+  const std::span<const Index> only(&body, 1);
+  sums.content.gather(strips, only, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
+    for (std::size_t p = run.begin; p < run.end; ++p) {
+      const auto shape = barycentric_inside(mesh, c, run.columns.x.of(p));
       for (std::size_t a = 0; a <= D; ++a) {
-        const Real capacity = particles.mass[p] * specific_heat * shape[a];
+        const Real capacity = run.columns.mass.of(p) * specific_heat * shape[a];
         corners[a][0] += capacity;
-        corners[a][1] += capacity * temperature(p);
+        corners[a][1] += capacity * temperature(run, p);
       }
     }
   });
-  sums.flow.gather(order, body, particles, [&](Index c, std::span<const Index> run, auto& corners) {
+  sums.flow.gather(strips, only, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
     const auto& gradients = mesh.gradients(c);
     Vec<D> slope = Vec<D>::Zero();
     for (std::size_t a = 0; a <= D; ++a) {
@@ -53,22 +52,23 @@ void conduct_heat(const Mesh<D>& mesh, Material& material, const CellOrder& orde
       slope += content / capacity * gradients[a];
     }
     Real volume = 0;
-    for (const Index row : run)
-      volume += particles.volume[static_cast<std::size_t>(row)];
+    for (std::size_t p = run.begin; p < run.end; ++p)
+      volume += run.columns.volume.of(p);
     for (std::size_t a = 0; a <= D; ++a)
       corners[a][0] = -volume * conductivity * slope.dot(gradients[a]);
   });
-  parallel_for_uneven(order.blocks, [&](Index block) {
-    for_each_run(order.rows(body, block), particles.cell, [&](Index c, std::span<const Index> run) {
-      for (const Index row : run) {
-        const auto p = static_cast<std::size_t>(row);
-        const auto shape = barycentric_inside(mesh, c, particles.x[p]);
-        for (std::size_t a = 0; a <= D; ++a) {
-          const Index n = mesh.cell(c)[a];
-          if (const Real capacity = sums.content[n][0]; capacity > 0)
-            temperature(p) += dt * shape[a] * sums.flow[n][0] / capacity;
+  parallel_for_uneven(strips.blocks(), [&](Index block) {
+    for_each_cell_of(strips, only, block, [&](Index c, auto&& runs) {
+      runs([&](const ParticlesInCell<D>& run) {
+        for (std::size_t p = run.begin; p < run.end; ++p) {
+          const auto shape = barycentric_inside(mesh, c, run.columns.x.of(p));
+          for (std::size_t a = 0; a <= D; ++a) {
+            const Index n = mesh.cell(c)[a];
+            if (const Real capacity = sums.content[n][0]; capacity > 0)
+              temperature(run, p) += dt * shape[a] * sums.flow[n][0] / capacity;
+          }
         }
-      }
+      });
     });
   });
 }

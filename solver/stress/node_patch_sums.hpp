@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/halo/halo.hpp"
+#include "solver/strips/strips_in_cells.hpp"
 
 namespace talus {
 
@@ -60,24 +61,19 @@ class NodePatchSums {
     copies_ = copies_of_nodes(ranks, subdomain, MessageTag::sums, nodes_read(subdomain, blocks_));
   }
 
-  /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the body.
+  /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the bodies, which are treated as
+  /// one: `add` is called for each body that has particles in the cell, one after the other, and the corners keep what was added before.
+  /// So the sums are bitwise those of one body whose particles have the same order in each cell.
   template <class Add>
-  void gather(const CellOrder& order, Index body, const Particles<D>& particles, Add&& add)
-  {
-    gather(order, std::span<const Index>(&body, 1), particles, std::forward<Add>(add));
-  }
-  /// The same for several bodies as if they were one: `add` is called for each body that has particles in the cell, one after the other, and
-  /// the corners keep what was added before.  So the sums are bitwise those of one body whose particles have the same order in each cell.
-  template <class Add>
-  void gather(const CellOrder& order, std::span<const Index> bodies, const Particles<D>& particles, Add&& add)
+  void gather(const ParticleStrips<D>& strips, std::span<const Index> bodies, Add&& add)
   {
     for_each_own_block<Whole>(blocks_, halo_, [&](Index block) {
       const auto rows = blocks_.rows(block);
       std::fill(rows.begin(), rows.end(), Row{});
       bool occupied = false;
-      for_each_cell_of(order, bodies, block, particles.cell, [&](Index c, auto&& runs) {
+      for_each_cell_of(strips, bodies, block, [&](Index c, auto&& runs) {
         std::array<Row, D + 1> corners{};
-        runs([&](std::span<const Index> run) { add(c, run, corners); });
+        runs([&](const ParticlesInCell<D>& run) { add(c, run, corners); });
         for (std::size_t a = 0; a <= D; ++a)
           rows[blocks_.slots(c)[a]] += corners[a];
         occupied = true;

@@ -21,7 +21,7 @@ void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripCol
   for (const StripColumn<Mat<D>>* const column : {&from.L, &from.C})
     for (int c = 0; *column && c < D * D; ++c)
       *to++ = column->component(c)[i];
-  for (int k = 0; k < history_width_[key / to_size(blocks_)]; ++k)
+  for (int k = 0; k < history_width(body(key)); ++k)
     *to++ = history(strip).component(k)[i];
 }
 
@@ -65,7 +65,7 @@ void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locato
         sums.removed.add({.held_count = 1});
         sums.largest_set_back = std::max(sums.largest_set_back, back->distance);
       } else if (exits.policy == OnExit::remove) {
-        const Material& material = materials[key / to_size(blocks_)];
+        const Material& material = materials[to_size(body(key))];
         const Real* const of_law = one.numbers + layout_.width() + layout_.gradients();
         sums.removed.add(content_of<D>(x, all.v.of(0), all.mass.of(0), plastic_work(material.law(), of_law, all.volume0.of(0))));
       } else {
@@ -82,7 +82,7 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
     BlockOfStrips& block = block_[key];
     std::swap(block.left, block.leaving);
     block.leaving.clear();
-    const auto body = static_cast<Index>(key / to_size(blocks_));
+    const Index of_body = body(key);
     const std::span<const Real> numbers(block.left.numbers);
     for (std::size_t i = 0; i < block.left.all.size(); ++i) {
       const Index cell = block.left.all[i].to;
@@ -90,16 +90,16 @@ void ParticleStrips<D>::send_leavers(const Subdomain& subdomain, Migration<D>& m
       if (cell == none)
         continue;
       if (!subdomain.alone() && !subdomain.owns_cell(cell))
-        migration.add({body, subdomain.whole_cell(cell)}, cell / block_cells, record);
+        migration.add({of_body, subdomain.whole_cell(cell)}, cell / block_cells, record);
       else
         unsorted_.push_back(
-            {key_of(body, cell),
+            {key_of(of_body, cell),
              {cell, StripIds::id_of(record[to_size(layout_.step_arrays().id)]), record.data(), block.left.all[i].is_summed}});
     }
   }
   if (!subdomain.alone())
     for (const MigratingParticle& one :
-         migration.exchange([&](Index body) { return layout_.width() + layout_.gradients() + history_width(body); })) {
+         migration.exchange([&](Index b) { return layout_.width() + layout_.gradients() + history_width(b); })) {
       const Index cell = subdomain.local_cell(one.head.whole_cell);
       unsorted_.push_back(
           {key_of(one.head.body, cell), {cell, StripIds::id_of(one.numbers[layout_.step_arrays().id]), one.numbers, false}});

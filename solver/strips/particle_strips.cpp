@@ -6,9 +6,17 @@ template <int D>
 Index ParticleStrips<D>::size() const noexcept
 {
   Index n = 0;
-  for (const BlockOfStrips& block : block_)
-    for (const Strip& strip : block.strips)
-      n += strip.n;
+  for (std::size_t key = 0; key < block_.size(); ++key)
+    n += size(key);
+  return n;
+}
+
+template <int D>
+Index ParticleStrips<D>::size(std::size_t key) const noexcept
+{
+  Index n = 0;
+  for (const Strip& strip : block_[key].strips)
+    n += strip.n;
   return n;
 }
 
@@ -17,11 +25,12 @@ std::size_t ParticleStrips<D>::bytes_moved() const noexcept
 {
   const auto has = [&](std::string_view name, Index numbers) { return layout_.at(name) == none ? 0 : numbers; };
   const Index constant = has("mass", 1) + has("volume0", 1) + has("id", 1) + has("start", D);
-  const auto of_columns = to_size(2 * (layout_.width() - D - constant) + constant + D);  // the position before is only written
+  const auto of_columns =
+      to_size(2 * (layout_.width() + layout_.kept_gradients() - D - constant) + constant + D);  // `before` is only written
   std::size_t numbers = 0;
   for (std::size_t key = 0; key < block_.size(); ++key)
     for (const Strip& strip : block_[key].strips)
-      numbers += to_size(strip.n) * (of_columns + 2 * to_size(history_width_[key / to_size(blocks_)]));
+      numbers += to_size(strip.n) * (of_columns + 2 * to_size(history_width(body(key))));
   return numbers * sizeof(Real);
 }
 
@@ -37,8 +46,11 @@ StripColumns<D> ParticleStrips<D>::columns(const Strip& strip) const noexcept
   find(at.x, all.x), find(at.before, all.before), find(at.x0, all.x0), find(at.v, all.v), find(at.F, all.F), find(at.stress, all.stress);
   find(at.mass, all.mass), find(at.volume0, all.volume0), find(at.volume, all.volume);
   find(at.viscous, all.viscous), find(at.pore, all.pore);
+  find(at.applied, all.applied), find(at.volume_ratio, all.volume_ratio), find(at.averaged, all.averaged);
   all.id = {strip.array(at.id)};
-  if (!loaded_gradients_.empty())
+  if (layout_.kept_gradients() > 0)
+    set_gradients(strip.array(layout_.width()), to_size(strip.room), all);
+  else if (!loaded_gradients_.empty())
     set_gradients(strip.loaded_gradients, to_size(strip.room), all);
   return all;
 }
@@ -69,10 +81,7 @@ template <int D>
 Index ParticleStrips<D>::size_in_order(std::size_t key) const noexcept
 {
   const BlockOfStrips& block = block_[key];
-  Index n = static_cast<Index>(block.arrivals) - static_cast<Index>(block.left.all.size());
-  for (const Strip& strip : block.strips)
-    n += strip.n;
-  return n;
+  return size(key) + static_cast<Index>(block.arrivals) - static_cast<Index>(block.left.all.size());
 }
 
 template <int D>
@@ -96,6 +105,8 @@ template Totals<2> totals(const ParticleStrips<2>&, Communicator&);
 template Index ParticleStrips<2>::size() const noexcept;
 template std::size_t ParticleStrips<2>::bytes_moved() const noexcept;
 template std::size_t ParticleStrips<3>::bytes_moved() const noexcept;
+template Index ParticleStrips<2>::size(std::size_t) const noexcept;
+template Index ParticleStrips<3>::size(std::size_t) const noexcept;
 template Index ParticleStrips<2>::size_in_order(std::size_t) const noexcept;
 template StripColumns<2> ParticleStrips<2>::columns(const Strip&) const noexcept;
 template StripColumns<2> ParticleStrips<2>::columns_of_records(const Strip&) const noexcept;

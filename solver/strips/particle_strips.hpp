@@ -10,7 +10,7 @@
 #include "mesh/locate.hpp"
 #include "mesh/part.hpp"
 #include "solver/particles/migrate.hpp"
-#include "solver/particles/relocate.hpp"
+#include "solver/particles/removal.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/sums.hpp"
 #include "solver/strips/strip.hpp"
@@ -25,11 +25,12 @@ namespace talus {
 template <int D>
 class ParticleStrips {
  public:
-  /// Takes the particles over; their columns and histories are empty afterwards.  Sorts them by cell.  Collective.
-  void load(Communicator& ranks, Index n_cells, const std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles,
-            CellOrder& order);
-  /// Writes the particles into columns, sorted by cell; the strips keep them too.  find_gradients(key, strip, columns) sets L and C to arrays
-  /// of the gradients of the particles of a strip; called by several threads.
+  /// Takes the particles over; their columns and histories are empty afterwards.  Sorts them by cell.  Strips hold gradients only if
+  /// `keep_gradients`.  Collective.
+  void load(Communicator& ranks, Index n_cells, bool keep_gradients, const std::vector<Body>& bodies, std::vector<Material>& materials,
+            Particles<D>& particles, CellOrder& order);
+  /// Writes the particles into columns, sorted by cell; the strips keep them too.  Where they do not hold gradients,
+  /// find_gradients(key, strip, columns) sets L and C to arrays of those of the particles of a strip; called by several threads.
   using FindGradients = std::function<void(std::size_t key, Index strip, StripColumns<D>& columns)>;
   void store(std::vector<Body>& bodies, std::vector<Material>& materials, Particles<D>& particles, CellOrder& order,
              const FindGradients& find_gradients) const;
@@ -42,6 +43,9 @@ class ParticleStrips {
     return static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks_) + static_cast<std::size_t>(block);
   }
   std::size_t keys() const noexcept { return block_.size(); }
+  Index blocks() const noexcept { return blocks_; }
+  /// The body of a key.
+  Index body(std::size_t key) const noexcept { return static_cast<Index>(key / to_size(blocks_)); }
   Index size() const noexcept;
   /// The bytes that a step must read and write of the particles: each number that changes twice, mass, initial volume, id and start
   /// position once.
@@ -52,14 +56,14 @@ class ParticleStrips {
   /// The strips of a body in a block; none where it has no particles.
   std::span<Strip> strips(std::size_t key) noexcept { return block_[key].strips; }
   std::span<const Strip> strips(std::size_t key) const noexcept { return block_[key].strips; }
-  /// Without gradients, unless those that were loaded still hold.
+  /// Without gradients, unless strips keep them or those that were loaded still hold.
   StripColumns<D> columns(const Strip& strip) const noexcept;
   /// The same of an array of records, see Arrival: with gradients.
   StripColumns<D> columns_of_records(const Strip& records) const noexcept;
   /// Frees the gradients that load() has taken over; to be called when nodes move the particles, as gradients then follow from the nodes.
   void drop_loaded_gradients() noexcept;
   /// component(k) is the array of number k of the history of the law.
-  StripColumn<Real> history(const Strip& strip) const noexcept { return {strip.array(layout_.width()), to_size(strip.room)}; }
+  StripColumn<Real> history(const Strip& strip) const noexcept { return {strip.array(first_of_law()), to_size(strip.room)}; }
   Index history_width(Index body) const noexcept { return history_width_[static_cast<std::size_t>(body)]; }
   const StripLayout& layout() const noexcept { return layout_; }
   /// The memory of a strip.
@@ -88,7 +92,8 @@ class ParticleStrips {
   void add_leaver(std::size_t key, Index strip, const StripColumns<D>& columns, Index i, Index cell);
   /// Finds the new cells of the particles of a key that leave, once all are listed, and lists those that stay in the block.
   void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& within);
-  /// The particles of a key once its strips are in order.
+  /// The particles of a key, and how many they will be once its strips are in order.
+  Index size(std::size_t key) const noexcept;
   Index size_in_order(std::size_t key) const noexcept;
   /// The particles that come to its cells, in the order of cells and ids.
   std::span<const Arrival> arriving(std::size_t key) const noexcept
@@ -96,7 +101,8 @@ class ParticleStrips {
     return std::span(arrivals_).subspan(block_[key].first_arrival, block_[key].arrivals);
   }
 
-  /// Particles outside the mesh are set back, deleted or reported, as by relocate().
+  /// A particle outside the mesh behind a closed facet is set back onto it; others are deleted or reported lost, as `exits` says.  Mass,
+  /// momentum and energy of deleted particles are added to `sums`.
   void take_exits(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const std::vector<Material>& materials,
                   StepSums<D>& sums, ParticleErrors& errors);
   /// Makes arrivals of the particles that leave, of this rank and of others.  Collective.
@@ -114,13 +120,14 @@ class ParticleStrips {
   struct Run;
 
   std::size_t key_of(Index body, Index cell) const noexcept { return key(body, cell / block_cells); }
-  /// Numbers of a record.
-  std::size_t record_width(std::size_t key) const noexcept { return strip_width(key) + static_cast<std::size_t>(layout_.gradients()); }
-  /// Numbers of a particle in its strip.
-  std::size_t strip_width(std::size_t key) const noexcept
+  /// Numbers of a record: those of the layout, gradients, those of the law.
+  std::size_t record_width(std::size_t key) const noexcept
   {
-    return static_cast<std::size_t>(layout_.width() + history_width_[key / static_cast<std::size_t>(blocks_)]);
+    return to_size(layout_.width() + layout_.gradients() + history_width(body(key)));
   }
+  /// Numbers of a particle in its strip, and the first of them of its law.
+  std::size_t strip_width(std::size_t key) const noexcept { return to_size(first_of_law() + history_width(body(key))); }
+  Index first_of_law() const noexcept { return layout_.width() + layout_.kept_gradients(); }
   void set_gradients(Real* first, std::size_t stride, StripColumns<D>& columns) const noexcept;
   void grow(Strip& strip, Index n, std::size_t width);
   static void move_runs(std::span<const Run> runs, Real* array, Index number) noexcept;

@@ -8,6 +8,7 @@
 #include <new>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/strip_column.hpp"
@@ -24,17 +25,19 @@ inline constexpr Index strip_padding = pack_size;
 
 /// The first array of each column that a step uses; `none` without.
 struct StepArrays {
-  Index id, x, before, x0, v, F, stress, mass, volume0, volume, viscous, pore;
+  Index id, x, before, x0, v, F, stress, mass, volume0, volume, applied, volume_ratio, averaged, viscous, pore;
 };
 
-/// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place; the
-/// velocity gradient and the affine field follow from the nodes and the position before the last step, which has arrays of its own.
+/// Where the columns of a strip stand: component c of the column at `x` is array x + c of the strip.  The cell follows from the place.
+/// Where a kernel computes them cheaply, the velocity gradient and the affine field follow from the nodes and the position before the last
+/// step, which has arrays of its own; otherwise they are arrays too.
 class StripLayout {
  public:
   StripLayout() = default;
   /// The columns of particles that some rank has, see count_keepers().
   template <int D>
-  StripLayout(const Particles<D>& particles, std::span<const std::int64_t> keepers)
+  StripLayout(const Particles<D>& particles, std::span<const std::int64_t> keepers, bool keeps_gradients)
+      : keeps_gradients_(keeps_gradients)
   {
     std::size_t number = 0;
     particles.for_each_column([&](std::string_view name, std::string_view, const auto& column) {
@@ -49,15 +52,28 @@ class StripLayout {
       if (has)
         width_ += RowsOf<Kind>::components;
     });
-    width_ += D;  // positions before the last step
-    arrays_ = {at("id"),     at("position"), width_ - D,    at("start"),  at("velocity"),         at("deformation_gradient"),
-               at("stress"), at("mass"),     at("volume0"), at("volume"), at("viscous_pressure"), at("pore_pressure")};
+    arrays_ = {.id = at("id"),
+               .x = at("position"),
+               .before = std::exchange(width_, width_ + D),
+               .x0 = at("start"),
+               .v = at("velocity"),
+               .F = at("deformation_gradient"),
+               .stress = at("stress"),
+               .mass = at("mass"),
+               .volume0 = at("volume0"),
+               .volume = at("volume"),
+               .applied = at("applied"),
+               .volume_ratio = at("volume_ratio"),
+               .averaged = at("volume_ratio") == none ? none : width_++,
+               .viscous = at("viscous_pressure"),
+               .pore = at("pore_pressure")};
   }
   static constexpr std::string_view gradient = "velocity_gradient", affine = "affine";
-  /// Arrays of a strip, without those of its law.
+  /// Arrays of a strip, without gradients and those of its law.
   Index width() const noexcept { return width_; }
-  /// Numbers of the gradients of a particle.
+  /// Numbers of the gradients of a particle, and how many arrays of a strip they are: as many, or none.
   Index gradients() const noexcept { return gradients_; }
+  Index kept_gradients() const noexcept { return keeps_gradients_ ? gradients_ : 0; }
   bool has_affine() const noexcept { return has_affine_; }
   const StepArrays& step_arrays() const noexcept { return arrays_; }
   /// The first array of a column by its number in Particles, or by its name; `none` without.
@@ -75,7 +91,7 @@ class StripLayout {
   std::vector<std::string_view> names_;
   Index width_ = 0, gradients_ = 0;
   StepArrays arrays_{};
-  bool has_affine_ = false;
+  bool has_affine_ = false, keeps_gradients_ = false;
 };
 
 /// Memory that begins at a cache line.
@@ -118,7 +134,7 @@ class StripMemory {
   std::size_t numbers_ = 0;
 };
 
-/// Arrays of `room` numbers, one after the other: those of the layout, then those of the law.  Particles stand in the order of cells and
+/// Arrays of `room` numbers, one after the other: those of the layout, gradients that are kept, then those of the law.  Particles stand in the order of cells and
 /// ids.
 struct Strip {
   Real* numbers = nullptr;
@@ -135,10 +151,12 @@ constexpr Index room_for(Index n) noexcept { return (n + n / 8 + strip_padding +
 template <int D>
 struct StripColumns {
   StripColumn<Vec<D>> x{}, before{}, x0{}, v{};
-  StripColumn<Mat<D>> L{}, C{};  ///< not in the strip; C is empty where the affine field is L
+  StripColumn<Mat<D>> L{}, C{};  ///< in the strip only where gradients are kept; C is empty where the affine field is L
   StripColumn<Mat3> F{};
   StripColumn<Sym3> stress{};
   StripColumn<Real> mass{}, volume0{}, volume{}, viscous{}, pore{};
+  StripColumn<Vec<D>> applied{};                 ///< forces of loads at the present positions [N]
+  StripColumn<Real> volume_ratio{}, averaged{};  ///< of averaged volumes: see StressStrip; `averaged` lasts for a step
   StripIds id{};
   const StripColumn<Mat<D>>& affine_field() const noexcept { return C ? C : L; }
 };

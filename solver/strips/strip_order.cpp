@@ -113,10 +113,10 @@ void ParticleStrips<D>::order(std::size_t key, Index number)
 
   if (n + strip_padding > strip.room)
     grow(strip, n, strip_width(key));
-  for (Index k = 0; k < layout_.step_arrays().before; ++k)  // positions before the step are about to be written
+  for (Index k = 0; k < layout_.step_arrays().before; ++k)  // what stands behind is about to be written by the step
     move_runs(runs, strip.array(k), k);
-  for (Index k = layout_.width(); k < static_cast<Index>(strip_width(key)); ++k)
-    move_runs(runs, strip.array(k), k + layout_.gradients());
+  for (Index k = 0; k < history_width(body(key)); ++k)
+    move_runs(runs, strip.array(first_of_law() + k), layout_.width() + layout_.gradients() + k);
   strip.n = n;
   if (n == 0 && strip.room > 0) {
     pool_->give_back(strip.numbers, to_size(strip.room) * strip_width(key));

@@ -29,11 +29,11 @@ void write_row(const Real* first, std::size_t stride, Column& column, std::size_
 }  // namespace
 
 template <int D>
-void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, const std::vector<Body>& bodies, std::vector<Material>& materials,
-                             Particles<D>& particles, CellOrder& sorted)
+void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, bool keep_gradients, const std::vector<Body>& bodies,
+                             std::vector<Material>& materials, Particles<D>& particles, CellOrder& sorted)
 {
   sort_by_cell(particles.cell, particles.id, bodies, n_cells, sorted);
-  layout_ = StripLayout(particles, count_keepers(ranks, particles));
+  layout_ = StripLayout(particles, count_keepers(ranks, particles), keep_gradients);
   history_width_.clear();
   for (const Material& material : materials)
     history_width_.push_back(material.history.width());
@@ -55,7 +55,7 @@ void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, const std::vect
       strip.n = std::accumulate(strip.count.begin(), strip.count.end(), Index{0});
       strip.room = strip.n > 0 ? room_for(strip.n) : 0;
       numbers += to_size(strip.room) * strip_width(key);
-      gradients += to_size(strip.room) * to_size(layout_.gradients());
+      gradients += to_size(strip.room) * to_size(layout_.gradients() - layout_.kept_gradients());
     }
   }
   memory_.assign(numbers + 8, 0);
@@ -69,12 +69,12 @@ void ParticleStrips<D>::load(Communicator& ranks, Index n_cells, const std::vect
       strip.numbers = next;
       next += to_size(strip.room) * strip_width(key);
       strip.loaded_gradients = next_gradients;
-      next_gradients += to_size(strip.room) * to_size(layout_.gradients());
+      next_gradients += to_size(strip.room) * to_size(layout_.gradients() - layout_.kept_gradients());
     }
 
   parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
     const auto rows = sorted.rows(to_size(k));
-    Material& material = materials[to_size(k) / to_size(blocks_)];
+    Material& material = materials[to_size(body(to_size(k)))];
     std::size_t first = 0;
     for (Strip& strip : block_[to_size(k)].strips) {
       const auto here = rows.subspan(first, to_size(strip.n));
@@ -125,7 +125,6 @@ void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& 
     sorted.first[key + 1] = sorted.first[key] + n;
   }
   sorted.blocks = blocks_;
-  sorted.is_new = sorted.is_tested = false;
   const auto n = to_size(sorted.first.back());
   sorted.row.resize(n);
   std::iota(sorted.row.begin(), sorted.row.end(), 0);
@@ -141,7 +140,7 @@ void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& 
     materials[b].history.resize(bodies[b].size());
   }
   parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
-    Material& material = materials[to_size(k) / to_size(blocks_)];
+    Material& material = materials[to_size(body(to_size(k)))];
     auto first = to_size(sorted.first[to_size(k)]);
     for (std::size_t s = 0; s < block_[to_size(k)].strips.size(); ++s) {
       const Strip& strip = block_[to_size(k)].strips[s];
@@ -176,10 +175,12 @@ void ParticleStrips<D>::store(std::vector<Body>& bodies, std::vector<Material>& 
   });
 }
 
-template void ParticleStrips<2>::load(Communicator&, Index, const std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&);
+template void ParticleStrips<2>::load(Communicator&, Index, bool, const std::vector<Body>&, std::vector<Material>&, Particles<2>&,
+                                      CellOrder&);
 template void ParticleStrips<2>::clear(std::vector<Material>&, Particles<2>&, CellOrder&);
 template void ParticleStrips<2>::store(std::vector<Body>&, std::vector<Material>&, Particles<2>&, CellOrder&, const FindGradients&) const;
-template void ParticleStrips<3>::load(Communicator&, Index, const std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&);
+template void ParticleStrips<3>::load(Communicator&, Index, bool, const std::vector<Body>&, std::vector<Material>&, Particles<3>&,
+                                      CellOrder&);
 template void ParticleStrips<3>::clear(std::vector<Material>&, Particles<3>&, CellOrder&);
 template void ParticleStrips<3>::store(std::vector<Body>&, std::vector<Material>&, Particles<3>&, CellOrder&, const FindGradients&) const;
 

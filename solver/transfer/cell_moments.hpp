@@ -1,7 +1,11 @@
 #pragma once
 // MUSL without a second pass over the particles: the momentum that the new velocities of the particles of a cell put on its vertices,
 // from moments of their mass.
-#include "solver/transfer/projected_transfer.hpp"
+#include <algorithm>
+#include <array>
+#include <span>
+
+#include "solver/state/nodes.hpp"
 
 namespace talus {
 

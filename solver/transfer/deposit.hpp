@@ -2,7 +2,7 @@
 // The contributions of the particles of a cell to its stencil: mass, momentum and force through the weights of a kernel.
 #include "kernels/kernel.hpp"
 #include "solver/halo/block_rows.hpp"
-#include "solver/state/interpolated.hpp"
+#include "solver/strips/strip.hpp"
 
 namespace talus {
 
@@ -44,10 +44,10 @@ struct Tension {
   Pack slope[D][D], shift[D];
 };
 template <int D, int N>
-Tension<D> tension_of(const Particles<D>& particles, const ParticlePack& pack, const Weights<D, N>& weights) noexcept
+Tension<D> tension_of(const StripColumns<D>& columns, std::size_t first, const Weights<D, N>& weights) noexcept
 {
-  const Pack volume = pack.load(particles.volume).of;
-  const Sym3Of<SimdReal> stress = pack.load(particles.stress);
+  const Pack volume = columns.volume.load(first).of;
+  const Sym3Of<SimdReal> stress = columns.stress.load(first);
   Pack T[D][D];
   for (int i = 0; i < D; ++i)
     for (int j = i; j < D; ++j)
@@ -65,22 +65,25 @@ Tension<D> tension_of(const Particles<D>& particles, const ParticlePack& pack, c
   return tension;
 }
 
-/// Adds m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G.
-/// A is taken from `fields` if `affine`; f_p is the force of loads if `loaded`; without `forces` (the second half of MUSL) only momentum is
-/// summed.  There is one loop per component, so that all data of the particle in a loop stay in registers.
+/// Adds m_v += w_v m_p,   (mv)_v += w_v m_p (v_p + A_p (x_v - x_p)),   f_v += w_v f_p - V_p sigma_p G_v, with `tension` for V sigma G, of
+/// `count` particles from number i on of which `stays` is not zero.  A is the affine field if `affine`; f_p is the force of loads if
+/// `loaded`; without `forces` (the second half of MUSL) only momentum is summed.  There is one loop per component, so that all data of the
+/// particle in a loop stay in registers.
 template <bool affine, bool loaded, bool forces, int D, int N>
-void deposit(const Particles<D>& particles, const ParticlePack& pack, const ParticleColumn<Mat<D>>& fields, const StencilCell<D, N>& cell,
+void deposit(const StripColumns<D>& columns, std::size_t first, int count, const std::uint8_t* stays, const StencilCell<D, N>& cell,
              const Weights<D, N>& weights, const Tension<D>& tension, CellSums<D, N>& sums) noexcept
 {
   alignas(64) Real share[N];  // m_p w_v
-  for (int lane = 0; lane < pack.count; ++lane) {
-    const std::size_t p = pack.p[lane];
+  for (int lane = 0; lane < count; ++lane) {
+    const std::size_t p = first + static_cast<std::size_t>(lane);
+    if (stays[p] == 0)
+      continue;
     const int n = weights.padded_size[lane];
     const Real* const s = weights.s[lane];
     const Real* y[D];
     std::copy_n(weights.y[lane], D, y);
     const bool y_is_x = y[0] == cell.x[0];
-    const Real m = pack.of(lane, particles.mass);
+    const Real m = columns.mass.of(p);
     Pack slope[D];
     for (int j = 0; j < D; ++j)
       slope[j] = broadcast(-m * weights.slope[j][lane]);
@@ -94,15 +97,15 @@ void deposit(const Particles<D>& particles, const ParticlePack& pack, const Part
       if constexpr (forces)
         store(sums.mass + a, load(sums.mass + a) + w);
     }
-    const Mat<D> A = affine ? pack.of(lane, fields) : Mat<D>(Mat<D>::Zero());
-    const Vec<D> v_p = pack.of(lane, particles.v), f_p = loaded ? pack.of(lane, particles.applied) : Vec<D>(Vec<D>::Zero());
+    const Mat<D> A = affine ? columns.affine_field().of(p) : Mat<D>(Mat<D>::Zero());
+    const Vec<D> v_p = columns.v.of(p), f_p = loaded ? columns.applied.of(p) : Vec<D>(Vec<D>::Zero());
     for (int i = 0; i < D; ++i) {
       Real v_origin = v_p[i];  // v + A (x_v - x) = (v - A (x - origin)) + A (x_v - origin)
       Pack A_i[D], T_i[D];
       for (int j = 0; j < D; ++j) {
         if constexpr (affine) {
           A_i[j] = broadcast(A(i, j));
-          v_origin -= A(i, j) * (particles.x[p][j] - cell.origin[j]);
+          v_origin -= A(i, j) * (columns.x.component(j)[p] - cell.origin[j]);
         }
         if constexpr (forces)
           T_i[j] = broadcast(-tension.slope[i][j][lane]);
@@ -137,13 +140,12 @@ void deposit(const Particles<D>& particles, const ParticlePack& pack, const Part
   }
 }
 
-/// Subtracts V sigma grad w_v of one particle from f_v, for the first n nodes.
+/// Subtracts V sigma grad w_v of particle p from f_v, for the first n nodes.
 template <int D, int N>
-void deposit_force(const Particles<D>& particles, const ParticlePack& pack, int lane, const Real (&slopes)[D][N], int n,
-                   CellSums<D, N>& sums) noexcept
+void deposit_force(const StripColumns<D>& columns, std::size_t p, const Real (&slopes)[D][N], int n, CellSums<D, N>& sums) noexcept
 {
-  const Real volume = particles.volume[pack.p[lane]];
-  const Sym3 stress = pack.of(lane, particles.stress);
+  const Real volume = columns.volume.of(p);
+  const Sym3 stress = columns.stress.of(p);
   for (int i = 0; i < D; ++i)
     for (int j = 0; j < D; ++j) {
       const Pack T = broadcast(volume * stress[Symmetric<3>::place(i, j)]);

@@ -133,16 +133,16 @@ void project_motion(const NodeOperators<D>& operators, const NodesInUse& in_use,
   });
 }
 
-/// Calls f(n, gradient of remapped velocities) for the linear shape functions that particles use.
-template <int D, class Arrive, class F>
+/// Gradients of the remapped velocities on the linear shape functions that particles use.
+template <int D, class Arrive>
 void project_gradient(const NodeOperators<D>& operators, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& remapped,
-                      Arrive&& arrive, ProjectedNodes<D>& projected, F&& f)
+                      Arrive&& arrive, ProjectedNodes<D>& projected, std::vector<Mat<D>>& gradients)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>&) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
         n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });
-    f(n, std::as_const(L));
+    gradients[static_cast<std::size_t>(n)] = L;
   });
 }
 

@@ -5,52 +5,71 @@
 #include <cstring>
 #include <iterator>
 
-#include "solver/transfer/scatter.hpp"
-#include "solver/transfer/strip_deposit.hpp"
+#include "solver/transfer/direct_strips.hpp"
+#include "solver/transfer/projected_strips.hpp"
 
 namespace talus {
 
-/// What a transfer keeps for sweeps, beside the rows of blocks.
-template <int D>
-struct SweepData {
-  Rows<CellMoments<D>> moments;  ///< MUSL: of each cell
-  std::vector<Mat<D>> gradient;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
+/// What a pass does with the particles.  All of it at once, unless something between two parts needs the particles of other blocks.
+struct SweepParts {
+  bool orders = false;    ///< puts the strips in order, unless an earlier pass of the step has
+  bool moves = false;     ///< velocities, gradients and positions
+  bool updates = false;   ///< deformation and stress
+  bool deposits = false;  ///< sums for the next step
 };
 
-/// Sweeps over the blocks of a model whose kernel has node operators.  Lives on the stack of a thread, for one block.
+/// Sweeps over the blocks of a model.  Lives on the stack of a thread, for one block.
 template <int D, Kernel<D> K>
 class BlockSweep {
+  using Through = std::conditional_t<KernelRows<D, K>::projects, ProjectedStrips<D, K>, DirectStrips<D, K>>;
+
  public:
-  BlockSweep(Model<D>& m, KernelRows<D, K>& of, SweepData<D>& data, Index block)
-      : m_(m), of_(of), data_(data), block_(block), strips_(*m.work.strips), scratch_(scratch_of_thread())
+  static constexpr bool keeps_gradients = Through::keeps_gradients;
+
+  BlockSweep(Model<D>& m, KernelRows<D, K>& of, Index block)
+      : m_(m), of_(of), block_(block), strips_(*m.work.strips), scratch_(scratch_of_thread()), through_(m, of, scratch_)
   {}
 
   /// Sums the particles as they are, before the first step after they came into strips.
   void sum()
   {
-    clear_sums();
-    for_each_strip<false>([&](std::size_t key, Index number, const StripColumns<D>& columns) { deposit(key, number, columns); });
+    clear_sums(true);
+    for_each_strip(
+        false, [&](std::size_t key, Index number, const StripColumns<D>& columns) { deposit(key, number, columns, m_.state.clock.time); });
     add_arrivals_within();
   }
 
   /// From nodes to particles and, for the next step, back.
-  void advance(Real dt, Real pic)
+  void advance(const SweepParts& parts, Real dt, Real pic)
   {
-    clear_sums();
-    for_each_strip<true>([&](std::size_t key, Index number, StripColumns<D>& columns) {
-      find_gradients(columns.x, columns);
-      m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
-      update(key, number, columns, dt);
-      deposit(key, number, columns);
+    if (parts.deposits)
+      clear_sums(!parts.orders);
+    for_each_strip(parts.orders, [&](std::size_t key, Index number, StripColumns<D>& columns) {
+      if (parts.moves)
+        move(key, columns, dt, pic);
+      else
+        through_.find_gradients(columns.before, columns);
+      if (parts.updates)
+        update(key, number, columns, dt);
+      if (parts.deposits)
+        deposit(key, number, columns, m_.state.clock.time + dt);
     });
-    add_arrivals_within();
+    if (parts.deposits)
+      add_arrivals_within();
+  }
+
+  /// MUSL through weights: computes new velocities, and adds their momentum to the rows of the block.
+  void return_momentum(Real pic)
+  {
+    clear_sums(false);
+    for_each_strip(true, [&](std::size_t, Index, StripColumns<D>& columns) { through_.return_momentum(columns, pic, block_); });
   }
 
   /// Sets L and C of the columns of a strip to gradients at the positions before the last step, whose motion the nodes still have.
   void find_gradients_again(std::size_t key, Index number, StripColumns<D>& columns)
   {
     open_cells(key, number);
-    find_gradients(columns.before, columns);
+    through_.find_gradients(columns.before, columns);
   }
 
   /// Adds the particles that come to the block from others.
@@ -71,29 +90,26 @@ class BlockSweep {
     return scratch;
   }
 
-  bool musl() const noexcept { return m_.problem.transfer.uses_musl(); }
-
   /// Clears the rows of the block and the moments of its cells, unless they are clear because it had no particles and has none.
-  void clear_sums()
+  void clear_sums(bool are_in_order)
   {
     bool occupied = false;
-    for (Index body = 0; body < m_.n_bodies(); ++body)
-      occupied |= strips_.size_in_order(strips_.key(body, block_)) > 0;
+    for (Index body = 0; body < m_.n_bodies(); ++body) {
+      const std::size_t key = strips_.key(body, block_);
+      occupied |= (are_in_order ? strips_.size(key) : strips_.size_in_order(key)) > 0;
+    }
     std::uint8_t& was = of_.blocks.occupied[static_cast<std::size_t>(block_)];
     if (occupied || was != 0) {
       const auto rows = of_.blocks.rows(block_);
-      std::fill(rows.begin(), rows.end(), ProjectedNodeSum<D>{});
-      if (musl()) {
-        const Index first = block_ * block_cells, last = std::min(first + block_cells, m_.problem.mesh.n_cells());
-        std::fill(data_.moments.begin() + first, data_.moments.begin() + last, CellMoments<D>{});
-      }
+      std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
+      through_.clear(block_);
     }
     was = occupied ? 1 : 0;
   }
 
-  /// Calls f(key, number, strip, columns) for the strips that have particles, in order or put in order, with their cells opened.
-  template <bool put_in_order, class F>
-  void for_each_strip(F&& f)
+  /// Calls f(key, number, columns) for the strips that have particles, in order or put in order, with their cells opened.
+  template <class F>
+  void for_each_strip(bool put_in_order, F&& f)
   {
     for (Index body = 0; body < m_.n_bodies(); ++body) {
       const std::size_t key = strips_.key(body, block_);
@@ -101,7 +117,7 @@ class BlockSweep {
       for (std::size_t s = 0; s < strips.size(); ++s) {
         const Strip& strip = strips[s];
         const auto number = static_cast<Index>(s);
-        if constexpr (put_in_order)
+        if (put_in_order)
           strips_.order(key, number);
         if (strip.n == 0)
           continue;
@@ -146,12 +162,12 @@ class BlockSweep {
       add_run(arriving[begin].cell, begin, i);
     }
     find_shares(columns.x, scratch_);
-    add(columns, arriving.size());
+    through_.add(columns, arriving.size(), block_);
   }
 
   void begin_runs(std::size_t particles)
   {
-    scratch_.resize(particles);
+    scratch_.resize(particles, Through::quantities);
     scratch_.runs.clear();
     scratch_.frames.reserve(particles);  // runs keep addresses
     scratch_.frames.clear();
@@ -162,62 +178,27 @@ class BlockSweep {
     CellFrame<D>& frame = scratch_.frames.emplace_back();
     frame.cell = cell, frame.nodes = mesh.cell(cell), frame.origin = centroid(mesh, cell);
     const auto& gradients = mesh.gradients(cell);
-    for (std::size_t a = 0; a <= D; ++a) {
+    for (std::size_t a = 0; a <= D; ++a)
       for (int d = 0; d < D; ++d)
         frame.slope[d][a] = gradients[a][d];
-      frame.arms[a] = of_.kernel.node_operators().centre(frame.nodes[a]) - frame.origin;
-    }
     frame.altitude = mesh.altitude(cell);
-    frame.least = m_.problem.locator.probe(mesh, cell).least;
+    frame.least = m_.problem.locator.least_inside(mesh, cell);
+    through_.open(frame);
     scratch_.runs.push_back({&frame, begin, end});
   }
 
-  /// Velocity gradients at positions x in the cells of the open strip.
-  void find_gradients(const StripColumn<Vec<D>>& x, StripColumns<D>& columns) noexcept
+  /// Velocities, gradients and positions of a strip, and what loads do on the way.
+  void move(std::size_t key, StripColumns<D>& columns, Real dt, Real pic)
   {
-    const bool with_affine = strips_.layout().has_affine();
-    static const std::vector<Mat<D>> none_remapped;
-    read_gradients(x, of_.projected.motion, musl() ? data_.gradient : none_remapped, with_affine, scratch_);
-    columns.L = scratch_.L;
-    if (with_affine)
-      columns.C = scratch_.C;
-  }
-
-  /// Velocities of the particles and their new positions.
-  template <bool increments>
-  void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
-  {
-    for (const CellRun<D>& run : scratch_.runs) {
-      const ProjectedNodeMotion<D>* motion[D + 1];
-      for (std::size_t a = 0; a <= D; ++a)
-        motion[a] = &of_.projected.motion[static_cast<std::size_t>(run.frame->nodes[a])];
-      for (std::size_t i = run.begin; i < run.end; i += pack_size) {
-        scratch_.ahead.next();
-        const VecOf<D> x = columns.x.load(i);
-        Pack share[D + 1];
-        run.frame->shares(columns.x, i, share);
-        // The next run has not read its places and velocities yet: they must stay behind the end of this one.
-        SimdReal::Mask mine;
-        for (int lane = 0; lane < pack_size; ++lane)
-          mine.of[lane] = i + static_cast<std::size_t>(lane) < run.end ? -1 : 0;
-        for (int d = 0; d < D; ++d) {
-          SimdReal v = share[0] * motion[0]->v[d];
-          for (int a = 1; a <= D; ++a)
-            v += share[a] * motion[a]->v[d];
-          const SimdReal before = load_loose(columns.v.component(d) + i);
-          SimdReal after = v;
-          if constexpr (increments) {
-            SimdReal change = share[0] * motion[0]->change[d];
-            for (int a = 1; a <= D; ++a)
-              change += share[a] * motion[a]->change[d];
-            after = SimdReal(1 - pic) * (before + change) + SimdReal(pic) * v;
-          }
-          store_loose(columns.v.component(d) + i, where(mine, after, before).of);
-          store_loose(columns.before.component(d) + i, x[d].of);
-          store_loose(columns.x.component(d) + i, where(mine, x[d] + SimdReal(dt) * v, x[d]).of);
-        }
-      }
-    }
+    const std::size_t n = scratch_.runs.back().end;
+    if (columns.applied)
+      m_.work.load_sums[key].add_forces(columns, n);
+    through_.move(columns, dt, pic);
+    if (columns.applied)
+      m_.work.load_sums[key].add_work(columns, n);
+    if (m_.state.materials[static_cast<std::size_t>(strips_.body(key))].averages_volume)
+      for (std::size_t i = 0; i < n; ++i)  // to be averaged before the stress is updated
+        columns.averaged.set(i, (Mat<D>::Identity() + dt * columns.L.of(i)).determinant() * columns.volume.of(i));
   }
 
   /// Deformation and stress.
@@ -225,15 +206,17 @@ class BlockSweep {
   {
     const Strip& strip = strips_.strips(key)[static_cast<std::size_t>(number)];
     const auto n = static_cast<std::size_t>(strip.n);
-    const std::size_t body = key / static_cast<std::size_t>(m_.work.order.blocks);
-    const Material& material = m_.state.materials[body];
+    const Index body = strips_.body(key);
+    const Material& material = m_.state.materials[static_cast<std::size_t>(body)];
     for (const CellRun<D>& run : scratch_.runs)
       std::fill(scratch_.altitude + run.begin, scratch_.altitude + run.end + strip_padding - 1, run.frame->altitude);
-    const StripColumn<Real> pore_after = find_pore_pressures(static_cast<Index>(body), columns, dt);
+    const StripColumn<Real> pore_after = find_pore_pressures(body, columns, dt);
     columns.v.pad(n), columns.L.pad(n), columns.F.pad(n), columns.stress.pad(n);
     columns.mass.pad(n), columns.volume0.pad(n), columns.volume.pad(n);
     if (columns.viscous)
       columns.viscous.pad(n);
+    if (columns.averaged)
+      columns.averaged.pad(n), columns.volume_ratio.pad(n);
     if (pore_after)
       columns.pore.pad(n), pore_after.pad(n);
     const StripColumn<Real> history = strips_.history(strip);
@@ -252,6 +235,8 @@ class BlockSweep {
                                                                    .volume = columns.volume,
                                                                    .altitude = {scratch_.altitude, n},
                                                                    .viscous = columns.viscous,
+                                                                   .averaged = columns.averaged,
+                                                                   .volume_ratio = columns.volume_ratio,
                                                                    .pore = columns.pore,
                                                                    .pore_after = pore_after,
                                                                    .id = columns.id,
@@ -275,9 +260,12 @@ class BlockSweep {
     return {scratch_.pore_after, 0};
   }
 
-  /// Lists the particles that have left their cells, and sums the others.
-  void deposit(std::size_t key, Index number, const StripColumns<D>& columns)
+  /// Computes the forces of loads at a time, lists the particles that have left their cells, and sums the others.
+  void deposit(std::size_t key, Index number, const StripColumns<D>& columns, Real time)
   {
+    const std::size_t n = scratch_.runs.back().end;
+    if (columns.applied)
+      find_forces(m_.problem.loads, time, m_.state.stage.ramp(time), m_.work.carriers, columns, n);
     find_shares(columns.x, scratch_);
     auto run = scratch_.runs.begin();
     for (const Index i : scratch_.left) {
@@ -288,17 +276,7 @@ class BlockSweep {
       for (Real* const share : scratch_.share)
         share[i] = 0;
     }
-    add(columns, scratch_.runs.back().end);
-  }
-  void add(const StripColumns<D>& columns, std::size_t n)
-  {
-    const DepositColumns<D> from{columns.v, columns.affine_field(), columns.stress, columns.mass, columns.volume};
-    if (m_.problem.transfer.affine())
-      musl() ? deposit_strip<true, true>(from, n, scratch_, block_, of_.blocks, data_.moments)
-             : deposit_strip<true, false>(from, n, scratch_, block_, of_.blocks, data_.moments);
-    else
-      musl() ? deposit_strip<false, true>(from, n, scratch_, block_, of_.blocks, data_.moments)
-             : deposit_strip<false, false>(from, n, scratch_, block_, of_.blocks, data_.moments);
+    through_.add(columns, n, block_);
   }
 
   /// Particles that come, side by side.
@@ -320,41 +298,10 @@ class BlockSweep {
 
   Model<D>& m_;
   KernelRows<D, K>& of_;
-  SweepData<D>& data_;
   Index block_;
   ParticleStrips<D>& strips_;
   StripScratch<D>& scratch_;
+  Through through_;
 };
-
-/// MUSL: adds the momentum of the new velocities to the rows of a block.
-template <int D, Kernel<D> K>
-void add_new_momentum(const Model<D>& m, KernelRows<D, K>& of, const SweepData<D>& data, Index block, Real pic)
-{
-  if (!of.blocks.occupied[static_cast<std::size_t>(block)])
-    return;
-  const auto rows = of.blocks.rows(block);
-  std::fill(rows.begin(), rows.end(), ProjectedNodeSum<D>{});
-  const Index last = std::min((block + 1) * block_cells, m.problem.mesh.n_cells());
-  for (Index c = block * block_cells; c < last; ++c) {
-    const CellMoments<D>& moments = data.moments[static_cast<std::size_t>(c)];
-    Real mass = 0;
-    for (int a = 0; a <= D; ++a)
-      mass += moments.of[a][D + CellMoments<D>::product(a, a)];
-    if (!(mass > 0))  // no particles: not all coordinates of one are zero
-      continue;
-    const auto nodes = of.kernel.stencil(m.problem.mesh, c);
-    const Vec<D> origin = centroid(m.problem.mesh, c);
-    std::array<Vec<D>, D + 1> arms;
-    for (std::size_t a = 0; a <= D; ++a)
-      arms[a] = of.kernel.node_operators().centre(nodes[a]) - origin;
-    std::array<const ProjectedNodeMotion<D>*, D + 1> motion;
-    for (std::size_t a = 0; a <= D; ++a)
-      motion[a] = &of.projected.motion[static_cast<std::size_t>(nodes[a])];
-    if (m.problem.transfer.affine())
-      add_new_momentum<true>(moments, arms, motion, pic, rows, of.blocks.slots(c));
-    else
-      add_new_momentum<false>(moments, arms, motion, pic, rows, of.blocks.slots(c));
-  }
-}
 
 }  // namespace talus

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "solver/state/integrate.hpp"
-#include "solver/transfer/gather.hpp"
 #include "solver/transfer/make_transfer.hpp"
 #include "solver/transfer/sweep.hpp"
 
@@ -63,33 +62,26 @@ class TransferOf final : public Transfer<D> {
       rows_.remapped.resize(static_cast<std::size_t>(rows_.blocks.rows_of_node.size()));
   }
 
-  bool can_sweep() const override { return Rows::projects; }
+  bool keeps_gradients() const override { return BlockSweep<D, K>::keeps_gradients; }
 
-  void sum_strips([[maybe_unused]] Model<D>& m) override
+  void sum_strips(Model<D>& m) override
   {
-    if constexpr (Rows::projects) {
-      if (m.problem.transfer.uses_musl()) {
-        sweep_.gradient.resize(rows_.projected.motion.size());
-        sweep_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
-      }
-      for_each_reading_block(
-          rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, sweep_, b).sum(); });
+    if (Rows::projects && m.problem.transfer.uses_musl()) {
+      rows_.gradient_of_remapped.resize(rows_.projected.motion.size());
+      rows_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
     }
+    for_each_reading_block(
+        rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, b).sum(); });
   }
 
-  void find_gradients([[maybe_unused]] Model<D>& m, [[maybe_unused]] std::size_t key, [[maybe_unused]] Index strip,
-                      [[maybe_unused]] StripColumns<D>& columns) override
+  void find_gradients(Model<D>& m, std::size_t key, Index strip, StripColumns<D>& columns) override
   {
-    if constexpr (Rows::projects)
-      BlockSweep<D, K>(m, rows_, sweep_, m.work.strips->first_cell(key, 0) / block_cells).find_gradients_again(key, strip, columns);
+    BlockSweep<D, K>(m, rows_, m.work.strips->first_cell(key, 0) / block_cells).find_gradients_again(key, strip, columns);
   }
 
   void particles_to_nodes(Model<D>& m) override
   {
-    if constexpr (Rows::projects)
-      if (m.work.strips)
-        return for_each_own_block<Whole>(rows_.blocks, rows_.halo, [&](Index b) { BlockSweep<D, K>(m, rows_, sweep_, b).add_arrivals(); });
-    scatter(m, rows_);
+    for_each_own_block<Whole>(rows_.blocks, rows_.halo, [&](Index b) { BlockSweep<D, K>(m, rows_, b).add_arrivals(); });
   }
 
   void assemble_nodes(Model<D>& m) override
@@ -117,18 +109,27 @@ class TransferOf final : public Transfer<D> {
 
   void send_motion(Model<D>& m) override { rows_.ghosts.motion.send(m.work.nodes.motion, Whole{}); }
 
-  void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const typename Transfer<D>::StressUpdate& update) override
+  void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const BetweenParts& between) override
   {
+    const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
+    const bool musl = m.problem.transfer.uses_musl();
     project_to_particles(m, kick);
-    if constexpr (Rows::projects)
-      if (m.work.strips)
-        return sweep(m, kick.to, dt);
-    m.work.order.begin_test();
-    if (m.problem.transfer.uses_musl()) {
-      gather_and_return_momentum(m, rows_, dt);
-      gather_from_remapped(m, kick.to, dt, update);
-    } else {
-      gather(m, rows_, dt, update);
+    if (musl)
+      find_remapped_gradient(m, kick.to, pic);
+    m.work.strips->drop_loaded_gradients();
+    const auto sweep = [&](const SweepParts& parts) {
+      for_each_reading_block(
+          rows_.halo, [&] { take_motion(m, parts); }, [&](Index b) { BlockSweep<D, K>(m, rows_, b).advance(parts, dt, pic); });
+    };
+    const bool before = static_cast<bool>(between.before_stress), after = static_cast<bool>(between.after_stress);
+    sweep({.orders = Rows::projects || !musl, .moves = true, .updates = !before, .deposits = !before && !after});
+    if (before) {
+      between.before_stress();
+      sweep({.updates = true, .deposits = !after});
+    }
+    if (after) {
+      between.after_stress();
+      sweep({.deposits = true});
     }
   }
 
@@ -158,15 +159,7 @@ class TransferOf final : public Transfer<D> {
       return 0;
   }
 
-  std::int64_t bytes() const override
-  {
-    const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
-    std::int64_t bytes = of(sweep_.moments) + of(sweep_.gradient) + of(rows_.projected.sum) + of(rows_.projected.motion) +
-                         of(rows_.blocks.row) + of(rows_.blocks.slot);
-    if constexpr (Rows::projects)
-      bytes += static_cast<std::int64_t>(rows_.kernel.node_operators().size_bytes());
-    return bytes;
-  }
+  std::int64_t bytes() const override { return rows_.bytes(); }
 
   /// Makes the motion that particles read from that of the nodes: a copy, or projected nodes, on which boundary conditions act once more
   /// where their values combine those of several nodes.
@@ -181,45 +174,29 @@ class TransferOf final : public Transfer<D> {
   }
 
  private:
-  /// The same in one pass over the particles; MUSL needs none for the momentum of the new velocities.
-  void sweep(Model<D>& m, Real mid, Real dt) requires Rows::projects
+  /// Receives the motion of nodes of other ranks that the particles of own blocks read; of projected nodes it has arrived.
+  void take_motion([[maybe_unused]] Model<D>& m, [[maybe_unused]] const SweepParts& parts)
   {
-    const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
-    if (m.problem.transfer.uses_musl()) {
-      const Real from_nodes = m.problem.transfer.increments() ? pic : 1;
-      for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) { add_new_momentum(m, rows_, sweep_, b, from_nodes); });
-      find_remapped_velocity(m, mid);
-      for_each_remapped_gradient(m, [this](Index n, const Mat<D>& L) { sweep_.gradient[static_cast<std::size_t>(n)] = L; });
-    }
-    m.work.strips->drop_loaded_gradients();
-    for_each_reading_block(
-        rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, sweep_, b).advance(dt, pic); });
+    if constexpr (!Rows::projects)
+      if (parts.moves)
+        rows_.ghosts.motion.take(m.problem.transfer.uses_musl() ? rows_.remapped : m.work.nodes.motion, Whole{});
   }
 
-  /// MUSL: computes L_p from remapped velocities, while the particles move with the velocities of the step.
-  void gather_from_remapped(Model<D>& m, Real mid, Real dt, const typename Transfer<D>::StressUpdate& update)
+  /// MUSL: velocities of the nodes from the momentum of the new velocities of the particles, and what the gradients of these need.
+  void find_remapped_gradient(Model<D>& m, Real mid, Real pic)
   {
-    find_remapped_velocity(m, mid);
     if constexpr (Rows::projects) {
-      std::vector<ProjectedNodeMotion<D>>& motion = rows_.projected.motion;
-      for_each_remapped_gradient(m, [&](Index n, const Mat<D>& L) {
-        motion[static_cast<std::size_t>(n)].change = motion[static_cast<std::size_t>(n)].v;
-        motion[static_cast<std::size_t>(n)].L = L;
-      });
-      gather_gradient(
-          m, rows_, motion, [] {}, dt, update);
+      const Real from_nodes = m.problem.transfer.increments() ? pic : 1;
+      for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) { add_new_momentum(m, rows_, b, from_nodes); });
+      find_remapped_velocity(m, mid);
+      project_gradient(
+          rows_.kernel.node_operators(), m.work.nodes.in_use, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); },
+          rows_.projected, rows_.gradient_of_remapped);
     } else {
-      gather_gradient(
-          m, rows_, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); }, dt, update);
+      rows_.ghosts.motion.take(m.work.nodes.motion, Whole{});  // blocks that use nodes of other ranks have rows for them, to be sent first
+      for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) { BlockSweep<D, K>(m, rows_, b).return_momentum(pic); });
+      find_remapped_velocity(m, mid);
     }
-  }
-
-  template <class F>
-  void for_each_remapped_gradient(Model<D>& m, F&& f) requires Rows::projects
-  {
-    project_gradient(
-        rows_.kernel.node_operators(), m.work.nodes.in_use, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); },
-        rows_.projected, f);
   }
 
   /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes, under the boundary conditions.
@@ -251,7 +228,6 @@ class TransferOf final : public Transfer<D> {
   }
 
   Rows rows_;
-  SweepData<D> sweep_;
 };
 
 template <class K, int D>

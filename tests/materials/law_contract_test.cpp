@@ -357,24 +357,6 @@ TYPED_TEST(LawContract, HistoryCopiedFieldByFieldContinuesWithTheSameBits)
   }
 }
 
-TYPED_TEST(LawContract, PermutationMovesHistoryWithItsParticle)
-{
-  Material body(std::make_shared<const ConstitutiveLawOf<TypeParam>>(sample<TypeParam>()), 0, 5, "body");
-  const auto for_each_value = [&](auto&& f) {
-    for (const HistoryVariable& variable : body.law().variables())
-      for (Index i = 0; i < body.size(); ++i)
-        for (int c = 0; c < variable.components; ++c)
-          f(i, variable.first + c, history_value(body, variable, i, c));
-  };
-  for_each_value([](Index i, int number, Real& value) { value = 10.0 * i + number; });
-  const std::array<Index, 5> order{3, 0, 4, 1, 2};
-  body.history.permute(order);
-  body.history.permute(order);
-  for_each_value([&](Index i, int number, Real& value) {
-    EXPECT_EQ(value, 10.0 * order[static_cast<std::size_t>(order[static_cast<std::size_t>(i)])] + number);
-  });
-}
-
 TYPED_TEST(LawContract, DegenerateDeformationsGiveNoAnswerButNoCrash)
 {
   const Mat3 flat = Vec3(1, 1, 0).asDiagonal(), mirrored = Vec3(1, 1, -1).asDiagonal();

@@ -50,13 +50,6 @@ void add_body(
   m.state.materials.push_back(make_material(law, begin, p.size(), name));
 }
 
-/// Particles of the only body, to be updated without averaged volumes and pore water.
-template <int D>
-StressBlock<D> stress_block(Model<D>& m, std::span<const Index> rows, Real dt)
-{
-  return {rows, dt, false, m.problem.mesh.altitudes(), m.work.averaged, {}, m.state.particles, m.work.errors};
-}
-
 /// The transfer of a model whose kernel is known.
 template <class K, int D>
 TransferOf<D, K>& transfer_of(Model<D>& m)
@@ -64,12 +57,50 @@ TransferOf<D, K>& transfer_of(Model<D>& m)
   return dynamic_cast<TransferOf<D, K>&>(*m.transfer);
 }
 
-/// Velocity, velocity gradient and position of the particles from the motion of the nodes, without MUSL and without stress.
+/// Calls f(columns, number of particles) for every strip.
+template <int D, class F>
+void for_each_strip(const ParticleStrips<D>& strips, F&& f)
+{
+  for (std::size_t key = 0; key < strips.keys(); ++key)
+    for (const Strip& strip : strips.strips(key))
+      f(strips.columns(strip), static_cast<std::size_t>(strip.n));
+}
+
+/// Adds mass, momentum and force of the particles, which are in columns, to the nodes.
+template <int D>
+void sum_on_nodes(Model<D>& m)
+{
+  begin_sweeps(m);
+  m.work.strips->send_leavers(m.problem.subdomain, m.work.migration);
+  m.transfer->particles_to_nodes(m);
+  m.transfer->assemble_nodes(m);
+  end_sweeps(m);
+}
+
+/// Velocity, velocity gradient and position of the particles from the motion of the nodes, without MUSL; stress and deformation stay.
 template <int D>
 void read_nodes(Model<D>& m, Real dt)
 {
   m.problem.transfer.musl = false;
-  m.transfer->nodes_to_particles(m, Kick{}, dt, [](Index, Index) {});
+  const auto stress = m.state.particles.stress;
+  const auto F = m.state.particles.F;
+  begin_sweeps(m);
+  m.work.stress_sums.assign(m.work.strips->keys(), {});
+  m.transfer->nodes_to_particles(m, Kick{}, dt, {});
+  end_sweeps(m);
+  m.state.particles.stress = stress, m.state.particles.F = F;
+}
+
+/// Deformation and stress of all particles from their velocity gradients, without averaged volumes; the sums over blocks are in
+/// work.stress_sums.
+template <class K, int D>
+void update_all_stress(Model<D>& m, Real dt)
+{
+  begin_sweeps(m);
+  m.work.stress_sums.assign(m.work.strips->keys(), {});
+  for (Index block = 0; block < m.work.strips->blocks(); ++block)
+    BlockSweep<D, K>(m, transfer_of<K>(m).rows(), block).advance({.updates = true}, dt, 0);
+  end_sweeps(m);
 }
 
 /// Every row of a column, f(row) -> its value, in order.

@@ -88,8 +88,7 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
 {
   constexpr int D = TypeParam::D;
   auto m = any_ball<TypeParam>();
-  m.transfer->particles_to_nodes(m);
-  m.transfer->assemble_nodes(m);
+  sum_on_nodes(m);
   using Mass = Eigen::Matrix<Real, 1, 1>;
   const std::size_t n = m.work.nodes.sum.size();
   std::vector<Mass> mass(n, Mass::Zero()), summed_mass(n);
@@ -120,8 +119,7 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticles)
   for (const Scheme scheme : {Scheme::tpic, Scheme::flip}) {
     auto m = any_ball<TypeParam>();
     m.problem.transfer.scheme = scheme;
-    m.transfer->particles_to_nodes(m);
-    m.transfer->assemble_nodes(m);
+    sum_on_nodes(m);
     Dice dice;
     for (auto& node : m.work.nodes.motion)
       node = {.v = dice.any<Vec<D>>(), .change = dice.any<Vec<D>>()};

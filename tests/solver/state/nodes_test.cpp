@@ -180,27 +180,6 @@ TEST(SmallMassNodes, AreFoundByTheParticlesAroundAndNotByThoseOfAHeavyBodyElsewh
   strain_apart<Umls<2>>();
 }
 
-TEST(CellOrder, AsksForEachRowOnceAndBeforeItsTurn)
-{
-  std::vector<Index> rows(500), cell(500);
-  for (Index i = 0; i < 500; ++i) {
-    rows[static_cast<std::size_t>(i)] = 499 - i;
-    cell[static_cast<std::size_t>(499 - i)] = i < 100 ? 0 : i / 7;  // a run longer than what is asked for ahead, then short ones
-  }
-  std::vector<int> asked(500, 0);
-  std::size_t done = 0;
-  const auto work = [&](Index, std::span<const Index> run) {
-    for (const Index row : run)
-      EXPECT_EQ(asked[static_cast<std::size_t>(row)], 1);
-    done += run.size();
-    const std::size_t ahead = std::min(rows.size(), done + 16) - 1;
-    EXPECT_EQ(asked[static_cast<std::size_t>(rows[ahead])], 1) << "not asked for when " << done << " were done";
-  };
-  for_each_run(rows, cell, work, [&](std::size_t p) { ++asked[p]; });
-  EXPECT_EQ(done, rows.size());
-  EXPECT_EQ(std::count(asked.begin(), asked.end(), 1), 500);
-}
-
 TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
 {
   const std::vector<Index> cell{3, 1, 3, 0, 2, 2, 200, 2};
@@ -214,45 +193,6 @@ TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
   EXPECT_EQ(order.rows(1, 0).size(), 4U);
   EXPECT_EQ(order.rows(1, 1).size(), 1U);
   EXPECT_EQ(order.rows(1, 2).size(), 0U);
-}
-
-TEST(CellOrder, SortingAgainGivesWhatSortingAnewDoes)
-{
-  constexpr Index n_cells = 5 * block_cells + 7, n = 4000;
-  std::mt19937 bits(3);
-  const auto up_to = [&](Index end) { return std::uniform_int_distribution<Index>(0, end - 1)(bits); };
-  std::vector<Index> cell(n);
-  std::vector<std::int64_t> id(n);
-  for (Index p = 0; p < n; ++p)
-    cell[static_cast<std::size_t>(p)] = up_to(n_cells), id[static_cast<std::size_t>(p)] = (p * 1237) % n;
-  const std::vector<Body> bodies{{"a", 0, 2500, {}}, {"none", 2500, 2500, {}}, {"b", 2500, n, {}}};
-  CellOrder again, anew;
-  sort_by_cell(cell, id, bodies, n_cells, again);
-  for (const Index movers : {0, 1, 30, 1000, n}) {
-    const std::vector<Index> before = cell;
-    for (Index i = 0; i < movers; ++i)
-      cell[static_cast<std::size_t>(up_to(n))] = up_to(n_cells);
-    if (movers == 30)  // and a block that nobody is left in
-      for (Index& c : cell)
-        c = c / block_cells == 2 ? 0 : c;
-    again.begin_test();
-    for (std::size_t key = 0; key < again.keys(); ++key)
-      for (const Index& row : again.rows(key))
-        if (cell[static_cast<std::size_t>(row)] != before[static_cast<std::size_t>(row)] || row % 7 == 0)  // some that stay
-          again.add_leaving(key, &row);
-    sort_again(cell, id, again);
-    sort_by_cell(cell, id, bodies, n_cells, anew);
-    ASSERT_EQ(again.row, anew.row) << movers;
-    ASSERT_EQ(again.first, anew.first) << movers;
-  }
-}
-
-TEST(CellOrder, DisorderIsTheShareOfRowsThatDoNotFollow)
-{
-  CellOrder order;
-  EXPECT_EQ(disorder(order), 0);
-  order.row = {4, 5, 6, 0, 1, 2, 3, 7};  // a block that was moved as a whole is read as fast as before
-  EXPECT_EQ(disorder(order), 2.0 / 8);
 }
 
 /// A block that flies to the right, out of the mesh.
@@ -286,18 +226,10 @@ TEST(Exits, DeleteKeepsAccountOfTheMass)
 {
   auto m = leaving(OnExit::remove, false);
   const Index before = m.state.particles.size();
-  m.work.followed = FollowedRows(m.state.particles.id);
   run_until(m, 0.3);
   EXPECT_GT(m.state.mass.deleted_count, 5);
   EXPECT_EQ(m.state.particles.size() + m.state.mass.deleted_count, before);
   EXPECT_NEAR(totals(m).mass + m.state.mass.deleted, m.state.mass.start, 1e-12 * m.state.mass.start);
-  Index found = 0;
-  for (Index id = 0; id < before; ++id)
-    if (const Index row = m.work.followed.row(id); row != none) {
-      EXPECT_EQ(m.state.particles.id[static_cast<std::size_t>(row)], id);
-      ++found;
-    }
-  EXPECT_EQ(found, m.state.particles.size());
 }
 
 TEST(Exits, AClosedWallKeepsParticlesIn)

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <random>
 
+#include "solver/particles/removal.hpp"
+#include "solver/stress/conduct_heat.hpp"
 #include "tests/solver/blocks_of_particles.hpp"
 
 namespace talus::update_stress_test {
@@ -28,20 +31,24 @@ Model<D> block(const L& law, Index cells, Real jitter = 0.2)
 
 constexpr std::array<Index, 1> only_body{0};
 
-/// Sorts the particles by cell, as a step does before anything else.
-template <int D>
-void sort(Model<D>& m)
-{
-  sort_by_cell(m.state.particles.cell, m.state.particles.id, m.state.bodies, m.problem.mesh.n_cells(), m.work.order);
-}
-
 /// Stress of all particles of the only body.
+void update_all(Model<2>& m, Real dt) { testing::update_all_stress<Linear<2>>(m, dt); }
+
+/// The averaged volume ratio of each particle by its id, after a move with these velocity gradients.
 template <int D>
-void update_all(Model<D>& m, Real dt)
+std::map<std::int64_t, Real> averages(const Model<D>& m, std::span<const Index> bodies, Real dt, NodePatchSums<D, 2>& sums)
 {
-  std::vector<Index> rows(m.state.particles.id.size());
-  std::iota(rows.begin(), rows.end(), 0);
-  update_stress(m.state.materials[0], testing::stress_block(m, rows, dt));
+  testing::for_each_strip(*m.work.strips, [&](const StripColumns<D>& all, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i)
+      all.averaged.set(i, (Mat<D>::Identity() + dt * all.L.of(i)).determinant() * all.volume.of(i));
+  });
+  average_volume(m.problem.mesh, *m.work.strips, bodies, sums);
+  std::map<std::int64_t, Real> of;
+  testing::for_each_strip(*m.work.strips, [&](const StripColumns<D>& all, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i)
+      of[all.id[i]] = all.averaged.of(i);
+  });
+  return of;
 }
 
 JohnsonCook metal(std::optional<Real> conductivity)
@@ -63,32 +70,33 @@ template <int D>
 void averages_volumes()
 {
   auto m = block<D>(rubber(1e5, 0.3, 1000), 4);
-  m.state.particles.volume = m.state.particles.volume0;
-  sort(m);
-  NodePatchSums<D, 2> sums(m.problem.mesh);
-  std::vector<Real> averaged(m.state.particles.id.size());
+  m.state.materials[0].averages_volume = true;
+  make_ready(m);
   constexpr Real dt = 1e-3;
 
   const Mat<D> uniform = -5 * Mat<D>::Identity();
   m.state.particles.L.assign(m.state.particles.L.size(), uniform);
-  average_volume(m.problem.mesh, m.work.order, only_body, dt, m.state.particles, sums, averaged);
+  begin_sweeps(m);
   const Real ratio = (Mat<D>::Identity() + dt * uniform).determinant();
-  for (const Real J : averaged)
+  for (const auto& [id, J] : averages(m, only_body, dt, *m.work.patch_sums))
     EXPECT_NEAR(J, ratio, 1e-14);
+  end_sweeps(m);
 
   std::mt19937 bits(1);
   std::uniform_real_distribution<Real> any_rate(-20, 20);
   Real volume = 0, saved = 0, spread = 0, spread_averaged = 0;
-  for (std::size_t p = 0; p < averaged.size(); ++p)
-    m.state.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
-  average_volume(m.problem.mesh, m.work.order, only_body, dt, m.state.particles, sums, averaged);
-  for (std::size_t p = 0; p < averaged.size(); ++p) {
-    const Real own = (Mat<D>::Identity() + dt * m.state.particles.L[p]).determinant();
-    volume += own * m.state.particles.volume0[p];
-    saved += averaged[p] * m.state.particles.volume0[p];
-    spread += std::pow(own - 1, 2);
-    spread_averaged += std::pow(averaged[p] - 1, 2);
-  }
+  set_each(m.state.particles.L, [&](std::size_t) { return Mat<D>(any_rate(bits) * Mat<D>::Identity()); });
+  begin_sweeps(m);
+  const auto averaged = averages(m, only_body, dt, *m.work.patch_sums);
+  testing::for_each_strip(*m.work.strips, [&](const StripColumns<D>& all, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real own = (Mat<D>::Identity() + dt * all.L.of(i)).determinant(), mean = averaged.at(all.id[i]);
+      volume += own * all.volume0.of(i);
+      saved += mean * all.volume0.of(i);
+      spread += std::pow(own - 1, 2);
+      spread_averaged += std::pow(mean - 1, 2);
+    }
+  });
   EXPECT_NEAR(saved, volume, 1e-13);         // the volume of the body is no matter of averaging
   EXPECT_LT(spread_averaged, 0.1 * spread);  // a star has more than ten particles
 }
@@ -126,19 +134,24 @@ void averages_as_one()
 {
   const auto ratios = [](int bodies) {
     auto m = drawn_as<D>(bodies, rubber(1e5, 0.3, 1000));
-    m.state.particles.volume = m.state.particles.volume0;
-    sort(m);
+    for (Material& material : m.state.materials)
+      material.averages_volume = true;
+    make_ready(m);
     std::mt19937 bits(3);
     std::uniform_real_distribution<Real> any_rate(-20, 20);
-    for (const std::size_t p : by_place(m.state.particles))
+    const std::vector<std::size_t> places = by_place(m.state.particles);
+    for (const std::size_t p : places)
       m.state.particles.L.set(p, any_rate(bits) * Mat<D>::Identity());
-    NodePatchSums<D, 2> sums(m.problem.mesh);
-    std::vector<Real> averaged(m.state.particles.id.size()), in_order;
+    std::vector<std::int64_t> ids;
+    for (const std::size_t p : places)
+      ids.push_back(m.state.particles.id[p]);
     std::vector<Index> together(static_cast<std::size_t>(bodies));
     std::iota(together.begin(), together.end(), 0);
-    average_volume(m.problem.mesh, m.work.order, together, 1e-3, m.state.particles, sums, averaged);
-    for (const std::size_t p : by_place(m.state.particles))
-      in_order.push_back(averaged[p]);
+    begin_sweeps(m);
+    const auto averaged = averages(m, together, 1e-3, *m.work.patch_sums);
+    std::vector<Real> in_order;
+    for (const std::int64_t id : ids)
+      in_order.push_back(averaged.at(id));
     return in_order;
   };
   EXPECT_EQ(ratios(1), ratios(3)) << "bitwise";
@@ -182,12 +195,12 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
     auto m = block<2>(law, 3);
     m.state.materials[0].averages_volume = true;
     make_ready(m);
-    sort(m);
     std::mt19937 bits(2);
     std::uniform_real_distribution<Real> any_rate(-10, 10);
     for (int step = 0; step < 5; ++step) {
       set_each(m.state.particles.L, [&](std::size_t) { return Mat<2>(Mat<2>::NullaryExpr([&] { return any_rate(bits); })); });
-      average_volume(m.problem.mesh, m.work.order, only_body, 1e-3, m.state.particles, *m.work.patch_sums, m.work.averaged);
+      begin_sweeps(m);
+      averages(m, only_body, 1e-3, *m.work.patch_sums);
       update_all(m, 1e-3);
     }
     return m.state.particles.stress;
@@ -205,33 +218,45 @@ TEST(AverageVolume, LawsOfTotalAndOfIncrementalStrainAreToldTheSame)
 
 TEST(UpdateStress, CountsEveryParticleOnceWhateverTheirNumber)
 {
-  const auto stretched = [] {
+  // A model of these particles of a block, stretched.
+  const auto updated = [](std::span<const Index> kept) {
     auto m = block<2>(rubber(1e6, 0.3, 1000), 2);
+    Particles<2>& particles = m.state.particles;
+    for (std::size_t p = 0; p < particles.L.size(); ++p) {
+      particles.L.set(p, (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}});
+      if (std::find(kept.begin(), kept.end(), static_cast<Index>(p)) == kept.end())
+        particles.cell[p] = none;
+    }
+    drop_lost(m.state.bodies, m.state.materials, particles);
     make_ready(m);
-    for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
-      m.state.particles.L.set(p, (1.0 + static_cast<Real>(p)) * Mat<2>{{3, 1}, {0, -1}});
+    update_all(m, 1e-3);
     return m;
   };
-  const auto update = [](auto& m, std::span<const Index> rows) {
-    return update_stress(m.state.materials[0], testing::stress_block(m, rows, 1e-3));
+  const auto sums_of = [](const Model<2>& m) {
+    StressSums all;
+    for (const StressSums& sums : m.work.stress_sums)
+      all.take_extremes(sums), all.work += sums.work;
+    return all;
   };
   const std::vector<Index> rows{7, 2, 3, 11, 5, 0};
   for (std::size_t n = 1; n <= rows.size(); ++n) {
-    auto together = stretched(), alone = stretched();
-    const StressSums sums = update(together, std::span(rows).first(n));
+    const auto together = updated(std::span(rows).first(n));
+    const StressSums sums = sums_of(together);
     StressSums one_by_one;
     for (std::size_t i = 0; i < n; ++i) {
-      const StressSums one = update(alone, std::span(rows).subspan(i, 1));
+      const auto alone = updated(std::span(rows).subspan(i, 1));
+      const StressSums one = sums_of(alone);
       one_by_one.take_extremes(one);
       one_by_one.work += one.work;
+      const auto& ids = together.state.particles.id;
+      const auto p = static_cast<std::size_t>(std::find(ids.begin(), ids.end(), rows[i]) - ids.begin());
+      ASSERT_LT(p, ids.size());
+      EXPECT_EQ(together.state.particles.F[p], alone.state.particles.F[0]);
+      EXPECT_EQ(together.state.particles.stress[p], alone.state.particles.stress[0]);
     }
     EXPECT_GT(sums.work, 0);
     EXPECT_NEAR(sums.work, one_by_one.work, 1e-14 * one_by_one.work) << n;
     EXPECT_EQ(sums.crossing, one_by_one.crossing) << n;
-    for (std::size_t p = 0; p < alone.state.particles.F.size(); ++p) {
-      EXPECT_EQ(together.state.particles.F[p], alone.state.particles.F[p]);
-      EXPECT_EQ(together.state.particles.stress[p], alone.state.particles.stress[p]);
-    }
   }
 }
 
@@ -287,7 +312,6 @@ TEST(ConductHeat, DecaysAsTheHeatEquationSaysAndKeepsTheHeat)
   const JohnsonCook law = metal(200);
   auto m = block<2>(law, 20);
   make_ready(m);
-  sort(m);
   Material& rod = m.state.materials[0];
   const auto temperature = [&](std::size_t p) -> Real& { return rod.history.row(static_cast<Index>(p))[rod.law().heat()->temperature]; };
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
@@ -301,8 +325,10 @@ TEST(ConductHeat, DecaysAsTheHeatEquationSaysAndKeepsTheHeat)
   const Real before = heat(), mode_before = first_mode(m, temperature);
   const Real diffusivity = 200.0 / (8000 * 400), duration = 0.5 / (diffusivity * std::pow(std::numbers::pi, 2));
   constexpr int steps = 300;
+  begin_sweeps(m);
   for (int step = 0; step < steps; ++step)
-    conduct_heat(m.problem.mesh, m.state.materials[0], m.work.order, 0, duration / steps, m.state.particles, *m.work.heat);
+    conduct_heat(m.problem.mesh, rod.law(), *m.work.strips, 0, duration / steps, *m.work.heat);
+  end_sweeps(m);
   EXPECT_NEAR(heat() / before, 1, 1e-13);
   EXPECT_NEAR(first_mode(m, temperature) / mode_before, std::exp(-0.5), 0.005 * std::exp(-0.5));  // twenty cells a half wave: h^2 terms
 }

@@ -30,8 +30,7 @@ Model<D> stressed_block(UmlsGradient gradient)
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(-1, 1);
   set_each(m.state.particles.stress, [&](std::size_t) { return Sym3(Sym3::NullaryExpr([&] { return number(random); })); });
-  m.transfer->particles_to_nodes(m);
-  m.transfer->assemble_nodes(m);
+  sum_on_nodes(m);
   return m;
 }
 

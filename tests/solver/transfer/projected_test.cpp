@@ -55,8 +55,7 @@ TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
 {
   constexpr int D = TypeParam::D;
   auto m = ball<TypeParam>();
-  m.transfer->particles_to_nodes(m);
-  m.transfer->assemble_nodes(m);
+  sum_on_nodes(m);
   read_random_motion(m);
   read_nodes(m, 0);
   Real power = 0, stress_power = 0, size = 0;
@@ -75,8 +74,7 @@ TYPED_TEST(ProjectedIn, MomentumIsScatteredByTheTransposeOfTheGather)
 {
   auto m = ball<TypeParam>();
   const auto v = m.state.particles.v;
-  m.transfer->particles_to_nodes(m);
-  m.transfer->assemble_nodes(m);
+  sum_on_nodes(m);
   read_random_motion(m);
   m.state.particles.v.assign(m.state.particles.v.size(), Vec<TypeParam::D>::Zero());
   read_nodes(m, 0);  // flip: the increment, which is the velocity here
@@ -95,8 +93,7 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
   constexpr int D = TypeParam::D;
   auto m = ball<TypeParam>();
   const Mat<D> A = Mat<D>::Random();
-  m.transfer->particles_to_nodes(m);
-  m.transfer->assemble_nodes(m);
+  sum_on_nodes(m);
   for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
     m.work.nodes.motion[static_cast<std::size_t>(n)].v = A * m.problem.mesh.node(n) + Vec<D>::Ones();
   read_nodes(m, 0);

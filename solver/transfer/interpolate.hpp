@@ -1,8 +1,15 @@
 #pragma once
-// Transfer between the particles of a cell and the nodes through the weights of a kernel.
-#include "solver/transfer/deposit.hpp"
+// From the nodes of the stencil of a cell to its particles: velocities and gradients through the weights of a kernel.
+#include "kernels/kernel.hpp"
 
 namespace talus {
+
+/// Velocities of the nodes, interpolated to four particles.
+template <int D>
+struct Interpolated {
+  Pack v[D], change[D];  ///< sum w v,  sum w change  [m/s]
+  Pack L[D][D];          ///< sum v (x) G  [1/s]
+};
 
 /// The motion of the nodes of one cell's stencil, one array per component.
 template <int D, int N>
@@ -133,71 +140,5 @@ Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion,
     sound = sound && moment.topLeftCorner(k, k).determinant() > std::pow(least_share * spread / D, k);
   return sound ? Mat<D>(B * moment.inverse()) : L;
 }
-
-/// The open cell, the weights of its particles, and the sums of a cell batch.  Lives on the stack of a thread; ProjectedTransfer has the
-/// same interface.
-template <int D, Kernel<D> K>
-class DirectTransfer {
- public:
-  using Sum = NodeSum<D>;
-  using Motion = NodeMotion<D>;
-  static constexpr bool has_apic = true;
-
-  explicit DirectTransfer(const K& kernel) : kernel_(kernel) {}
-  void enter(const Mesh<D>& mesh, Index c) noexcept { kernel_.open(mesh, c, cell_); }
-  void place(const ParticlePack& pack, const Pack (&x)[D]) noexcept { kernel_.evaluate(cell_, x, pack.count, weights_); }
-
-  void clear() noexcept { sums_.clear(cell_.padded_size); }
-  template <bool affine, bool loaded, bool forces>
-  void deposit(const Particles<D>& particles, const ParticlePack& pack, const Pack (&x)[D], const ParticleColumn<Mat<D>>& fields) noexcept
-  {
-    const bool exact = forces && pairs_force_with_slopes();
-    const Tension<D> tension = forces && !exact ? tension_of(particles, pack, weights_) : Tension<D>{};
-    talus::deposit<affine, loaded, forces>(particles, pack, fields, cell_, weights_, tension, sums_);
-    if (exact)
-      deposit_exact_force(particles, pack, x);
-  }
-  template <bool affine, bool loaded, bool forces>
-  void add_to(std::span<NodeSum<D>> rows, std::span<const std::uint16_t> slots, float lightest) const noexcept
-  {
-    sums_.add_to(rows, slots, lightest);
-  }
-
-  void read(const std::vector<NodeMotion<D>>& nodes) noexcept { motion_.read(nodes, cell_.nodes, cell_.padded_size); }
-  template <bool with_change, bool with_gradient>
-  Interpolated<D> see(const ParticlePack& pack) const noexcept
-  {
-    return talus::see<with_change, with_gradient>(motion_, weights_, pack.count);
-  }
-  Mat<D> apic_field(int lane, const Vec<D>& x, const Mat<D>& L) const noexcept
-  {
-    return talus::apic_field(cell_, motion_, weights_, lane, x, L);
-  }
-
- private:
-  bool pairs_force_with_slopes() const noexcept
-  {
-    if constexpr (HasSlopesOfValues<K, D>)
-      return kernel_.pairs_force_with_slopes();
-    else
-      return false;
-  }
-  void deposit_exact_force([[maybe_unused]] const Particles<D>& particles, [[maybe_unused]] const ParticlePack& pack,
-                           [[maybe_unused]] const Pack (&x)[D]) noexcept
-  {
-    if constexpr (HasSlopesOfValues<K, D>)
-      for (int lane = 0; lane < pack.count; ++lane) {
-        alignas(64) Real slopes[D][K::max_nodes];
-        kernel_.slopes_of_values(cell_, x, lane, weights_, slopes);
-        deposit_force(particles, pack, lane, slopes, weights_.padded_size[lane], sums_);
-      }
-  }
-
-  const K& kernel_;
-  typename K::Cell cell_;
-  Weights<D, K::max_nodes> weights_;
-  CellSums<D, K::max_nodes> sums_;
-  CellMotion<D, K::max_nodes> motion_;
-};
 
 }  // namespace talus

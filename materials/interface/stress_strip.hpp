@@ -1,5 +1,5 @@
 #pragma once
-// Particles of one body, in strips or as rows of columns, and what their law needs to update their stress.
+// Particles of one body side by side, and what their law needs to update their stress.
 #include <algorithm>
 #include <limits>
 #include <span>
@@ -39,24 +39,11 @@ struct StressStrip {
   StripColumn<Real> mass{}, volume0{}, volume{};
   StripColumn<Real> altitude{};                  ///< least altitude of the cell of the particle [m]
   StripColumn<Real> viscous{};                   ///< of a material with bulk viscosity
-  StripColumn<Real> averaged{}, volume_ratio{};  ///< of a material that averages its volume: the averaged ratio, see StressBlock
+  StripColumn<Real> averaged{}, volume_ratio{};  ///< of a material that averages its volume: the averaged ratio, see average_volume
   StripColumn<Real> pore{}, pore_after{};        ///< pore pressure before and after the step [Pa]; empty where there is none
   StripIds id{};
   StripColumn<Real> history{};  ///< of the law: component(k) is the array of its number k
   ParticleErrors* errors = nullptr;
-};
-
-/// The particles of a body in a block as rows of the columns of all particles.
-template <int D>
-struct StressBlock {
-  std::span<const Index> rows;       ///< the particles
-  Real dt;                           ///< [s]
-  bool elastic;                      ///< a stage that suspends yielding
-  std::span<const Real> altitudes;   ///< least altitude of each cell [m]
-  std::span<const Real> averaged;    ///< averaged volume ratio of each particle [-], of a body that averages it
-  std::span<const Real> pore_after;  ///< pore pressure of each particle at the end of the step [Pa]; empty where there is none
-  Particles<D>& particles;
-  ParticleErrors& errors;
 };
 
 }  // namespace talus

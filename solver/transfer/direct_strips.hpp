@@ -1,0 +1,233 @@
+#pragma once
+// Between the particles of strips and the nodes, through the weights of a kernel.
+#include "solver/model/model.hpp"
+#include "solver/transfer/deposit.hpp"
+#include "solver/transfer/interpolate.hpp"
+#include "solver/transfer/kernel_rows.hpp"
+#include "solver/transfer/strip_scratch.hpp"
+
+namespace talus {
+
+/// A cell, the weights of its particles, and the sums over them.
+template <int D, Kernel<D> K>
+struct DirectCell {
+  typename K::Cell cell;
+  Weights<D, K::max_nodes> weights;
+  CellSums<D, K::max_nodes> sums;
+  CellMotion<D, K::max_nodes> motion;
+
+  /// Computes the weights of `count` particles from number i on; of those that do not stay at the origin, which is in the cell.
+  void place(const K& kernel, const StripColumn<Vec<D>>& places, std::size_t i, int count, const std::uint8_t* stays, Pack (&x)[D]) noexcept
+  {
+    for (int d = 0; d < D; ++d)
+      x[d] = load_loose(places.component(d) + i);
+    if (count < pack_size || std::find(stays + i, stays + i + pack_size, 0) != stays + i + pack_size)
+      for (int lane = 0; lane < pack_size; ++lane) {
+        const std::size_t p = i + static_cast<std::size_t>(std::min(lane, count - 1));
+        for (int d = 0; d < D; ++d)
+          x[d][lane] = stays[p] != 0 ? places.component(d)[p] : cell.origin[d];
+      }
+    kernel.evaluate(cell, x, count, weights);
+  }
+};
+
+/// Whether the force of particles uses the slopes of their weights.
+template <int D, Kernel<D> K>
+bool pairs_force_with_slopes([[maybe_unused]] const K& kernel) noexcept
+{
+  if constexpr (HasSlopesOfValues<K, D>)
+    return kernel.pairs_force_with_slopes();
+  else
+    return false;
+}
+
+/// Adds particles [run.begin, run.end) to `at.sums`.
+template <bool affine, bool loaded, bool forces, int D, Kernel<D> K>
+void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<D>& run, const std::uint8_t* stays,
+                 DirectCell<D, K>& at) noexcept
+{
+  for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+    const int count = run.count(i);
+    Pack x[D];
+    at.place(kernel, columns.x, i, count, stays, x);
+    const bool exact = forces && pairs_force_with_slopes<D>(kernel);
+    const Tension<D> tension = forces && !exact ? tension_of(columns, i, at.weights) : Tension<D>{};
+    deposit<affine, loaded, forces>(columns, i, count, stays, at.cell, at.weights, tension, at.sums);
+    if constexpr (HasSlopesOfValues<K, D>)
+      for (int lane = 0; exact && lane < count; ++lane)
+        if (const std::size_t p = i + static_cast<std::size_t>(lane); stays[p] != 0) {
+          alignas(64) Real slopes[D][K::max_nodes];
+          kernel.slopes_of_values(at.cell, x, lane, at.weights, slopes);
+          deposit_force(columns, p, slopes, at.weights.padded_size[lane], at.sums);
+        }
+  }
+}
+
+/// Adds the particles of all runs that stay to the rows of their block.
+template <bool affine, bool loaded, int D, Kernel<D> K>
+TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const StripColumns<D>& columns, const StripScratch<D>& scratch,
+                                     Index block, BlockRows<D>& blocks, DirectCell<D, K>& at) noexcept
+{
+  for (const CellRun<D>& run : scratch.runs) {
+    float lightest = NodeSum<D>::unseen;
+    for (std::size_t i = run.begin; i < run.end; ++i)
+      if (scratch.stays[i] != 0)
+        lightest = std::min(lightest, static_cast<float>(columns.mass.first[i]));
+    if (!(lightest < NodeSum<D>::unseen))
+      continue;
+    kernel.open(mesh, run.frame->cell, at.cell);
+    at.sums.clear(at.cell.padded_size);
+    deposit_run<affine, loaded, true>(kernel, columns, run, scratch.stays.data(), at);
+    at.sums.add_to(blocks.rows(block), blocks.slots(run.frame->cell), lightest);
+  }
+}
+
+/// The particles of one block.  ProjectedStrips has the same interface.
+template <int D, Kernel<D> K>
+class DirectStrips {
+ public:
+  static constexpr bool keeps_gradients = true;
+  static constexpr int quantities = 0;
+
+  DirectStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
+
+  void open(CellFrame<D>&) const noexcept {}
+  void clear(Index) const noexcept {}
+  void find_gradients(const StripColumn<Vec<D>>&, StripColumns<D>&) const noexcept {}
+
+  void move(StripColumns<D>& columns, Real dt, Real pic) noexcept
+  {
+    if (m_.problem.transfer.uses_musl())
+      return move_with_remapped_gradient(columns, dt);
+    m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
+  }
+  void add(const StripColumns<D>& columns, std::size_t, Index block)
+  {
+    if (m_.problem.transfer.affine())
+      columns.applied ? add<true, true>(columns, block) : add<true, false>(columns, block);
+    else
+      columns.applied ? add<false, true>(columns, block) : add<false, false>(columns, block);
+  }
+  /// MUSL: new velocities and the affine field; adds their momentum to the rows of the block with the same weights.
+  void return_momentum(StripColumns<D>& columns, Real pic, Index block) noexcept
+  {
+    if (!m_.problem.transfer.affine())
+      return_momentum<true, false>(columns, pic, block);
+    else
+      m_.problem.transfer.increments() ? return_momentum<true, true>(columns, pic, block)
+                                       : return_momentum<false, true>(columns, pic, block);
+  }
+
+ private:
+  template <bool affine, bool loaded>
+  void add(const StripColumns<D>& columns, Index block)
+  {
+    deposit_directly<affine, loaded>(of_.kernel, m_.problem.mesh, columns, scratch_, block, of_.blocks, at_);
+  }
+  /// Opens the cell of a run with the motion of its nodes, and calls f(i, count, x) for its packs, with their weights.
+  void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const std::vector<NodeMotion<D>>& motion, auto&& f) noexcept
+  {
+    of_.kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
+    at_.motion.read(motion, at_.cell.nodes, at_.cell.padded_size);
+    for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+      Pack x[D];
+      at_.place(of_.kernel, places, i, run.count(i), scratch_.stays.data(), x);
+      f(i, run.count(i), x);
+    }
+  }
+  template <bool with_change, bool with_gradient>
+  Interpolated<D> see(int count) const noexcept
+  {
+    return talus::see<with_change, with_gradient>(at_.motion, at_.weights, count);
+  }
+
+  template <bool increments>
+  void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
+  {
+    for (const CellRun<D>& run : scratch_.runs)
+      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count, const Pack(&)[D]) {
+        const Interpolated<D> seen = see<increments, true>(count);
+        store_gradient(i, count, seen, columns.L);
+        find_apic_field(columns, i, count, columns.L);
+        store_velocity<increments>(columns, i, count, seen, pic);
+        store_place(columns, i, count, seen.v, dt);
+      });
+  }
+  /// MUSL: L from the remapped velocities, while the particles move with the velocities of the step, which stand in `change`.
+  void move_with_remapped_gradient(const StripColumns<D>& columns, Real dt) noexcept
+  {
+    for (const CellRun<D>& run : scratch_.runs)
+      for_each_pack(run, columns.x, of_.remapped, [&](std::size_t i, int count, const Pack(&)[D]) {
+        const Interpolated<D> seen = see<true, true>(count);
+        store_gradient(i, count, seen, columns.L);
+        store_place(columns, i, count, seen.change, dt);
+      });
+  }
+  template <bool increments, bool affine>
+  void return_momentum(const StripColumns<D>& columns, Real pic, Index block) noexcept
+  {
+    for (const CellRun<D>& run : scratch_.runs) {
+      at_.sums.clear(K::max_nodes);
+      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count, const Pack(&)[D]) {
+        const Interpolated<D> seen = see<increments, affine>(count);
+        if constexpr (affine) {
+          store_gradient(i, count, seen, columns.C);
+          find_apic_field(columns, i, count, columns.C);
+        }
+        store_velocity<increments>(columns, i, count, seen, pic);
+        deposit<affine, false, false>(columns, i, count, scratch_.stays.data(), at_.cell, at_.weights, Tension<D>{}, at_.sums);
+      });
+      at_.sums.add_to(of_.blocks.rows(block), of_.blocks.slots(run.frame->cell), NodeSum<D>::unseen);
+    }
+  }
+
+  /// Particles behind the run, whose turn comes later, keep theirs.
+  static void store_some(Real* to, const Pack& values, int count) noexcept
+  {
+    if (count == pack_size)
+      store_loose(to, values);
+    else
+      for (int lane = 0; lane < count; ++lane)
+        to[lane] = values[lane];
+  }
+  static void store_gradient(std::size_t i, int count, const Interpolated<D>& seen, const StripColumn<Mat<D>>& to) noexcept
+  {
+    for (int row = 0; row < D; ++row)
+      for (int column = 0; column < D; ++column)
+        store_some(to.component(column * D + row) + i, seen.L[row][column], count);
+  }
+  /// The affine field of APIC, where it is the scheme.
+  void find_apic_field(const StripColumns<D>& columns, std::size_t i, int count, const StripColumn<Mat<D>>& gradients) const noexcept
+  {
+    if (m_.problem.transfer.scheme == Scheme::apic)
+      for (int lane = 0; lane < count; ++lane) {
+        const std::size_t p = i + static_cast<std::size_t>(lane);
+        columns.C.set(p, apic_field(at_.cell, at_.motion, at_.weights, lane, columns.x.of(p), gradients.of(p)));
+      }
+  }
+  template <bool increments>
+  static void store_velocity(const StripColumns<D>& columns, std::size_t i, int count, const Interpolated<D>& seen, Real pic) noexcept
+  {
+    for (int d = 0; d < D; ++d) {
+      SimdReal v = seen.v[d];
+      if constexpr (increments)
+        v = SimdReal(1 - pic) * (SimdReal(load_loose(columns.v.component(d) + i)) + SimdReal(seen.change[d])) + SimdReal(pic) * v;
+      store_some(columns.v.component(d) + i, v.of, count);
+    }
+  }
+  static void store_place(const StripColumns<D>& columns, std::size_t i, int count, const Pack (&v)[D], Real dt) noexcept
+  {
+    for (int d = 0; d < D; ++d) {
+      const Pack x = load_loose(columns.x.component(d) + i);
+      store_some(columns.before.component(d) + i, x, count);
+      store_some(columns.x.component(d) + i, x + dt * v[d], count);
+    }
+  }
+
+  const Model<D>& m_;
+  KernelRows<D, K>& of_;
+  StripScratch<D>& scratch_;
+  DirectCell<D, K> at_;
+};
+
+}  // namespace talus

@@ -1,0 +1,59 @@
+#pragma once
+// Data of the transfer of one kernel for a whole run: the kernel, the rows of blocks, and the data between these and the nodes.
+#include <type_traits>
+#include <vector>
+
+#include "kernels/kernel.hpp"
+#include "solver/halo/halo.hpp"
+#include "solver/transfer/cell_moments.hpp"
+#include "solver/transfer/projected_nodes.hpp"
+
+namespace talus {
+
+/// Exchanges of the values of nodes that other ranks own.
+struct GhostNodes {
+  HaloExchange sums;    ///< sums on linear shape functions that own nodes need
+  HaloExchange motion;  ///< motion of nodes, or of projected nodes, that own particles use
+  HaloExchange felt;    ///< accelerations, for kernels with node operators
+};
+
+template <int D, Kernel<D> K>
+struct KernelRows {
+  static constexpr bool projects = HasNodeOperators<K, D>;
+  /// What the particles of a block add to.
+  using Sum = std::conditional_t<projects, ProjectedNodeSum<D>, NodeSum<D>>;
+
+  K kernel;
+  BlockRows<D, Sum> blocks;
+  Halo<Sum> halo;
+  GhostNodes ghosts;
+  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
+  // Used if the kernel has node operators.
+  ProjectedNodes<D> projected;
+  Rows<CellMoments<D>> moments;              ///< MUSL: of each cell
+  std::vector<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
+
+  KernelRows(const Mesh<D>& mesh, const Options<K>& options)
+      : kernel(make_kernel<K>(mesh, options)),
+        blocks(make_block_rows<Sum>(mesh, [&](Index c) { return kernel.stencil(mesh, c); })),
+        halo(blocks.size())
+  {
+    if constexpr (projects) {
+      projected.sum.resize(static_cast<std::size_t>(mesh.n_nodes()));
+      projected.motion.resize(projected.sum.size());
+    }
+  }
+
+  /// The memory [B], without that of the halo.
+  std::int64_t bytes() const
+  {
+    const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
+    std::int64_t bytes =
+        of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot);
+    if constexpr (projects)
+      bytes += static_cast<std::int64_t>(kernel.node_operators().size_bytes());
+    return bytes;
+  }
+};
+
+}  // namespace talus

@@ -1,0 +1,328 @@
+#pragma once
+// Between the particles of strips and the vertices of their cells, for kernels with node operators: four particles at a time.
+#include "solver/model/model.hpp"
+#include "solver/transfer/kernel_rows.hpp"
+#include "solver/transfer/strip_scratch.hpp"
+
+namespace talus {
+
+/// What a particle adds to each vertex of its cell, times the barycentric coordinate, in this order: momentum, m A if `affine`, mass,
+/// V sigma, forces of loads if `loaded`, then for CellMoments, if `moments`, m v and m B_j B_k.
+template <int D, bool affine, bool loaded, bool moments>
+struct Contribution {
+  static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + 1, load = tension + Symmetric<D>::size,
+                       momentum = load + (loaded ? D : 0), products = momentum + D,
+                       size = moments ? products + CellMoments<D>::products : momentum, padded_size = padded(size);
+};
+/// Sums over the particles of a cell of their contributions to each vertex.
+template <int D, class Of>
+struct CornerSums {
+  alignas(64) Real of[D + 1][Of::padded_size];
+};
+
+/// to[i] += from[i] for n numbers at any addresses.
+template <int n>
+[[gnu::always_inline]] inline void add_numbers(const Real* from, Real* to) noexcept
+{
+  int i = 0;
+  for (; i + pack_size <= n; i += pack_size)
+    store_loose(to + i, load_loose(to + i) + load_loose(from + i));
+  for (; i < n; ++i)
+    to[i] += from[i];
+}
+
+/// Velocity gradients at positions x: L, and the affine field C if it differs.  With `remapped`, gradients on the linear shape functions of
+/// remapped velocities, L is of these.
+template <int D>
+TALUS_ONE_COPY void read_gradients(const StripColumn<Vec<D>>& x, const std::vector<ProjectedNodeMotion<D>>& motion,
+                                   const std::vector<Mat<D>>& remapped, bool with_affine, StripScratch<D>& scratch) noexcept
+{
+  for (const CellRun<D>& run : scratch.runs) {
+    const Mat<D>*of_step[D + 1], *of_remapped[D + 1];
+    for (std::size_t a = 0; a <= D; ++a) {
+      const auto node = static_cast<std::size_t>(run.frame->nodes[a]);
+      of_step[a] = &motion[node].L;
+      of_remapped[a] = remapped.empty() ? of_step[a] : &remapped[node];
+    }
+    for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+      Pack share[D + 1];
+      run.frame->shares(x, i, share);
+      const auto store_sum = [&](const Mat<D>* const(&of)[D + 1], const StripColumn<Mat<D>>& to) __attribute__((always_inline))
+      {
+        for (int k = 0; k < D * D; ++k) {
+          Pack sum = share[0] * (*of[0])(k);
+          for (int a = 1; a <= D; ++a)
+            sum += share[a] * (*of[a])(k);
+          store_loose(to.component(k) + i, sum);
+        }
+      };
+      store_sum(of_remapped, scratch.L);
+      if (with_affine)
+        store_sum(of_step, scratch.C);
+    }
+  }
+}
+
+/// Computes the contributions of n particles.
+template <bool affine, bool loaded, bool moments, int D>
+TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch) noexcept
+{
+  using Of = Contribution<D, affine, loaded, moments>;
+  for (std::size_t i = 0; i < n; i += pack_size) {
+    scratch.ahead.next();
+    Pack q[Of::padded_size]{};
+    const Pack m = load_loose(columns.mass.first + i), volume = load_loose(columns.volume.first + i);
+    Pack v[D];
+    for (int d = 0; d < D; ++d) {
+      v[d] = load_loose(columns.v.component(d) + i);
+      if constexpr (moments)
+        q[Of::momentum + d] = m * v[d];
+    }
+    if constexpr (affine)
+      for (int j = 0; j < D; ++j) {
+        const Pack centre = load_loose(scratch.centre[j] + i);
+        for (int d = 0; d < D; ++d) {
+          const Pack A = load_loose(columns.affine_field().component(j * D + d) + i);
+          v[d] -= A * centre;
+          q[Of::field + j * D + d] = m * A;
+        }
+      }
+    for (int d = 0; d < D; ++d)
+      q[d] = m * v[d];
+    q[Of::mass] = m;
+    for (int d = 0; d < D; ++d)
+      for (int e = d; e < D; ++e)
+        q[Of::tension + Symmetric<D>::place(d, e)] = volume * load_loose(columns.stress.component(Symmetric<3>::place(d, e)) + i);
+    if constexpr (loaded)
+      for (int d = 0; d < D; ++d)
+        q[Of::load + d] = load_loose(columns.applied.component(d) + i);
+    if constexpr (moments)
+      for (int j = 0; j <= D; ++j) {
+        const Pack share = m * load_loose(scratch.share[j] + i);
+        for (int k = j; k <= D; ++k)
+          q[Of::products + CellMoments<D>::product(j, k)] = share * load_loose(scratch.share[k] + i);
+      }
+    for (int k = 0; k < Of::padded_size; k += pack_size) {
+      transpose(q[k], q[k + 1], q[k + 2], q[k + 3]);
+      for (std::size_t lane = 0; lane < pack_size; ++lane)
+        store(scratch.quantities + (i + lane) * Of::padded_size + k, q[k + static_cast<int>(lane)]);
+    }
+  }
+}
+
+/// Sums over a run, on each vertex of its cell, of so many packs of contributions from number k on.  Two packs leave room for the sums in
+/// the registers of a processor with AVX2.
+template <int packs, int size, int D>
+[[gnu::always_inline]] inline void sum_packs(const CellRun<D>& run, const StripScratch<D>& scratch, int k,
+                                             Real (&sums)[D + 1][size]) noexcept
+{
+  Pack sum[D + 1][packs]{};
+  for (std::size_t i = run.begin; i < run.end; ++i) {
+    Pack q[packs];
+    for (int p = 0; p < packs; ++p)
+      q[p] = load(scratch.quantities + i * size + k + p * pack_size);
+    for (int n = 0; n <= D; ++n) {
+      const Pack share = broadcast(scratch.share[n][i]);
+      for (int p = 0; p < packs; ++p)
+        sum[n][p] += share * q[p];
+    }
+  }
+  for (int n = 0; n <= D; ++n)
+    for (int p = 0; p < packs; ++p)
+      store(sums[n] + k + p * pack_size, sum[n][p]);
+}
+
+/// Sums of the contributions of a run on each vertex of its cell.
+template <class Of, int D>
+void sum_run(const CellRun<D>& run, const StripScratch<D>& scratch, CornerSums<D, Of>& sums) noexcept
+{
+  constexpr int size = Of::padded_size, both = 2 * pack_size;
+  int k = 0;
+  for (; k + both <= size; k += both)
+    sum_packs<2, size>(run, scratch, k, sums.of);
+  if constexpr (size % both != 0)
+    sum_packs<1, size>(run, scratch, k, sums.of);
+}
+
+/// Adds the sums of a cell to the rows of its block.  `arms`: centres of the linear shape functions relative to the origin of the cell [m].
+template <bool affine, bool loaded, class Of, int D>
+void add_to(const CornerSums<D, Of>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
+            std::span<const std::uint16_t> slots, float lightest) noexcept
+{
+  for (std::size_t a = 0; a <= D; ++a) {
+    ProjectedNodeSum<D>& row = rows[slots[a]];
+    const Real* const of = sums.of[a];
+    row.lightest = std::min(row.lightest, lightest);
+    row.momentum += Eigen::Map<const Vec<D>>(of);
+    if constexpr (affine) {
+      add_numbers<D * D>(of + Of::field, row.affine.data());
+      for (int j = 0; j < D; ++j)
+        for (int i = 0; i < D; ++i)
+          row.momentum[i] += of[Of::field + j * D + i] * arms[a][j];
+    }
+    row.mass += of[Of::mass];
+    add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
+    if constexpr (loaded)
+      row.force += Eigen::Map<const Vec<D>>(of + Of::load);
+  }
+}
+
+/// Adds the contributions of the first n particles to the rows of their block, and to the moments of their cells; find_shares() has been
+/// called.
+template <bool affine, bool loaded, bool with_moments, int D>
+TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
+                                  BlockRows<D, ProjectedNodeSum<D>>& blocks, Rows<CellMoments<D>>& moments) noexcept
+{
+  using Of = Contribution<D, affine, loaded, with_moments>;
+  find_contributions<affine, loaded, with_moments>(columns, n, scratch);
+  const std::span<ProjectedNodeSum<D>> rows = blocks.rows(block);
+  CornerSums<D, Of> sums;
+  for (const CellRun<D>& run : scratch.runs) {
+    float lightest = NodeSum<D>::unseen;
+    for (std::size_t i = run.begin; i < run.end; ++i)
+      if (scratch.stays[i] != 0)
+        lightest = std::min(lightest, static_cast<float>(columns.mass.first[i]));
+    if (!(lightest < NodeSum<D>::unseen))
+      continue;
+    scratch.ahead.next();
+    sum_run(run, scratch, sums);
+    add_to<affine, loaded>(sums, run.frame->arms, rows, blocks.slots(run.frame->cell), lightest);
+    if constexpr (with_moments) {
+      CellMoments<D>& cell = moments[static_cast<std::size_t>(run.frame->cell)];
+      for (int a = 0; a <= D; ++a)
+        add_numbers<CellMoments<D>::numbers>(sums.of[a] + Of::momentum, cell.of[a]);
+    }
+  }
+}
+
+/// The particles of one block.  DirectStrips has the same interface.
+template <int D, Kernel<D> K>
+class ProjectedStrips {
+ public:
+  static constexpr bool keeps_gradients = false;
+  static constexpr int quantities = Contribution<D, true, true, true>::padded_size;
+
+  ProjectedStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
+
+  void open(CellFrame<D>& frame) const noexcept
+  {
+    for (std::size_t a = 0; a <= D; ++a)
+      frame.arms[a] = of_.kernel.node_operators().centre(frame.nodes[a]) - frame.origin;
+  }
+  /// Clears what is summed apart from the rows of the block.
+  void clear(Index block) noexcept
+  {
+    if (!m_.problem.transfer.uses_musl())
+      return;
+    const Index first = block * block_cells, last = std::min(first + block_cells, m_.problem.mesh.n_cells());
+    std::fill(of_.moments.begin() + first, of_.moments.begin() + last, CellMoments<D>{});
+  }
+  /// Sets L and C of the columns to velocity gradients at positions x in the cells of the open strip.
+  void find_gradients(const StripColumn<Vec<D>>& x, StripColumns<D>& columns) noexcept
+  {
+    const bool with_affine = m_.work.strips->layout().has_affine();
+    static const std::vector<Mat<D>> none_remapped;
+    const bool musl = m_.problem.transfer.uses_musl();
+    read_gradients(x, of_.projected.motion, musl ? of_.gradient_of_remapped : none_remapped, with_affine, scratch_);
+    columns.L = scratch_.L;
+    if (with_affine)
+      columns.C = scratch_.C;
+  }
+  /// Velocities and their gradients, and new positions.
+  void move(StripColumns<D>& columns, Real dt, Real pic) noexcept
+  {
+    find_gradients(columns.x, columns);
+    m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
+  }
+  /// Adds the first n particles to the rows of the block.
+  void add(const StripColumns<D>& columns, std::size_t n, Index block)
+  {
+    if (m_.problem.transfer.affine())
+      columns.applied ? add<true, true>(columns, n, block) : add<true, false>(columns, n, block);
+    else
+      columns.applied ? add<false, true>(columns, n, block) : add<false, false>(columns, n, block);
+  }
+
+ private:
+  template <bool affine, bool loaded>
+  void add(const StripColumns<D>& columns, std::size_t n, Index block)
+  {
+    if (m_.problem.transfer.uses_musl())
+      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments);
+    else
+      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments);
+  }
+  /// Velocities of the particles and their new positions.
+  template <bool increments>
+  void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
+  {
+    for (const CellRun<D>& run : scratch_.runs) {
+      const ProjectedNodeMotion<D>* motion[D + 1];
+      for (std::size_t a = 0; a <= D; ++a)
+        motion[a] = &of_.projected.motion[static_cast<std::size_t>(run.frame->nodes[a])];
+      for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+        scratch_.ahead.next();
+        const VecOf<D> x = columns.x.load(i);
+        Pack share[D + 1];
+        run.frame->shares(columns.x, i, share);
+        // The next run has not read its places and velocities yet: they must stay behind the end of this one.
+        SimdReal::Mask mine;
+        for (int lane = 0; lane < pack_size; ++lane)
+          mine.of[lane] = i + static_cast<std::size_t>(lane) < run.end ? -1 : 0;
+        for (int d = 0; d < D; ++d) {
+          SimdReal v = share[0] * motion[0]->v[d];
+          for (int a = 1; a <= D; ++a)
+            v += share[a] * motion[a]->v[d];
+          const SimdReal before = load_loose(columns.v.component(d) + i);
+          SimdReal after = v;
+          if constexpr (increments) {
+            SimdReal change = share[0] * motion[0]->change[d];
+            for (int a = 1; a <= D; ++a)
+              change += share[a] * motion[a]->change[d];
+            after = SimdReal(1 - pic) * (before + change) + SimdReal(pic) * v;
+          }
+          store_loose(columns.v.component(d) + i, where(mine, after, before).of);
+          store_loose(columns.before.component(d) + i, x[d].of);
+          store_loose(columns.x.component(d) + i, where(mine, x[d] + SimdReal(dt) * v, x[d]).of);
+        }
+      }
+    }
+  }
+
+  const Model<D>& m_;
+  KernelRows<D, K>& of_;
+  StripScratch<D>& scratch_;
+};
+
+/// MUSL: adds the momentum of the new velocities to the rows of a block.
+template <int D, Kernel<D> K>
+void add_new_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, Real pic)
+{
+  if (!of.blocks.occupied[static_cast<std::size_t>(block)])
+    return;
+  const auto rows = of.blocks.rows(block);
+  std::fill(rows.begin(), rows.end(), ProjectedNodeSum<D>{});
+  const Index last = std::min((block + 1) * block_cells, m.problem.mesh.n_cells());
+  for (Index c = block * block_cells; c < last; ++c) {
+    const CellMoments<D>& moments = of.moments[static_cast<std::size_t>(c)];
+    Real mass = 0;
+    for (int a = 0; a <= D; ++a)
+      mass += moments.of[a][D + CellMoments<D>::product(a, a)];
+    if (!(mass > 0))  // no particles: not all coordinates of one are zero
+      continue;
+    const auto nodes = of.kernel.stencil(m.problem.mesh, c);
+    const Vec<D> origin = centroid(m.problem.mesh, c);
+    std::array<Vec<D>, D + 1> arms;
+    for (std::size_t a = 0; a <= D; ++a)
+      arms[a] = of.kernel.node_operators().centre(nodes[a]) - origin;
+    std::array<const ProjectedNodeMotion<D>*, D + 1> motion;
+    for (std::size_t a = 0; a <= D; ++a)
+      motion[a] = &of.projected.motion[static_cast<std::size_t>(nodes[a])];
+    if (m.problem.transfer.affine())
+      add_new_momentum<true>(moments, arms, motion, pic, rows, of.blocks.slots(c));
+    else
+      add_new_momentum<false>(moments, arms, motion, pic, rows, of.blocks.slots(c));
+  }
+}
+
+}  // namespace talus
