@@ -128,6 +128,12 @@ concept HasNodeOperators = requires(const K k) {
   { k.node_operators() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
 
+/// A kernel whose weights are the barycentric coordinates in the cell: linear shape functions, with or without node operators.
+template <class K, int D>
+concept WeighsVertices = HasNodeOperators<K, D> || requires {
+  requires K::weighs_vertices;
+};
+
 /// A kernel that can compute grad w_v [1/m] from given weights, with those up to weights.padded_size[lane] set, and may use it for the
 /// force.
 template <class K, int D>

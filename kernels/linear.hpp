@@ -12,6 +12,7 @@ class Linear {
   static constexpr std::string_view name = "linear";
   static constexpr std::string_view summary = "piecewise linear shape functions; cheapest, gradient jumps between cells";
   static constexpr int max_nodes = padded(D + 1);
+  static constexpr bool weighs_vertices = true;
 
   /// The origin is the centroid, so w_a = 1 / (D + 1) + G_a . (x - origin).
   struct Cell : StencilCell<D, max_nodes> {

@@ -2,7 +2,6 @@
 
 #include "core/stop_watch.hpp"
 #include "solver/state/integrate.hpp"
-#include "solver/stress/average_volume.hpp"
 
 namespace talus {
 
@@ -81,34 +80,6 @@ void record_node_sums(Model<D>& m)
   add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
 }
 
-/// Whether the volume ratios of the body have already been averaged together with bodies before it; otherwise sets `bodies` to it and those
-/// after it with which they are averaged.
-template <int D>
-bool averages_with_earlier(const Model<D>& m, Index body, std::vector<Index>& bodies)
-{
-  const auto group = [&](Index b) { return averages_with(m.state.materials[static_cast<std::size_t>(b)]); };
-  bodies.assign(1, body);
-  if (group(body) == none)
-    return false;
-  for (Index other = 0; other < body; ++other)
-    if (group(other) == group(body))
-      return true;
-  for (Index other = body + 1; other < m.n_bodies(); ++other)
-    if (group(other) == group(body))
-      bodies.push_back(other);
-  return false;
-}
-
-/// Averages the volumes of particles that have moved, of the bodies whose laws receive them.
-template <int D>
-void average_volumes(Model<D>& m)
-{
-  Workspace<D>& work = m.work;
-  for (Index body = 0; body < m.n_bodies(); ++body)
-    if (m.state.materials[static_cast<std::size_t>(body)].averages_volume && !averages_with_earlier(m, body, work.averaged_bodies))
-      average_volume(m.problem.mesh, *work.strips, work.averaged_bodies, *work.patch_sums);
-}
-
 /// Conducts heat within each body whose law has temperature.
 template <int D>
 void conduct_heat(Model<D>& m, Real dt)
@@ -122,8 +93,20 @@ template <int D>
 BetweenParts between_parts(Model<D>& m, Real dt)
 {
   BetweenParts between;
-  if (m.work.patch_sums)
-    between.before_stress = [&m] { average_volumes(m); };
+  if (!m.work.averaged.empty()) {
+    between.after_motion = [&m](Index block) {
+      for (AveragedBodies<D>& one : m.work.averaged)
+        one.sum_block(m.problem.mesh, *m.work.strips, block);
+    };
+    between.before_stress = [&m] {
+      for (AveragedBodies<D>& one : m.work.averaged)
+        one.sums.assemble();
+    };
+    between.before_stress_of_block = [&m](Index block) {
+      for (const AveragedBodies<D>& one : m.work.averaged)
+        one.average_block(m.problem.mesh, *m.work.strips, block);
+    };
+  }
   if (m.work.heat)
     between.after_stress = [&m, dt] { conduct_heat(m, dt); };
   return between;

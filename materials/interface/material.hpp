@@ -49,7 +49,7 @@ void begin_anew(Index begin, Index end, Material& material);
 
 /// F_p <- (I + dt L_p) F_p, sigma_p = law(F_p, L_p, history) - (q_p + u_p) I for particles of a body, four at a time.
 ///
-/// A body that averages its volume (`averaged` holds the new ratios, see average_volume) gives its law F and I + dt L with their
+/// A body that averages its volume (`averaged` holds the new ratios, see AveragedBodies) gives its law F and I + dt L with their
 /// in-plane volume ratio replaced; F_p itself stays what the motion made it.  q_p is the artificial viscous pressure of a body that
 /// has one:  q = rho h |d| (quadratic h |d| + linear c) where the volume shrinks at the rate d = tr L, h the altitude of the cell
 /// (von Neumann & Richtmyer 1950; linear term of Landshoff 1955).  u_p is the pore pressure where the particle is now, so

@@ -39,7 +39,7 @@ struct StressStrip {
   StripColumn<Real> mass{}, volume0{}, volume{};
   StripColumn<Real> altitude{};                  ///< least altitude of the cell of the particle [m]
   StripColumn<Real> viscous{};                   ///< of a material with bulk viscosity
-  StripColumn<Real> averaged{}, volume_ratio{};  ///< of a material that averages its volume: the averaged ratio, see average_volume
+  StripColumn<Real> averaged{}, volume_ratio{};  ///< of a material that averages its volume: the averaged ratio, see AveragedBodies
   StripColumn<Real> pore{}, pore_after{};        ///< pore pressure before and after the step [Pa]; empty where there is none
   StripIds id{};
   StripColumn<Real> history{};  ///< of the law: component(k) is the array of its number k

@@ -85,11 +85,8 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
     alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.subdomain);
-  if (problem.columns.volume_ratio)
-    alone ? work.patch_sums.emplace(problem.mesh) : work.patch_sums.emplace(*problem.ranks, problem.mesh, problem.subdomain);
   transfer.prepare(problem.transfer);
   work.carriers = TrackedIds(ids_of(problem.loads.on_particles));
-  work.averaged_bodies.reserve(state.bodies.size());
   bind_boundary_conditions(m);
   const LeastShares least = transfer.least_shares();
   work.nodes.least_share_of_gross = least.of_gross;
@@ -106,11 +103,44 @@ std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time)
   return PoreWater{m.problem.water, m.state.stage.ramp(time) * m.problem.loads.gravity.table(time)};
 }
 
+namespace {
+
+/// Finds the bodies that average their volumes, by the groups that do it as one.  Collective.
+template <int D>
+void find_averaged_bodies(Model<D>& m)
+{
+  std::vector<AveragedBodies<D>>& all = m.work.averaged;
+  const std::vector<Material>& materials = m.state.materials;
+  const auto group = [&](Index body) { return averages_with(materials[static_cast<std::size_t>(body)]); };
+  for (AveragedBodies<D>& one : all)
+    one.bodies.clear();
+  std::size_t used = 0;
+  for (Index body = 0; body < m.n_bodies(); ++body) {
+    if (!materials[static_cast<std::size_t>(body)].averages_volume)
+      continue;
+    const auto same = std::find_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(used), [&](const AveragedBodies<D>& one) {
+      return group(body) != none && group(one.bodies.front()) == group(body);
+    });
+    if (same != all.begin() + static_cast<std::ptrdiff_t>(used)) {
+      same->bodies.push_back(body);
+      continue;
+    }
+    if (used == all.size())
+      all.push_back({{},
+                     m.problem.subdomain.alone() ? NodePatchSums<D, 2>(m.problem.mesh)
+                                                 : NodePatchSums<D, 2>(*m.problem.ranks, m.problem.mesh, m.problem.subdomain)});
+    all[used++].bodies.push_back(body);
+  }
+}
+
+}  // namespace
+
 template <int D>
 void begin_sweeps(Model<D>& m)
 {
   if (m.work.strips)
     return;
+  find_averaged_bodies(m);
   m.work.strips.emplace();
   m.work.strips->load(*m.problem.ranks, m.problem.mesh.n_cells(), m.transfer->keeps_gradients(), m.state.bodies, m.state.materials,
                       m.state.particles, m.work.order);

@@ -21,7 +21,11 @@ struct LeastShares {
 
 /// What needs the particles of other blocks between two parts of the pass over particles; empty where there is nothing.
 struct BetweenParts {
-  std::function<void()> before_stress;  ///< particles have moved
+  // Between motion and stress.
+  std::function<void(Index block)> after_motion;  ///< of a block, whose particles are in the cache
+  std::function<void()> before_stress;            ///< all particles have moved
+  std::function<void(Index block)> before_stress_of_block;
+  // Between stress and the sums for the next step.
   std::function<void()> after_stress;
 };
 

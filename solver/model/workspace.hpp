@@ -11,6 +11,7 @@
 #include "solver/state/nodes.hpp"
 #include "solver/state/step_sums.hpp"
 #include "solver/state/tracked_ids.hpp"
+#include "solver/stress/average_volume.hpp"
 #include "solver/stress/conduct_heat.hpp"
 #include "solver/strips/particle_strips.hpp"
 
@@ -31,9 +32,8 @@ struct Workspace {
   std::vector<StressSums> stress_sums;
   std::vector<ParticleLoadSums<D>> load_sums;  ///< used if loads act on particles
 
-  std::optional<NodePatchSums<D, 2>> patch_sums;  ///< used if a body averages its volume
-  std::vector<Index> averaged_bodies;             ///< bodies that average_volume() treats as one
-  std::optional<HeatSums<D>> heat;                ///< used if a body conducts heat
+  std::vector<AveragedBodies<D>> averaged;  ///< bodies that average their volumes, while particles are in strips
+  std::optional<HeatSums<D>> heat;          ///< used if a body conducts heat
 
   explicit Workspace(Index n_nodes)
   {

@@ -33,14 +33,11 @@ void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const Particl
   };
   const std::span<const Index> only(&body, 1);
   sums.content.gather(strips, only, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
-    for (std::size_t p = run.begin; p < run.end; ++p) {
-      const auto shape = barycentric_inside(mesh, c, run.columns.x.of(p));
-      for (std::size_t a = 0; a <= D; ++a) {
-        const Real capacity = run.columns.mass.of(p) * specific_heat * shape[a];
-        corners[a][0] += capacity;
-        corners[a][1] += capacity * temperature(run, p);
-      }
-    }
+    for_each_shape(mesh, c, run, [&](std::size_t p, const Pack& shape) {
+      const Pack capacity = run.columns.mass.of(p) * specific_heat * shape;
+      corners[0] += capacity;
+      corners[1] += capacity * temperature(run, p);
+    });
   });
   sums.flow.gather(strips, only, [&](Index c, const ParticlesInCell<D>& run, auto& corners) {
     const auto& gradients = mesh.gradients(c);
@@ -55,19 +52,17 @@ void conduct_heat(const Mesh<D>& mesh, const ConstitutiveLaw& law, const Particl
     for (std::size_t p = run.begin; p < run.end; ++p)
       volume += run.columns.volume.of(p);
     for (std::size_t a = 0; a <= D; ++a)
-      corners[a][0] = -volume * conductivity * slope.dot(gradients[a]);
+      corners[0][static_cast<int>(a)] = -volume * conductivity * slope.dot(gradients[a]);
   });
   parallel_for_uneven(strips.blocks(), [&](Index block) {
     for_each_cell_of(strips, only, block, [&](Index c, auto&& runs) {
+      std::array<Real, D + 1> change;
+      for (std::size_t a = 0; a <= D; ++a) {
+        const Index n = mesh.cell(c)[a];
+        change[a] = sums.content[n][0] > 0 ? dt * sums.flow[n][0] / sums.content[n][0] : 0;
+      }
       runs([&](const ParticlesInCell<D>& run) {
-        for (std::size_t p = run.begin; p < run.end; ++p) {
-          const auto shape = barycentric_inside(mesh, c, run.columns.x.of(p));
-          for (std::size_t a = 0; a <= D; ++a) {
-            const Index n = mesh.cell(c)[a];
-            if (const Real capacity = sums.content[n][0]; capacity > 0)
-              temperature(run, p) += dt * shape[a] * sums.flow[n][0] / capacity;
-          }
-        }
+        for_each_linear_value(mesh, c, change, run, [&](std::size_t p, Real here) { temperature(run, p) += here; });
       });
     });
   });

@@ -10,18 +10,57 @@
 
 namespace talus {
 
-/// Barycentric coordinates of x in cell c, for a particle that may just have left it: none negative, sum one.
+/// Barycentric coordinates in cell c of particles i to i + 3, one vertex per pack, for particles that may just have left it: none negative,
+/// sum one.  In 2-D the last pack is zero.
 template <int D>
-std::array<Real, D + 1> barycentric_inside(const Mesh<D>& mesh, Index c, const Vec<D>& x) noexcept
+[[gnu::always_inline]] inline std::array<Pack, pack_size> barycentric_inside(const Mesh<D>& mesh, Index c, const StripColumn<Vec<D>>& x,
+                                                                             std::size_t i) noexcept
 {
-  std::array<Real, D + 1> shape = mesh.barycentric(c, x);
-  Real sum = 0;
-  for (Real& shape_value : shape)
-    sum += shape_value = std::max(shape_value, Real{0});
-  for (Real& shape_value : shape)
-    shape_value /= sum;
+  const auto& gradients = mesh.gradients(c);
+  const Vec<D>& first = mesh.node(mesh.cell(c)[0]);
+  std::array<Pack, pack_size> shape{};
+  Pack sum{};
+  for (std::size_t a = 0; a <= D; ++a) {
+    shape[a] += a == 0 ? 1.0 : 0.0;
+    for (int d = 0; d < D; ++d)
+      shape[a] += gradients[a][d] * (load_loose(x.component(d) + i) - first[d]);
+    shape[a] = shape[a] > 0 ? shape[a] : Pack{};
+    sum += shape[a];
+  }
+  const Pack scale = 1 / sum;
+  for (Pack& share : shape)
+    share *= scale;
   return shape;
 }
+/// Calls f(p, coordinates) for the particles of a cell, one after the other; lanes are vertices.
+template <int D, class F>
+void for_each_shape(const Mesh<D>& mesh, Index c, const ParticlesInCell<D>& run, F&& f) noexcept
+{
+  for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+    auto shape = barycentric_inside(mesh, c, run.columns.x, i);
+    transpose(shape[0], shape[1], shape[2], shape[3]);
+    for (std::size_t lane = 0; lane < pack_size && i + lane < run.end; ++lane)
+      f(i + lane, std::as_const(shape[lane]));
+  }
+}
+/// The same for functions on a cell that are linear, with these values at its vertices: f(p, value).
+template <int D, class F>
+void for_each_linear_value(const Mesh<D>& mesh, Index c, const std::array<Real, D + 1>& values, const ParticlesInCell<D>& run,
+                           F&& f) noexcept
+{
+  for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+    const auto shape = barycentric_inside(mesh, c, run.columns.x, i);
+    Pack value{};
+    for (std::size_t a = 0; a <= D; ++a)
+      value += shape[a] * values[a];
+    for (std::size_t lane = 0; lane < pack_size && i + lane < run.end; ++lane)
+      f(i + lane, value[lane]);
+  }
+}
+
+/// Sums at the vertices of a cell, one per lane.
+template <int K>
+using CornerPacks = std::array<Pack, K>;
 
 /// K sums at a node.
 template <int K>
@@ -61,26 +100,37 @@ class NodePatchSums {
     copies_ = copies_of_nodes(ranks, subdomain, MessageTag::sums, nodes_read(subdomain, blocks_));
   }
 
-  /// Clears, then add(cell, its particles, rows of its corners) for every cell that holds particles of the bodies, which are treated as
-  /// one: `add` is called for each body that has particles in the cell, one after the other, and the corners keep what was added before.
-  /// So the sums are bitwise those of one body whose particles have the same order in each cell.
+  /// Clears the rows of a block, then add(cell, its particles, CornerPacks<K>) for every cell that holds particles of the bodies, which are
+  /// treated as one: `add` is called for each body that has particles in the cell, one after the other, and the corners keep what was added
+  /// before.  So the sums are bitwise those of one body whose particles have the same order in each cell.
+  template <class Add>
+  void sum_block(const ParticleStrips<D>& strips, std::span<const Index> bodies, Index block, Add&& add)
+  {
+    const auto rows = blocks_.rows(block);
+    std::fill(rows.begin(), rows.end(), Row{});
+    bool occupied = false;
+    for_each_cell_of(strips, bodies, block, [&](Index c, auto&& runs) {
+      CornerPacks<K> corners{};
+      runs([&](const ParticlesInCell<D>& run) { add(c, run, corners); });
+      for (std::size_t a = 0; a <= D; ++a)
+        for (std::size_t k = 0; k < K; ++k)
+          rows[blocks_.slots(c)[a]][k] += corners[k][static_cast<int>(a)];
+      occupied = true;
+    });
+    blocks_.occupied[static_cast<std::size_t>(block)] = occupied ? 1 : 0;
+  }
+  /// Adds the rows of all blocks and ranks.  Collective.
+  void assemble()
+  {
+    for_each_own_block<Whole>(blocks_, halo_, [](Index) {});
+    add_rows();
+  }
+  /// All of it.
   template <class Add>
   void gather(const ParticleStrips<D>& strips, std::span<const Index> bodies, Add&& add)
   {
-    for_each_own_block<Whole>(blocks_, halo_, [&](Index block) {
-      const auto rows = blocks_.rows(block);
-      std::fill(rows.begin(), rows.end(), Row{});
-      bool occupied = false;
-      for_each_cell_of(strips, bodies, block, [&](Index c, auto&& runs) {
-        std::array<Row, D + 1> corners{};
-        runs([&](const ParticlesInCell<D>& run) { add(c, run, corners); });
-        for (std::size_t a = 0; a <= D; ++a)
-          rows[blocks_.slots(c)[a]] += corners[a];
-        occupied = true;
-      });
-      blocks_.occupied[static_cast<std::size_t>(block)] = occupied ? 1 : 0;
-    });
-    assemble<Whole>(blocks_, own_, halo_, copies_, in_use_, of_node_, [&] { in_use_.find(blocks_.occupied, false); });
+    for_each_own_block<Whole>(blocks_, halo_, [&](Index block) { sum_block(strips, bodies, block, add); });
+    add_rows();
   }
 
   const Row& operator[](Index node) const noexcept { return of_node_[static_cast<std::size_t>(node)]; }
@@ -93,6 +143,11 @@ class NodePatchSums {
         of_node_(static_cast<std::size_t>(mesh.n_nodes()))
   {
     in_use_.prepare(mesh, own_);
+  }
+
+  void add_rows()
+  {
+    talus::assemble<Whole>(blocks_, own_, halo_, copies_, in_use_, of_node_, [&] { in_use_.find(blocks_.occupied, false); });
   }
 
   BlockRows<D, Row> blocks_;

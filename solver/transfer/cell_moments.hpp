@@ -33,10 +33,9 @@ static_assert(CellMoments<2>::product(0, 2) == 2 && CellMoments<2>::product(1, 1
 
 /// Adds the momentum of the new velocities of the particles of a cell to the rows of its vertices: `motion` of these with `pic`, the share b
 /// above.  Without `affine` A is zero.
-template <bool affine, int D>
-void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D + 1>& arms,
-                      const std::array<const ProjectedNodeMotion<D>*, D + 1>& motion, Real pic, std::span<ProjectedNodeSum<D>> rows,
-                      std::span<const std::uint16_t> slots) noexcept
+template <bool affine, int D, class Motion, class Row>
+void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D + 1>& arms, const Motion& motion, Real pic,
+                      std::span<Row> rows, std::span<const std::uint16_t> slots) noexcept
 {
   Pack q[CellMoments<D>::numbers];  // vertex n in lane n
   const auto take = [&](int k, const Pack& of) __attribute__((always_inline)) { q[k] = of; };
@@ -48,7 +47,9 @@ void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D 
   for (int d = 0; d < D; ++d)
     arm[d] = Pack{arms[0][d], arms[1][d], arms[2][d], D == 3 ? arms[D][d] : 0};
   for (int j = 0; j <= D; ++j) {
-    const ProjectedNodeMotion<D>& of = *motion[static_cast<std::size_t>(j)];
+    const auto vertex = static_cast<std::size_t>(j);
+    const Vec<D>&v = *motion.v[vertex], &change = *motion.change[vertex];
+    const Mat<D>& L = *motion.L[vertex];
     Pack M{}, first[D]{};
     for (int k = 0; k <= D; ++k) {
       const Pack& of_pair = T[CellMoments<D>::product(j, k)];
@@ -57,10 +58,10 @@ void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D 
         first[d] += of_pair * arms[static_cast<std::size_t>(k)][d];
     }
     for (int i = 0; i < D; ++i) {
-      p[i] += M * ((1 - pic) * of.change[i] + pic * of.v[i]);
+      p[i] += M * ((1 - pic) * change[i] + pic * v[i]);
       for (int d = 0; affine && d < D; ++d) {
-        K[i][d] += M * of.L(i, d);
-        p[i] -= first[d] * of.L(i, d);
+        K[i][d] += M * L(i, d);
+        p[i] -= first[d] * L(i, d);
       }
     }
   }
@@ -68,11 +69,12 @@ void add_new_momentum(const CellMoments<D>& moments, const std::array<Vec<D>, D 
     for (int d = 0; d < D; ++d)
       p[i] += K[i][d] * arm[d];
   for (int a = 0; a <= D; ++a) {
-    ProjectedNodeSum<D>& row = rows[slots[static_cast<std::size_t>(a)]];
+    Row& row = rows[slots[static_cast<std::size_t>(a)]];
     for (int i = 0; i < D; ++i) {
       row.momentum[i] += p[i][a];
-      for (int d = 0; affine && d < D; ++d)
-        row.affine(i, d) += K[i][d][a];
+      if constexpr (affine && std::is_same_v<Row, ProjectedNodeSum<D>>)
+        for (int d = 0; d < D; ++d)
+          row.affine(i, d) += K[i][d][a];
     }
   }
 }

@@ -43,10 +43,12 @@ bool pairs_force_with_slopes([[maybe_unused]] const K& kernel) noexcept
 
 /// Adds particles [run.begin, run.end) to `at.sums`.
 template <bool affine, bool loaded, bool forces, int D, Kernel<D> K>
-void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<D>& run, const std::uint8_t* stays,
+void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<D>& run, StripScratch<D>& scratch,
                  DirectCell<D, K>& at) noexcept
 {
+  const std::uint8_t* const stays = scratch.stays.data();
   for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+    scratch.ahead.next();
     const int count = run.count(i);
     Pack x[D];
     at.place(kernel, columns.x, i, count, stays, x);
@@ -65,7 +67,7 @@ void deposit_run(const K& kernel, const StripColumns<D>& columns, const CellRun<
 
 /// Adds the particles of all runs that stay to the rows of their block.
 template <bool affine, bool loaded, int D, Kernel<D> K>
-TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const StripColumns<D>& columns, const StripScratch<D>& scratch,
+TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const StripColumns<D>& columns, StripScratch<D>& scratch,
                                      Index block, BlockRows<D>& blocks, DirectCell<D, K>& at) noexcept
 {
   for (const CellRun<D>& run : scratch.runs) {
@@ -77,12 +79,12 @@ TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const
       continue;
     kernel.open(mesh, run.frame->cell, at.cell);
     at.sums.clear(at.cell.padded_size);
-    deposit_run<affine, loaded, true>(kernel, columns, run, scratch.stays.data(), at);
+    deposit_run<affine, loaded, true>(kernel, columns, run, scratch, at);
     at.sums.add_to(blocks.rows(block), blocks.slots(run.frame->cell), lightest);
   }
 }
 
-/// The particles of one block.  ProjectedStrips has the same interface.
+/// The particles of one block.  VertexStrips has the same interface.
 template <int D, Kernel<D> K>
 class DirectStrips {
  public:
@@ -93,9 +95,9 @@ class DirectStrips {
 
   void open(CellFrame<D>&) const noexcept {}
   void clear(Index) const noexcept {}
-  void find_gradients(const StripColumn<Vec<D>>&, StripColumns<D>&) const noexcept {}
+  void find_gradients(const StripColumn<Vec<D>>&, bool, StripColumns<D>&) const noexcept {}
 
-  void move(StripColumns<D>& columns, Real dt, Real pic) noexcept
+  void move(StripColumns<D>& columns, bool, Real dt, Real pic) noexcept
   {
     if (m_.problem.transfer.uses_musl())
       return move_with_remapped_gradient(columns, dt);
@@ -130,6 +132,7 @@ class DirectStrips {
     of_.kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
     at_.motion.read(motion, at_.cell.nodes, at_.cell.padded_size);
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+      scratch_.ahead.next();
       Pack x[D];
       at_.place(of_.kernel, places, i, run.count(i), scratch_.stays.data(), x);
       f(i, run.count(i), x);

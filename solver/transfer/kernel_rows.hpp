@@ -28,9 +28,9 @@ struct KernelRows {
   Halo<Sum> halo;
   GhostNodes ghosts;
   std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
+  Rows<CellMoments<D>> moments;         ///< MUSL, if weights are barycentric coordinates: of each cell
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
-  Rows<CellMoments<D>> moments;              ///< MUSL: of each cell
   std::vector<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const Options<K>& options)

@@ -6,7 +6,7 @@
 #include <iterator>
 
 #include "solver/transfer/direct_strips.hpp"
-#include "solver/transfer/projected_strips.hpp"
+#include "solver/transfer/vertex_strips.hpp"
 
 namespace talus {
 
@@ -21,7 +21,7 @@ struct SweepParts {
 /// Sweeps over the blocks of a model.  Lives on the stack of a thread, for one block.
 template <int D, Kernel<D> K>
 class BlockSweep {
-  using Through = std::conditional_t<KernelRows<D, K>::projects, ProjectedStrips<D, K>, DirectStrips<D, K>>;
+  using Through = std::conditional_t<WeighsVertices<K, D>, VertexStrips<D, K>, DirectStrips<D, K>>;
 
  public:
   static constexpr bool keeps_gradients = Through::keeps_gradients;
@@ -34,8 +34,9 @@ class BlockSweep {
   void sum()
   {
     clear_sums(true);
-    for_each_strip(
-        false, [&](std::size_t key, Index number, const StripColumns<D>& columns) { deposit(key, number, columns, m_.state.clock.time); });
+    for_each_strip({.deposits = true}, [&](std::size_t key, Index number, const StripColumns<D>& columns) {
+      deposit(key, number, columns, m_.state.clock.time);
+    });
     add_arrivals_within();
   }
 
@@ -44,11 +45,11 @@ class BlockSweep {
   {
     if (parts.deposits)
       clear_sums(!parts.orders);
-    for_each_strip(parts.orders, [&](std::size_t key, Index number, StripColumns<D>& columns) {
+    for_each_strip(parts, [&](std::size_t key, Index number, StripColumns<D>& columns) {
       if (parts.moves)
-        move(key, columns, dt, pic);
+        move(key, columns, parts.deposits, dt, pic);
       else
-        through_.find_gradients(columns.before, columns);
+        through_.find_gradients(columns.before, parts.deposits, columns);
       if (parts.updates)
         update(key, number, columns, dt);
       if (parts.deposits)
@@ -62,14 +63,15 @@ class BlockSweep {
   void return_momentum(Real pic)
   {
     clear_sums(false);
-    for_each_strip(true, [&](std::size_t, Index, StripColumns<D>& columns) { through_.return_momentum(columns, pic, block_); });
+    for_each_strip({.orders = true, .moves = true},
+                   [&](std::size_t, Index, StripColumns<D>& columns) { through_.return_momentum(columns, pic, block_); });
   }
 
   /// Sets L and C of the columns of a strip to gradients at the positions before the last step, whose motion the nodes still have.
   void find_gradients_again(std::size_t key, Index number, StripColumns<D>& columns)
   {
     open_cells(key, number);
-    through_.find_gradients(columns.before, columns);
+    through_.find_gradients(columns.before, true, columns);
   }
 
   /// Adds the particles that come to the block from others.
@@ -109,19 +111,20 @@ class BlockSweep {
 
   /// Calls f(key, number, columns) for the strips that have particles, in order or put in order, with their cells opened.
   template <class F>
-  void for_each_strip(bool put_in_order, F&& f)
+  void for_each_strip(const SweepParts& parts, F&& f)
   {
+    const std::size_t loops = parts.moves && parts.deposits ? 2 : 1;  // over packs, while the next strip is prefetched
     for (Index body = 0; body < m_.n_bodies(); ++body) {
       const std::size_t key = strips_.key(body, block_);
       const auto strips = strips_.strips(key);
       for (std::size_t s = 0; s < strips.size(); ++s) {
         const Strip& strip = strips[s];
         const auto number = static_cast<Index>(s);
-        if (put_in_order)
+        if (parts.orders)
           strips_.order(key, number);
         if (strip.n == 0)
           continue;
-        scratch_.ahead.begin(strips_.memory_of_next(key, number), 2 * static_cast<std::size_t>(strip.n) / pack_size + 2 * strip_cells);
+        scratch_.ahead.begin(strips_.memory_of_next(key, number), loops * static_cast<std::size_t>(strip.n) / pack_size + 2 * strip_cells);
         open_cells(key, number);
         StripColumns<D> columns = strips_.columns(strip);
         f(key, number, columns);
@@ -188,12 +191,12 @@ class BlockSweep {
   }
 
   /// Velocities, gradients and positions of a strip, and what loads do on the way.
-  void move(std::size_t key, StripColumns<D>& columns, Real dt, Real pic)
+  void move(std::size_t key, StripColumns<D>& columns, bool with_affine, Real dt, Real pic)
   {
     const std::size_t n = scratch_.runs.back().end;
     if (columns.applied)
       m_.work.load_sums[key].add_forces(columns, n);
-    through_.move(columns, dt, pic);
+    through_.move(columns, with_affine, dt, pic);
     if (columns.applied)
       m_.work.load_sums[key].add_work(columns, n);
     if (m_.state.materials[static_cast<std::size_t>(strips_.body(key))].averages_volume)

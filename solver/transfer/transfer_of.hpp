@@ -66,7 +66,7 @@ class TransferOf final : public Transfer<D> {
 
   void sum_strips(Model<D>& m) override
   {
-    if (Rows::projects && m.problem.transfer.uses_musl()) {
+    if (WeighsVertices<K, D> && m.problem.transfer.uses_musl()) {
       rows_.gradient_of_remapped.resize(rows_.projected.motion.size());
       rows_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
     }
@@ -119,10 +119,17 @@ class TransferOf final : public Transfer<D> {
     m.work.strips->drop_loaded_gradients();
     const auto sweep = [&](const SweepParts& parts) {
       for_each_reading_block(
-          rows_.halo, [&] { take_motion(m, parts); }, [&](Index b) { BlockSweep<D, K>(m, rows_, b).advance(parts, dt, pic); });
+          rows_.halo, [&] { take_motion(m, parts); },
+          [&](Index b) {
+            if (!parts.moves && parts.updates)
+              between.before_stress_of_block(b);
+            BlockSweep<D, K>(m, rows_, b).advance(parts, dt, pic);
+            if (parts.moves && !parts.updates)
+              between.after_motion(b);
+          });
     };
     const bool before = static_cast<bool>(between.before_stress), after = static_cast<bool>(between.after_stress);
-    sweep({.orders = Rows::projects || !musl, .moves = true, .updates = !before, .deposits = !before && !after});
+    sweep({.orders = WeighsVertices<K, D> || !musl, .moves = true, .updates = !before, .deposits = !before && !after});
     if (before) {
       between.before_stress();
       sweep({.updates = true, .deposits = !after});
@@ -185,18 +192,19 @@ class TransferOf final : public Transfer<D> {
   /// MUSL: velocities of the nodes from the momentum of the new velocities of the particles, and what the gradients of these need.
   void find_remapped_gradient(Model<D>& m, Real mid, Real pic)
   {
-    if constexpr (Rows::projects) {
-      const Real from_nodes = m.problem.transfer.increments() ? pic : 1;
-      for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) { add_new_momentum(m, rows_, b, from_nodes); });
-      find_remapped_velocity(m, mid);
+    if constexpr (!Rows::projects)  // blocks that use nodes of other ranks have rows for them, to be sent first
+      rows_.ghosts.motion.take(m.work.nodes.motion, Whole{});
+    for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) {
+      if constexpr (WeighsVertices<K, D>)
+        add_new_momentum(m, rows_, b, m.problem.transfer.increments() ? pic : 1);
+      else
+        BlockSweep<D, K>(m, rows_, b).return_momentum(pic);
+    });
+    find_remapped_velocity(m, mid);
+    if constexpr (Rows::projects)
       project_gradient(
           rows_.kernel.node_operators(), m.work.nodes.in_use, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); },
           rows_.projected, rows_.gradient_of_remapped);
-    } else {
-      rows_.ghosts.motion.take(m.work.nodes.motion, Whole{});  // blocks that use nodes of other ranks have rows for them, to be sent first
-      for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) { BlockSweep<D, K>(m, rows_, b).return_momentum(pic); });
-      find_remapped_velocity(m, mid);
-    }
   }
 
   /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes, under the boundary conditions.

@@ -44,7 +44,7 @@ template <int D, class K>
 void identical_in_parts(TransferOptions transfer)
 {
   auto one = swirl<D, K>(transfer), parts = swirl<D, K>(transfer);
-  parts.work.patch_sums.emplace(parts.problem.mesh);
+  parts.work.averaged.push_back({{}, NodePatchSums<D, 2>(parts.problem.mesh)});
   parts.work.heat.emplace(parts.problem.mesh);
   for (int step = 0; step < 10; ++step) {
     make_step(one, dt);
@@ -63,6 +63,56 @@ TEST(Sweep, IsBitwiseIdenticalInParts)
     identical_in_parts<2, Projected<2>>(transfer);
     identical_in_parts<3, Projected<3>>(transfer);
     identical_in_parts<2, Umls<2>>(transfer);
+  }
+}
+
+/// Linear shape functions that are summed through their weights.
+template <int D>
+struct ThroughWeights : Linear<D> {
+  static constexpr bool weighs_vertices = false;
+  using Linear<D>::Linear;
+};
+static_assert(WeighsVertices<Linear<2>, 2> && !WeighsVertices<ThroughWeights<2>, 2>);
+
+/// Sums at vertices, and momentum of MUSL from moments of cells, against sums of every particle.
+template <int D>
+void same_as_through_weights(TransferOptions transfer)
+{
+  auto vertices = swirl<D, Linear<D>>(transfer), weights = swirl<D, ThroughWeights<D>>(transfer);
+  for (int step = 0; step < 20; ++step) {
+    make_step(vertices, dt);
+    make_step(weights, dt);
+  }
+  ASSERT_FALSE(vertices.work.errors.worst().has_value());
+  end_sweeps(vertices), end_sweeps(weights);
+  const Particles<D>&a = vertices.state.particles, &b = weights.state.particles;
+  ASSERT_EQ(a.id, b.id);
+  Real wettest = 0;
+  for (std::size_t p = 0; p < a.id.size(); ++p) {
+    EXPECT_NEAR((a.x[p] - b.x[p]).norm(), 0, 1e-12);
+    EXPECT_NEAR((a.v[p] - b.v[p]).norm(), 0, 1e-9);
+    EXPECT_NEAR((a.L[p] - b.L[p]).norm(), 0, 1e-7);
+    EXPECT_EQ(a.C.empty(), b.C.empty());
+    const Real affine = a.C.empty() ? 0 : (a.C[p] - b.C[p]).norm();
+    EXPECT_NEAR(affine, 0, 1e-7);
+    EXPECT_NEAR((a.F[p] - b.F[p]).norm(), 0, 1e-10);
+    EXPECT_NEAR((a.stress[p] - b.stress[p]).norm(), 0, 1e-3);
+    EXPECT_NEAR(a.pore[p], b.pore[p], 1e-7);
+    wettest = std::max(wettest, a.pore[p]);
+  }
+  EXPECT_GT(wettest, 1e3);
+  EXPECT_NEAR(vertices.state.energy.internal, weights.state.energy.internal, 1e-9 * std::abs(weights.state.energy.internal));
+  EXPECT_NEAR(vertices.state.energy.remap, weights.state.energy.remap, 1e-9 * std::abs(weights.state.energy.internal));
+  EXPECT_NEAR(vertices.state.crossing, weights.state.crossing, 1e-12);
+  EXPECT_NEAR(vertices.state.monitor.speed, weights.state.monitor.speed, 1e-9);
+}
+
+TEST(Sweep, SumsAtVerticesAreThoseThroughWeights)
+{
+  for (const TransferOptions& transfer : all_transfers()) {
+    SCOPED_TRACE(static_cast<int>(transfer.scheme) * 10 + (transfer.uses_musl() ? 1 : 0));
+    same_as_through_weights<2>(transfer);
+    same_as_through_weights<3>(transfer);
   }
 }
 

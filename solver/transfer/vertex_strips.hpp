@@ -1,5 +1,6 @@
 #pragma once
-// Between the particles of strips and the vertices of their cells, for kernels with node operators: four particles at a time.
+// Between the particles of strips and the vertices of their cells, for kernels whose weights are barycentric coordinates: four particles at a
+// time.
 #include "solver/model/model.hpp"
 #include "solver/transfer/kernel_rows.hpp"
 #include "solver/transfer/strip_scratch.hpp"
@@ -31,34 +32,83 @@ template <int n>
     to[i] += from[i];
 }
 
-/// Velocity gradients at positions x: L, and the affine field C if it differs.  With `remapped`, gradients on the linear shape functions of
-/// remapped velocities, L is of these.
-template <int D>
-TALUS_ONE_COPY void read_gradients(const StripColumn<Vec<D>>& x, const std::vector<ProjectedNodeMotion<D>>& motion,
-                                   const std::vector<Mat<D>>& remapped, bool with_affine, StripScratch<D>& scratch) noexcept
+/// The centres of the linear shape functions of a cell relative to its origin [m].
+template <int D, Kernel<D> K>
+std::array<Vec<D>, D + 1> arms_of(const Mesh<D>& mesh, const KernelRows<D, K>& of, Index cell, const Vec<D>& origin) noexcept
+{
+  std::array<Vec<D>, D + 1> arms;
+  for (std::size_t a = 0; a <= D; ++a) {
+    const Index node = mesh.cell(cell)[a];
+    if constexpr (KernelRows<D, K>::projects)
+      arms[a] = of.kernel.node_operators().centre(node) - origin;
+    else
+      arms[a] = mesh.node(node) - origin;
+  }
+  return arms;
+}
+
+/// What the particles of a cell read at its vertices.
+template <int D, Kernel<D> K>
+class VertexMotion {
+ public:
+  VertexMotion(const Model<D>& m, const KernelRows<D, K>& of, Index cell) noexcept
+  {
+    const auto nodes = m.problem.mesh.cell(cell);
+    const bool musl = m.problem.transfer.uses_musl();
+    if constexpr (KernelRows<D, K>::projects) {
+      for (std::size_t a = 0; a <= D; ++a) {
+        const auto n = static_cast<std::size_t>(nodes[a]);
+        const ProjectedNodeMotion<D>& motion = of.projected.motion[n];
+        v[a] = &motion.v, change[a] = &motion.change, L[a] = &motion.L;
+        remapped[a] = musl ? &of.gradient_of_remapped[n] : L[a];
+      }
+    } else {
+      const auto& gradients = m.problem.mesh.gradients(cell);
+      for (Mat<D>& gradient : of_cell_)
+        gradient.setZero();
+      for (std::size_t a = 0; a <= D; ++a) {
+        const auto n = static_cast<std::size_t>(nodes[a]);
+        const NodeMotion<D>& motion = m.work.nodes.motion[n];
+        v[a] = &motion.v, change[a] = &motion.change, L[a] = &of_cell_[0], remapped[a] = &of_cell_[musl ? 1 : 0];
+        of_cell_[0] += motion.v * gradients[a].transpose();
+        if (musl)
+          of_cell_[1] += of.remapped[n].v * gradients[a].transpose();
+      }
+    }
+  }
+  VertexMotion(const VertexMotion&) = delete;
+  VertexMotion& operator=(const VertexMotion&) = delete;
+
+  std::array<const Vec<D>*, D + 1> v, change;    ///< [m/s]
+  std::array<const Mat<D>*, D + 1> L, remapped;  ///< velocity gradients, and those of the remapped velocities under MUSL [1/s]
+
+ private:
+  Mat<D> of_cell_[2];
+};
+
+/// Velocity gradients at positions x: L, and with `with_affine` the affine field C.  Under MUSL L is of the remapped velocities.
+template <int D, Kernel<D> K>
+TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of, const StripColumn<Vec<D>>& x, bool with_affine,
+                                   StripScratch<D>& scratch) noexcept
 {
   for (const CellRun<D>& run : scratch.runs) {
-    const Mat<D>*of_step[D + 1], *of_remapped[D + 1];
-    for (std::size_t a = 0; a <= D; ++a) {
-      const auto node = static_cast<std::size_t>(run.frame->nodes[a]);
-      of_step[a] = &motion[node].L;
-      of_remapped[a] = remapped.empty() ? of_step[a] : &remapped[node];
-    }
+    const VertexMotion<D, K> motion(m, of, run.frame->cell);
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       Pack share[D + 1];
       run.frame->shares(x, i, share);
-      const auto store_sum = [&](const Mat<D>* const(&of)[D + 1], const StripColumn<Mat<D>>& to) __attribute__((always_inline))
+      const auto store_sum = [&](const std::array<const Mat<D>*, D + 1>& gradients, const StripColumn<Mat<D>>& to)
+          __attribute__((always_inline))
       {
         for (int k = 0; k < D * D; ++k) {
-          Pack sum = share[0] * (*of[0])(k);
-          for (int a = 1; a <= D; ++a)
-            sum += share[a] * (*of[a])(k);
+          Pack sum = share[0] * (*gradients[0])(k);
+          for (std::size_t a = 1; a <= D; ++a)
+            sum += share[a] * (*gradients[a])(k);
           store_loose(to.component(k) + i, sum);
         }
       };
-      store_sum(of_remapped, scratch.L);
+      store_sum(motion.remapped, scratch.L);
       if (with_affine)
-        store_sum(of_step, scratch.C);
+        store_sum(motion.L, scratch.C);
     }
   }
 }
@@ -144,24 +194,36 @@ void sum_run(const CellRun<D>& run, const StripScratch<D>& scratch, CornerSums<D
     sum_packs<1, size>(run, scratch, k, sums.of);
 }
 
-/// Adds the sums of a cell to the rows of its block.  `arms`: centres of the linear shape functions relative to the origin of the cell [m].
-template <bool affine, bool loaded, class Of, int D>
-void add_to(const CornerSums<D, Of>& sums, const std::array<Vec<D>, D + 1>& arms, std::span<ProjectedNodeSum<D>> rows,
-            std::span<const std::uint16_t> slots, float lightest) noexcept
+/// Adds the sums of a cell to the rows of its block.
+template <bool affine, bool loaded, class Of, int D, class Row>
+void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<Row> rows, std::span<const std::uint16_t> slots,
+            float lightest) noexcept
 {
+  constexpr bool projects = std::is_same_v<Row, ProjectedNodeSum<D>>;
+  [[maybe_unused]] Symmetric<D> tension{};
+  if constexpr (!projects)
+    for (std::size_t a = 0; a <= D; ++a)
+      add_numbers<Symmetric<D>::size>(sums.of[a] + Of::tension, tension.entry);
   for (std::size_t a = 0; a <= D; ++a) {
-    ProjectedNodeSum<D>& row = rows[slots[a]];
+    Row& row = rows[slots[a]];
     const Real* const of = sums.of[a];
     row.lightest = std::min(row.lightest, lightest);
     row.momentum += Eigen::Map<const Vec<D>>(of);
-    if constexpr (affine) {
-      add_numbers<D * D>(of + Of::field, row.affine.data());
+    if constexpr (affine)
       for (int j = 0; j < D; ++j)
         for (int i = 0; i < D; ++i)
-          row.momentum[i] += of[Of::field + j * D + i] * arms[a][j];
-    }
+          row.momentum[i] += of[Of::field + j * D + i] * frame.arms[a][j];
     row.mass += of[Of::mass];
-    add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
+    if constexpr (projects) {
+      if constexpr (affine)
+        add_numbers<D * D>(of + Of::field, row.affine.data());
+      add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
+    } else {
+      row.gross += static_cast<float>(of[Of::mass]);
+      for (int i = 0; i < D; ++i)
+        for (int j = 0; j < D; ++j)
+          row.force[i] -= tension(i, j) * frame.slope[j][a];
+    }
     if constexpr (loaded)
       row.force += Eigen::Map<const Vec<D>>(of + Of::load);
   }
@@ -169,13 +231,13 @@ void add_to(const CornerSums<D, Of>& sums, const std::array<Vec<D>, D + 1>& arms
 
 /// Adds the contributions of the first n particles to the rows of their block, and to the moments of their cells; find_shares() has been
 /// called.
-template <bool affine, bool loaded, bool with_moments, int D>
+template <bool affine, bool loaded, bool with_moments, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
-                                  BlockRows<D, ProjectedNodeSum<D>>& blocks, Rows<CellMoments<D>>& moments) noexcept
+                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments>;
   find_contributions<affine, loaded, with_moments>(columns, n, scratch);
-  const std::span<ProjectedNodeSum<D>> rows = blocks.rows(block);
+  const std::span<Row> rows = blocks.rows(block);
   CornerSums<D, Of> sums;
   for (const CellRun<D>& run : scratch.runs) {
     float lightest = NodeSum<D>::unseen;
@@ -186,7 +248,7 @@ TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n,
       continue;
     scratch.ahead.next();
     sum_run(run, scratch, sums);
-    add_to<affine, loaded>(sums, run.frame->arms, rows, blocks.slots(run.frame->cell), lightest);
+    add_to<affine, loaded>(sums, *run.frame, rows, blocks.slots(run.frame->cell), lightest);
     if constexpr (with_moments) {
       CellMoments<D>& cell = moments[static_cast<std::size_t>(run.frame->cell)];
       for (int a = 0; a <= D; ++a)
@@ -197,18 +259,14 @@ TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n,
 
 /// The particles of one block.  DirectStrips has the same interface.
 template <int D, Kernel<D> K>
-class ProjectedStrips {
+class VertexStrips {
  public:
   static constexpr bool keeps_gradients = false;
   static constexpr int quantities = Contribution<D, true, true, true>::padded_size;
 
-  ProjectedStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
+  VertexStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
 
-  void open(CellFrame<D>& frame) const noexcept
-  {
-    for (std::size_t a = 0; a <= D; ++a)
-      frame.arms[a] = of_.kernel.node_operators().centre(frame.nodes[a]) - frame.origin;
-  }
+  void open(CellFrame<D>& frame) const noexcept { frame.arms = arms_of(m_.problem.mesh, of_, frame.cell, frame.origin); }
   /// Clears what is summed apart from the rows of the block.
   void clear(Index block) noexcept
   {
@@ -217,21 +275,19 @@ class ProjectedStrips {
     const Index first = block * block_cells, last = std::min(first + block_cells, m_.problem.mesh.n_cells());
     std::fill(of_.moments.begin() + first, of_.moments.begin() + last, CellMoments<D>{});
   }
-  /// Sets L and C of the columns to velocity gradients at positions x in the cells of the open strip.
-  void find_gradients(const StripColumn<Vec<D>>& x, StripColumns<D>& columns) noexcept
+  /// Sets L and, if asked for and different, C of the columns to velocity gradients at positions x in the cells of the open strip.
+  void find_gradients(const StripColumn<Vec<D>>& x, bool with_affine, StripColumns<D>& columns) noexcept
   {
-    const bool with_affine = m_.work.strips->layout().has_affine();
-    static const std::vector<Mat<D>> none_remapped;
-    const bool musl = m_.problem.transfer.uses_musl();
-    read_gradients(x, of_.projected.motion, musl ? of_.gradient_of_remapped : none_remapped, with_affine, scratch_);
+    with_affine = with_affine && m_.work.strips->layout().has_affine();
+    read_gradients(m_, of_, x, with_affine, scratch_);
     columns.L = scratch_.L;
     if (with_affine)
       columns.C = scratch_.C;
   }
   /// Velocities and their gradients, and new positions.
-  void move(StripColumns<D>& columns, Real dt, Real pic) noexcept
+  void move(StripColumns<D>& columns, bool with_affine, Real dt, Real pic) noexcept
   {
-    find_gradients(columns.x, columns);
+    find_gradients(columns.x, with_affine, columns);
     m_.problem.transfer.increments() ? move<true>(columns, dt, pic) : move<false>(columns, dt, pic);
   }
   /// Adds the first n particles to the rows of the block.
@@ -257,9 +313,7 @@ class ProjectedStrips {
   void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs) {
-      const ProjectedNodeMotion<D>* motion[D + 1];
-      for (std::size_t a = 0; a <= D; ++a)
-        motion[a] = &of_.projected.motion[static_cast<std::size_t>(run.frame->nodes[a])];
+      const VertexMotion<D, K> motion(m_, of_, run.frame->cell);
       for (std::size_t i = run.begin; i < run.end; i += pack_size) {
         scratch_.ahead.next();
         const VecOf<D> x = columns.x.load(i);
@@ -270,15 +324,15 @@ class ProjectedStrips {
         for (int lane = 0; lane < pack_size; ++lane)
           mine.of[lane] = i + static_cast<std::size_t>(lane) < run.end ? -1 : 0;
         for (int d = 0; d < D; ++d) {
-          SimdReal v = share[0] * motion[0]->v[d];
-          for (int a = 1; a <= D; ++a)
-            v += share[a] * motion[a]->v[d];
+          SimdReal v = share[0] * (*motion.v[0])[d];
+          for (std::size_t a = 1; a <= D; ++a)
+            v += share[a] * (*motion.v[a])[d];
           const SimdReal before = load_loose(columns.v.component(d) + i);
           SimdReal after = v;
           if constexpr (increments) {
-            SimdReal change = share[0] * motion[0]->change[d];
-            for (int a = 1; a <= D; ++a)
-              change += share[a] * motion[a]->change[d];
+            SimdReal change = share[0] * (*motion.change[0])[d];
+            for (std::size_t a = 1; a <= D; ++a)
+              change += share[a] * (*motion.change[a])[d];
             after = SimdReal(1 - pic) * (before + change) + SimdReal(pic) * v;
           }
           store_loose(columns.v.component(d) + i, where(mine, after, before).of);
@@ -301,7 +355,7 @@ void add_new_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, Real
   if (!of.blocks.occupied[static_cast<std::size_t>(block)])
     return;
   const auto rows = of.blocks.rows(block);
-  std::fill(rows.begin(), rows.end(), ProjectedNodeSum<D>{});
+  std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
   const Index last = std::min((block + 1) * block_cells, m.problem.mesh.n_cells());
   for (Index c = block * block_cells; c < last; ++c) {
     const CellMoments<D>& moments = of.moments[static_cast<std::size_t>(c)];
@@ -310,14 +364,8 @@ void add_new_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, Real
       mass += moments.of[a][D + CellMoments<D>::product(a, a)];
     if (!(mass > 0))  // no particles: not all coordinates of one are zero
       continue;
-    const auto nodes = of.kernel.stencil(m.problem.mesh, c);
-    const Vec<D> origin = centroid(m.problem.mesh, c);
-    std::array<Vec<D>, D + 1> arms;
-    for (std::size_t a = 0; a <= D; ++a)
-      arms[a] = of.kernel.node_operators().centre(nodes[a]) - origin;
-    std::array<const ProjectedNodeMotion<D>*, D + 1> motion;
-    for (std::size_t a = 0; a <= D; ++a)
-      motion[a] = &of.projected.motion[static_cast<std::size_t>(nodes[a])];
+    const auto arms = arms_of(m.problem.mesh, of, c, centroid(m.problem.mesh, c));
+    const VertexMotion<D, K> motion(m, of, c);
     if (m.problem.transfer.affine())
       add_new_momentum<true>(moments, arms, motion, pic, rows, of.blocks.slots(c));
     else
