@@ -39,7 +39,7 @@ inline void transpose(Pack& a, Pack& b, Pack& c, Pack& d) noexcept
 [[gnu::always_inline]] inline Pack load_loose(const Real* from) noexcept { return *reinterpret_cast<const LoosePack*>(from); }
 [[gnu::always_inline]] inline void store_loose(Real* to, const Pack& pack) noexcept { *reinterpret_cast<LoosePack*>(to) = pack; }
 /// Calls take(k, pack) for n consecutive numbers of four rows, with one row per lane, from number `begin` on.  Whole packs are read,
-/// so up to three numbers behind a row; another thread may be writing these, and they are never used.
+/// so up to three numbers behind a row, which are never used.
 template <int n, int begin = 0, class Take>
 [[gnu::always_inline]] inline void load_rows(const Real* const (&row)[pack_size], Take&& take) noexcept
 {

@@ -128,7 +128,8 @@ concept HasNodeOperators = requires(const K k) {
   { k.node_operators() } noexcept -> std::same_as<const NodeOperators<D>&>;
 };
 
-/// A kernel whose weights are the barycentric coordinates in the cell: linear shape functions, with or without node operators.
+/// A kernel whose weights are the barycentric coordinates in the cell, and its stencil the vertices: linear shape functions, with or without
+/// node operators.  Transfers then use neither open() nor evaluate().
 template <class K, int D>
 concept WeighsVertices = HasNodeOperators<K, D> || requires {
   requires K::weighs_vertices;

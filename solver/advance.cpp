@@ -13,7 +13,12 @@ template <int D>
 bool locate_particles(Model<D>& m)
 {
   Workspace<D>& work = m.work;
-  work.strips->take_exits(m.problem.mesh, m.problem.locator, m.problem.exits, m.state.materials, work.sums, work.errors);
+  const auto set_forces = [&m](const StripColumns<D>& one) {
+    const Real time = m.state.clock.time;
+    if (one.applied)
+      find_forces(m.problem.loads, time, m.state.stage.ramp(time), m.work.carriers, one, 1);
+  };
+  work.strips->take_exits(m.problem.mesh, m.problem.locator, m.problem.exits, m.state.materials, set_forces, work.sums, work.errors);
   work.errors.take(m.problem.ranks->min(work.errors.word()));
   if (!work.errors.worst())
     return true;
@@ -116,7 +121,7 @@ template <int D>
 void clear_particle_sums(Model<D>& m)
 {
   m.work.stress_sums.assign(m.work.strips->keys(), {});
-  m.work.load_sums.assign(m.problem.columns.applied ? m.work.strips->keys() : 0, {});
+  m.work.load_sums.assign(m.work.strips->layout().step_arrays().applied != none ? m.work.strips->keys() : 0, {});
 }
 
 /// Collects what particles report of their stress and loads.

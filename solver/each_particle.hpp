@@ -37,7 +37,8 @@ struct StripParticle {
   Vec<D> displacement() const noexcept { return all.x.of(p) - all.x0.of(p); }
   Vec<D> v() const noexcept { return all.v.of(p); }
   Sym3 stress() const noexcept { return all.stress.of(p); }
-  Vec<D> load() const noexcept { return all.applied ? all.applied.of(p) : Vec<D>(Vec<D>::Zero()); }
+  /// Zero as well where it is not finite: a particle that has just left the mesh may be where the force is not defined.
+  Vec<D> load() const noexcept { return all.applied && all.applied.of(p).allFinite() ? all.applied.of(p) : Vec<D>(Vec<D>::Zero()); }
   Real history(int number) const noexcept { return of_law.component(number)[p]; }
 };
 

@@ -11,7 +11,7 @@ namespace talus {
 
 namespace {
 
-/// Number of steps at the beginning of a stage that are not measured: they sort particles and touch memory for the first time.
+/// Number of steps at the beginning of a stage that are not measured: they put particles in strips and touch memory for the first time.
 constexpr std::int64_t trial_warm_up = 3;
 /// Particle-steps of a trial, which take some seconds on a core, and limits of its number of steps.
 constexpr std::int64_t trial_particle_steps = 2'000'000, fewest_trial_steps = 8, most_trial_steps = 200;

@@ -56,7 +56,7 @@ std::vector<NeighbourRank> find_row_borders(Communicator& ranks, const Mesh<D>& 
   return borders;
 }
 
-/// The exchange for one type of row; `Sum` is NodeSum, ProjectedNodeSum or the rows of StarSums.  Rows without contributions of particles
+/// The exchange for one type of row; `Sum` is NodeSum, ProjectedNodeSum or NodePatchRow.  Rows without contributions of particles
 /// are not sent.
 template <class Sum>
 class Halo {

@@ -131,6 +131,7 @@ void find_averaged_bodies(Model<D>& m)
                                                  : NodePatchSums<D, 2>(*m.problem.ranks, m.problem.mesh, m.problem.subdomain)});
     all[used++].bodies.push_back(body);
   }
+  all.erase(all.begin() + static_cast<std::ptrdiff_t>(used), all.end());
 }
 
 }  // namespace

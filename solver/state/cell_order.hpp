@@ -23,7 +23,6 @@ struct CellOrder {
     return static_cast<std::size_t>(body) * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
   }
   std::size_t keys() const noexcept { return first.size() - 1; }
-  std::span<const Index> rows(Index body, Index block) const noexcept { return rows(key(body, block)); }
   std::span<const Index> rows(std::size_t at) const noexcept
   {
     return std::span(row).subspan(static_cast<std::size_t>(first[at]), static_cast<std::size_t>(first[at + 1] - first[at]));

@@ -45,7 +45,8 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
 
 template <int D>
 void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits,
-                                   const std::vector<Material>& materials, StepSums<D>& sums, ParticleErrors& errors)
+                                   const std::vector<Material>& materials, const SetForces& set_forces, StepSums<D>& sums,
+                                   ParticleErrors& errors)
 {
   for (std::size_t key = 0; key < block_.size(); ++key)
     for (std::size_t i = 0; i < block_[key].leaving.all.size(); ++i) {
@@ -61,6 +62,7 @@ void ParticleStrips<D>::take_exits(const Mesh<D>& mesh, const Locator<D>& locato
         errors.report(all.id[0], Trouble::not_finite);
       } else if (const auto back = set_back(mesh, locator, exits, x)) {
         all.x.set(0, back->x);
+        set_forces(all);
         leaver.to = back->cell;
         sums.removed.add({.held_count = 1});
         sums.largest_set_back = std::max(sums.largest_set_back, back->distance);
@@ -133,13 +135,13 @@ void ParticleStrips<D>::sort_arrivals()
 
 template void ParticleStrips<2>::add_leaver(std::size_t, Index, const StripColumns<2>&, Index, Index);
 template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, std::size_t, std::vector<Arrival>&);
-template void ParticleStrips<2>::take_exits(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, StepSums<2>&,
-                                            ParticleErrors&);
+template void ParticleStrips<2>::take_exits(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, const SetForces&,
+                                            StepSums<2>&, ParticleErrors&);
 template void ParticleStrips<2>::send_leavers(const Subdomain&, Migration<2>&);
 template void ParticleStrips<3>::add_leaver(std::size_t, Index, const StripColumns<3>&, Index, Index);
 template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, std::size_t, std::vector<Arrival>&);
-template void ParticleStrips<3>::take_exits(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, StepSums<3>&,
-                                            ParticleErrors&);
+template void ParticleStrips<3>::take_exits(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, const SetForces&,
+                                            StepSums<3>&, ParticleErrors&);
 template void ParticleStrips<3>::send_leavers(const Subdomain&, Migration<3>&);
 
 }  // namespace talus

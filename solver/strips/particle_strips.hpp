@@ -102,9 +102,11 @@ class ParticleStrips {
   }
 
   /// A particle outside the mesh behind a closed facet is set back onto it; others are deleted or reported lost, as `exits` says.  Mass,
-  /// momentum and energy of deleted particles are added to `sums`.
+  /// momentum and energy of deleted particles are added to `sums`.  set_forces(columns) computes the forces of loads on a particle that was
+  /// set back, the only one of `columns`, at its new position.
+  using SetForces = std::function<void(const StripColumns<D>& columns)>;
   void take_exits(const Mesh<D>& mesh, const Locator<D>& locator, const Exits& exits, const std::vector<Material>& materials,
-                  StepSums<D>& sums, ParticleErrors& errors);
+                  const SetForces& set_forces, StepSums<D>& sums, ParticleErrors& errors);
   /// Makes arrivals of the particles that leave, of this rank and of others.  Collective.
   void send_leavers(const Subdomain& subdomain, Migration<D>& migration);
   /// Puts a strip in order: without those who have left, with those who come.

@@ -114,8 +114,8 @@ Interpolated<D> see(const CellMotion<D, N>& motion, const Weights<D, N>& weights
   return seen;
 }
 
-/// The affine field of APIC, B D^-1 with B = sum w v (x) r, D = sum w r (x) r, r = x_v - x_p.  D is indefinite near the boundary of a mesh
-/// where weights are negative, and singular on nodes; there the kernel's gradient L is used instead.
+/// The affine field of APIC, B D^-1 with B = sum w v (x) r, D = sum w r (x) r, r = x_v - x_p.  D may be indefinite near the boundary of a
+/// mesh, where weights are negative; there the kernel's gradient L is used instead.
 template <int D, int N>
 Mat<D> apic_field(const StencilCell<D, N>& cell, const CellMotion<D, N>& motion, const Weights<D, N>& weights, int lane, const Vec<D>& x,
                   const Mat<D>& L) noexcept

@@ -26,7 +26,6 @@ template <int D>
 template <int D>
 struct CellFrame {
   Index cell;
-  std::span<const Index> nodes;          ///< its vertices
   Vec<D> origin;                         ///< its centroid [m]
   alignas(32) Real slope[D][pack_size];  ///< gradients of the barycentric coordinates [1/m]
   std::array<Vec<D>, D + 1> arms{};      ///< node operators: centres of the linear shape functions relative to the origin [m]
@@ -57,20 +56,19 @@ class PrefetchAhead {
  public:
   void begin(std::span<const Real> memory, std::size_t calls) noexcept
   {
-    at_ = memory.data(), end_ = at_ + memory.size();
+    memory_ = memory, at_ = 0;
     part_ = memory.size() / calls + numbers_in_line;
   }
   void next() noexcept
   {
-    for (const Real* const last = std::min(at_ + part_, end_); at_ < last; at_ += numbers_in_line)
-      __builtin_prefetch(at_, 1, 2);
+    for (const std::size_t last = std::min(at_ + part_, memory_.size()); at_ < last; at_ += numbers_in_line)
+      __builtin_prefetch(memory_.data() + at_, 1, 2);
   }
 
  private:
   static constexpr std::size_t numbers_in_line = 64 / sizeof(Real);
-  const Real* at_ = nullptr;
-  const Real* end_ = nullptr;
-  std::size_t part_ = 0;
+  std::span<const Real> memory_;
+  std::size_t at_ = 0, part_ = 0;
 };
 
 /// Lives as long as its thread.

@@ -179,7 +179,7 @@ class BlockSweep {
   {
     const Mesh<D>& mesh = m_.problem.mesh;
     CellFrame<D>& frame = scratch_.frames.emplace_back();
-    frame.cell = cell, frame.nodes = mesh.cell(cell), frame.origin = centroid(mesh, cell);
+    frame.cell = cell, frame.origin = centroid(mesh, cell);
     const auto& gradients = mesh.gradients(cell);
     for (std::size_t a = 0; a <= D; ++a)
       for (int d = 0; d < D; ++d)

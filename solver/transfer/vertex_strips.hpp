@@ -144,8 +144,12 @@ TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size
       for (int e = d; e < D; ++e)
         q[Of::tension + Symmetric<D>::place(d, e)] = volume * load_loose(columns.stress.component(Symmetric<3>::place(d, e)) + i);
     if constexpr (loaded)
-      for (int d = 0; d < D; ++d)
+      for (int d = 0; d < D; ++d) {
         q[Of::load + d] = load_loose(columns.applied.component(d) + i);
+        for (std::size_t lane = 0; lane < pack_size; ++lane)
+          if (scratch.stays[i + lane] == 0)  // outside the mesh a force may not be finite
+            q[Of::load + d][lane] = 0;
+      }
     if constexpr (moments)
       for (int j = 0; j <= D; ++j) {
         const Pack share = m * load_loose(scratch.share[j] + i);

@@ -169,6 +169,36 @@ TYPED_TEST(KernelContract, PaddingCarriesNoWeight)
   }
 }
 
+TYPED_TEST(KernelContract, WeightsAreBarycentricCoordinatesOfTheVerticesIfTheKernelSaysSo)
+{
+  using K = typename TypeParam::K;
+  constexpr int D = TypeParam::D;
+  std::array<Real, D + 1> inside;
+  for (std::size_t a = 0; a <= D; ++a)
+    inside[a] = (1.0 + static_cast<Real>(a)) / ((D + 1) * (D + 2) / 2);
+  prove<D>(WeighsVertices<K, D>, round_off, [&](const Mesh<D>& mesh) {
+    const K kernel(mesh);
+    Real worst = 0;
+    for (Index c = 0; c < mesh.n_cells(); ++c) {
+      if (!std::ranges::equal(kernel.stencil(mesh, c), mesh.cell(c)))
+        return Real{1};
+      typename K::Cell cell;
+      kernel.open(mesh, c, cell);
+      const Vec<D> at = place<D>(mesh, c, inside);
+      Pack x[D];
+      for (int d = 0; d < D; ++d)
+        x[d] = broadcast(at[d]);
+      Weights<D, K::max_nodes> weights;
+      kernel.evaluate(cell, x, 1, weights);
+      NodeWeights<D, K::max_nodes> plain;
+      weights.spell_out(0, plain);
+      for (std::size_t a = 0; a <= D; ++a)
+        worst = std::max(worst, std::abs(plain.w[a] - inside[a]));
+    }
+    return worst;
+  });
+}
+
 TYPED_TEST(KernelContract, ValuesAreNonNegativeIfClaimed)
 {
   using K = typename TypeParam::K;

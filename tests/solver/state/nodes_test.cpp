@@ -189,10 +189,10 @@ TEST(CellOrder, SortsByBodyCellAndIdWhateverTheRowsAre)
   sort_by_cell(cell, id, bodies, 300, order);
   EXPECT_EQ(order.row, (std::vector<Index>{1, 2, 0, 3, 7, 5, 4, 6}));
   EXPECT_EQ(order.blocks, 3);
-  EXPECT_EQ(order.rows(0, 0).size(), 3U);
-  EXPECT_EQ(order.rows(1, 0).size(), 4U);
-  EXPECT_EQ(order.rows(1, 1).size(), 1U);
-  EXPECT_EQ(order.rows(1, 2).size(), 0U);
+  EXPECT_EQ(order.rows(order.key(0, 0)).size(), 3U);
+  EXPECT_EQ(order.rows(order.key(1, 0)).size(), 4U);
+  EXPECT_EQ(order.rows(order.key(1, 1)).size(), 1U);
+  EXPECT_EQ(order.rows(order.key(1, 2)).size(), 0U);
 }
 
 /// A block that flies to the right, out of the mesh.

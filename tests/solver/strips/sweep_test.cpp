@@ -44,6 +44,7 @@ template <int D, class K>
 void identical_in_parts(TransferOptions transfer)
 {
   auto one = swirl<D, K>(transfer), parts = swirl<D, K>(transfer);
+  begin_sweeps(parts);
   parts.work.averaged.push_back({{}, NodePatchSums<D, 2>(parts.problem.mesh)});
   parts.work.heat.emplace(parts.problem.mesh);
   for (int step = 0; step < 10; ++step) {
@@ -62,6 +63,8 @@ TEST(Sweep, IsBitwiseIdenticalInParts)
     SCOPED_TRACE(static_cast<int>(transfer.scheme) * 10 + (transfer.uses_musl() ? 1 : 0));
     identical_in_parts<2, Projected<2>>(transfer);
     identical_in_parts<3, Projected<3>>(transfer);
+    identical_in_parts<2, Linear<2>>(transfer);
+    identical_in_parts<3, Linear<3>>(transfer);
     identical_in_parts<2, Umls<2>>(transfer);
   }
 }
@@ -248,6 +251,37 @@ TEST(Sweep, WithLoadsAndAveragedVolumesIsBitwiseIdenticalFromColumns)
   loaded_is_identical_from_columns<Projected<2>>();
   loaded_is_identical_from_columns<Linear<2>>();
   loaded_is_identical_from_columns<Umls<2>>();
+}
+
+/// A force that is not defined outside the mesh, on a particle that is just outside.
+template <class K>
+void force_is_not_defined_outside(OnExit policy)
+{
+  const auto load = [](Model<2>& m) {
+    m.problem.loads.of_place.push_back({.acceleration = [](std::span<const Vec<2>> places, Real, std::span<Vec<2>> accelerations) {
+      for (std::size_t i = 0; i < places.size(); ++i)
+        accelerations[i] = Vec<2>(std::sqrt(places[i][0]), 0);
+    }});
+  };
+  auto m = swirl<2, K>({.scheme = Scheme::aflip}, 6, policy, load);
+  const Index before = n_particles(m);
+  m.state.particles.x.set(0, Vec<2>(-1e-4, 0.05));
+  for (int step = 0; step < 3; ++step)
+    make_step(m, dt);
+  ASSERT_FALSE(m.work.errors.worst().has_value());
+  EXPECT_EQ(n_particles(m), policy == OnExit::remove ? before - 1 : before);
+  EXPECT_EQ(m.state.mass.held_count, policy == OnExit::remove ? 0 : 1);
+  end_sweeps(m);
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    EXPECT_TRUE(m.state.particles.v[p].allFinite() && m.state.particles.applied[p].allFinite()) << p;
+}
+
+TEST(Sweep, AForceThatIsNotDefinedOutsideTheMeshHarmsNoParticle)
+{
+  for (const OnExit policy : {OnExit::stop, OnExit::remove}) {
+    force_is_not_defined_outside<Projected<2>>(policy);
+    force_is_not_defined_outside<Umls<2>>(policy);
+  }
 }
 
 /// A few particles fly over many blocks; in some steps more of a block leave it than stay.
