@@ -44,7 +44,8 @@ void BodyForces<D>::add_step(const RunView<D>& view, const std::vector<BodySums<
     losers += lost(b) ? 1 : 0;
   const Real failed = view.state.mass.failed - failed_;  // they took part in the step in which they failed, with their loads
   // Those that have left the mesh did not: their loads are not known any more.
-  const auto left = [&](std::size_t b) { return sums_[b].mass - now[b].mass > failed + 1e-9 * (sums_[b].mass - now[b].mass); };
+  constexpr Real rounding = 1e-9;
+  const auto left = [&](std::size_t b) { return sums_[b].mass - now[b].mass - failed > rounding * sums_[b].mass; };
   for (std::size_t b = 0; b < now.size(); ++b) {
     BodyImpulse<D>& impulse = impulses_[b];
     if (lost(b) && (losers > 1 || (left(b) && view.problem.columns.applied))) {

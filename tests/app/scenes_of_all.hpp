@@ -118,7 +118,20 @@ inline std::vector<SceneCase> scenes_of_all()
       {"tractions",
        {.bodies = "bodies:\n  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [2, 2]}, particles_per_cell: 3}\n",
         .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81], table: [[0, 0], [0.03, 1], [1, 2]]}\n"
-                 "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n"}});
+                 "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n",
+        .outputs = ", bodies: [low]"}});
+  all.push_back(
+      {"body_force",
+       {.more = "on_exit: delete\n",
+        .bodies =
+            "bodies:\n"
+            "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1, 0.6]}, particles_per_cell: 3, velocity: [-9, 0]}\n"
+            "  - {name: high, material: stuff, shape: {type: box, low: [0.3, 0.7], high: [1.2, 1.4]}, particles_per_cell: 4}\n",
+        .boundaries = "boundaries: [{type: roller, on: y_min}]\n",
+        .time = "stages:\n  - {type: run, duration: 0.02}\n  - {type: run, duration: 0.022, damping: 0.1}\n",
+        .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81]}\n"
+                 "  - {type: body_force, acceleration: [\"-20*x\", \"5*cos(40*t)\"]}\n",
+        .outputs = ", bodies: [low, high]"}});
   all.push_back(
       {"moving_wall",
        {.boundaries =
