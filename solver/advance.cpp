@@ -13,11 +13,7 @@ template <int D>
 bool locate_particles(Model<D>& m)
 {
   Workspace<D>& work = m.work;
-  const auto set_forces = [&m](const StripColumns<D>& one) {
-    const Real time = m.state.clock.time;
-    if (one.applied)
-      find_forces(m.problem.loads, time, m.state.stage.ramp(time), m.work.carriers, one, 1);
-  };
+  const auto set_forces = [&m](const StripColumns<D>& one) { find_forces(m, m.state.clock.time, one, 1); };
   work.strips->take_exits(m.problem.mesh, m.problem.locator, m.problem.exits, m.state.materials, set_forces, work.sums, work.errors);
   work.errors.take(m.problem.ranks->min(work.errors.word()));
   if (!work.errors.worst())

@@ -18,8 +18,6 @@ struct ColumnParticle {
   Vec<D> displacement() const noexcept { return all.x[p] - all.x0[p]; }  ///< [m]; with start positions only
   Vec<D> v() const noexcept { return all.v[p]; }                         ///< [m/s]
   Sym3 stress() const noexcept { return all.stress[p]; }                 ///< [Pa]
-  /// Force of loads other than gravity [N].
-  Vec<D> load() const noexcept { return all.applied.empty() ? Vec<D>(Vec<D>::Zero()) : Vec<D>(all.applied[p]); }
   Real history(int number) const noexcept { return of_law[number]; }
 };
 
@@ -37,8 +35,6 @@ struct StripParticle {
   Vec<D> displacement() const noexcept { return all.x.of(p) - all.x0.of(p); }
   Vec<D> v() const noexcept { return all.v.of(p); }
   Sym3 stress() const noexcept { return all.stress.of(p); }
-  /// Zero as well where it is not finite: a particle that has just left the mesh may be where the force is not defined.
-  Vec<D> load() const noexcept { return all.applied && all.applied.of(p).allFinite() ? all.applied.of(p) : Vec<D>(Vec<D>::Zero()); }
   Real history(int number) const noexcept { return of_law.component(number)[p]; }
 };
 

@@ -2,6 +2,7 @@
 // Read-only view of a run for observers.
 #include <algorithm>
 #include <functional>
+#include <span>
 #include <string_view>
 
 #include "solver/stages.hpp"
@@ -19,6 +20,8 @@ struct RunView {
   std::string_view stage_name;
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
+  /// Loads that acted on particles in the last step, of each body in each block (CellOrder::key()); empty in scenes without such loads.
+  std::span<const ParticleLoadSums<D>> loads;
   const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
   std::function<void()> fetch_particles = [] {};  ///< to be called before particles are read during a stage
 };
@@ -33,6 +36,7 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
           .stage_name = stage.name,
           .migrated = m.work.migration.moved(),
           .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own),
+          .loads = m.work.load_sums,
           .strips = m.work.strips ? &*m.work.strips : nullptr};
 }
 

@@ -1,5 +1,7 @@
 #include "app/observers/body_forces.hpp"
 
+#include <cmath>
+
 namespace talus {
 
 namespace {
@@ -9,10 +11,23 @@ BodySums<D> sums_of_body(const RunView<D>& view, Index body)
 {
   ExactSums<BodySums<D>> sum;
   add_particles(view, {body, body + 1}, sum, [](const auto& p) {
-    return BodySums<D>{p.mass(), 0.5 * p.mass() * p.v().squaredNorm(), p.mass() * p.v(), p.load()};
+    return BodySums<D>{p.mass(), 0.5 * p.mass() * p.v().squaredNorm(), p.mass() * p.v()};
   });
   view.problem.ranks->sum(sum);
   return sum.value();
+}
+
+/// The loads that acted on the particles of a body in the last step, without those that left the mesh before it [N].  Collective.
+template <int D>
+Vec<D> loads_on_body(const RunView<D>& view, std::size_t body)
+{
+  if (view.loads.empty())
+    return Vec<D>::Zero();
+  ExactSums<ForceAndMoment<D>> sum;
+  for (Index block = 0; block < view.order.blocks; ++block)
+    sum.add(view.loads[view.order.key(static_cast<Index>(body), block)].force);
+  view.problem.ranks->sum(sum);
+  return sum.value().linear;
 }
 
 }  // namespace
@@ -38,23 +53,22 @@ void BodyForces<D>::add_step(const RunView<D>& view, const std::vector<BodySums<
 {
   const Vec<D> gravity = view.nodes.gravity;
   const Real kick = view.nodes.kick;
-  const auto lost = [&](std::size_t b) { return now[b].mass != sums_[b].mass; };
+  constexpr Real rounding = 1e-12;  // of the sum, whose order changes with the cells of particles
+  const auto lost = [&](std::size_t b) { return std::abs(now[b].mass - sums_[b].mass) > rounding * sums_[b].mass; };
   std::size_t losers = 0;
   for (std::size_t b = 0; b < now.size(); ++b)
     losers += lost(b) ? 1 : 0;
-  const Real failed = view.state.mass.failed - failed_;  // they took part in the step in which they failed, with their loads
-  // Those that have left the mesh did not: their loads are not known any more.
-  constexpr Real rounding = 1e-9;
-  const auto left = [&](std::size_t b) { return sums_[b].mass - now[b].mass - failed > rounding * sums_[b].mass; };
+  const Real failed = view.state.mass.failed - failed_;  // they took part in the step in which they failed
   for (std::size_t b = 0; b < now.size(); ++b) {
     BodyImpulse<D>& impulse = impulses_[b];
-    if (lost(b) && (losers > 1 || (left(b) && view.problem.columns.applied))) {
+    const Vec<D> loads = loads_on_body(view, b);
+    if (lost(b) && losers > 1) {
       ++impulse.unknown;
       continue;
     }
     const Vec<D> deleted = lost(b) ? Vec<D>(view.state.mass.carried_away.linear - deleted_) : Vec<D>(Vec<D>::Zero());
     const Real mass = now[b].mass + (lost(b) ? failed : 0);
-    impulse.given += now[b].momentum - sums_[b].momentum + deleted - kick * (mass * gravity + sums_[b].load);
+    impulse.given += now[b].momentum - sums_[b].momentum + deleted - kick * (mass * gravity + loads);
   }
 }
 

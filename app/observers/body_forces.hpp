@@ -9,15 +9,13 @@ template <int D>
 struct BodySums {
   Real mass{}, kinetic{};            ///< [kg], [J]
   Vec<D> momentum = Vec<D>::Zero();  ///< [kg m/s]
-  Vec<D> load = Vec<D>::Zero();      ///< tractions and body forces on its particles where they are, which act in the next step [N]
   static constexpr auto fields()
   {
-    return std::tuple{saved("mass", &BodySums::mass), saved("kinetic", &BodySums::kinetic), saved("momentum", &BodySums::momentum),
-                      saved("load", &BodySums::load)};
+    return std::tuple{saved("mass", &BodySums::mass), saved("kinetic", &BodySums::kinetic), saved("momentum", &BodySums::momentum)};
   }
   BodySums& operator+=(const BodySums& other) noexcept
   {
-    mass += other.mass, kinetic += other.kinetic, momentum += other.momentum, load += other.load;
+    mass += other.mass, kinetic += other.kinetic, momentum += other.momentum;
     return *this;
   }
 };

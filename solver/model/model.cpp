@@ -103,6 +103,13 @@ std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time)
   return PoreWater{m.problem.water, m.state.stage.ramp(time) * m.problem.loads.gravity.table(time)};
 }
 
+template <int D>
+void find_forces(const Model<D>& m, Real time, const StripColumns<D>& columns, std::size_t n)
+{
+  if (columns.applied)
+    find_forces(m.problem.loads, time, m.state.stage.ramp(time), m.work.carriers, columns, n);
+}
+
 namespace {
 
 /// Finds the bodies that average their volumes, by the groups that do it as one.  Collective.
@@ -181,18 +188,19 @@ Totals<D> totals(const Model<D>& m)
   return totals(m.state.particles, m.work.order, *m.problem.ranks);
 }
 
-#define TALUS_INSTANTIATE(D)                                                   \
-  template struct Model<D>;                                                    \
-  template void fill_columns(const WantedColumns&, Particles<D>&);             \
-  template void make_ready(Model<D>&, std::span<const std::vector<Material>>); \
-  template void update_rows(Model<D>&);                                        \
-  template void adopt_state(Model<D>&);                                        \
-  template void bind_boundary_conditions(Model<D>&);                           \
-  template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);  \
-  template void begin_sweeps(Model<D>&);                                       \
-  template void end_sweeps(Model<D>&);                                         \
-  template void copy_to_columns(Model<D>&);                                    \
-  template void drop_copy(Model<D>&);                                          \
+#define TALUS_INSTANTIATE(D)                                                             \
+  template struct Model<D>;                                                              \
+  template void fill_columns(const WantedColumns&, Particles<D>&);                       \
+  template void make_ready(Model<D>&, std::span<const std::vector<Material>>);           \
+  template void update_rows(Model<D>&);                                                  \
+  template void adopt_state(Model<D>&);                                                  \
+  template void bind_boundary_conditions(Model<D>&);                                     \
+  template void find_forces(const Model<D>&, Real, const StripColumns<D>&, std::size_t); \
+  template std::optional<PoreWater> pore_water(const Model<D>&, Index, Real);            \
+  template void begin_sweeps(Model<D>&);                                                 \
+  template void end_sweeps(Model<D>&);                                                   \
+  template void copy_to_columns(Model<D>&);                                              \
+  template void drop_copy(Model<D>&);                                                    \
   template Totals<D> totals(const Model<D>&);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)

@@ -71,6 +71,10 @@ Index n_particles(const Model<D>& m) noexcept
 template <int D>
 std::optional<PoreWater> pore_water(const Model<D>& m, Index body, Real time);
 
+/// Computes the forces of loads at a time on n particles of a strip, into their column; does nothing in scenes without such loads.
+template <int D>
+void find_forces(const Model<D>& m, Real time, const StripColumns<D>& columns, std::size_t n);
+
 /// Mass [kg], momentum [kg m/s] and energy [J] of the particles of all ranks.  Collective.
 template <int D>
 Totals<D> totals(const Model<D>& m);

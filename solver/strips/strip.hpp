@@ -134,8 +134,8 @@ class StripMemory {
   std::size_t numbers_ = 0;
 };
 
-/// Arrays of `room` numbers, one after the other: those of the layout, gradients that are kept, then those of the law.  Particles stand in the order of cells and
-/// ids.
+/// Arrays of `room` numbers, one after the other: those of the layout, gradients that are kept, then those of the law.  Particles stand in
+/// the order of cells and ids.
 struct Strip {
   Real* numbers = nullptr;
   Index room = 0, n = 0;

@@ -71,16 +71,13 @@ TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const
                                      Index block, BlockRows<D>& blocks, DirectCell<D, K>& at) noexcept
 {
   for (const CellRun<D>& run : scratch.runs) {
-    float lightest = NodeSum<D>::unseen;
-    for (std::size_t i = run.begin; i < run.end; ++i)
-      if (scratch.stays[i] != 0)
-        lightest = std::min(lightest, static_cast<float>(columns.mass.first[i]));
-    if (!(lightest < NodeSum<D>::unseen))
+    const auto lightest = lightest_of(run, columns.mass, scratch);
+    if (!lightest)
       continue;
     kernel.open(mesh, run.frame->cell, at.cell);
     at.sums.clear(at.cell.padded_size);
     deposit_run<affine, loaded, true>(kernel, columns, run, scratch, at);
-    at.sums.add_to(blocks.rows(block), blocks.slots(run.frame->cell), lightest);
+    at.sums.add_to(blocks.rows(block), blocks.slots(run.frame->cell), *lightest);
   }
 }
 
@@ -126,7 +123,7 @@ class DirectStrips {
   {
     deposit_directly<affine, loaded>(of_.kernel, m_.problem.mesh, columns, scratch_, block, of_.blocks, at_);
   }
-  /// Opens the cell of a run with the motion of its nodes, and calls f(i, count, x) for its packs, with their weights.
+  /// Opens the cell of a run with the motion of its nodes, and calls f(i, count) for its packs, with their weights.
   void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const std::vector<NodeMotion<D>>& motion, auto&& f) noexcept
   {
     of_.kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
@@ -135,7 +132,7 @@ class DirectStrips {
       scratch_.ahead.next();
       Pack x[D];
       at_.place(of_.kernel, places, i, run.count(i), scratch_.stays.data(), x);
-      f(i, run.count(i), x);
+      f(i, run.count(i));
     }
   }
   template <bool with_change, bool with_gradient>
@@ -148,7 +145,7 @@ class DirectStrips {
   void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs)
-      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count, const Pack(&)[D]) {
+      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<increments, true>(count);
         store_gradient(i, count, seen, columns.L);
         find_apic_field(columns, i, count, columns.L);
@@ -160,7 +157,7 @@ class DirectStrips {
   void move_with_remapped_gradient(const StripColumns<D>& columns, Real dt) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs)
-      for_each_pack(run, columns.x, of_.remapped, [&](std::size_t i, int count, const Pack(&)[D]) {
+      for_each_pack(run, columns.x, of_.remapped, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<true, true>(count);
         store_gradient(i, count, seen, columns.L);
         store_place(columns, i, count, seen.change, dt);
@@ -171,7 +168,7 @@ class DirectStrips {
   {
     for (const CellRun<D>& run : scratch_.runs) {
       at_.sums.clear(K::max_nodes);
-      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count, const Pack(&)[D]) {
+      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<increments, affine>(count);
         if constexpr (affine) {
           store_gradient(i, count, seen, columns.C);

@@ -1,6 +1,10 @@
 #pragma once
 // What a sweep computes of the particles of one strip on its way, and where they are in their cells.
+#include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -118,6 +122,17 @@ class StripScratch {
   AlignedNumbers memory_;
   std::size_t room_ = 0;
 };
+
+/// The mass of the lightest particle of a run that stays in its cell [kg]; nothing if none does.
+template <int D>
+std::optional<float> lightest_of(const CellRun<D>& run, const StripColumn<Real>& mass, const StripScratch<D>& scratch) noexcept
+{
+  float lightest = std::numeric_limits<float>::infinity();
+  for (std::size_t i = run.begin; i < run.end; ++i)
+    if (scratch.stays[i] != 0)
+      lightest = std::min(lightest, static_cast<float>(mass.first[i]));
+  return std::isfinite(lightest) ? std::optional(lightest) : std::nullopt;
+}
 
 // What finds or adds contributions exists once, in no inlined or specialised copies: they must be bitwise identical wherever a particle is
 // summed, and a compiler may round a b + c differently in each copy.

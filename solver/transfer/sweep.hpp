@@ -267,8 +267,7 @@ class BlockSweep {
   void deposit(std::size_t key, Index number, const StripColumns<D>& columns, Real time)
   {
     const std::size_t n = scratch_.runs.back().end;
-    if (columns.applied)
-      find_forces(m_.problem.loads, time, m_.state.stage.ramp(time), m_.work.carriers, columns, n);
+    find_forces(m_, time, columns, n);
     find_shares(columns.x, scratch_);
     auto run = scratch_.runs.begin();
     for (const Index i : scratch_.left) {

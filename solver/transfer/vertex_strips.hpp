@@ -244,15 +244,12 @@ TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n,
   const std::span<Row> rows = blocks.rows(block);
   CornerSums<D, Of> sums;
   for (const CellRun<D>& run : scratch.runs) {
-    float lightest = NodeSum<D>::unseen;
-    for (std::size_t i = run.begin; i < run.end; ++i)
-      if (scratch.stays[i] != 0)
-        lightest = std::min(lightest, static_cast<float>(columns.mass.first[i]));
-    if (!(lightest < NodeSum<D>::unseen))
+    const auto lightest = lightest_of(run, columns.mass, scratch);
+    if (!lightest)
       continue;
     scratch.ahead.next();
     sum_run(run, scratch, sums);
-    add_to<affine, loaded>(sums, *run.frame, rows, blocks.slots(run.frame->cell), lightest);
+    add_to<affine, loaded>(sums, *run.frame, rows, blocks.slots(run.frame->cell), *lightest);
     if constexpr (with_moments) {
       CellMoments<D>& cell = moments[static_cast<std::size_t>(run.frame->cell)];
       for (int a = 0; a <= D; ++a)

@@ -22,7 +22,7 @@ std::vector<Real> read_by_observers(const RunView<D>& view)
     const int width = view.state.materials[key / static_cast<std::size_t>(view.order.blocks)].history.width();
     for_each_particle(view, key, [&](const auto& p) {
       all.insert(all.end(), {static_cast<Real>(p.id()), p.mass(), p.volume0()});
-      add(p.x()), add(p.displacement()), add(p.v()), add(p.stress()), add(p.load());
+      add(p.x()), add(p.displacement()), add(p.v()), add(p.stress());
       for (int k = 0; k < width; ++k)
         all.push_back(p.history(k));
     });
