@@ -21,7 +21,7 @@ struct RunView {
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
   /// Loads that acted on particles in the last step, of each body in each block (CellOrder::key()); empty in scenes without such loads.
-  std::span<const ParticleLoadSums<D>> loads;
+  std::span<const ParticleLoadSums<D>> loads = {};
   const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
   std::function<void()> fetch_particles = [] {};  ///< to be called before particles are read during a stage
 };
