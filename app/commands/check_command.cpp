@@ -156,6 +156,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   const Index particles = setup.n_particles, cells = mesh.n_cells(), nodes = mesh.n_nodes();
   const Real duration = total_duration(setup), passage = passage_time<D>(setup, upright_of(scene).template head<D>());
   const std::vector<Stage> stages = setup.stages;
+  const std::string transfer = describe(setup.conditions.transfer);
   const std::string terrain = terrain_in_words(mesh, "  ");
   std::string bodies;
   for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
@@ -172,7 +173,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   for (const std::vector<std::string>& some : {warnings, warnings_of(cost.shared_nodes, names)})
     for (const std::string& warning : some)
       fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, cells, nodes, particles,
+  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, transfer, cells, nodes, particles,
              terrain, bodies);
   if (const std::string contacts = contacts_in_words(cost.shared_nodes, names); !contacts.empty())
     fmt::print("  {}\n", contacts);

@@ -184,8 +184,7 @@ RunSummary begin_summary(const Scene& scene, const Mesh<D>& mesh, std::uint64_t 
   s.message = message_before_the_end;
   s.dimension = scene.dimension;
   s.kernel = scene.kernel;
-  s.transfer = fmt::format("{}{}", enum_names(scene.transfer.scheme)[static_cast<std::size_t>(scene.transfer.scheme)],
-                           setup.conditions.transfer.uses_musl() ? ", musl" : "");
+  s.transfer = describe(setup.conditions.transfer);
   s.ranks.count = world().size();
   s.threads = threads();
   s.mesh_nodes = mesh.n_nodes();

@@ -1,6 +1,7 @@
 #include "app/setup/setup.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/observers/field_columns.hpp"
 #include "app/observers/history.hpp"
@@ -22,6 +23,18 @@ std::string describe(const OriginSummary& origin)
   std::string text = fmt::format("  from {}, step {}, t = {:.6g} s of \"{}\":\n", origin.file, origin.step, origin.time, origin.title);
   for (const auto& [body, from, particles] : origin.bodies)
     text += fmt::format("    body \"{}\": the {} particles of \"{}\"\n", body, particles, from);
+  return text;
+}
+
+std::string describe(const TransferOptions& transfer)
+{
+  std::string text(enum_names(transfer.scheme)[static_cast<std::size_t>(transfer.scheme)]);
+  if (transfer.uses_musl())
+    text += ", musl";
+  if (transfer.pic_damping_time)
+    text += fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
+  if (transfer.pic_damping_crossings)
+    text += fmt::format(", damped in {:.6g} crossing times of a cell", *transfer.pic_damping_crossings);
   return text;
 }
 
@@ -149,6 +162,31 @@ void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
     setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
 }
 
+/// sqrt(h/g) [s], in which a body that falls from rest covers half of h, the median altitude of the cells with particles [m]; 0 without
+/// gravity [m/s^2].
+template <int D>
+Real fall_time(const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Real gravity)
+{
+  std::vector<Real> altitudes;
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    if (has_particles(c))
+      altitudes.push_back(mesh.altitude(c));
+  if (altitudes.empty() || gravity <= 0)
+    return 0;
+  const auto median = altitudes.begin() + static_cast<std::ptrdiff_t>(altitudes.size() / 2);
+  std::ranges::nth_element(altitudes, median);
+  return std::sqrt(*median / gravity);
+}
+
+/// Whether a body has a law that dissipates, in any stage.
+template <int D>
+bool any_body_flows(const Setup<D>& setup)
+{
+  const auto dissipates = [](const Material& one) { return one.law().description().scalar_variable("plastic_work").has_value(); };
+  return std::ranges::any_of(setup.state.materials, dissipates) ||
+         std::ranges::any_of(setup.laws, [&](const auto& of_stage) { return std::ranges::any_of(of_stage, dissipates); });
+}
+
 /// Sections that leave the mesh, walls of the history that have no area.
 template <int D>
 void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravity, SceneErrorCollector& errors)
@@ -205,7 +243,6 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, errors);
   ranks.agree(Communicator::caught([&] { errors.throw_if_any(); }));
 
-  setup.conditions.transfer = scene.transfer.with_default_damping();
   setup.conditions.exits.policy = scene.on_exit;
   setup.limits.cfl = scene.time.cfl.value();
   setup.limits.longest = scene.time.max_step.value_or(setup.limits.longest);
@@ -216,6 +253,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
     setup.state.particles.x0 = setup.state.particles.x;
   setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);
+  setup.conditions.transfer = scene.transfer.with_damping(
+      fall_time(mesh, has_particles, setup.conditions.loads.gravity.acceleration.norm()), any_body_flows(setup));
   setup.from_files = digest_of_files(setup);
   return setup;
 }

@@ -46,6 +46,9 @@ Vec<D> vector_of(const std::vector<Real>& numbers)
 /// A line for each body that comes from another run, and where that is.
 std::string describe(const OriginSummary& origin);
 
+/// The transfer of a run in words, with its damping.
+std::string describe(const TransferOptions& transfer);
+
 /// As many threads as were asked for, or else as the scene says, or all that this rank has for itself.
 void take_threads(std::optional<int> asked, const Scene& scene);
 

@@ -41,6 +41,8 @@ class Rules : private SceneRuleBase {
     only_of("projected", scene_.projected.has_value());
     if (scene_.kernel == "projected" && scene_.transfer.scheme == Scheme::apic)
       add("transfer.scheme", "apic takes its matrix from the weights of particles, which projected does not make; take tpic or aflip");
+    if (scene_.transfer.pic_damping_fall_times && !against_gravity(scene_))
+      add("transfer.pic_damping_fall_times", "it counts in sqrt(h/g), and the scene has no gravity; give pic_damping_crossings");
   }
 
   void time()

@@ -23,6 +23,7 @@ struct TransferOptions {
   std::optional<bool> musl{};                   ///< see uses_musl()
   std::optional<Real> pic_damping_time{};       ///< flip, aflip: each step takes the share dt/time of the velocity from the nodes [s]
   std::optional<Real> pic_damping_crossings{};  ///< the same, time counted in the shortest in which a wave crosses a cell [-]
+  std::optional<Real> pic_damping_fall_times{};      ///< the same, time counted in sqrt(h/g), see fall_time() in app/setup [-]
   SourceLocation where{};
   static constexpr auto fields()
   {
@@ -34,14 +35,19 @@ struct TransferOptions {
         optional("pic_damping_time", &TransferOptions::pic_damping_time, positive, "s",
                  "flip and aflip: share dt/time of the nodes' velocity in each step; default none"),
         optional("pic_damping_crossings", &TransferOptions::pic_damping_crossings, positive, "-",
-                 "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip")};
+                 "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip, but see "
+                 "pic_damping_fall_times"),
+        optional("pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
+                 "the same, time counted in sqrt(h/g), h the median altitude of the cells with particles at the start and g gravity; default 1 "
+                 "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs")};
   }
   void check(std::vector<std::string>& problems) const
   {
-    if ((pic_damping_time || pic_damping_crossings) && !increments())
-      problems.emplace_back("pic_damping_time and pic_damping_crossings are for schemes flip and aflip only");
-    if (pic_damping_time && pic_damping_crossings)
-      problems.emplace_back("give pic_damping_time or pic_damping_crossings, not both");
+    const int given = (pic_damping_time ? 1 : 0) + (pic_damping_crossings ? 1 : 0) + (pic_damping_fall_times ? 1 : 0);
+    if (given > 0 && !increments())
+      problems.emplace_back("pic_damping_time, pic_damping_crossings and pic_damping_fall_times are for schemes flip and aflip only");
+    if (given > 1)
+      problems.emplace_back("give one of pic_damping_time, pic_damping_crossings and pic_damping_fall_times");
   }
 
   bool affine() const noexcept { return scheme != Scheme::flip; }
@@ -58,12 +64,19 @@ struct TransferOptions {
       return crossing > 0 ? std::min(dt / (*pic_damping_crossings * crossing), Real{1}) : Real{0};
     return pic_damping_time ? std::min(dt / *pic_damping_time, Real{1}) : Real{0};
   }
-  /// These options, with the damping that a scheme has unless another is given (measured: docs/reference/kernels.md).
-  TransferOptions with_default_damping() const noexcept
+  /// These options, with the damping that a scheme has unless another is given (measured: docs/development/kernels.md).  `fall` is sqrt(h/g)
+  /// [s], 0 without gravity; `flows` says whether a body has a law that dissipates.
+  TransferOptions with_damping(Real fall, bool flows) const noexcept
   {
     TransferOptions all = *this;
-    if (scheme == Scheme::aflip && !pic_damping_time && !pic_damping_crossings)
-      all.pic_damping_crossings = 25;
+    if (scheme == Scheme::aflip && !pic_damping_time && !pic_damping_crossings && !pic_damping_fall_times) {
+      if (fall > 0 && flows)
+        all.pic_damping_fall_times = 1;
+      else
+        all.pic_damping_crossings = 25;
+    }
+    if (all.pic_damping_fall_times)
+      all.pic_damping_time = *all.pic_damping_fall_times * fall;
     return all;
   }
 };

@@ -82,7 +82,7 @@ TransferOptions bench_transfer(const std::string& name)
   for (std::size_t i = 0; i < enum_names(Scheme{}).size(); ++i)
     if (enum_names(Scheme{})[i] == name)
       transfer.scheme = static_cast<Scheme>(i);
-  return transfer.with_default_damping();
+  return transfer.with_damping(0, false);
 }
 
 /// Walls and loads, by what the block is to have besides.

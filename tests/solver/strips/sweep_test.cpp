@@ -15,7 +15,7 @@ std::vector<TransferOptions> all_transfers()
   for (const Scheme scheme : {Scheme::flip, Scheme::apic, Scheme::tpic, Scheme::aflip})
     for (const bool musl : {false, true}) {
       TransferOptions one{.scheme = scheme, .musl = musl};
-      all.push_back(one.with_default_damping());
+      all.push_back(one.with_damping(0, false));
     }
   return all;
 }

@@ -97,6 +97,28 @@ TEST(Transfer, TheShareOfPicIsTheStepByItsTimeAndAtMostOne)
   EXPECT_EQ(transfer.pic_share(0.5, 0), 0) << "not known";
 }
 
+TEST(Transfer, DampingOfAflipFollowsTheFallOfABodyThatFlowsAndTheWaveElsewhere)
+{
+  const auto damping = [](const TransferOptions& given, Real fall, bool flows) {
+    const TransferOptions all = given.with_damping(fall, flows);
+    return std::pair{all.pic_damping_time.value_or(0), all.pic_damping_crossings.value_or(0)};
+  };
+  const TransferOptions aflip, flip{.scheme = Scheme::flip};
+  EXPECT_EQ(damping(aflip, 0.5, true), (std::pair<Real, Real>{0.5, 0}));
+  EXPECT_EQ(damping(aflip, 0.5, false), (std::pair<Real, Real>{0, 25})) << "only elastic bodies";
+  EXPECT_EQ(damping(aflip, 0, true), (std::pair<Real, Real>{0, 25})) << "no gravity";
+  EXPECT_EQ(damping(flip, 0.5, true), (std::pair<Real, Real>{0, 0}));
+  TransferOptions given;
+  given.pic_damping_fall_times = 3;
+  EXPECT_EQ(damping(given, 0.5, false), (std::pair<Real, Real>{1.5, 0}));
+  given = {};
+  given.pic_damping_crossings = 100;
+  EXPECT_EQ(damping(given, 0.5, true), (std::pair<Real, Real>{0, 100}));
+  given = {};
+  given.pic_damping_time = 7;
+  EXPECT_EQ(damping(given, 0.5, true), (std::pair<Real, Real>{7, 0}));
+}
+
 TEST(Transfer, KindsOfSchemes)
 {
   const auto of = [](Scheme scheme, bool musl) {
