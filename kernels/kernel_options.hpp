@@ -20,12 +20,19 @@ struct UmlsOptions {
   }
 };
 
+enum class AtInterfaces : std::uint8_t { separate, shared };
+constexpr std::array<std::string_view, 2> enum_names(AtInterfaces) { return {"separate", "shared"}; }
+
 /// The options of the kernel `projected`.
 struct ProjectedOptions {
   Real alpha = 0.5;  ///< prior weight of neighbours relative to that of the node itself [-]
+  AtInterfaces interfaces = AtInterfaces::separate;
   static constexpr auto fields()
   {
-    return std::tuple{optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own")};
+    return std::tuple{optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own"),
+                      optional_choice("interfaces", &ProjectedOptions::interfaces,
+                                      "separate (at nodes between bodies of different materials each material has a gradient of its own) or "
+                                      "shared (one gradient of all, as for a single material: interfaces are too strong by about a cell)")};
   }
 };
 

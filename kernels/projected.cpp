@@ -5,7 +5,9 @@ namespace talus {
 
 template <int D>
 Projected<D>::Projected(const Mesh<D>& mesh, const Options& options) : Projected(mesh, maxent_values(mesh, options.alpha))
-{}
+{
+  separates_ = options.interfaces == AtInterfaces::separate;
+}
 
 template <int D>
 Projected<D>::Projected(const Mesh<D>& mesh, MaxentValues rows)

@@ -74,6 +74,7 @@ Material law_in_force(const Scene& scene, const BodySpec& body, Index stage)
     material.weaken(factor);
   material.viscosity = spec.bulk_viscosity;
   material.averages_volume = body.f_bar.value_or(material.law().description().is_isochoric);
+  material.kind = static_cast<Index>(&spec - scene.materials.data());
   material.group = group_of_averages(scene, body, spec, stage);
   return material;
 }

@@ -13,7 +13,7 @@ Material::Material(std::shared_ptr<const ConstitutiveLaw> law, Index begin_row, 
 Material Material::without_particles() const
 {
   Material bare(law_, 0, 0, name, where);
-  bare.viscosity = viscosity, bare.averages_volume = averages_volume, bare.group = group;
+  bare.viscosity = viscosity, bare.averages_volume = averages_volume, bare.group = group, bare.kind = kind;
   return bare;
 }
 

@@ -19,6 +19,7 @@ class Material {
   std::string name{};
   std::optional<BulkViscosity> viscosity{};
   bool averages_volume = false;  ///< F-bar through nodes
+  Index kind = none;             ///< bodies of the same kind are of one material; `none`: the body alone
   Index group = none;            ///< F-bar: bodies of the same group are averaged as one; `none`: the body alone
   HistoryRows history{};
 

@@ -12,7 +12,7 @@
 namespace talus {
 
 /// The kind of a message; messages of different kinds do not mix.
-enum class MessageTag : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, small_mass_nodes = 6, hosts = 7 };
+enum class MessageTag : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, small_mass_nodes = 6, hosts = 7, cells = 8 };
 
 /// Selects the parts of a row to be sent: the whole row.
 struct Whole {
@@ -230,6 +230,29 @@ inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& subdom
     all[q].rank = static_cast<int>(q);
     for (const Index whole : asked[q])
       all[q].out.push_back(subdomain.local_node(whole));
+    if (!all[q].out.empty() || !all[q].in.empty())
+      borders.push_back(std::move(all[q]));
+  }
+  return HaloExchange(ranks, topic, std::move(borders));
+}
+
+/// The exchange of the values of all cells of the part, from their owners to the ranks that hold copies.  Collective.
+inline HaloExchange copies_of_cells(Communicator& ranks, const Subdomain& subdomain, MessageTag topic, Index n_cells)
+{
+  std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Index>> asked(all.size());  // numbers in the whole mesh
+  for (Index c = 0; c < n_cells; ++c)
+    if (!subdomain.owns_cell(c)) {
+      const auto owner = static_cast<std::size_t>(subdomain.rank_of_block[static_cast<std::size_t>(c / block_cells)]);
+      all[owner].in.push_back(c);
+      asked[owner].push_back(subdomain.whole_cell(c));
+    }
+  asked = exchange_rows(ranks, asked);
+  std::vector<NeighbourRank> borders;
+  for (std::size_t q = 0; q < all.size(); ++q) {
+    all[q].rank = static_cast<int>(q);
+    for (const Index whole : asked[q])
+      all[q].out.push_back(subdomain.local_cell(whole));
     if (!all[q].out.empty() || !all[q].in.empty())
       borders.push_back(std::move(all[q]));
   }

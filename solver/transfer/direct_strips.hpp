@@ -90,6 +90,7 @@ class DirectStrips {
 
   DirectStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
 
+  void take(Index) const noexcept {}  ///< all bodies alike
   void open(CellFrame<D>&) const noexcept {}
   void clear(Index) const noexcept {}
   void find_gradients(const StripColumn<Vec<D>>&, bool, StripColumns<D>&) const noexcept {}

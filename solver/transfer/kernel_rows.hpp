@@ -6,6 +6,7 @@
 #include "kernels/kernel.hpp"
 #include "solver/halo/halo.hpp"
 #include "solver/transfer/cell_moments.hpp"
+#include "solver/transfer/interfaces.hpp"
 #include "solver/transfer/projected_nodes.hpp"
 
 namespace talus {
@@ -15,6 +16,7 @@ struct GhostNodes {
   HaloExchange sums;    ///< sums on linear shape functions that own nodes need
   HaloExchange motion;  ///< motion of nodes, or of projected nodes, that own particles use
   HaloExchange felt;    ///< accelerations, for kernels with node operators
+  HaloExchange cells;   ///< sums of cells over groups of bodies, for kernels with node operators
 };
 
 template <int D, Kernel<D> K>
@@ -31,6 +33,7 @@ struct KernelRows {
   Rows<CellMoments<D>> moments;         ///< MUSL, if weights are barycentric coordinates: of each cell
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
+  Interfaces<D> interfaces;
   std::vector<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const Options<K>& options)
@@ -49,7 +52,8 @@ struct KernelRows {
   {
     const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
     std::int64_t bytes =
-        of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot);
+        of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot) +
+        static_cast<std::int64_t>(interfaces.bytes());
     if constexpr (projects)
       bytes += static_cast<std::int64_t>(kernel.node_operators().size_bytes());
     return bytes;

@@ -4,6 +4,7 @@
 #include "kernels/node_operators.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/owned_nodes.hpp"
+#include "solver/transfer/interfaces.hpp"
 
 namespace talus {
 
@@ -26,9 +27,9 @@ struct ProjectedNodes {
 ///
 /// with the affine moment K and the tension Z.  p_n refers to c_n = sum_v S_nv x_v, the position at which the row of n reads values: so
 /// momentum is conserved and linear fields are passed on exactly, for any S.  Nodes that are not `own` are left out.  The reference for the
-/// mass of a node is the mean mass of the linear shape functions around.
+/// mass of a node is the mean mass of the linear shape functions around.  At nodes between materials Z_n D_nv is the sum over these.
 template <int D>
-void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
+void project_sums(const NodeOperators<D>& operators, const Interfaces<D>& interfaces, const Mesh<D>& mesh, const OwnNodes& own,
                   const std::vector<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, std::vector<NodeSum<D>>& sum)
 {
   in_use.for_each([&](Index v) {
@@ -46,7 +47,8 @@ void project_sums(const NodeOperators<D>& operators, const Mesh<D>& mesh, const 
       total.mass += S * projected_node.mass;
       total.lightest = std::min(total.lightest, projected_node.lightest);
       total.momentum += S * projected_node.momentum_about(mesh.node(v) - operators.centre(n));
-      total.force += S * projected_node.force - projected_node.tension * gradient;
+      total.force += S * projected_node.force;
+      total.force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : projected_node.tension * gradient;
     });
     total.gross = static_cast<float>(around / ring);
   });

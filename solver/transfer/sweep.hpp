@@ -81,7 +81,7 @@ class BlockSweep {
       const auto all = strips_.arriving(strips_.key(body, block_));
       scratch_.arrivals.clear();
       std::copy_if(all.begin(), all.end(), std::back_inserter(scratch_.arrivals), [](const Arrival& one) { return !one.is_summed; });
-      add_arrivals(scratch_.arrivals);
+      add_arrivals(body, scratch_.arrivals);
     }
   }
 
@@ -134,6 +134,7 @@ class BlockSweep {
   void open_cells(std::size_t key, Index number)
   {
     const Strip& strip = strips_.strips(key)[static_cast<std::size_t>(number)];
+    through_.take(strips_.body(key));
     begin_runs(static_cast<std::size_t>(strip.n));
     std::size_t begin = 0;
     for (Index c = 0; c < strip_cells; ++c) {
@@ -148,13 +149,14 @@ class BlockSweep {
   {
     for (Index body = 0; body < m_.n_bodies(); ++body) {
       strips_.find_cells(m_.problem.mesh, m_.problem.locator, strips_.key(body, block_), scratch_.arrivals);
-      add_arrivals(scratch_.arrivals);
+      add_arrivals(body, scratch_.arrivals);
     }
   }
-  void add_arrivals(std::span<const Arrival> arriving)
+  void add_arrivals(Index body, std::span<const Arrival> arriving)
   {
     if (arriving.empty())
       return;
+    through_.take(body);
     of_.blocks.occupied[static_cast<std::size_t>(block_)] = 1;
     const StripColumns<D> columns = copy(arriving);
     begin_runs(arriving.size());

@@ -50,6 +50,7 @@ class TransferOf final : public Transfer<D> {
       rows_.ghosts.sums = copy(MessageTag::sums, collected);
       rows_.ghosts.motion = copy(MessageTag::motion, spread_by_rings(problem.mesh, read, 1));
       rows_.ghosts.felt = copy(MessageTag::felt, spread_by_rings(problem.mesh, problem.own.owned, 2));
+      rows_.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
       rows_.projected.find_late(problem.mesh, problem.own);
     } else {
       rows_.ghosts.motion = copy(MessageTag::motion, read);
@@ -70,6 +71,8 @@ class TransferOf final : public Transfer<D> {
       rows_.gradient_of_remapped.resize(rows_.projected.motion.size());
       rows_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
     }
+    if constexpr (Rows::projects)
+      rows_.interfaces.begin(m.problem.mesh, rows_.kernel.separates_materials() ? m.state.materials : std::vector<Material>{});
     for_each_reading_block(
         rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, b).sum(); });
   }
@@ -90,7 +93,8 @@ class TransferOf final : public Transfer<D> {
     const auto find_nodes = [&] { nodes.in_use.find(rows_.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
     if constexpr (Rows::projects) {
       assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, find_nodes);
-      project_sums(rows_.kernel.node_operators(), m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use, nodes.sum);
+      rows_.interfaces.find_rows(m.problem.mesh, rows_.ghosts.cells);
+      project_sums(rows_.kernel.node_operators(), rows_.interfaces, m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use, nodes.sum);
     } else {
       assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
     }
@@ -116,6 +120,8 @@ class TransferOf final : public Transfer<D> {
     project_to_particles(m, kick);
     if (musl)
       find_remapped_gradient(m, kick.to, pic);
+    if constexpr (Rows::projects)
+      rows_.interfaces.find_gradients(m.problem.mesh, musl ? rows_.remapped : m.work.nodes.motion);
     m.work.strips->drop_loaded_gradients();
     const auto sweep = [&](const SweepParts& parts) {
       for_each_reading_block(

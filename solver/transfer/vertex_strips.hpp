@@ -51,7 +51,8 @@ std::array<Vec<D>, D + 1> arms_of(const Mesh<D>& mesh, const KernelRows<D, K>& o
 template <int D, Kernel<D> K>
 class VertexMotion {
  public:
-  VertexMotion(const Model<D>& m, const KernelRows<D, K>& of, Index cell) noexcept
+  /// `body` is that of the particles, `none` if their strain is not asked for.
+  VertexMotion(const Model<D>& m, const KernelRows<D, K>& of, Index body, Index cell) noexcept
   {
     const auto nodes = m.problem.mesh.cell(cell);
     const bool musl = m.problem.transfer.uses_musl();
@@ -60,7 +61,9 @@ class VertexMotion {
         const auto n = static_cast<std::size_t>(nodes[a]);
         const ProjectedNodeMotion<D>& motion = of.projected.motion[n];
         v[a] = &motion.v, change[a] = &motion.change, L[a] = &motion.L;
-        remapped[a] = musl ? &of.gradient_of_remapped[n] : L[a];
+        strain[a] = musl ? &of.gradient_of_remapped[n] : L[a];
+        if (body != none && of.interfaces.is_mixed(nodes[a]))
+          strain[a] = &of.interfaces.gradient(nodes[a], body);
       }
     } else {
       const auto& gradients = m.problem.mesh.gradients(cell);
@@ -69,7 +72,7 @@ class VertexMotion {
       for (std::size_t a = 0; a <= D; ++a) {
         const auto n = static_cast<std::size_t>(nodes[a]);
         const NodeMotion<D>& motion = m.work.nodes.motion[n];
-        v[a] = &motion.v, change[a] = &motion.change, L[a] = &of_cell_[0], remapped[a] = &of_cell_[musl ? 1 : 0];
+        v[a] = &motion.v, change[a] = &motion.change, L[a] = &of_cell_[0], strain[a] = &of_cell_[musl ? 1 : 0];
         of_cell_[0] += motion.v * gradients[a].transpose();
         if (musl)
           of_cell_[1] += of.remapped[n].v * gradients[a].transpose();
@@ -80,19 +83,20 @@ class VertexMotion {
   VertexMotion& operator=(const VertexMotion&) = delete;
 
   std::array<const Vec<D>*, D + 1> v, change;    ///< [m/s]
-  std::array<const Mat<D>*, D + 1> L, remapped;  ///< velocity gradients, and those of the remapped velocities under MUSL [1/s]
+  /// Velocity gradients, and those that strain the particles: of the remapped velocities under MUSL, and of their group [1/s].
+  std::array<const Mat<D>*, D + 1> L, strain;
 
  private:
   Mat<D> of_cell_[2];
 };
 
-/// Velocity gradients at positions x: L, and with `with_affine` the affine field C.  Under MUSL L is of the remapped velocities.
+/// Velocity gradients of particles of a body at positions x: L, which strains them, and with `with_affine` the affine field C.
 template <int D, Kernel<D> K>
-TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of, const StripColumn<Vec<D>>& x, bool with_affine,
-                                   StripScratch<D>& scratch) noexcept
+TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of, Index body, const StripColumn<Vec<D>>& x,
+                                   bool with_affine, StripScratch<D>& scratch) noexcept
 {
   for (const CellRun<D>& run : scratch.runs) {
-    const VertexMotion<D, K> motion(m, of, run.frame->cell);
+    const VertexMotion<D, K> motion(m, of, body, run.frame->cell);
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       Pack share[D + 1];
       run.frame->shares(x, i, share);
@@ -106,7 +110,7 @@ TALUS_ONE_COPY void read_gradients(const Model<D>& m, const KernelRows<D, K>& of
           store_loose(to.component(k) + i, sum);
         }
       };
-      store_sum(motion.remapped, scratch.L);
+      store_sum(motion.strain, scratch.L);
       if (with_affine)
         store_sum(motion.L, scratch.C);
     }
@@ -233,11 +237,24 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
   }
 }
 
-/// Adds the contributions of the first n particles to the rows of their block, and to the moments of their cells; find_shares() has been
-/// called.
+/// Adds the particles of a run to the sums of their group in the cell; `of` are the sums of their contributions.
+template <class Of, int D>
+void add_to(const CornerSums<D, Of>& of, const StripColumn<Real>& volume, const CellRun<D>& run, const StripScratch<D>& scratch,
+            CellGroupSum<D>& sum) noexcept
+{
+  for (std::size_t a = 0; a <= D; ++a) {
+    add_numbers<Symmetric<D>::size>(of.of[a] + Of::tension, sum.tension[a].entry);
+    for (std::size_t i = run.begin; i < run.end; ++i)
+      sum.volume[a] += scratch.share[a][i] * volume.first[i];
+  }
+}
+
+/// Adds the contributions of the first n particles, of a body, to the rows of their block, to the moments of their cells and to the sums
+/// of its group; find_shares() has been called.
 template <bool affine, bool loaded, bool with_moments, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
-                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments) noexcept
+                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body,
+                                  Interfaces<D>& interfaces) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments>;
   find_contributions<affine, loaded, with_moments>(columns, n, scratch);
@@ -255,6 +272,8 @@ TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n,
       for (int a = 0; a <= D; ++a)
         add_numbers<CellMoments<D>::numbers>(sums.of[a] + Of::momentum, cell.of[a]);
     }
+    if (interfaces.any())
+      add_to(sums, columns.volume, run, scratch, interfaces.sum(body, run.frame->cell));
   }
 }
 
@@ -268,19 +287,22 @@ class VertexStrips {
   VertexStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
 
   void open(CellFrame<D>& frame) const noexcept { frame.arms = arms_of(m_.problem.mesh, of_, frame.cell, frame.origin); }
+  /// Says of which body the particles are that come next.
+  void take(Index body) noexcept { body_ = body; }
   /// Clears what is summed apart from the rows of the block.
   void clear(Index block) noexcept
   {
+    const Index first = block * block_cells, last = std::min(first + block_cells, m_.problem.mesh.n_cells());
+    of_.interfaces.clear(first, last);
     if (!m_.problem.transfer.uses_musl())
       return;
-    const Index first = block * block_cells, last = std::min(first + block_cells, m_.problem.mesh.n_cells());
     std::fill(of_.moments.begin() + first, of_.moments.begin() + last, CellMoments<D>{});
   }
   /// Sets L and, if asked for and different, C of the columns to velocity gradients at positions x in the cells of the open strip.
   void find_gradients(const StripColumn<Vec<D>>& x, bool with_affine, StripColumns<D>& columns) noexcept
   {
     with_affine = with_affine && m_.work.strips->layout().has_affine();
-    read_gradients(m_, of_, x, with_affine, scratch_);
+    read_gradients(m_, of_, body_, x, with_affine, scratch_);
     columns.L = scratch_.L;
     if (with_affine)
       columns.C = scratch_.C;
@@ -305,16 +327,16 @@ class VertexStrips {
   void add(const StripColumns<D>& columns, std::size_t n, Index block)
   {
     if (m_.problem.transfer.uses_musl())
-      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments);
+      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces);
     else
-      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments);
+      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces);
   }
   /// Velocities of the particles and their new positions.
   template <bool increments>
   void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs) {
-      const VertexMotion<D, K> motion(m_, of_, run.frame->cell);
+      const VertexMotion<D, K> motion(m_, of_, none, run.frame->cell);
       for (std::size_t i = run.begin; i < run.end; i += pack_size) {
         scratch_.ahead.next();
         const VecOf<D> x = columns.x.load(i);
@@ -347,6 +369,7 @@ class VertexStrips {
   const Model<D>& m_;
   KernelRows<D, K>& of_;
   StripScratch<D>& scratch_;
+  Index body_ = none;
 };
 
 /// MUSL: adds the momentum of the new velocities to the rows of a block.
@@ -366,7 +389,7 @@ void add_new_momentum(const Model<D>& m, KernelRows<D, K>& of, Index block, Real
     if (!(mass > 0))  // no particles: not all coordinates of one are zero
       continue;
     const auto arms = arms_of(m.problem.mesh, of, c, centroid(m.problem.mesh, c));
-    const VertexMotion<D, K> motion(m, of, c);
+    const VertexMotion<D, K> motion(m, of, none, c);
     if (m.problem.transfer.affine())
       add_new_momentum<true>(moments, arms, motion, pic, rows, of.blocks.slots(c));
     else

@@ -19,12 +19,17 @@ TYPED_TEST_SUITE(ProjectedIn, Dimensions);
 
 /// A ball that cuts cells, with random stress and velocity in its particles; every particle's cell is known.
 template <class S>
-Model<S::D> ball()
+Model<S::D> ball(bool of_two_materials = false)
 {
   constexpr int D = S::D;
   auto m = make_model<Projected<D>>(unit_box<D>(D == 2 ? 10 : 6, 0.2));
   m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
-  add_body<D>(m, "ball", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.4; });
+  const auto inside = [](const Vec<D>& x) { return (x - Vec<D>::Constant(0.5)).norm() < 0.4; };
+  const auto on_top = [](const Vec<D>& x) { return x[D - 1] + 0.3 * x[0] > 0.65; };
+  for (const bool top : {true, false})
+    if (top || of_two_materials)
+      add_body<D>(m, top ? "top" : "bottom", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10,
+                  [&](const Vec<D>& x) { return inside(x) && (!of_two_materials || on_top(x) == top); });
   std::mt19937 random(1);
   std::uniform_real_distribution<Real> number(-1, 1);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
@@ -51,13 +56,29 @@ void read_random_motion(Model<D>& m)
       node.change[d] = node.v[d] = number(random);
 }
 
-TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
+/// Sums the particles on nodes, gives these a motion and lets the particles read it.  The stress of the particles is kept.
+template <int D, class SetMotion>
+void sum_and_read(Model<D>& m, SetMotion&& set_motion)
 {
-  constexpr int D = TypeParam::D;
-  auto m = ball<TypeParam>();
-  sum_on_nodes(m);
-  read_random_motion(m);
-  read_nodes(m, 0);
+  const auto stress = m.state.particles.stress;
+  begin_sweeps(m);
+  m.work.strips->send_leavers(m.problem.subdomain, m.work.migration);
+  m.transfer->particles_to_nodes(m);
+  m.transfer->assemble_nodes(m);
+  set_motion(m);
+  m.work.stress_sums.assign(m.work.strips->keys(), {});
+  m.transfer->nodes_to_particles(m, Kick{}, 0, {});
+  end_sweeps(m);
+  m.state.particles.stress = stress;
+}
+
+template <class S>
+void forces_do_the_work_that_strains_the_particles(bool of_two_materials)
+{
+  constexpr int D = S::D;
+  auto m = ball<S>(of_two_materials);
+  sum_and_read(m, read_random_motion<D>);
+  EXPECT_EQ(transfer_of<Projected<D>>(m).rows().interfaces.mixed_nodes() > 10, of_two_materials);
   Real power = 0, stress_power = 0, size = 0;
   for (std::size_t n = 0; n < m.work.nodes.sum.size(); ++n)
     power += m.work.nodes.sum[n].force.dot(m.work.nodes.motion[n].v);
@@ -68,6 +89,12 @@ TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
   }
   EXPECT_NEAR(power, -stress_power, 1e-13 * size);
   EXPECT_GT(size, 0.1);
+}
+
+TYPED_TEST(ProjectedIn, ForcesDoTheWorkThatStrainsTheParticles)
+{
+  for (const bool of_two_materials : {false, true})
+    forces_do_the_work_that_strains_the_particles<TypeParam>(of_two_materials);
 }
 
 TYPED_TEST(ProjectedIn, MomentumIsScatteredByTheTransposeOfTheGather)
@@ -91,14 +118,39 @@ TYPED_TEST(ProjectedIn, MomentumIsScatteredByTheTransposeOfTheGather)
 TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
 {
   constexpr int D = TypeParam::D;
-  auto m = ball<TypeParam>();
   const Mat<D> A = Mat<D>::Random();
-  sum_on_nodes(m);
-  for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n)
-    m.work.nodes.motion[static_cast<std::size_t>(n)].v = A * m.problem.mesh.node(n) + Vec<D>::Ones();
-  read_nodes(m, 0);
+  for (const bool of_two_materials : {false, true}) {
+    auto m = ball<TypeParam>(of_two_materials);
+    sum_and_read(m, [&](Model<D>& of) {
+      for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n)
+        of.work.nodes.motion[static_cast<std::size_t>(n)].v = A * of.problem.mesh.node(n) + Vec<D>::Ones();
+    });
+    for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
+      ASSERT_LT((m.state.particles.L[p] - A).norm(), 1e-12);
+  }
+}
+
+/// Bodies of different materials that meet at a boundary of cells: motion of one alone does not strain the other.
+TYPED_TEST(ProjectedIn, AMotionOfOneMaterialDoesNotStrainTheOther)
+{
+  constexpr int D = TypeParam::D;
+  auto m = make_model<Projected<D>>(unit_box<D>(D == 2 ? 8 : 4, 0.0));
+  m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  for (const bool top : {true, false})
+    add_body<D>(m, top ? "slide" : "base", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [&](const Vec<D>& x) { return (x[D - 1] > 0.5) == top; });
+  make_ready(m);
+  sum_and_read(m, [](Model<D>& of) {
+    for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n)
+      of.work.nodes.motion[static_cast<std::size_t>(n)].v = (of.problem.mesh.node(n)[D - 1] > 0.5 + 1e-9 ? 1 : 0) * Vec<D>::UnitX();
+  });
+  Real most = 0;
   for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
-    ASSERT_LT((m.state.particles.L[p] - A).norm(), 1e-12);
+    if (m.state.particles.x[p][D - 1] < 0.5) {
+      ASSERT_EQ(m.state.particles.L[p].norm(), 0) << "of the base";
+    } else {
+      most = std::max(most, m.state.particles.L[p].norm());
+    }
+  EXPECT_GT(most, 1);
 }
 
 /// A film of particles on the floor, a fiftieth of a cell thick, that is pulled along it and has ends: the nodes above it have hardly
