@@ -43,7 +43,7 @@ std::string print(const NumberLine& line)
 std::string short_number(const std::optional<Real>& value) { return value && !std::isnan(*value) ? fmt::format("{:.4g}", *value) : "-"; }
 
 /// A share in percent with two digits, in at most 7 characters; with its sign if `is_signed`.
-std::string percent(const std::optional<Real>& share, bool is_signed = false)
+std::string in_percent(const std::optional<Real>& share, bool is_signed = false)
 {
   constexpr Real least = 1e-4, tenth = 0.001, whole = 0.1, most = 9.99;
   if (!share || std::isnan(*share))
@@ -105,10 +105,10 @@ std::string print_numbers(const ConvergePlan& plan, std::span<const ConvergeNumb
     NumberLine line{csv_heading({number.name, number.unit}),
                     {},
                     word_of(judged.trend),
-                    percent(last_change(number), true),
+                    in_percent(last_change(number), true),
                     judged.order ? fmt::format("{:.1f}", *judged.order) : "-",
                     short_number(judged.extrapolated),
-                    percent(number.relative()),
+                    in_percent(number.relative()),
                     word_of(judged.verdict)};
     for (std::size_t k = 0; k < shown_levels; ++k)
       line.values[k] = short_number(number.values[first + k]);

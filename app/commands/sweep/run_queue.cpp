@@ -21,6 +21,8 @@ std::string remark(const CaseStatus& status)
   return status.state == CaseState::to_run && !status.why.empty() ? "; " + status.why : "";
 }
 
+std::string told_changes(const PlannedRun& run) { return run.changes.empty() ? "the scene as it is" : in_words(run); }
+
 }  // namespace
 
 RunQueue::RunQueue(QueueOptions options, std::vector<QueuedRun> queued, LookAgain look_again)
@@ -63,9 +65,8 @@ void RunQueue::start(std::size_t i)
   if (status.state == CaseState::not_ended && is_at_work(run))
     return say(i, "another process is at work on it");
   runs_.start(i, options_.scene, run, status);
-  const std::string changes = run.changes.empty() ? "as it is" : in_words(run);
-  say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins", changes,
-                     remark(status)));
+  say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins",
+                     told_changes(run), remark(status)));
 }
 
 /// Waits a little; handles runs that have ended.
@@ -101,7 +102,7 @@ void RunQueue::conclude(const std::vector<std::size_t>& chosen, const LookAgain&
   if (!failures_.empty()) {
     std::string text = fmt::format("{} of {} {} failed; {} repeats them", failures_.size(), chosen.size(), words.several, words.again);
     for (const auto& [i, message] : failures_)
-      text += fmt::format("\n  {} ({}): {}", queued_[i].name, in_words(*queued_[i].run), message);
+      text += fmt::format("\n  {} ({}): {}", queued_[i].name, told_changes(*queued_[i].run), message);
     throw RunError(text);
   }
   if (stopped > 0)
