@@ -4,6 +4,7 @@
 
 #include "app/commands/bench/bench_command.hpp"
 #include "app/commands/check_command.hpp"
+#include "app/commands/converge/converge_command.hpp"
 #include "app/commands/diff/diff_command.hpp"
 #include "app/commands/drive_command.hpp"
 #include "app/commands/fos/fos_command.hpp"
@@ -62,18 +63,20 @@ class ResultCommands {
   int status_ = 0;
 };
 
-/// The commands with many runs: sweep, fos, verify, tradeoff, bench.
+/// The commands with many runs: sweep, converge, fos, verify, tradeoff, bench.
 class StudyCommands {
  public:
   void add_to(CLI::App& app);
 
  private:
   void add_sweep(CLI::App& app);
+  void add_converge(CLI::App& app);
   void add_fos(CLI::App& app);
   void add_suite(CLI::App& app, const std::string& name, const std::string& help, SuiteOptions& options);
   void add_bench(CLI::App& app);
 
   SweepOptions sweep_;
+  ConvergeOptions converge_;
   FosOptions fos_;
   SuiteOptions verify_, tradeoff_;
   BenchOptions bench_;

@@ -4,15 +4,16 @@
 
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <numeric>
 
+#include "app/commands/sweep/run_queue.hpp"
 #include "app/commands/sweep/sweep_command.hpp"
 #include "app/commands/sweep/sweep_findings.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/version.hpp"
 #include "io/scene/reader.hpp"
-#include "io/system/signals.hpp"
 
 namespace talus {
 
@@ -26,97 +27,6 @@ fs::path default_sweep_folder(const fs::path& study)
   const fs::path folder = fs::absolute(study).lexically_normal().parent_path().filename();
   return fs::path("runs") / (study.filename() == "study.yaml" && !folder.empty() ? folder.string() + "_study" : study.stem().string());
 }
-
-/// Runs the cases.
-class Sweep {
- public:
-  Sweep(const SweepOptions& options, const SweepPlan& plan, const SideBySide& side, SweepTable& table)
-      : options_(options), plan_(plan), jobs_(side.jobs), table_(table), runs_(options.launcher, side.threads, plan.quick)
-  {}
-
-  /// Runs until all have ended, or a signal asks for the end.
-  void operator()(const std::vector<std::size_t>& chosen)
-  {
-    std::deque<std::size_t> waiting;
-    std::ranges::copy_if(chosen, std::back_inserter(waiting), [&](std::size_t i) { return table_.status(i).state != CaseState::done; });
-    const StopRequests requests;
-    while (runs_.count() > 0 || (!waiting.empty() && StopRequests::received().empty())) {
-      while (!waiting.empty() && runs_.count() < jobs_ && StopRequests::received().empty()) {
-        start(waiting.front());
-        waiting.pop_front();
-      }
-      if (!StopRequests::received().empty() && !std::exchange(told_to_end_, true))
-        runs_.ask_to_end();
-      look_after();
-    }
-    table_.update();
-    signal_ = StopRequests::received();
-  }
-
-  const std::map<std::size_t, std::string>& failures() const noexcept { return failures_; }
-  const std::string& signal() const noexcept { return signal_; }
-
- private:
-  void say(std::size_t i, const std::string& what) const
-  {
-    if (options_.quiet)
-      return;
-    fmt::print("case {}: {}\n", plan_.cases[i].number, what);
-    std::fflush(stdout);
-  }
-
-  void start(std::size_t i)
-  {
-    const SweepCase& one = plan_.cases[i];
-    const CaseStatus status = status_of(one, plan_.quick);  // another process may have run it in the meantime
-    if (status.state == CaseState::done)
-      return say(i, "is done");
-    if (status.state == CaseState::not_ended && is_at_work(one))
-      return say(i, "another process is at work on it");
-    runs_.start(i, scene_of(plan_.study), one, status);
-    say(i, fmt::format("{} ({}{})", status.goes_on_from ? fmt::format("goes on after t = {:.6g} s", *status.goes_on_from) : "begins",
-                       in_words(one), remark(status)));
-  }
-  /// The reason why existing results do not count.
-  static std::string remark(const CaseStatus& status)
-  {
-    const bool without = !status.goes_on_from && (status.state == CaseState::stopped || status.state == CaseState::not_ended);
-    if (without)
-      return "; what is there has no checkpoint to go on from";
-    return status.state == CaseState::to_run && !status.why.empty() ? "; " + status.why : "";
-  }
-
-  /// Waits a little; handles runs that have ended.
-  void look_after()
-  {
-    for (const ChildRuns::Ended& ended : runs_.look()) {
-      table_.update();
-      end_of(ended.number, ended.code, ended.seconds);
-    }
-  }
-
-  void end_of(std::size_t i, int code, Real seconds)
-  {
-    const CaseStatus& status = table_.status(i);
-    if (code == 0 && status.state == CaseState::done)
-      return say(i, fmt::format("done after {:.1f} s", seconds));
-    const bool before_its_first_step = runs_.ended_before_its_first_step(code);
-    if (code == run_was_stopped || before_its_first_step)
-      return say(i, before_its_first_step ? "ended before its first step"
-                                          : fmt::format("stopped at t = {:.6g} s", status.goes_on_from.value_or(0)));
-    failures_[i] = runs_.why(plan_.cases[i], code, status);
-    say(i, "FAILED, see below");
-  }
-
-  const SweepOptions& options_;
-  const SweepPlan& plan_;
-  std::size_t jobs_;
-  SweepTable& table_;
-  ChildRuns runs_;
-  std::map<std::size_t, std::string> failures_;
-  bool told_to_end_ = false;
-  std::string signal_;
-};
 
 /// The cases selected by the options.
 std::vector<std::size_t> chosen_cases(const SweepOptions& options, const SweepPlan& plan)
@@ -161,26 +71,6 @@ void list_cases(const SweepPlan& plan, const SweepTable& table)
   }
 }
 
-/// Throws RunError or Stopped unless all selected cases are done.
-void conclude(const SweepPlan& plan, const Sweep& sweep, const SweepTable& table, const std::vector<std::size_t>& chosen)
-{
-  const auto count = [&](CaseState state) {
-    return std::ranges::count_if(chosen, [&](std::size_t i) { return table.status(i).state == state; });
-  };
-  if (!sweep.signal().empty() && count(CaseState::done) < std::ssize(chosen))
-    throw Stopped(fmt::format("stopped by {}: of {} cases {} done, {} stopped with a checkpoint; go on by running the sweep again",
-                              sweep.signal(), chosen.size(), count(CaseState::done), count(CaseState::stopped)));
-  if (!sweep.failures().empty()) {
-    std::string text = fmt::format("{} of {} cases failed; running the sweep again repeats them", sweep.failures().size(), chosen.size());
-    for (const auto& [i, message] : sweep.failures())
-      text += fmt::format("\n  case {} ({}): {}", plan.cases[i].number, in_words(plan.cases[i]), message);
-    throw RunError(text);
-  }
-  if (const auto stopped = count(CaseState::stopped); stopped > 0)
-    throw Stopped(fmt::format("of {} cases {} done, {} stopped with a checkpoint; go on by running the sweep again", chosen.size(),
-                              count(CaseState::done), stopped));
-}
-
 }  // namespace
 
 void sweep(const SweepOptions& options)
@@ -217,13 +107,24 @@ void sweep(const SweepOptions& options)
     fmt::print("{}: {} of {} case{} of {} to be run in {}, {} at a time{}\n", plan.study.file, left, chosen.size(),
                chosen.size() == 1 ? "" : "s", scene_of(plan.study).string(), plan.folder.string(), side.jobs,
                side.threads ? fmt::format(" with {} thread{} each", *side.threads, *side.threads == 1 ? "" : "s") : "");
-  Sweep all(options, plan, side, table);
-  all(chosen);
+  std::vector<QueuedRun> queued;
+  for (const SweepCase& one : plan.cases)
+    queued.push_back({fmt::format("case {}", one.number), &one});
+  const auto status = [&](std::size_t i) -> const CaseStatus& { return table.status(i); };
+  RunQueue all({scene_of(plan.study), options.launcher, side, plan.quick, options.quiet}, std::move(queued),
+               [&](std::size_t i) -> const CaseStatus& {
+                 table.update();
+                 return table.status(i);
+               });
+  std::deque<std::size_t> waiting;
+  std::ranges::copy_if(chosen, std::back_inserter(waiting), [&](std::size_t i) { return status(i).state != CaseState::done; });
+  all(std::move(waiting));
+  table.update();
   if (!options.quiet)
     fmt::print("{}table in {}\n", table.print(), (plan.folder / "sweep.csv").string());
   find_out(options.pictures && all.signal().empty());
   print_remarks(plan, table);
-  conclude(plan, all, table, chosen);
+  all.conclude(chosen, status, {"cases", "running the sweep again"});
 }
 
 }  // namespace talus

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/commands/sweep/collected.hpp"
 #include "core/error.hpp"
 #include "core/word_match.hpp"
 #include "io/files/atomic_file.hpp"
@@ -22,42 +23,6 @@ namespace fs = std::filesystem;
 /// Default numbers, after the fronts.
 constexpr std::array usual_numbers{"kinetic", "plastic", "friction",       "energy.closure", "mass.removed",
                                    "fastest", "steps",   "simulated_time", "cost.wall"};
-
-/// The statistic of a column of a history.
-enum class Of : std::uint8_t { last, max, min };
-
-/// Parses "max(toe)" as the maximum of toe; a name alone means its last entry.
-std::pair<Of, std::string> column_asked(const std::string& name)
-{
-  for (const auto& [word, of] : {std::pair("last(", Of::last), std::pair("max(", Of::max), std::pair("min(", Of::min)})
-    if (name.starts_with(word) && name.ends_with(')'))
-      return {of, name.substr(std::string_view(word).size(), name.size() - std::string_view(word).size() - 1)};
-  return {Of::last, name};
-}
-
-/// The value from a history; NaN, which means "no value", is ignored.
-std::optional<NamedValue> of_history(const HistoryTable& history, const std::string& name)
-{
-  const auto [of, column] = column_asked(name);
-  for (std::size_t c = 0; c < history.columns.size(); ++c) {
-    if (history.columns[c].name != column)
-      continue;
-    NamedValue found{name, std::nan(""), history.columns[c].unit};
-    for (const Real value : history.values[c])
-      if (!std::isnan(value) && (of == Of::last || std::isnan(found.value) || (of == Of::max ? value > found.value : value < found.value)))
-        found.value = value;
-    return found;
-  }
-  return std::nullopt;
-}
-
-std::optional<HistoryTable> history_of(const SweepCase& one)
-{
-  const fs::path file = one.folder / "history.csv";
-  if (std::error_code unknown; !fs::exists(file, unknown))
-    return std::nullopt;
-  return read_history(file);
-}
 
 }  // namespace
 
@@ -78,22 +43,14 @@ SweepTable::Row SweepTable::row_of(std::size_t i) const
   const auto& numbers = status_[i].summary.numbers;
   if (status_[i].state != CaseState::done)
     return row;
-  const auto history = history_of(plan_.cases[i]);
+  const auto history = history_in(plan_.cases[i].folder);
   bool all_found = true;
   for (std::size_t k = 0; k < names_.size(); ++k) {
-    if (const NamedValue* number = find_number(numbers, names_[k]))
-      row.numbers[k] = *number;
-    else if (history)
-      row.numbers[k] = of_history(*history, names_[k]);
+    row.numbers[k] = collected(numbers, history, names_[k]);
     all_found = all_found && row.numbers[k];
   }
-  if (!all_found) {
-    for (const NamedValue& number : numbers)
-      row.known.push_back(number.name);
-    if (history)
-      for (const CsvColumn& column : history->columns)
-        row.known.push_back(column.name);
-  }
+  if (!all_found)
+    row.known = known_names(numbers, history);
   return row;
 }
 
@@ -200,7 +157,7 @@ std::vector<std::string> SweepTable::unknown_names() const
     if (found || known == nullptr)
       continue;
     const SourceLocation& where = plan_.study.collect[k].at.where;
-    const auto near = closest_match(column_asked(names_[k]).second, *known);
+    const auto near = closest_match(column_of(names_[k]), *known);
     errors.push_back(fmt::format("{}: {}: no case has a number \"{}\"{}", to_string(where), where.path, names_[k],
                                  near ? fmt::format(" — did you mean \"{}\"?", *near)
                                       : "; names are the keys of summary.json, joined by points, and the columns of history.csv"));
