@@ -29,10 +29,11 @@ struct ProjectedOptions {
   AtInterfaces interfaces = AtInterfaces::separate;
   static constexpr auto fields()
   {
-    return std::tuple{optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own"),
-                      optional_choice("interfaces", &ProjectedOptions::interfaces,
-                                      "separate (at nodes between bodies of different materials each material has a gradient of its own) or "
-                                      "shared (one gradient of all, as for a single material: interfaces are too strong by about a cell)")};
+    return std::tuple{
+        optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own"),
+        optional_choice("interfaces", &ProjectedOptions::interfaces,
+                        "separate (at nodes between bodies of different materials each material has a gradient of its own) or "
+                        "shared (one gradient of all, as for a single material: interfaces are too strong by about a cell)")};
   }
 };
 

@@ -173,8 +173,8 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   for (const std::vector<std::string>& some : {warnings, warnings_of(cost.shared_nodes, names)})
     for (const std::string& warning : some)
       fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, transfer, cells, nodes, particles,
-             terrain, bodies);
+  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, transfer, cells,
+             nodes, particles, terrain, bodies);
   if (const std::string contacts = contacts_in_words(cost.shared_nodes, names); !contacts.empty())
     fmt::print("  {}\n", contacts);
   if (cost.nodes_as_corners > 0)

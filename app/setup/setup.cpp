@@ -10,6 +10,7 @@
 #include "app/setup/loads_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
+#include "app/setup/thin_layers.hpp"
 #include "app/setup/water_table.hpp"
 #include "core/parallel/communicator.hpp"
 #include "core/parallel/threads.hpp"
@@ -226,6 +227,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.origin = std::move(seeds.origin);
   setup.state.clock.lag = seeds.lag;
   setup.state.energy.largest_before = seeds.largest_before;
+  warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, ranks, setup.warnings);
   const CellOccupancy<D> has_particles(mesh, setup.state.particles, setup.state.bodies, ranks, [](const std::string&) { return true; });
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });

@@ -20,10 +20,10 @@ constexpr std::array<std::string_view, 4> enum_names(Scheme) { return {"flip", "
 
 struct TransferOptions {
   Scheme scheme = Scheme::aflip;
-  std::optional<bool> musl{};                   ///< see uses_musl()
-  std::optional<Real> pic_damping_time{};       ///< flip, aflip: each step takes the share dt/time of the velocity from the nodes [s]
-  std::optional<Real> pic_damping_crossings{};  ///< the same, time counted in the shortest in which a wave crosses a cell [-]
-  std::optional<Real> pic_damping_fall_times{};      ///< the same, time counted in sqrt(h/g), see fall_time() in app/setup [-]
+  std::optional<bool> musl{};                    ///< see uses_musl()
+  std::optional<Real> pic_damping_time{};        ///< flip, aflip: each step takes the share dt/time of the velocity from the nodes [s]
+  std::optional<Real> pic_damping_crossings{};   ///< the same, time counted in the shortest in which a wave crosses a cell [-]
+  std::optional<Real> pic_damping_fall_times{};  ///< the same, time counted in sqrt(h/g), see fall_time() in app/setup [-]
   SourceLocation where{};
   static constexpr auto fields()
   {
@@ -37,9 +37,10 @@ struct TransferOptions {
         optional("pic_damping_crossings", &TransferOptions::pic_damping_crossings, positive, "-",
                  "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip, but see "
                  "pic_damping_fall_times"),
-        optional("pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
-                 "the same, time counted in sqrt(h/g), h the median altitude of the cells with particles at the start and g gravity; default 1 "
-                 "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs")};
+        optional(
+            "pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
+            "the same, time counted in sqrt(h/g), h the median altitude of the cells with particles at the start and g gravity; default 1 "
+            "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs")};
   }
   void check(std::vector<std::string>& problems) const
   {

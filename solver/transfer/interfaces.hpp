@@ -177,9 +177,9 @@ class Interfaces {
   std::vector<std::vector<CellGroupSum<D>>> cells_;  ///< by group and cell
   std::vector<Index> mixed_, place_;                 ///< mixed nodes, ascending; of each node where it is among them, or `none`
   std::vector<std::size_t> first_row_;
-  std::vector<Vec<D>> rows_;               ///< of each mixed node, by group
-  std::vector<Symmetric<D>> tension_;      ///< of each mixed node, by group
-  std::vector<Mat<D>> gradient_;           ///< of each mixed node, by group
+  std::vector<Vec<D>> rows_;           ///< of each mixed node, by group
+  std::vector<Symmetric<D>> tension_;  ///< of each mixed node, by group
+  std::vector<Mat<D>> gradient_;       ///< of each mixed node, by group
 };
 
 }  // namespace talus

@@ -51,9 +51,8 @@ struct KernelRows {
   std::int64_t bytes() const
   {
     const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
-    std::int64_t bytes =
-        of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot) +
-        static_cast<std::int64_t>(interfaces.bytes());
+    std::int64_t bytes = of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) +
+                         of(blocks.slot) + static_cast<std::int64_t>(interfaces.bytes());
     if constexpr (projects)
       bytes += static_cast<std::int64_t>(kernel.node_operators().size_bytes());
     return bytes;

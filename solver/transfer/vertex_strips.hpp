@@ -82,7 +82,7 @@ class VertexMotion {
   VertexMotion(const VertexMotion&) = delete;
   VertexMotion& operator=(const VertexMotion&) = delete;
 
-  std::array<const Vec<D>*, D + 1> v, change;    ///< [m/s]
+  std::array<const Vec<D>*, D + 1> v, change;  ///< [m/s]
   /// Velocity gradients, and those that strain the particles: of the remapped velocities under MUSL, and of their group [1/s].
   std::array<const Mat<D>*, D + 1> L, strain;
 
@@ -253,8 +253,7 @@ void add_to(const CornerSums<D, Of>& of, const StripColumn<Real>& volume, const 
 /// of its group; find_shares() has been called.
 template <bool affine, bool loaded, bool with_moments, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
-                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body,
-                                  Interfaces<D>& interfaces) noexcept
+                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments>;
   find_contributions<affine, loaded, with_moments>(columns, n, scratch);

@@ -153,6 +153,12 @@ template std::vector<SharedNodes> find_shared_nodes<3>(const Mesh<3>&, const Par
 
 namespace {
 
+/// The material that a body of the scene has at first.
+const std::string& material_of_body(const Scene& scene, const std::string& name)
+{
+  return std::ranges::find(scene.bodies, name, &BodySpec::name)->material;
+}
+
 /// Whether two bodies are there in the same stage.
 bool meet(const Scene& scene, const std::string& a, const std::string& b)
 {
@@ -181,8 +187,13 @@ void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, s
     ranks.sum(shared);  // no cell is filled by two ranks
     for (std::size_t other = 0; other < b; ++other)
       if (shared[other] > 0 && meet(scene, bodies[other].name, bodies[b].name) && ++pairs <= most)
-        warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start", to_string(bodies[b].where),
-                                       bodies[other].name, bodies[b].name, shared[other], shared[other] == 1 ? "" : "s"));
+        warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start{}", to_string(bodies[b].where),
+                                       bodies[other].name, bodies[b].name, shared[other], shared[other] == 1 ? "" : "s",
+                                       material_of_body(scene, bodies[other].name) == material_of_body(scene, bodies[b].name)
+                                           ? ""
+                                           : "; if they only touch, the boundary between their materials cuts cells, and is too strong by "
+                                             "one to two cells over the height of what slides along it: better let them fill regions of "
+                                             "the mesh"));
   }
   if (pairs > most)
     warnings.push_back(fmt::format("{} more pairs of bodies share cells at the start", pairs - most));

@@ -137,7 +137,8 @@ TYPED_TEST(ProjectedIn, AMotionOfOneMaterialDoesNotStrainTheOther)
   auto m = make_model<Projected<D>>(unit_box<D>(D == 2 ? 8 : 4, 0.0));
   m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   for (const bool top : {true, false})
-    add_body<D>(m, top ? "slide" : "base", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [&](const Vec<D>& x) { return (x[D - 1] > 0.5) == top; });
+    add_body<D>(m, top ? "slide" : "base", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10,
+                [&](const Vec<D>& x) { return (x[D - 1] > 0.5) == top; });
   make_ready(m);
   sum_and_read(m, [](Model<D>& of) {
     for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n)
