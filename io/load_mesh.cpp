@@ -14,6 +14,7 @@
 #include "mesh/generate/generate.hpp"
 #include "mesh/overlap.hpp"
 #include "mesh/simplex.hpp"
+#include "mesh/smooth.hpp"
 
 namespace talus {
 
@@ -128,7 +129,7 @@ MeshData<D> make_mesh(const MeshSpec& spec, const std::filesystem::path& directo
     }
     add_side_groups<D>(data, spec.regions);
     add_groups<D>(data, spec.groups);
-    return data;
+    return spec.smoothing > 0 ? smoothed<D>(std::move(data), spec.smoothing) : data;
   });
 }
 

@@ -44,6 +44,68 @@ Real smallest_angle(const Simplex<D>& s) noexcept
   return smallest;
 }
 
+template <int D>
+Vec<D> star_offset(std::span<const Vec<D>> nodes, std::span<const std::array<Index, D + 1>> cells, std::span<const Index> star,
+                   Index n) noexcept
+{
+  const Vec<D>& x = nodes[static_cast<std::size_t>(n)];
+  Vec<D> sum = Vec<D>::Zero();  // relative to x: no round-off of large coordinates
+  Real volume = 0;
+  for (const Index c : star) {
+    Simplex<D> s;
+    for (std::size_t a = 0; a <= D; ++a)
+      s[a] = nodes[static_cast<std::size_t>(cells[static_cast<std::size_t>(c)][a])] - x;
+    const Real of_cell = std::abs(signed_volume<D>(s));
+    sum += of_cell * centroid<D>(s);
+    volume += of_cell;
+  }
+  return sum / volume;
+}
+
+template <int D>
+StarOffsets<D> star_offsets(const Mesh<D>& mesh)
+{
+  constexpr Real share_of_most = 0.95;
+  std::vector<Real> of_node(mesh.nodes().size(), -1);  // -1: boundary
+  parallel_for(mesh.n_nodes(), [&](Index n) {
+    if (!mesh.on_boundary(n))
+      of_node[static_cast<std::size_t>(n)] =
+          star_offset<D>(mesh.nodes(), mesh.cells(), mesh.cells_of_node()[n], n).norm() / mesh.node_size(n);
+  });
+  StarOffsets<D> offsets;
+  const auto largest = std::ranges::max_element(of_node);  // the first of equal ones
+  offsets.largest = *largest;
+  offsets.largest_place = mesh.node(static_cast<Index>(largest - of_node.begin()));
+  std::erase_if(of_node, [](Real offset) { return offset < 0; });
+  if (of_node.empty())
+    return {};
+  offsets.nodes = static_cast<Index>(of_node.size());
+  std::ranges::sort(of_node);
+  offsets.median = of_node[of_node.size() / 2];
+  offsets.most = of_node[static_cast<std::size_t>(std::ceil(share_of_most * static_cast<Real>(of_node.size()))) - 1];
+  return offsets;
+}
+
+template <int D>
+std::string to_string(const StarOffsets<D>& offsets)
+{
+  if (offsets.nodes == 0)
+    return "";
+  return fmt::format(
+      "interior nodes: {:.3f} h from the centre of their cells in the median, up to {:.3f} h for 95 %, {:.3f} h at {}; h: mean edge\n",
+      offsets.median, offsets.most, offsets.largest, place<D>(offsets.largest_place));
+}
+
+template <int D>
+std::string advice(const StarOffsets<D>& offsets)
+{
+  if (offsets.median <= large_star_offset)
+    return "";
+  return fmt::format(
+      "more than {} h in the median: the kernel projected is less accurate on such meshes; mesh.smoothing: 5 makes them more even\n",
+      large_star_offset);
+}
+
 namespace {
 
 struct CellQuality {
@@ -107,6 +169,7 @@ MeshQuality<D> quality(const Mesh<D>& mesh)
   std::nth_element(heights.begin(), middle, heights.end());
   q.median_altitude = *middle;
   q.smallest_altitude = *std::min_element(heights.begin(), middle + 1);
+  q.offsets = star_offsets(mesh);
   return q;
 }
 
@@ -124,13 +187,21 @@ std::string to_string(const MeshQuality<D>& q)
                       D == 2 ? "angle" : "dihedral angle", q.smallest_angle * degrees, q.smallest_mean_ratio, q.average_mean_ratio);
   text += fmt::format("sizes of neighbours differ by a factor of {:.3g} at most; up to {} nodes in a ring\n", q.gradation, q.largest_ring);
   text += fmt::format("worst cell at {}\n", place<D>(q.worst_place));
-  return text;
+  return text + to_string(q.offsets);
 }
 
 template Real mean_ratio<2>(const Simplex<2>&) noexcept;
 template Real mean_ratio<3>(const Simplex<3>&) noexcept;
 template Real smallest_angle<2>(const Simplex<2>&) noexcept;
 template Real smallest_angle<3>(const Simplex<3>&) noexcept;
+template Vec<2> star_offset<2>(std::span<const Vec<2>>, std::span<const std::array<Index, 3>>, std::span<const Index>, Index) noexcept;
+template Vec<3> star_offset<3>(std::span<const Vec<3>>, std::span<const std::array<Index, 4>>, std::span<const Index>, Index) noexcept;
+template StarOffsets<2> star_offsets<2>(const Mesh<2>&);
+template StarOffsets<3> star_offsets<3>(const Mesh<3>&);
+template std::string to_string<2>(const StarOffsets<2>&);
+template std::string to_string<3>(const StarOffsets<3>&);
+template std::string advice<2>(const StarOffsets<2>&);
+template std::string advice<3>(const StarOffsets<3>&);
 template MeshQuality<2> quality<2>(const Mesh<2>&);
 template MeshQuality<3> quality<3>(const Mesh<3>&);
 template std::string to_string<2>(const MeshQuality<2>&);

@@ -17,6 +17,7 @@
 #include "io/scene/reader.hpp"
 #include "io/scene/scene.hpp"
 #include "io/terrain/terrain_mesh.hpp"
+#include "mesh/quality.hpp"
 
 namespace talus {
 
@@ -137,6 +138,17 @@ std::string describe_water(const Mesh<D>& mesh, const Setup<D>& setup, const Bod
   return fmt::format(", effective stress, {} below the water table", count_wet(mesh, setup.conditions.water, body, setup.state.particles));
 }
 
+/// The distance of nodes from the centres of their cells, and what to do about it.
+template <int D>
+std::string describe_mesh(const Scene& scene, const StarOffsets<D>& offsets)
+{
+  std::string text;
+  const bool smoothable = scene.kernel == "projected" && scene.mesh.smoothing == 0;  // no other kernel averages gradients at nodes
+  for (const std::string& line : {to_string(offsets), smoothable ? advice(offsets) : ""})
+    text += line.empty() ? "" : "  " + line;
+  return text;
+}
+
 enum class Times : std::uint8_t { left_out, measured };
 
 /// Prints the errors of a scene and the cost of its run.
@@ -158,6 +170,7 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   const std::vector<Stage> stages = setup.stages;
   const std::string transfer = describe(setup.conditions.transfer);
   const std::string terrain = terrain_in_words(mesh, "  ");
+  const StarOffsets<D> offsets = star_offsets(mesh);
   std::string bodies;
   for (std::size_t b = 0; b < setup.state.bodies.size(); ++b)
     if (const Body& body = setup.state.bodies[b]; presence_of(body.name, scene.stages).from == 0)
@@ -173,8 +186,8 @@ void tell_cost(Scene scene, bool quick, Times times, std::optional<int> threads_
   for (const std::vector<std::string>& some : {warnings, warnings_of(cost.shared_nodes, names)})
     for (const std::string& warning : some)
       fmt::print(stderr, "warning: {}\n", warning);
-  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}", scene.title, D, scene.kernel, transfer, cells,
-             nodes, particles, terrain, bodies);
+  fmt::print("{}\n  {}-D, kernel {}, transfer {}, {} cells, {} nodes, {} particles\n{}{}{}", scene.title, D, scene.kernel, transfer, cells,
+             nodes, particles, describe_mesh(scene, offsets), terrain, bodies);
   if (const std::string contacts = contacts_in_words(cost.shared_nodes, names); !contacts.empty())
     fmt::print("  {}\n", contacts);
   if (cost.nodes_as_corners > 0)

@@ -48,11 +48,12 @@ Wanted wanted_by(const MeshOptions& options)
 }
 
 template <int D>
-void show(const Mesh<D>& mesh, const MeshOptions& options)
+void show(const Mesh<D>& mesh, const MeshSpec& spec, const MeshOptions& options)
 {
   for (const std::string& note : mesh.notes())
     fmt::print(stderr, "warning: {}\n", note);
-  fmt::print("{}{}", to_string(quality(mesh)), terrain_in_words(mesh, ""));
+  const MeshQuality<D> measures = quality(mesh);
+  fmt::print("{}{}{}", to_string(measures), spec.smoothing == 0 ? advice(measures.offsets) : "", terrain_in_words(mesh, ""));
   fmt::print("groups\n");
   for (const std::string& name : mesh.cell_set_names())
     fmt::print("  {:<28} {:>9} cells\n", name, mesh.cell_set(name)->size());
@@ -72,7 +73,7 @@ void show(const Mesh<D>& mesh, const MeshOptions& options)
 void show_mesh(const MeshOptions& options)
 {
   const Wanted wanted = wanted_by(options);
-  const auto show_in = [&]<int D>(std::integral_constant<int, D>) { show(load_mesh<D>(wanted.spec, wanted.folder), options); };
+  const auto show_in = [&]<int D>(std::integral_constant<int, D>) { show(load_mesh<D>(wanted.spec, wanted.folder), wanted.spec, options); };
   constexpr std::integral_constant<int, 2> plane;
   constexpr std::integral_constant<int, 3> space;
   if (wanted.dimension)
@@ -85,7 +86,7 @@ void show_mesh(const MeshOptions& options)
       throw;
     return show_in(plane);  // without triangles either, that will be the message
   }
-  show(*solid, options);
+  show(*solid, wanted.spec, options);
 }
 
 }  // namespace talus

@@ -81,20 +81,25 @@ struct MeshSpec {
   std::vector<GroupSpec> groups;
   std::optional<GridSpec> grid;
   std::optional<TerrainSpec> terrain;
+  Index smoothing = 0;
   SourceLocation where;
   static constexpr auto fields()
   {
-    return std::tuple{optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
-                      optional("geometry", &MeshSpec::geometry, any, "-",
-                               "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
-                      optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry, regions and terrain"),
-                      optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
-                      optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
-                      optional_list("groups", &MeshSpec::groups,
-                                    "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... "
-                                    "and boundary always exist"),
-                      group("grid", &MeshSpec::grid, "built-in box"),
-                      group("terrain", &MeshSpec::terrain, "columns of cells between surfaces: ground, layers below it, air above it")};
+    return std::tuple{
+        optional("file", &MeshSpec::file, any, "-", "a gmsh .msh file (2.2 or 4.1, ascii or binary), relative to the scene"),
+        optional("geometry", &MeshSpec::geometry, any, "-",
+                 "a .geo or .step file to be meshed; a .geo is a program: run only those you trust"),
+        optional("size", &MeshSpec::size, positive, "m", "edge length of the cells, for geometry, regions and terrain"),
+        optional_list("regions", &MeshSpec::regions, "inline geometry: named solids"),
+        optional_list("refine", &MeshSpec::refine, "boxes with smaller cells, for geometry and regions"),
+        optional_list("groups", &MeshSpec::groups,
+                      "names for parts of the boundary or of outlines, added to those of the mesh; x_min, x_max, y_min, ... "
+                      "and boundary always exist"),
+        group("grid", &MeshSpec::grid, "built-in box"),
+        group("terrain", &MeshSpec::terrain, "columns of cells between surfaces: ground, layers below it, air above it"),
+        optional("smoothing", &MeshSpec::smoothing, within(0, 100), "-",
+                 "so many times interior nodes move to the centre of their cells, for a more accurate kernel projected; nodes "
+                 "of boundaries and groups stay")};
   }
   void check(std::vector<std::string>& problems) const;
 };

@@ -188,6 +188,35 @@ TEST_F(Check, TellsBodiesThatShareNodesAcrossAGapFromThoseThatTouch)
   EXPECT_EQ(talus("check linear.yaml").err, "") << "its particles act on the nodes of their own cells only";
 }
 
+TEST_F(Check, TellsHowFarNodesAreFromTheCentresOfTheirCells)
+{
+  const auto with = [](const std::string& kernel, const std::string& jitter, const std::string& smoothing) {
+    return "title: Uneven\ndimension: 2\nkernel: " + kernel + "\nmesh: {grid: {low: [0, 0], high: [2, 2], cells: [8, 8]" + jitter + "}" +
+           smoothing +
+           "}\ntime: {end: 0.1}\nmaterials: [{name: rubber, law: neo_hookean, density: 1000, youngs_modulus: 1.0e5, poisson_ratio: 0.3}]\n"
+           "bodies: [{name: block, material: rubber, shape: {type: box, low: [0.5, 0], high: [1.5, 1]}}]\n";
+  };
+  const std::string advice = "  more than 0.12 h in the median: the kernel projected is less accurate on such meshes; mesh.smoothing: 5";
+  const auto check = [&](const std::string& scene) {
+    write("uneven.yaml", scene);
+    const Outcome outcome = talus("check uneven.yaml");
+    EXPECT_EQ(outcome.code, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    return outcome.out;
+  };
+  EXPECT_THAT(check(with("projected", "", "")),
+              testing::AllOf(HasSubstr("  interior nodes: 0.000 h from the centre of their cells in the median, up to 0.000 h for 95 %, "),
+                             testing::Not(HasSubstr(advice))));
+  EXPECT_THAT(check(with("projected", ", jitter: 0.3", "")),
+              testing::AllOf(testing::ContainsRegex("interior nodes: 0\\.[12][0-9]+ h from"), HasSubstr(advice)));
+  EXPECT_THAT(check(with("projected", ", jitter: 0.3", ", smoothing: 5")),
+              testing::AllOf(HasSubstr("interior nodes: 0.00"), testing::Not(HasSubstr(advice))));
+  EXPECT_THAT(check(with("umls", ", jitter: 0.3", "")), testing::Not(HasSubstr(advice))) << "its gradients are its own";
+  const Outcome mesh = talus("mesh uneven.yaml");
+  EXPECT_THAT(mesh.out, testing::AllOf(HasSubstr("\ninterior nodes: 0."), HasSubstr("\n" + advice.substr(2))));
+  EXPECT_THAT(talus("mesh uneven.yaml --set mesh.smoothing=5").out, testing::Not(HasSubstr(advice.substr(2))));
+}
+
 /// A slope with a slip surface, a bowl, as a raster of its own.
 TEST_F(Check, SaysHowManyNodesOfASlipSurfaceAreTreatedAsCornersAndTheSceneRuns)
 {

@@ -6,6 +6,8 @@
 #include <fstream>
 #include <numbers>
 
+#include "mesh/digest.hpp"
+#include "mesh/quality.hpp"
 #include "tests/io/mesh/mesh_measures.hpp"
 #include "tests/io/scratch_folder.hpp"
 
@@ -49,6 +51,24 @@ TEST(GmshShapes, PolygonWithAHoleAndNamedSides)
   EXPECT_NEAR(area_of(mesh, "rock:top"), 4, round_off * 6);
   EXPECT_NEAR(area_of(mesh, "rock:back"), 4, round_off * 6);
   EXPECT_NEAR(area_of(mesh, "rock:hole_1"), 6, round_off * 6);
+}
+
+/// Regions, their sides and outlines stay, the nodes between come closer to the centres of their cells, equal specs give equal meshes.
+TEST(GmshShapes, SmoothingKeepsTheRegionsAndTheirSides)
+{
+  MeshSpec spec = region(0.2, Sphere{{1, 1, 1}, 0.6});
+  spec.regions.push_back({"room", Box{{0, 0, 0}, {2, 2, 2}}, spec.where});
+  const Mesh<3> plain = load_mesh<3>(spec, ".");
+  spec.smoothing = 5;
+  const Mesh<3> smooth = load_mesh<3>(spec, ".");
+  EXPECT_EQ(digest(smooth), digest(load_mesh<3>(spec, ".")));
+  EXPECT_NE(digest(smooth), digest(plain));
+  for (const char* name : {"rock", "room"})
+    EXPECT_NEAR(volume_of(smooth, name), volume_of(plain, name), round_off);
+  for (const std::string& name : plain.facet_set_names())
+    EXPECT_NEAR(area_of(smooth, name), area_of(plain, name), round_off) << name;
+  EXPECT_LT(star_offsets(smooth).median, 0.5 * star_offsets(plain).median);
+  EXPECT_GE(quality(smooth).smallest_altitude, quality(plain).smallest_altitude * (1 - round_off));
 }
 
 TEST(GmshShapes, ExtrudedPolygonHasItsHoleAndItsSides)
