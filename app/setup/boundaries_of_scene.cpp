@@ -57,6 +57,8 @@ class BoundaryBuilder {
       else
         errors_.unknown_group(options.where, "on", "facet", options.on, mesh_.facet_set_names());
     } else if (const auto nodes = mesh_.node_set(options.on)) {
+      if constexpr (std::is_same_v<C, Fixed<D>>)
+        note_floor(options.on);
       BoundaryCondition<D> condition{.name = name, .kind = C::make(options, made_from)};
       if (options.acts_in(stage_))
         all_.add(std::move(condition), mesh_, *nodes);
@@ -65,6 +67,20 @@ class BoundaryBuilder {
     } else {
       errors_.unknown_group(options.where, "on", "node, facet or cell", options.on, mesh_.node_set_names());
     }
+  }
+  /// Material that flows out over fixed facets is held back.
+  void note_floor(const std::string& group)
+  {
+    const auto facets = mesh_.facet_set(group);
+    const auto is_soil = [](const Material& material) { return material.law().description().has_strength; };
+    if (!first_ || !facets || std::ranges::none_of(setup_.state.materials, is_soil))
+      return;
+    const auto covered = std::ranges::count_if(*facets, [&](Facet facet) { return has_particles_(facet.cell); });
+    if (covered > 0 && covered < std::ssize(*facets))
+      setup_.notes.push_back(
+          fmt::format("\"{}\" is fixed: what flows out over it is held back by about half a cell and stops too early; "
+                      "friction with the tangent of its own angle does not hold it back",
+                      group));
   }
   template <class C>
   void add_on_facets(const std::string& name, const typename C::Options& options, const std::vector<Facet>& group,
