@@ -35,7 +35,8 @@ std::string describe(const TransferOptions& transfer)
   if (transfer.pic_damping_time)
     text += fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
   if (transfer.pic_damping_crossings)
-    text += fmt::format(", damped in {:.6g} crossing times of a cell", *transfer.pic_damping_crossings);
+    text += fmt::format("{} {:.6g} crossing times of a cell", transfer.pic_damping_time ? ", where it seeks rest in" : ", damped in",
+                        *transfer.pic_damping_crossings);
   return text;
 }
 

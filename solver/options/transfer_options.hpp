@@ -40,7 +40,8 @@ struct TransferOptions {
         optional(
             "pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
             "the same, time counted in sqrt(h/g), h the median altitude of the cells with particles at the start and g gravity; default 1 "
-            "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs")};
+            "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs, "
+            "except in stages with local damping")};
   }
   void check(std::vector<std::string>& problems) const
   {
@@ -58,12 +59,13 @@ struct TransferOptions {
   /// The affine field is kept beside L: it is that of the step's own velocities while L is of remapped ones, or it is not L at all.
   bool own_affine_field() const noexcept { return scheme == Scheme::apic || (affine() && uses_musl()); }
   /// Share of the nodes' velocity in a step of length dt [s]; `crossing` [s] is the shortest time in which a wave crosses a cell, 0 if not
-  /// known.  One share for all particles: one that differed from cell to cell would not keep the momentum.
-  Real pic_share(Real dt, Real crossing) const noexcept
+  /// known.  Where both measures are set, stages that seek rest use that of waves, which they have to damp.  One share for all particles:
+  /// one that differed from cell to cell would not keep the momentum.
+  Real pic_share(Real dt, Real crossing, bool seeks_rest) const noexcept
   {
-    if (pic_damping_crossings)
-      return crossing > 0 ? std::min(dt / (*pic_damping_crossings * crossing), Real{1}) : Real{0};
-    return pic_damping_time ? std::min(dt / *pic_damping_time, Real{1}) : Real{0};
+    if (pic_damping_time && !(seeks_rest && pic_damping_crossings))
+      return std::min(dt / *pic_damping_time, Real{1});
+    return pic_damping_crossings && crossing > 0 ? std::min(dt / (*pic_damping_crossings * crossing), Real{1}) : Real{0};
   }
   /// These options, with the damping that a scheme has unless another is given (measured: docs/development/kernels.md).  `fall` is sqrt(h/g)
   /// [s], 0 without gravity; `flows` says whether a body has a law that dissipates.
@@ -71,10 +73,9 @@ struct TransferOptions {
   {
     TransferOptions all = *this;
     if (scheme == Scheme::aflip && !pic_damping_time && !pic_damping_crossings && !pic_damping_fall_times) {
+      all.pic_damping_crossings = 25;
       if (fall > 0 && flows)
         all.pic_damping_fall_times = 1;
-      else
-        all.pic_damping_crossings = 25;
     }
     if (all.pic_damping_fall_times)
       all.pic_damping_time = *all.pic_damping_fall_times * fall;

@@ -116,7 +116,7 @@ class TransferOf final : public Transfer<D> {
 
   void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const BetweenParts& between) override
   {
-    const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing);
+    const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing, m.state.stage.seeks_rest);
     const bool musl = m.problem.transfer.uses_musl();
     project_to_particles(m, kick);
     if (musl)

@@ -86,15 +86,15 @@ TEST(NodeRows, OfHatsHaveMomentumIfTheyHaveAnAffineField)
 TEST(Transfer, TheShareOfPicIsTheStepByItsTimeAndAtMostOne)
 {
   TransferOptions transfer;
-  EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0);
+  EXPECT_EQ(transfer.pic_share(0.5, 0.125, false), 0);
   transfer.pic_damping_time = 2;
-  EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0.25);
-  EXPECT_EQ(transfer.pic_share(3, 0.125), 1);
+  EXPECT_EQ(transfer.pic_share(0.5, 0.125, false), 0.25);
+  EXPECT_EQ(transfer.pic_share(3, 0.125, false), 1);
   transfer.pic_damping_time.reset();
   transfer.pic_damping_crossings = 16;
-  EXPECT_EQ(transfer.pic_share(0.5, 0.125), 0.25);
-  EXPECT_EQ(transfer.pic_share(3, 0.125), 1);
-  EXPECT_EQ(transfer.pic_share(0.5, 0), 0) << "not known";
+  EXPECT_EQ(transfer.pic_share(0.5, 0.125, false), 0.25);
+  EXPECT_EQ(transfer.pic_share(3, 0.125, false), 1);
+  EXPECT_EQ(transfer.pic_share(0.5, 0, false), 0) << "not known";
 }
 
 TEST(Transfer, DampingOfAflipFollowsTheFallOfABodyThatFlowsAndTheWaveElsewhere)
@@ -104,7 +104,7 @@ TEST(Transfer, DampingOfAflipFollowsTheFallOfABodyThatFlowsAndTheWaveElsewhere)
     return std::pair{all.pic_damping_time.value_or(0), all.pic_damping_crossings.value_or(0)};
   };
   const TransferOptions aflip, flip{.scheme = Scheme::flip};
-  EXPECT_EQ(damping(aflip, 0.5, true), (std::pair<Real, Real>{0.5, 0}));
+  EXPECT_EQ(damping(aflip, 0.5, true), (std::pair<Real, Real>{0.5, 25})) << "waves where a stage seeks rest";
   EXPECT_EQ(damping(aflip, 0.5, false), (std::pair<Real, Real>{0, 25})) << "only elastic bodies";
   EXPECT_EQ(damping(aflip, 0, true), (std::pair<Real, Real>{0, 25})) << "no gravity";
   EXPECT_EQ(damping(flip, 0.5, true), (std::pair<Real, Real>{0, 0}));
@@ -117,6 +117,11 @@ TEST(Transfer, DampingOfAflipFollowsTheFallOfABodyThatFlowsAndTheWaveElsewhere)
   given = {};
   given.pic_damping_time = 7;
   EXPECT_EQ(damping(given, 0.5, true), (std::pair<Real, Real>{7, 0}));
+
+  const TransferOptions both = aflip.with_damping(0.5, true);
+  EXPECT_EQ(both.pic_share(0.1, 0.02, false), 0.1 / 0.5);
+  EXPECT_EQ(both.pic_share(0.1, 0.02, true), 0.1 / (25 * 0.02));
+  EXPECT_EQ(given.pic_share(0.1, 0.02, true), 0.1 / 7) << "as given";
 }
 
 TEST(Transfer, KindsOfSchemes)
