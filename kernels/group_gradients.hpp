@@ -24,7 +24,7 @@ void fit_shares(const Mesh<D>& mesh, Index node, std::size_t groups, std::span<R
 ///     D^b_nv = sum_c phi_cb |c| grad N_v / sum_c phi_cb |c|
 ///
 /// The row of each group sums to zero and gives the slope of linear fields exactly.  With a single group it is averaged_gradients().  At a
-/// boundary of cells between two materials it is one-sided, as beside a wall of the mesh.  Rows of groups without particles stay zero.
+/// boundary of cells between two materials it is one-sided, as beside a wall of the mesh.  Rows of groups without particles are not to be used.
 /// `rows` has the entries of the ring side by side, group by group.
 template <int D>
 void group_gradients(const Mesh<D>& mesh, Index node, std::size_t groups, std::span<const Real> shares, std::span<Vec<D>> rows);

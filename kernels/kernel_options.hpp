@@ -33,7 +33,8 @@ struct ProjectedOptions {
         optional("alpha", &ProjectedOptions::alpha, positive, "-", "weight of a node's neighbours beside its own"),
         optional_choice("interfaces", &ProjectedOptions::interfaces,
                         "separate (at nodes between bodies of different materials each material has a gradient of its own) or "
-                        "shared (one gradient of all, as for a single material: interfaces are too strong by about a cell)")};
+                        "shared (one gradient of all, as for a single material: slip surfaces along interfaces are too strong by two cells "
+                        "over their height)")};
   }
 };
 

@@ -58,7 +58,7 @@ class BoundaryBuilder {
         errors_.unknown_group(options.where, "on", "facet", options.on, mesh_.facet_set_names());
     } else if (const auto nodes = mesh_.node_set(options.on)) {
       if constexpr (std::is_same_v<C, Fixed<D>>)
-        note_floor(options.on);
+        note_floor(options);
       BoundaryCondition<D> condition{.name = name, .kind = C::make(options, made_from)};
       if (options.acts_in(stage_))
         all_.add(std::move(condition), mesh_, *nodes);
@@ -69,18 +69,21 @@ class BoundaryBuilder {
     }
   }
   /// Material that flows out over fixed facets is held back.
-  void note_floor(const std::string& group)
+  void note_floor(const typename Fixed<D>::Options& options)
   {
-    const auto facets = mesh_.facet_set(group);
+    const auto facets = mesh_.facet_set(options.on);
     const auto is_soil = [](const Material& material) { return material.law().description().has_strength; };
-    if (!first_ || !facets || std::ranges::none_of(setup_.state.materials, is_soil))
+    if (!first_ || !options.acts_in(stage_) || !facets || std::ranges::none_of(setup_.state.materials, is_soil))
       return;
-    const auto covered = std::ranges::count_if(*facets, [&](Facet facet) { return has_particles_(facet.cell); });
-    if (covered > 0 && covered < std::ssize(*facets))
+    Index covered = 0, open = 0;  // of those that bear what lies on them
+    for (const Facet facet : *facets)
+      if (const Vec<D> outwards = mesh_.area_vector(facet); outwards.dot(up_) < -0.5 * outwards.norm())
+        ++(has_particles_(facet.cell) ? covered : open);
+    if (covered > 0 && open > 0)
       setup_.notes.push_back(
-          fmt::format("\"{}\" is fixed: what flows out over it is held back by about half a cell and stops too early; "
-                      "friction with the tangent of its own angle does not hold it back",
-                      group));
+          fmt::format("\"{}\" is fixed: what flows out over it is held back by about half a cell and stops too early; friction with the "
+                      "tangent of its own angle does not hold it back",
+                      options.on));
   }
   template <class C>
   void add_on_facets(const std::string& name, const typename C::Options& options, const std::vector<Facet>& group,

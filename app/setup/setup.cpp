@@ -35,7 +35,7 @@ std::string describe(const TransferOptions& transfer)
   if (transfer.pic_damping_time)
     text += fmt::format(", damped in {:.3g} s", *transfer.pic_damping_time);
   if (transfer.pic_damping_crossings)
-    text += fmt::format("{} {:.6g} crossing times of a cell", transfer.pic_damping_time ? ", where it seeks rest in" : ", damped in",
+    text += fmt::format("{} {:.6g} crossing times of a cell", transfer.pic_damping_time ? "; in stages that seek rest in" : ", damped in",
                         *transfer.pic_damping_crossings);
   return text;
 }
@@ -164,8 +164,8 @@ void warn_if_dry(const Mesh<D>& mesh, Communicator& ranks, Setup<D>& setup)
     setup.warnings.emplace_back("no particle of a drained body lies below the water table at the start");
 }
 
-/// sqrt(h/g) [s], in which a body that falls from rest covers half of h, the median altitude of the cells with particles [m]; 0 without
-/// gravity [m/s^2].
+/// sqrt(h/g) [s], in which a body that falls from rest covers half of h, the median altitude of the cells in which bodies are placed, also
+/// those of later stages [m]; 0 without gravity [m/s^2].
 template <int D>
 Real fall_time(const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, Real gravity)
 {
@@ -256,8 +256,9 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
     setup.state.particles.x0 = setup.state.particles.x;
   setup.conditions.limits = run_limits_of(scene, mesh, setup, ranks);
   set_changes(scene, mesh, ranks, setup);
+  const Gravity<D>& gravity = setup.conditions.loads.gravity;
   setup.conditions.transfer = scene.transfer.with_damping(
-      fall_time(mesh, has_particles, setup.conditions.loads.gravity.acceleration.norm()), any_body_flows(setup));
+      fall_time(mesh, has_particles, gravity.table.largest_magnitude() * gravity.acceleration.norm()), any_body_flows(setup));
   setup.from_files = digest_of_files(setup);
   return setup;
 }

@@ -37,11 +37,11 @@ struct TransferOptions {
         optional("pic_damping_crossings", &TransferOptions::pic_damping_crossings, positive, "-",
                  "the same, time counted in the shortest in which a wave crosses a cell (that of time.cfl); default 25 for aflip, but see "
                  "pic_damping_fall_times"),
-        optional(
-            "pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
-            "the same, time counted in sqrt(h/g), h the median altitude of the cells with particles at the start and g gravity; default 1 "
-            "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs, "
-            "except in stages with local damping")};
+        optional("pic_damping_fall_times", &TransferOptions::pic_damping_fall_times, positive, "-",
+                 "the same, time counted in sqrt(h/g), h the median altitude of the cells in which bodies are placed and g the largest "
+                 "gravity; default 1 "
+                 "for aflip under gravity where a body flows (its law dissipates), so that stiffness does not change how far it runs, "
+                 "except in stages that seek rest (geostatic, or with local damping); where it is given, it holds in all stages")};
   }
   void check(std::vector<std::string>& problems) const
   {

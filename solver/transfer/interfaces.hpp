@@ -30,12 +30,13 @@ struct CellGroupSum {
 };
 
 /// The averaged gradient at a node reaches over all cells around it.  Where a shear band runs along a boundary between materials, the
-/// strain of the band would then act on the particles of the stronger one, which resist: strength too high by one cell.  So at mixed nodes,
+/// strain of the band would then act on the particles of the stronger one, which resist: strength too high by about two cells over the
+/// height of what slides.  So at mixed nodes,
 /// whose cells hold particles of several groups, each group has a gradient D^b (kernels/group_gradients.hpp) for its strain and its force:
 ///
 ///     L^b_n = sum_v v_v (x) D^b_nv          f_v = -sum_n sum_b Z^b_n D^b_nv
 ///
-/// All groups have one velocity field.  The affine field of the transfer keeps the gradient D of all.
+/// All groups have one velocity field.  Where the affine field of the transfer is not L itself (MUSL), it keeps the gradient D of all.
 template <int D>
 class Interfaces {
  public:
@@ -72,8 +73,8 @@ class Interfaces {
       std::fill(cells.begin() + first, cells.begin() + last, CellGroupSum<D>{});
   }
 
-  /// Finds the mixed nodes, their rows and tensions; `cells` receives the sums of cells of other ranks.
-  void find_rows(const Mesh<D>& mesh, HaloExchange& cells)
+  /// Finds the mixed nodes among those in use, their rows and tensions; `cells` receives the sums of cells of other ranks.
+  void find_rows(const Mesh<D>& mesh, const NodesInUse& in_use, HaloExchange& cells)
   {
     if (!any())
       return;
@@ -81,15 +82,18 @@ class Interfaces {
       cells.send(of_group, Whole{});
       cells.take(of_group, Whole{});
     }
-    parallel_for(mesh.n_nodes(), [&](Index n) { place_[static_cast<std::size_t>(n)] = count_groups(mesh, n) > 1 ? 0 : none; });
+    for (const Index n : mixed_)
+      place_[static_cast<std::size_t>(n)] = none;
     mixed_.clear(), first_row_.clear();
+    in_use.for_each([&](Index n) { place_[static_cast<std::size_t>(n)] = count_groups(mesh, n) > 1 ? 0 : none; });
     std::size_t rows = 0;
-    for (Index n = 0; n < mesh.n_nodes(); ++n)
-      if (place_[static_cast<std::size_t>(n)] != none) {
-        place_[static_cast<std::size_t>(n)] = static_cast<Index>(mixed_.size());
-        mixed_.push_back(n), first_row_.push_back(rows);
-        rows += groups_ * mesh.ring_of_node()[n].size();
-      }
+    in_use.for_each_ascending([&](Index n) {
+      if (place_[static_cast<std::size_t>(n)] == none)
+        return;
+      place_[static_cast<std::size_t>(n)] = static_cast<Index>(mixed_.size());
+      mixed_.push_back(n), first_row_.push_back(rows);
+      rows += groups_ * mesh.ring_of_node()[n].size();
+    });
     rows_.resize(rows);
     tension_.resize(mixed_.size() * groups_);
     gradient_.resize(mixed_.size() * groups_);
@@ -162,7 +166,7 @@ class Interfaces {
       const std::size_t a = vertex_of(mesh, c, n);
       for (std::size_t b = 0; b < groups_; ++b) {
         const CellGroupSum<D>& sum = cells_[b][static_cast<std::size_t>(c)];
-        shares.push_back(sum.volume[a]);
+        shares.push_back(std::max(sum.volume[a], Real{0}));  // a particle on a facet may lie outside of its cell by rounding
         for (int k = 0; k < Symmetric<D>::size; ++k)
           tension_[i * groups_ + b].entry[k] += sum.tension[a].entry[k];
       }

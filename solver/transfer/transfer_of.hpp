@@ -93,7 +93,7 @@ class TransferOf final : public Transfer<D> {
     const auto find_nodes = [&] { nodes.in_use.find(rows_.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
     if constexpr (Rows::projects) {
       assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, find_nodes);
-      rows_.interfaces.find_rows(m.problem.mesh, rows_.ghosts.cells);
+      rows_.interfaces.find_rows(m.problem.mesh, nodes.in_use, rows_.ghosts.cells);
       project_sums(rows_.kernel.node_operators(), rows_.interfaces, m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use,
                    nodes.sum);
     } else {

@@ -194,6 +194,20 @@ inline std::vector<SceneCase> scenes_of_all()
                 "  - {type: run, name: three, duration: 0.014, damping: 0.2, vanish: [stone], weaken: [{factor: 1.5}]}\n",
         .outputs =
             ", points: [{name: top, at: [0.5, 1.6], body: fill}], fronts: [{name: toe, direction: +x}], bodies: [fill, low, stone]"}});
+  const SceneParts two_materials{
+      .law = soil_law + "}, {name: other, density: 2500, law: neo_hookean, youngs_modulus: 5.0e6, poisson_ratio: 0.3",
+      .bodies =
+          "bodies:\n"
+          "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1.3, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
+          "  - {name: high, material: other, shape: {type: box, low: [0, 0.6], high: [1.3, 1.2]}, particles_per_cell: 4, velocity: [1, "
+          "-2], "
+          "f_bar: true}\n"
+          "  - {name: right, material: stuff, shape: {type: box, low: [1.3, 0], high: [2, 1.2]}, particles_per_cell: 3}\n",
+      .outputs = ", bodies: [low, high]"};
+  all.push_back({"two_materials", two_materials});
+  SceneParts two_by_tpic = two_materials;
+  two_by_tpic.more = "transfer: {scheme: tpic}\n";
+  all.push_back({"two_materials_tpic", two_by_tpic});
   SceneParts in_3d{.dimension = solid,
                    .law = soil_law,
                    .bodies =
@@ -211,6 +225,10 @@ inline std::vector<SceneCase> scenes_of_all()
       "[{name: axis, "
       "along: [[0, 0], [1, 2]]}]";
   all.push_back({"run_out", runs_out});
+  SceneParts two_in_3d = in_3d;
+  two_in_3d.law = two_materials.law;
+  two_in_3d.bodies += "  - {name: high, material: other, shape: {type: box, low: [0, 1, 0], high: [1.4, 1.4, 1]}, particles_per_cell: 4}\n";
+  all.push_back({"two_materials_solid", two_in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
   in_3d.law = SceneParts{}.law;
   all.push_back({"solid_umls", in_3d});
