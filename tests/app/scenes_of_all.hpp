@@ -198,11 +198,13 @@ inline std::vector<SceneCase> scenes_of_all()
       .law = soil_law + "}, {name: other, density: 2500, law: neo_hookean, youngs_modulus: 5.0e6, poisson_ratio: 0.3",
       .bodies =
           "bodies:\n"
-          "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1.3, 0.6]}, particles_per_cell: 3, velocity: [3, -1]}\n"
-          "  - {name: high, material: other, shape: {type: box, low: [0, 0.6], high: [1.3, 1.2]}, particles_per_cell: 4, velocity: [1, "
+          "  - {name: low, material: stuff, shape: {type: box, low: [0, 0], high: [1.333, 0.667]}, particles_per_cell: 3, velocity: [3, "
+          "-1]}\n"
+          "  - {name: high, material: other, shape: {type: box, low: [0, 0.667], high: [1.333, 1.333]}, particles_per_cell: 4, velocity: "
+          "[1, "
           "-2], "
           "f_bar: true}\n"
-          "  - {name: right, material: stuff, shape: {type: box, low: [1.3, 0], high: [2, 1.2]}, particles_per_cell: 3}\n",
+          "  - {name: right, material: stuff, shape: {type: box, low: [1.334, 0], high: [2, 1]}, particles_per_cell: 3}\n",
       .outputs = ", bodies: [low, high]"};
   all.push_back({"two_materials", two_materials});
   SceneParts two_by_tpic = two_materials;

@@ -123,7 +123,8 @@ TEST_F(Check, WarnsOfBodiesThatShareCells)
 /// Squares of 0.25 m: a seam of so many between two blocks of another material.
 std::string seam(double top, double first = 1)
 {
-  return fmt::format(R"(dimension: 2
+  return fmt::format(R"(title: Seam
+dimension: 2
 mesh: {{grid: {{low: [0, 0], high: [4, 3], cells: [16, 12]}}}}
 materials:
   - {{name: rock, law: linear_elastic, density: 1000, youngs_modulus: 1.0e6, poisson_ratio: 0.3}}
@@ -144,7 +145,7 @@ TEST_F(Check, WarnsOfASeamOfOneCellAndNotOfOneOfTwo)
   write("two.yaml", seam(1.5));
   const Outcome one = talus("check one.yaml"), two = talus("check two.yaml");
   EXPECT_THAT(one.err,
-              HasSubstr("one.yaml:5:5: material \"clay\" is less than two cells thick where it lies between others (32 of its 32 cells)"));
+              HasSubstr("one.yaml:6:5: material \"clay\" is less than two cells thick where it lies between others (32 of its 32 cells)"));
   EXPECT_EQ(two.err, "");
 }
 
