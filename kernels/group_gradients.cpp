@@ -6,7 +6,8 @@
 
 namespace talus {
 
-/// Sweeps of the fitting.  Two leave 5 % of the forces of a uniform stress that one leaves, more gain nothing that could be measured.
+/// Sweeps of the fitting.  What a uniform normal stress pulls at nodes of an interface that cuts cells, over stress and size of cells, is
+/// 0.040, 0.038, 0.035 and 0.033 with 1, 2, 6 and 20 sweeps (plane prototype, jittered mesh): the first counts most.
 constexpr int fitting_sweeps = 2;
 
 template <int D>

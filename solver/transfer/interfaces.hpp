@@ -2,7 +2,7 @@
 // Nodes between materials: each group of bodies of one material has gradients of its own there.
 #include <algorithm>
 #include <array>
-#include <numeric>
+#include <span>
 #include <vector>
 
 #include "kernels/group_gradients.hpp"
@@ -42,12 +42,12 @@ class Interfaces {
  public:
   /// Whether there are several groups.
   bool any() const noexcept { return groups_ > 1; }
-  /// Sets the groups by the materials of the bodies, and makes room for their sums.
-  void begin(const Mesh<D>& mesh, const std::vector<Material>& materials)
+  /// Sets the groups by the materials of the bodies, one group of all unless they are to be `separate`, and makes room for their sums.
+  void begin(const Mesh<D>& mesh, const std::vector<Material>& materials, bool separate)
   {
     group_of_body_.clear();
     std::vector<Index> kinds;
-    for (const Material& material : materials) {
+    for (const Material& material : separate ? std::span<const Material>(materials) : std::span<const Material>()) {
       const auto same = std::ranges::find(kinds, material.kind);
       if (material.kind == none || same == kinds.end()) {
         group_of_body_.push_back(kinds.size());

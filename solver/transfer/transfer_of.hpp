@@ -72,7 +72,7 @@ class TransferOf final : public Transfer<D> {
       rows_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
     }
     if constexpr (Rows::projects)
-      rows_.interfaces.begin(m.problem.mesh, rows_.kernel.separates_materials() ? m.state.materials : std::vector<Material>{});
+      rows_.interfaces.begin(m.problem.mesh, m.state.materials, rows_.kernel.separates_materials());
     for_each_reading_block(
         rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, b).sum(); });
   }

@@ -237,13 +237,13 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
   }
 }
 
-/// Adds the particles of a run to the sums of their group in the cell; `of` are the sums of their contributions.
+/// Adds the particles of a run to the sums of their group in the cell; `sums` are those of their contributions.
 template <class Of, int D>
-void add_to(const CornerSums<D, Of>& of, const StripColumn<Real>& volume, const CellRun<D>& run, const StripScratch<D>& scratch,
-            CellGroupSum<D>& sum) noexcept
+void add_to_group(const CornerSums<D, Of>& sums, const StripColumn<Real>& volume, const CellRun<D>& run, const StripScratch<D>& scratch,
+                  CellGroupSum<D>& sum) noexcept
 {
   for (std::size_t a = 0; a <= D; ++a) {
-    add_numbers<Symmetric<D>::size>(of.of[a] + Of::tension, sum.tension[a].entry);
+    add_numbers<Symmetric<D>::size>(sums.of[a] + Of::tension, sum.tension[a].entry);
     for (std::size_t i = run.begin; i < run.end; ++i)
       sum.volume[a] += scratch.share[a][i] * volume.first[i];
   }
@@ -272,7 +272,7 @@ TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n,
         add_numbers<CellMoments<D>::numbers>(sums.of[a] + Of::momentum, cell.of[a]);
     }
     if (interfaces.any())
-      add_to(sums, columns.volume, run, scratch, interfaces.sum(body, run.frame->cell));
+      add_to_group(sums, columns.volume, run, scratch, interfaces.sum(body, run.frame->cell));
   }
 }
 

@@ -98,7 +98,7 @@ void measure(const ConvergePlan& plan, const Scene& scene, ConvergeLevel& level)
   level.particles = setup.n_particles;
   const CaseStatus status = status_of(level, plan.quick);
   if (status.state != CaseState::done && !status.goes_on_from)
-    estimate<D>(scene, mesh, std::move(setup));  // what the kernel refuses is told before anything runs
+    estimate<D>(scene, mesh, std::move(setup));  // what the kernel refuses is an error before anything runs
 }
 
 /// Completes the level.  Throws SceneErrors.
