@@ -213,50 +213,50 @@ std::vector<std::uint8_t> spread_by_rings(const Mesh<D>& mesh, std::vector<std::
   return marked;
 }
 
-/// The exchange from owners of nodes to the ranks that need their values; `wanted` marks the needed nodes, own ones included.  Collective.
-inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& subdomain, MessageTag topic, std::span<const std::uint8_t> wanted)
+/// The exchange from owners to the ranks that hold copies.  `asked` has the numbers in the whole mesh of the copies on this rank, by owner,
+/// whose local numbers are `in` of `all`; local_number(whole) finds those that others ask for.  Collective.
+template <class LocalNumber>
+HaloExchange copies_from_owners(Communicator& ranks, MessageTag topic, std::vector<NeighbourRank> all,
+                                std::vector<std::vector<Index>> asked, LocalNumber&& local_number)
 {
-  std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::vector<Index>> asked(all.size());  // numbers in the whole mesh
-  for (std::size_t n = 0; n < wanted.size(); ++n)
-    if (wanted[n] != 0 && !subdomain.owns_node(static_cast<Index>(n))) {
-      const auto owner = static_cast<std::size_t>(subdomain.rank_of_node[n]);
-      all[owner].in.push_back(static_cast<Index>(n));
-      asked[owner].push_back(subdomain.node[n]);
-    }
   asked = exchange_rows(ranks, asked);
   std::vector<NeighbourRank> borders;
   for (std::size_t q = 0; q < all.size(); ++q) {
     all[q].rank = static_cast<int>(q);
     for (const Index whole : asked[q])
-      all[q].out.push_back(subdomain.local_node(whole));
+      all[q].out.push_back(local_number(whole));
     if (!all[q].out.empty() || !all[q].in.empty())
       borders.push_back(std::move(all[q]));
   }
   return HaloExchange(ranks, topic, std::move(borders));
 }
 
-/// The exchange of the values of all cells of the part, from their owners to the ranks that hold copies.  Collective.
+/// The exchange of the values of nodes; `wanted` marks those needed here, own ones included.  Collective.
+inline HaloExchange copies_of_nodes(Communicator& ranks, const Subdomain& subdomain, MessageTag topic, std::span<const std::uint8_t> wanted)
+{
+  std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
+  std::vector<std::vector<Index>> asked(all.size());
+  for (std::size_t n = 0; n < wanted.size(); ++n)
+    if (wanted[n] != 0 && !subdomain.owns_node(static_cast<Index>(n))) {
+      const auto owner = static_cast<std::size_t>(subdomain.rank_of_node[n]);
+      all[owner].in.push_back(static_cast<Index>(n));
+      asked[owner].push_back(subdomain.node[n]);
+    }
+  return copies_from_owners(ranks, topic, std::move(all), std::move(asked), [&](Index whole) { return subdomain.local_node(whole); });
+}
+
+/// The exchange of the values of all cells of the part.  Collective.
 inline HaloExchange copies_of_cells(Communicator& ranks, const Subdomain& subdomain, MessageTag topic, Index n_cells)
 {
   std::vector<NeighbourRank> all(static_cast<std::size_t>(ranks.size()));
-  std::vector<std::vector<Index>> asked(all.size());  // numbers in the whole mesh
+  std::vector<std::vector<Index>> asked(all.size());
   for (Index c = 0; c < n_cells; ++c)
     if (!subdomain.owns_cell(c)) {
       const auto owner = static_cast<std::size_t>(subdomain.rank_of_block[static_cast<std::size_t>(c / block_cells)]);
       all[owner].in.push_back(c);
       asked[owner].push_back(subdomain.whole_cell(c));
     }
-  asked = exchange_rows(ranks, asked);
-  std::vector<NeighbourRank> borders;
-  for (std::size_t q = 0; q < all.size(); ++q) {
-    all[q].rank = static_cast<int>(q);
-    for (const Index whole : asked[q])
-      all[q].out.push_back(subdomain.local_cell(whole));
-    if (!all[q].out.empty() || !all[q].in.empty())
-      borders.push_back(std::move(all[q]));
-  }
-  return HaloExchange(ranks, topic, std::move(borders));
+  return copies_from_owners(ranks, topic, std::move(all), std::move(asked), [&](Index whole) { return subdomain.local_cell(whole); });
 }
 
 }  // namespace talus

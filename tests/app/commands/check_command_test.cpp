@@ -156,6 +156,39 @@ TEST_F(Check, WarnsOfABoundaryBetweenMaterialsThatCutsCells)
               HasSubstr("the boundary between their materials cuts cells, and is too strong by one to two cells"));
 }
 
+/// A heap on squares of 0.25 m, whose smallest altitude is 0.25 / sqrt(2) m.
+std::string heap(const std::string& law, const std::string& boundary)
+{
+  return "title: Heap\ndimension: 2\nmesh: {grid: {low: [0, 0], high: [4, 3], cells: [16, 12]}}\nmaterials: [{name: stuff, density: "
+         "1000, " +
+         law + "}]\nbodies: [{name: heap, material: stuff, shape: {type: box, low: [0, 0], high: [1, 1]}}]\n" +
+         "loads: [{type: gravity, acceleration: [0, -5], table: [[0, 0], [1, 2]]}]\nboundaries: [" + boundary + "]\ntime: {end: 1}\n";
+}
+const std::string elastic = "law: linear_elastic, youngs_modulus: 1.0e6, poisson_ratio: 0.3",
+                  soil = "law: mohr_coulomb, youngs_modulus: 1.0e6, poisson_ratio: 0.3, friction_angle: 30, cohesion: 0";
+
+TEST_F(Check, TellsTheDampingOfTheTransferWhichFollowsTheFallWhereABodyFlows)
+{
+  write("soil.yaml", heap(soil, "{type: fixed, on: y_min}"));
+  write("elastic.yaml", heap(elastic, "{type: fixed, on: y_min}"));
+  EXPECT_THAT(talus("check soil.yaml").out,
+              HasSubstr(fmt::format("transfer aflip, musl, damped in {:.3g} s; in stages that seek rest in 25 "
+                                    "crossing times of a cell,",
+                                    std::sqrt(0.25 / std::sqrt(2.0) / 10))));
+  EXPECT_THAT(talus("check elastic.yaml").out, HasSubstr("transfer aflip, musl, damped in 25 crossing times of a cell,"));
+}
+
+TEST_F(Check, NotesAFixedFloorOverWhichSoilMayFlowOut)
+{
+  constexpr auto note = "\"y_min\" is fixed: what flows out over it is held back";
+  write("fixed.yaml", heap(soil, "{type: fixed, on: y_min}"));
+  write("rough.yaml", heap(soil, "{type: friction, on: y_min, coefficient: 0.5}, {type: fixed, on: x_min}"));
+  write("elastic.yaml", heap(elastic, "{type: fixed, on: y_min}"));
+  EXPECT_THAT(talus("check fixed.yaml").out, HasSubstr(note));
+  EXPECT_THAT(talus("check rough.yaml").out, testing::Not(HasSubstr("is fixed: what flows")));
+  EXPECT_THAT(talus("check elastic.yaml").out, testing::Not(HasSubstr(note)));
+}
+
 /// Two blocks in a mesh of squares of 0.25 m, the second from x on.
 std::string two_blocks(const std::string& x, const std::string& kernel = "projected")
 {

@@ -130,6 +130,26 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
   }
 }
 
+/// Bodies of one material, and of several where the scene says so, have no nodes between materials.
+TYPED_TEST(ProjectedIn, BodiesOfOneMaterialShareTheirGradients)
+{
+  constexpr int D = TypeParam::D;
+  const auto mixed_nodes = [](const std::array<Index, 2>& kinds, AtInterfaces at_interfaces) {
+    auto m = make_model<Projected<D>>(unit_box<D>(D == 2 ? 8 : 4, 0.2), {.interfaces = at_interfaces});
+    m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+    for (const bool top : {true, false})
+      add_body<D>(m, top ? "top" : "bottom", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [&](const Vec<D>& x) { return (x[0] > 0.5) == top; });
+    for (std::size_t b = 0; b < kinds.size(); ++b)
+      m.state.materials[b].kind = kinds[b];
+    make_ready(m);
+    sum_on_nodes(m);
+    return transfer_of<Projected<D>>(m).rows().interfaces.mixed_nodes();
+  };
+  EXPECT_EQ(mixed_nodes({3, 3}, AtInterfaces::separate), 0U);
+  EXPECT_EQ(mixed_nodes({3, 4}, AtInterfaces::shared), 0U);
+  EXPECT_GT(mixed_nodes({3, 4}, AtInterfaces::separate), 5U);
+}
+
 /// Bodies of different materials that meet at a boundary of cells: motion of one alone does not strain the other.
 TYPED_TEST(ProjectedIn, AMotionOfOneMaterialDoesNotStrainTheOther)
 {
