@@ -7,6 +7,7 @@ template <int D>
 Projected<D>::Projected(const Mesh<D>& mesh, const Options& options) : Projected(mesh, maxent_values(mesh, options.alpha))
 {
   separates_ = options.interfaces == AtInterfaces::separate;
+  extends_ = options.surfaces == AtSurfaces::extended;
 }
 
 template <int D>

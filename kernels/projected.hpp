@@ -49,6 +49,8 @@ class Projected {
   }
   /// Whether bodies of different materials have gradients of their own at nodes between them.
   bool separates_materials() const noexcept { return separates_; }
+  /// Whether gradients at surfaces that cut cells take extended velocities.
+  bool extends() const noexcept { return extends_; }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
   /// Nodes without positive weights that are exact for linear fields, ascending; they are treated as corners.
   std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }
@@ -58,7 +60,7 @@ class Projected {
 
   Linear<D> linear_;
   std::vector<Index> as_corners_;
-  bool separates_ = true;
+  bool separates_ = true, extends_ = true;
   NodeOperators<D> node_part_;
 };
 

@@ -53,6 +53,7 @@ struct alignas(64) NodeSum {
 template <int D>
 struct ProjectedNodeSum : NodeSum<D> {
   Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
+  Real volume{};                   ///< sum B V [m^D]
   Symmetric<D> tension{};          ///< sum B V sigma [N m]
   Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept
@@ -69,7 +70,7 @@ struct ProjectedNodeSum : NodeSum<D> {
   template <class Self>
   static auto parts(Self& sum) noexcept
   {
-    return std::tuple_cat(NodeSum<D>::parts(sum), std::tie(sum.affine, sum.tension));
+    return std::tuple_cat(NodeSum<D>::parts(sum), std::tie(sum.affine, sum.volume, sum.tension));
   }
   template <class Self>
   static auto momentum_parts(Self& sum) noexcept
@@ -80,6 +81,7 @@ struct ProjectedNodeSum : NodeSum<D> {
   {
     NodeSum<D>::operator+=(other);
     affine += other.affine;
+    volume += other.volume;
     for (int k = 0; k < Symmetric<D>::size; ++k)
       tension.entry[k] += other.tension.entry[k];
     return *this;

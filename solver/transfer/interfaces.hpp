@@ -10,6 +10,7 @@
 #include "solver/halo/halo_exchange.hpp"
 #include "solver/model/state.hpp"
 #include "solver/state/nodes_in_use.hpp"
+#include "solver/transfer/extension.hpp"
 
 namespace talus {
 
@@ -114,7 +115,7 @@ class Interfaces {
     return force;
   }
   /// Computes the velocity gradients of the groups at mixed nodes.
-  void find_gradients(const Mesh<D>& mesh, const std::vector<NodeMotion<D>>& nodes)
+  void find_gradients(const Mesh<D>& mesh, const Extension<D>& extension, const std::vector<NodeMotion<D>>& nodes)
   {
     parallel_for(static_cast<Index>(mixed_.size()), [&](Index k) {
       const auto i = static_cast<std::size_t>(k);
@@ -123,7 +124,7 @@ class Interfaces {
       for (std::size_t b = 0; b < groups_; ++b) {
         Mat<D> L = Mat<D>::Zero();
         for (const Index v : ring)
-          L += nodes[static_cast<std::size_t>(v)].v * (row++)->transpose();
+          L += extension.velocity(v, nodes[static_cast<std::size_t>(v)].v) * (row++)->transpose();
         gradient_[i * groups_ + b] = L;
       }
     });

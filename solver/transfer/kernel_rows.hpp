@@ -6,6 +6,7 @@
 #include "kernels/kernel.hpp"
 #include "solver/halo/halo.hpp"
 #include "solver/transfer/cell_moments.hpp"
+#include "solver/transfer/extension.hpp"
 #include "solver/transfer/interfaces.hpp"
 #include "solver/transfer/projected_nodes.hpp"
 
@@ -16,6 +17,7 @@ struct GhostNodes {
   HaloExchange sums;    ///< sums on linear shape functions that own nodes need
   HaloExchange motion;  ///< motion of nodes, or of projected nodes, that own particles use
   HaloExchange felt;    ///< accelerations, for kernels with node operators
+  HaloExchange near;    ///< values within three rings of own nodes, for kernels with node operators
   HaloExchange cells;   ///< sums of cells over groups of bodies, for kernels with node operators
 };
 
@@ -34,6 +36,7 @@ struct KernelRows {
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
   Interfaces<D> interfaces;
+  Extension<D> extension;
   std::vector<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const Options<K>& options)

@@ -4,6 +4,7 @@
 #include "kernels/node_operators.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/owned_nodes.hpp"
+#include "solver/transfer/extension.hpp"
 #include "solver/transfer/interfaces.hpp"
 
 namespace talus {
@@ -52,6 +53,20 @@ void project_sums(const NodeOperators<D>& operators, const Interfaces<D>& interf
     });
     total.gross = static_cast<float>(around / ring);
   });
+}
+
+/// The force of the stress on node v, -sum_n Z_n D_nv [N].
+template <int D>
+Vec<D> stress_force(const NodeOperators<D>& operators, const Interfaces<D>& interfaces, const Mesh<D>& mesh,
+                    const std::vector<ProjectedNodeSum<D>>& projected, Index v)
+{
+  Vec<D> force = Vec<D>::Zero();
+  operators.for_each_in_column(v, [&](Index n, Real, const Vec<D>& gradient) {
+    const ProjectedNodeSum<D>& projected_node = projected[static_cast<std::size_t>(n)];
+    if (projected_node.is_seen())
+      force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : projected_node.tension * gradient;
+  });
+  return force;
 }
 
 /// The momentum only.
@@ -120,7 +135,7 @@ void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own,
 /// From unknowns to the linear shape functions that particles use: v_n = sum_v S_nv v_v, changes likewise, L_n = sum_v v_v (x) D_nv.
 /// arrive() receives the motion of nodes of other ranks.
 template <int D, class Arrive>
-void project_motion(const NodeOperators<D>& operators, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
+void project_motion(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
                     ProjectedNodes<D>& projected)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
@@ -129,7 +144,7 @@ void project_motion(const NodeOperators<D>& operators, const NodesInUse& in_use,
       const NodeMotion<D>& node = nodes[static_cast<std::size_t>(v)];
       projected_node.v += S * node.v;
       projected_node.change += S * node.change;
-      projected_node.L += node.v * gradient.transpose();
+      projected_node.L += extension.velocity(v, node.v) * gradient.transpose();
     });
     row = projected_node;
   });
@@ -137,13 +152,13 @@ void project_motion(const NodeOperators<D>& operators, const NodesInUse& in_use,
 
 /// Gradients of the remapped velocities on the linear shape functions that particles use.
 template <int D, class Arrive>
-void project_gradient(const NodeOperators<D>& operators, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& remapped,
+void project_gradient(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& remapped,
                       Arrive&& arrive, ProjectedNodes<D>& projected, std::vector<Mat<D>>& gradients)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>&) {
     Mat<D> L = Mat<D>::Zero();
     operators.for_each_in_row(
-        n, [&](Index v, Real, const Vec<D>& gradient) { L += remapped[static_cast<std::size_t>(v)].v * gradient.transpose(); });
+        n, [&](Index v, Real, const Vec<D>& gradient) { L += extension.velocity(v, remapped[static_cast<std::size_t>(v)].v) * gradient.transpose(); });
     gradients[static_cast<std::size_t>(n)] = L;
   });
 }

@@ -50,6 +50,7 @@ class TransferOf final : public Transfer<D> {
       rows_.ghosts.sums = copy(MessageTag::sums, collected);
       rows_.ghosts.motion = copy(MessageTag::motion, spread_by_rings(problem.mesh, read, 1));
       rows_.ghosts.felt = copy(MessageTag::felt, spread_by_rings(problem.mesh, problem.own.owned, 2));
+      rows_.ghosts.near = copy(MessageTag::near, spread_by_rings(problem.mesh, problem.own.owned, 3));
       rows_.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
       rows_.projected.find_late(problem.mesh, problem.own);
     } else {
@@ -71,8 +72,11 @@ class TransferOf final : public Transfer<D> {
       rows_.gradient_of_remapped.resize(rows_.projected.motion.size());
       rows_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
     }
-    if constexpr (Rows::projects)
+    if constexpr (Rows::projects) {
       rows_.interfaces.begin(m.problem.mesh, m.state.materials, rows_.kernel.separates_materials());
+      if (rows_.kernel.extends())
+        rows_.extension.begin(m.problem.mesh);
+    }
     for_each_reading_block(
         rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, b).sum(); });
   }
@@ -96,6 +100,7 @@ class TransferOf final : public Transfer<D> {
       rows_.interfaces.find_rows(m.problem.mesh, nodes.in_use, rows_.ghosts.cells);
       project_sums(rows_.kernel.node_operators(), rows_.interfaces, m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use,
                    nodes.sum);
+      extend_forces(m);
     } else {
       assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
     }
@@ -122,7 +127,7 @@ class TransferOf final : public Transfer<D> {
     if (musl)
       find_remapped_gradient(m, kick.to, pic);
     if constexpr (Rows::projects)
-      rows_.interfaces.find_gradients(m.problem.mesh, musl ? rows_.remapped : m.work.nodes.motion);
+      rows_.interfaces.find_gradients(m.problem.mesh, rows_.extension, musl ? rows_.remapped : m.work.nodes.motion);
     m.work.strips->drop_loaded_gradients();
     const auto sweep = [&](const SweepParts& parts) {
       for_each_reading_block(
@@ -180,14 +185,28 @@ class TransferOf final : public Transfer<D> {
   void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] const Kick& kick)
   {
     if constexpr (Rows::projects) {
+      rows_.extension.find_velocities(m.problem.own, rows_.ghosts.near, m.work.nodes.motion);
       project_motion(
-          rows_.kernel.node_operators(), m.work.nodes.in_use, m.work.nodes.motion,
+          rows_.kernel.node_operators(), rows_.extension, m.work.nodes.in_use, m.work.nodes.motion,
           [&] { rows_.ghosts.motion.take(m.work.nodes.motion, Whole{}); }, rows_.projected);
       m.state.boundary.apply(kick, rows_.projected.sum, rows_.projected.motion, m.work.sums.beyond_nodes);
     }
   }
 
  private:
+  /// Finds the tangential extension at surfaces that cut cells, and moves the forces of the stress with it.
+  void extend_forces(Model<D>& m)
+  {
+    if (!rows_.extension.any())
+      return;
+    const NodeOperators<D>& operators = rows_.kernel.node_operators();
+    Nodes<D>& nodes = m.work.nodes;
+    rows_.extension.find_rows(m.problem.mesh, operators, m.problem.own, nodes, rows_.ghosts.near,
+                              [&](Index n) { return rows_.projected.sum[static_cast<std::size_t>(n)].volume; });
+    rows_.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, rows_.ghosts.near, nodes.sum, [&](Index v) {
+      return stress_force(operators, rows_.interfaces, m.problem.mesh, rows_.projected.sum, v);
+    });
+  }
   /// Receives the motion of nodes of other ranks that the particles of own blocks read; of projected nodes it has arrived.
   void take_motion([[maybe_unused]] Model<D>& m, [[maybe_unused]] const SweepParts& parts)
   {
@@ -208,10 +227,12 @@ class TransferOf final : public Transfer<D> {
         BlockSweep<D, K>(m, rows_, b).return_momentum(pic);
     });
     find_remapped_velocity(m, mid);
-    if constexpr (Rows::projects)
+    if constexpr (Rows::projects) {
+      rows_.extension.find_velocities(m.problem.own, rows_.ghosts.near, rows_.remapped);
       project_gradient(
-          rows_.kernel.node_operators(), m.work.nodes.in_use, rows_.remapped, [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); },
-          rows_.projected, rows_.gradient_of_remapped);
+          rows_.kernel.node_operators(), rows_.extension, m.work.nodes.in_use, rows_.remapped,
+          [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); }, rows_.projected, rows_.gradient_of_remapped);
+    }
   }
 
   /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes, under the boundary conditions.

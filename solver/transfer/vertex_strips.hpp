@@ -11,7 +11,7 @@ namespace talus {
 /// V sigma, forces of loads if `loaded`, then for CellMoments, if `moments`, m v and m B_j B_k.
 template <int D, bool affine, bool loaded, bool moments>
 struct Contribution {
-  static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + 1, load = tension + Symmetric<D>::size,
+  static constexpr int field = D, mass = field + (affine ? D * D : 0), volume = mass + 1, tension = volume + 1, load = tension + Symmetric<D>::size,
                        momentum = load + (loaded ? D : 0), products = momentum + D,
                        size = moments ? products + CellMoments<D>::products : momentum, padded_size = padded(size);
 };
@@ -144,6 +144,7 @@ TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size
     for (int d = 0; d < D; ++d)
       q[d] = m * v[d];
     q[Of::mass] = m;
+    q[Of::volume] = volume;
     for (int d = 0; d < D; ++d)
       for (int e = d; e < D; ++e)
         q[Of::tension + Symmetric<D>::place(d, e)] = volume * load_loose(columns.stress.component(Symmetric<3>::place(d, e)) + i);
@@ -225,6 +226,7 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
     if constexpr (projects) {
       if constexpr (affine)
         add_numbers<D * D>(of + Of::field, row.affine.data());
+      row.volume += of[Of::volume];
       add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
     } else {
       row.gross += static_cast<float>(of[Of::mass]);

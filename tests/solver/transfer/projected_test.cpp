@@ -79,6 +79,7 @@ void forces_do_the_work_that_strains_the_particles(bool of_two_materials)
   auto m = ball<S>(of_two_materials);
   sum_and_read(m, read_random_motion<D>);
   EXPECT_EQ(transfer_of<Projected<D>>(m).rows().interfaces.mixed_nodes() > 10, of_two_materials);
+  EXPECT_GT(transfer_of<Projected<D>>(m).rows().extension.extended().size(), 10U);
   Real power = 0, stress_power = 0, size = 0;
   for (std::size_t n = 0; n < m.work.nodes.sum.size(); ++n)
     power += m.work.nodes.sum[n].force.dot(m.work.nodes.motion[n].v);
@@ -128,6 +129,55 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
     for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
       ASSERT_LT((m.state.particles.L[p] - A).norm(), 1e-12);
   }
+}
+
+/// The velocities of a node without particles, beside a surface along the first axis, are those of the motion inside continued along the
+/// surface; across it they are its own.  Without extension it is as it was.
+TYPED_TEST(ProjectedIn, NodesBesideASurfaceContinueTheMotionAlongIt)
+{
+  constexpr int D = TypeParam::D;
+  for (const AtSurfaces at_surfaces : {AtSurfaces::extended, AtSurfaces::plain}) {
+    auto m = make_model<Projected<D>>(unit_box<D>(D == 2 ? 10 : 6, 0.0), {.surfaces = at_surfaces});
+    m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+    add_body<D>(m, "layer", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [](const Vec<D>& x) { return x[D - 1] < 0.5; });
+    make_ready(m);
+    sum_and_read(m, [](Model<D>& of) {
+      for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n) {
+        const Vec<D>& x = of.problem.mesh.node(n);
+        of.work.nodes.motion[static_cast<std::size_t>(n)].v = (x[D - 1] > 0.5 + 1e-9 ? 7 : x[D - 1]) * Vec<D>::Ones();
+      }
+    });
+    const auto& extension = transfer_of<Projected<D>>(m).rows().extension;
+    EXPECT_EQ(extension.extended().size() > 5, at_surfaces == AtSurfaces::extended);
+    int above = 0;
+    for (const Index n : extension.extended()) {
+      const Vec<D>& x = m.problem.mesh.node(n);
+      if ((x.template head<D - 1>().array() < 0.3).any() || (x.template head<D - 1>().array() > 0.7).any())
+        continue;  // where the surface ends, it has no clear direction
+      const Vec<D>& v = extension.velocity(n, Vec<D>::Zero());
+      EXPECT_NEAR(v[0], x[D - 1], 1e-9);
+      EXPECT_NEAR(v[D - 1], 7, 1e-9);
+      ++above;
+    }
+    EXPECT_EQ(above > 0, at_surfaces == AtSurfaces::extended);
+  }
+}
+
+/// Single particles and films have no inside whose motion could be continued.
+TYPED_TEST(ProjectedIn, SingleParticlesExtendNothing)
+{
+  constexpr int D = TypeParam::D;
+  auto m = make_model<Projected<D>>(unit_box<D>(D == 2 ? 10 : 6, 0.2));
+  m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  Index cell = 0;
+  while ((centroid(m.problem.mesh, cell) - Vec<D>::Constant(0.5)).norm() > 0.15)
+    ++cell;
+  add_body<D>(m, "particle", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10,
+              [&](const Vec<D>& x) { return x == centroid(m.problem.mesh, cell); });
+  m.state.particles.volume0.assign(m.state.particles.volume0.size(), 0.1 * m.problem.mesh.volume(cell));
+  make_ready(m);
+  sum_on_nodes(m);
+  EXPECT_TRUE(transfer_of<Projected<D>>(m).rows().extension.extended().empty());
 }
 
 /// Bodies of one material, and of several where the scene says so, have no nodes between materials.
