@@ -23,14 +23,14 @@ struct UmlsOptions {
 enum class AtInterfaces : std::uint8_t { separate, shared };
 constexpr std::array<std::string_view, 2> enum_names(AtInterfaces) { return {"separate", "shared"}; }
 
-enum class AtSurfaces : std::uint8_t { extended, plain };
-constexpr std::array<std::string_view, 2> enum_names(AtSurfaces) { return {"extended", "plain"}; }
+enum class AtSurfaces : std::uint8_t { plain, extended };
+constexpr std::array<std::string_view, 2> enum_names(AtSurfaces) { return {"plain", "extended"}; }
 
 /// The options of the kernel `projected`.
 struct ProjectedOptions {
   Real alpha = 0.5;  ///< prior weight of neighbours relative to that of the node itself [-]
   AtInterfaces interfaces = AtInterfaces::separate;
-  AtSurfaces surfaces = AtSurfaces::extended;
+  AtSurfaces surfaces = AtSurfaces::plain;
   static constexpr auto fields()
   {
     return std::tuple{
@@ -40,8 +40,8 @@ struct ProjectedOptions {
                         "shared (one gradient of all, as for a single material: slip surfaces along interfaces are too strong by two cells "
                         "over their height)"),
         optional_choice("surfaces", &ProjectedOptions::surfaces,
-                        "extended (gradients at nodes beside a free surface that cuts cells continue the motion inside along the surface) or "
-                        "plain (they take the motion of these nodes: bending is too soft)")};
+                        "plain or extended (gradients beside a free surface continue the motion inside along the surface: bodies that bend are "
+                        "stiffer and lose half the energy; not for ground under its weight, whose free surfaces then creep)")};
   }
 };
 

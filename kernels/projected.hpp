@@ -60,7 +60,7 @@ class Projected {
 
   Linear<D> linear_;
   std::vector<Index> as_corners_;
-  bool separates_ = true, extends_ = true;
+  bool separates_ = true, extends_ = false;
   NodeOperators<D> node_part_;
 };
 

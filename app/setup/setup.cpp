@@ -212,6 +212,16 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
       }
 }
 
+/// Extended surfaces do not rest under a weight along them.
+void warn_of_creeping_surfaces(const Scene& scene, const std::vector<Stage>& stages, std::vector<std::string>& warnings)
+{
+  const bool extends = scene.kernel == "projected" && scene.projected && scene.projected->surfaces == AtSurfaces::extended;
+  if (extends && std::ranges::any_of(stages, [](const Stage& stage) { return stage.residual || stage.damping > 0; }))
+    warnings.emplace_back(
+        "projected: surfaces: extended: material beside a free surface creeps along it under its weight, so a stage that seeks rest may not "
+        "find it; the option is for bodies that bend and swing: leave it out for ground");
+}
+
 }  // namespace
 
 template <int D>
@@ -236,6 +246,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   add_boundaries(scene, mesh, at_start, ranks, first_stage, true, errors, setup, setup.state.boundary);
   add_loads(scene, mesh, has_particles, at_start, ranks, errors, setup);
   set_stages(scene, errors, setup);
+  warn_of_creeping_surfaces(scene, setup.stages, setup.warnings);
   setup.conditions.water = water_of(
       scene, mesh, setup.state.bodies, [&](Index cell) { return at_start(cell); }, errors, setup.warnings);
   saturate(scene, 0, mesh, setup.conditions.water, setup.state.bodies, setup.state.particles);

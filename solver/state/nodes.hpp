@@ -53,7 +53,7 @@ struct alignas(64) NodeSum {
 template <int D>
 struct ProjectedNodeSum : NodeSum<D> {
   Mat<D> affine = Mat<D>::Zero();  ///< sum B m A [kg/s]
-  Real volume{};                   ///< sum B V [m^D]
+  Real volume{};                   ///< sum B V [m^D], where surfaces are extended
   Symmetric<D> tension{};          ///< sum B V sigma [N m]
   Vec<D> momentum_about(const Vec<D>& arm) const noexcept { return this->momentum + affine * arm; }
   void clear_momentum() noexcept

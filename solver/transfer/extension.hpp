@@ -26,6 +26,7 @@ namespace talus {
 template <int D>
 class Extension {
  public:
+  static constexpr int rings = 3;  ///< between a node and its sources
   /// Makes room.  Until then no node is extended.
   void begin(const Mesh<D>& mesh)
   {
@@ -134,7 +135,6 @@ class Extension {
   }
 
  private:
-  static constexpr int rings = 3;
   /// The row of a node, and the force of the stress along the surface there [N].
   struct ExtendedNode {
     ExtensionRow<D> row;

@@ -17,7 +17,7 @@ struct GhostNodes {
   HaloExchange sums;    ///< sums on linear shape functions that own nodes need
   HaloExchange motion;  ///< motion of nodes, or of projected nodes, that own particles use
   HaloExchange felt;    ///< accelerations, for kernels with node operators
-  HaloExchange near;    ///< values within three rings of own nodes, for kernels with node operators
+  HaloExchange near;    ///< values of the sources of own nodes, and of nodes that own particles use, where surfaces are extended
   HaloExchange cells;   ///< sums of cells over groups of bodies, for kernels with node operators
 };
 
@@ -55,7 +55,7 @@ struct KernelRows {
   {
     const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
     std::int64_t bytes = of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) +
-                         of(blocks.slot) + static_cast<std::int64_t>(interfaces.bytes());
+                         of(blocks.slot) + static_cast<std::int64_t>(interfaces.bytes() + extension.bytes());
     if constexpr (projects)
       bytes += static_cast<std::int64_t>(kernel.node_operators().size_bytes());
     return bytes;

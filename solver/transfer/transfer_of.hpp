@@ -42,15 +42,20 @@ class TransferOf final : public Transfer<D> {
     const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
       return copies_of_nodes(ranks, problem.subdomain, topic, wanted);
     };
-    std::vector<std::uint8_t> read = nodes_read(problem.subdomain, rows_.blocks);
+    const std::vector<std::uint8_t> read = nodes_read(problem.subdomain, rows_.blocks);
     if constexpr (Rows::projects) {
-      std::vector<std::uint8_t> collected = spread_by_rings(problem.mesh, problem.own.owned, 1);
-      for (std::size_t n = 0; n < read.size(); ++n)
-        collected[n] |= read[n];
-      rows_.ghosts.sums = copy(MessageTag::sums, collected);
-      rows_.ghosts.motion = copy(MessageTag::motion, spread_by_rings(problem.mesh, read, 1));
-      rows_.ghosts.felt = copy(MessageTag::felt, spread_by_rings(problem.mesh, problem.own.owned, 2));
-      rows_.ghosts.near = copy(MessageTag::near, spread_by_rings(problem.mesh, problem.own.owned, 3));
+      const auto both = [](std::vector<std::uint8_t> marked, const std::vector<std::uint8_t>& others) {
+        for (std::size_t n = 0; n < marked.size(); ++n)
+          marked[n] |= others[n];
+        return marked;
+      };
+      const auto around_own = [&](int rings) { return spread_by_rings(problem.mesh, problem.own.owned, rings); };
+      const std::vector<std::uint8_t> moving = spread_by_rings(problem.mesh, read, 1);
+      rows_.ghosts.sums = copy(MessageTag::sums, both(around_own(1), read));
+      rows_.ghosts.motion = copy(MessageTag::motion, moving);
+      rows_.ghosts.felt = copy(MessageTag::felt, around_own(2));
+      if (rows_.kernel.extends())
+        rows_.ghosts.near = copy(MessageTag::near, both(around_own(Extension<D>::rings), moving));
       rows_.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
       rows_.projected.find_late(problem.mesh, problem.own);
     } else {

@@ -11,7 +11,7 @@ namespace talus {
 /// V sigma, forces of loads if `loaded`, then for CellMoments, if `moments`, m v and m B_j B_k.
 template <int D, bool affine, bool loaded, bool moments>
 struct Contribution {
-  static constexpr int field = D, mass = field + (affine ? D * D : 0), volume = mass + 1, tension = volume + 1, load = tension + Symmetric<D>::size,
+  static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + 1, load = tension + Symmetric<D>::size,
                        momentum = load + (loaded ? D : 0), products = momentum + D,
                        size = moments ? products + CellMoments<D>::products : momentum, padded_size = padded(size);
 };
@@ -144,7 +144,6 @@ TALUS_ONE_COPY void find_contributions(const StripColumns<D>& columns, std::size
     for (int d = 0; d < D; ++d)
       q[d] = m * v[d];
     q[Of::mass] = m;
-    q[Of::volume] = volume;
     for (int d = 0; d < D; ++d)
       for (int e = d; e < D; ++e)
         q[Of::tension + Symmetric<D>::place(d, e)] = volume * load_loose(columns.stress.component(Symmetric<3>::place(d, e)) + i);
@@ -226,7 +225,6 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
     if constexpr (projects) {
       if constexpr (affine)
         add_numbers<D * D>(of + Of::field, row.affine.data());
-      row.volume += of[Of::volume];
       add_numbers<Symmetric<D>::size>(of + Of::tension, row.tension.entry);
     } else {
       row.gross += static_cast<float>(of[Of::mass]);
@@ -251,11 +249,23 @@ void add_to_group(const CornerSums<D, Of>& sums, const StripColumn<Real>& volume
   }
 }
 
-/// Adds the contributions of the first n particles, of a body, to the rows of their block, to the moments of their cells and to the sums
-/// of its group; find_shares() has been called.
+/// Adds the volume of the particles of a run to the rows of their block.
+template <int D, class Row>
+void add_volume(const StripColumn<Real>& volume, const CellRun<D>& run, const StripScratch<D>& scratch, std::span<Row> rows,
+                std::span<const std::uint16_t> slots) noexcept
+{
+  if constexpr (std::is_same_v<Row, ProjectedNodeSum<D>>)
+    for (std::size_t a = 0; a <= D; ++a)
+      for (std::size_t i = run.begin; i < run.end; ++i)
+        rows[slots[a]].volume += scratch.share[a][i] * volume.first[i];
+}
+
+/// Adds the contributions of the first n particles, of a body, to the rows of their block, `with_volume` their volume too, to the moments of
+/// their cells and to the sums of its group; find_shares() has been called.
 template <bool affine, bool loaded, bool with_moments, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
-                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces) noexcept
+                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
+                                  bool with_volume) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments>;
   find_contributions<affine, loaded, with_moments>(columns, n, scratch);
@@ -273,6 +283,8 @@ TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n,
       for (int a = 0; a <= D; ++a)
         add_numbers<CellMoments<D>::numbers>(sums.of[a] + Of::momentum, cell.of[a]);
     }
+    if (with_volume)
+      add_volume(columns.volume, run, scratch, rows, blocks.slots(run.frame->cell));
     if (interfaces.any())
       add_to_group(sums, columns.volume, run, scratch, interfaces.sum(body, run.frame->cell));
   }
@@ -328,9 +340,11 @@ class VertexStrips {
   void add(const StripColumns<D>& columns, std::size_t n, Index block)
   {
     if (m_.problem.transfer.uses_musl())
-      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces);
+      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces,
+                                                of_.extension.any());
     else
-      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces);
+      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces,
+                                                of_.extension.any());
   }
   /// Velocities of the particles and their new positions.
   template <bool increments>

@@ -210,6 +210,9 @@ inline std::vector<SceneCase> scenes_of_all()
   SceneParts two_by_tpic = two_materials;
   two_by_tpic.more = "transfer: {scheme: tpic}\n";
   all.push_back({"two_materials_tpic", two_by_tpic});
+  SceneParts extended = two_materials;
+  extended.more = "projected: {surfaces: extended}\n";
+  all.push_back({"extended", extended});
   SceneParts in_3d{.dimension = solid,
                    .law = soil_law,
                    .bodies =
@@ -231,6 +234,8 @@ inline std::vector<SceneCase> scenes_of_all()
   two_in_3d.law = two_materials.law;
   two_in_3d.bodies += "  - {name: high, material: other, shape: {type: box, low: [0, 1, 0], high: [1.4, 1.4, 1]}, particles_per_cell: 4}\n";
   all.push_back({"two_materials_solid", two_in_3d});
+  two_in_3d.more = "projected: {surfaces: extended}\n";
+  all.push_back({"extended_solid", two_in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
   in_3d.law = SceneParts{}.law;
   all.push_back({"solid_umls", in_3d});

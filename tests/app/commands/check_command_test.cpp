@@ -149,6 +149,22 @@ TEST_F(Check, WarnsOfASeamOfOneCellAndNotOfOneOfTwo)
   EXPECT_THAT(two.err, testing::Not(HasSubstr("two cells thick")));
 }
 
+TEST_F(Check, WarnsOfExtendedSurfacesInStagesThatSeekRest)
+{
+  const auto scene = [](const std::string& surfaces, const std::string& end) {
+    std::string text = seam(1.5) + "projected: {surfaces: " + surfaces + "}\n";
+    text.replace(text.find("time: {end: 1}"), 14, end);
+    return text;
+  };
+  const std::string rest = "loads: [{type: gravity, acceleration: [0, -9.81]}]\nstages: [{type: geostatic, duration: 1}]";
+  write("rests.yaml", scene("extended", rest));
+  write("moves.yaml", scene("extended", "time: {end: 1}"));
+  write("plain.yaml", scene("plain", rest));
+  EXPECT_THAT(talus("check rests.yaml").err, HasSubstr("projected: surfaces: extended: material beside a free surface creeps"));
+  EXPECT_THAT(talus("check moves.yaml").err, testing::Not(HasSubstr("creeps")));
+  EXPECT_THAT(talus("check plain.yaml").err, testing::Not(HasSubstr("creeps")));
+}
+
 TEST_F(Check, WarnsOfABoundaryBetweenMaterialsThatCutsCells)
 {
   write("cut.yaml", seam(1.65, 1.1));
