@@ -39,9 +39,10 @@ struct ProjectedOptions {
                         "separate (at nodes between bodies of different materials each material has a gradient of its own) or "
                         "shared (one gradient of all, as for a single material: slip surfaces along interfaces are too strong by two cells "
                         "over their height)"),
-        optional_choice("surfaces", &ProjectedOptions::surfaces,
-                        "plain or extended (gradients beside a free surface continue the motion inside along the surface: bodies that bend are "
-                        "stiffer and lose half the energy; not for ground under its weight, whose free surfaces then creep)")};
+        optional_choice(
+            "surfaces", &ProjectedOptions::surfaces,
+            "plain or extended (gradients beside a free surface continue the motion inside along the surface: bodies that bend are "
+            "stiffer and lose half the energy; not for ground under its weight, whose free surfaces then creep)")};
   }
 };
 

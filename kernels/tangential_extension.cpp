@@ -78,8 +78,8 @@ ExtensionRow<D> extension_row(Real fill, Real size, std::span<const ExtensionSou
     return row;
   const auto [mean, moment] = weights.about_mean();
   Eigen::SelfAdjointEigenSolver<Mat<D>> solver;
-  const Real spread = solver.computeDirect(fills.about_mean().second, Eigen::EigenvaluesOnly).eigenvalues()[0] /
-                      (size * size * static_cast<Real>(around));
+  const Real spread =
+      solver.computeDirect(fills.about_mean().second, Eigen::EigenvaluesOnly).eigenvalues()[0] / (size * size * static_cast<Real>(around));
   const Real share = (1 - by_fill) * smooth_step(spread, spread_low, spread_high);
   if (!(share > 0))
     return row;

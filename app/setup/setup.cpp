@@ -218,7 +218,8 @@ void warn_of_creeping_surfaces(const Scene& scene, const std::vector<Stage>& sta
   const bool extends = scene.kernel == "projected" && scene.projected && scene.projected->surfaces == AtSurfaces::extended;
   if (extends && std::ranges::any_of(stages, [](const Stage& stage) { return stage.residual || stage.damping > 0; }))
     warnings.emplace_back(
-        "projected: surfaces: extended: material beside a free surface creeps along it under its weight, so a stage that seeks rest may not "
+        "projected: surfaces: extended: material beside a free surface creeps along it under its weight, so a stage that seeks rest may "
+        "not "
         "find it; the option is for bodies that bend and swing: leave it out for ground");
 }
 

@@ -12,7 +12,17 @@
 namespace talus {
 
 /// The kind of a message; messages of different kinds do not mix.
-enum class MessageTag : int { rows = 1, sums = 2, particles = 3, motion = 4, felt = 5, small_mass_nodes = 6, hosts = 7, cells = 8, near = 9 };
+enum class MessageTag : int {
+  rows = 1,
+  sums = 2,
+  particles = 3,
+  motion = 4,
+  felt = 5,
+  small_mass_nodes = 6,
+  hosts = 7,
+  cells = 8,
+  near = 9
+};
 
 /// Selects the parts of a row to be sent: the whole row.
 struct Whole {

@@ -63,9 +63,8 @@ class Extension {
     parallel_for(static_cast<Index>(candidates_.size()), [&](Index k) {
       const Index n = candidates_[static_cast<std::size_t>(k)];
       ExtendedNode& node = nodes_[static_cast<std::size_t>(n)];
-      const bool is_known = std::ranges::binary_search(last_, n) && std::ranges::none_of(stencil(n), [&](Index m) {
-                              return changed_[static_cast<std::size_t>(m)] != 0;
-                            });
+      const bool is_known = std::ranges::binary_search(last_, n) &&
+                            std::ranges::none_of(stencil(n), [&](Index m) { return changed_[static_cast<std::size_t>(m)] != 0; });
       if (!is_known)
         find_row(mesh, operators, n, node.row);
       extends_[static_cast<std::size_t>(n)] = node.row.extends() ? 1 : 0;
@@ -75,7 +74,8 @@ class Extension {
 
   /// Moves forces of the stress from extended nodes to their sources; stress_force(v) is -sum_n Z_n D_nv [N].
   template <class Force>
-  void move_forces(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use, HaloExchange& near, std::vector<NodeSum<D>>& sum, Force&& stress_force)
+  void move_forces(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use, HaloExchange& near, std::vector<NodeSum<D>>& sum,
+                   Force&& stress_force)
   {
     parallel_for(static_cast<Index>(extended_.size()), [&](Index k) {
       ExtendedNode& node = nodes_[static_cast<std::size_t>(extended_[static_cast<std::size_t>(k)])];
@@ -246,10 +246,7 @@ class Extension {
     std::ranges::sort(extended_);
   }
 
-  Index first_entry(Index n) const noexcept
-  {
-    return stencils_.begin[static_cast<std::size_t>(stencil_of_[static_cast<std::size_t>(n)])];
-  }
+  Index first_entry(Index n) const noexcept { return stencils_.begin[static_cast<std::size_t>(stencil_of_[static_cast<std::size_t>(n)])]; }
   std::span<const Index> stencil(Index n) const noexcept { return stencils_[stencil_of_[static_cast<std::size_t>(n)]]; }
   /// Lists the nodes within three rings of n, ascending; for a node of another rank at least the own ones among them.
   void find_stencil(const Mesh<D>& mesh, Index n)
@@ -295,17 +292,18 @@ class Extension {
     for_each_target([&](std::size_t m, Index entry) { targets_.item[static_cast<std::size_t>(next_[m]++)] = entry; });
   }
 
-  std::vector<Real> hats_, fill_, before_;           ///< by node: volume of the linear shape function [m^D], level of filling now and before
-  std::vector<std::uint8_t> changed_, extends_;      ///< by node
-  std::vector<ExtendedNode> nodes_;                  ///< by node
-  std::vector<Vec<D>> velocity_;                     ///< by node, if extended [m/s]
-  std::vector<Index> candidates_, last_, extended_;  ///< poorly filled own nodes, those of the step before, and the extended nodes; ascending
-  Csr stencils_;                                     ///< of all nodes that have been candidates
-  std::vector<Index> stencil_of_, seen_from_;        ///< by node
-  std::vector<Real> share_;                          ///< by entry of the stencils
-  std::vector<Index> owner_of_entry_;                ///< by entry of the stencils: the node that it belongs to
-  std::vector<Index> listed_, next_;                 ///< the extended nodes for which targets were listed
-  Csr targets_;                                      ///< by node: entries of which it is the source
+  std::vector<Real> hats_, fill_, before_;       ///< by node: volume of the linear shape function [m^D], level of filling now and before
+  std::vector<std::uint8_t> changed_, extends_;  ///< by node
+  std::vector<ExtendedNode> nodes_;              ///< by node
+  std::vector<Vec<D>> velocity_;                 ///< by node, if extended [m/s]
+  std::vector<Index> candidates_, last_,
+      extended_;                               ///< poorly filled own nodes, those of the step before, and the extended nodes; ascending
+  Csr stencils_;                               ///< of all nodes that have been candidates
+  std::vector<Index> stencil_of_, seen_from_;  ///< by node
+  std::vector<Real> share_;                    ///< by entry of the stencils
+  std::vector<Index> owner_of_entry_;          ///< by entry of the stencils: the node that it belongs to
+  std::vector<Index> listed_, next_;           ///< the extended nodes for which targets were listed
+  Csr targets_;                                ///< by node: entries of which it is the source
 };
 
 }  // namespace talus

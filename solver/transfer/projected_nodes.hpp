@@ -135,8 +135,8 @@ void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own,
 /// From unknowns to the linear shape functions that particles use: v_n = sum_v S_nv v_v, changes likewise, L_n = sum_v v_v (x) D_nv.
 /// arrive() receives the motion of nodes of other ranks.
 template <int D, class Arrive>
-void project_motion(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive,
-                    ProjectedNodes<D>& projected)
+void project_motion(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use,
+                    const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive, ProjectedNodes<D>& projected)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
     ProjectedNodeMotion<D> projected_node;
@@ -152,13 +152,15 @@ void project_motion(const NodeOperators<D>& operators, const Extension<D>& exten
 
 /// Gradients of the remapped velocities on the linear shape functions that particles use.
 template <int D, class Arrive>
-void project_gradient(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use, const std::vector<NodeMotion<D>>& remapped,
-                      Arrive&& arrive, ProjectedNodes<D>& projected, std::vector<Mat<D>>& gradients)
+void project_gradient(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use,
+                      const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive, ProjectedNodes<D>& projected,
+                      std::vector<Mat<D>>& gradients)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>&) {
     Mat<D> L = Mat<D>::Zero();
-    operators.for_each_in_row(
-        n, [&](Index v, Real, const Vec<D>& gradient) { L += extension.velocity(v, remapped[static_cast<std::size_t>(v)].v) * gradient.transpose(); });
+    operators.for_each_in_row(n, [&](Index v, Real, const Vec<D>& gradient) {
+      L += extension.velocity(v, remapped[static_cast<std::size_t>(v)].v) * gradient.transpose();
+    });
     gradients[static_cast<std::size_t>(n)] = L;
   });
 }

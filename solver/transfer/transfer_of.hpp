@@ -200,7 +200,7 @@ class TransferOf final : public Transfer<D> {
 
  private:
   /// Finds the tangential extension at surfaces that cut cells, and moves the forces of the stress with it.
-  void extend_forces(Model<D>& m)
+  void extend_forces(Model<D>& m) requires Rows::projects
   {
     if (!rows_.extension.any())
       return;
@@ -208,9 +208,8 @@ class TransferOf final : public Transfer<D> {
     Nodes<D>& nodes = m.work.nodes;
     rows_.extension.find_rows(m.problem.mesh, operators, m.problem.own, nodes, rows_.ghosts.near,
                               [&](Index n) { return rows_.projected.sum[static_cast<std::size_t>(n)].volume; });
-    rows_.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, rows_.ghosts.near, nodes.sum, [&](Index v) {
-      return stress_force(operators, rows_.interfaces, m.problem.mesh, rows_.projected.sum, v);
-    });
+    rows_.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, rows_.ghosts.near, nodes.sum,
+                                [&](Index v) { return stress_force(operators, rows_.interfaces, m.problem.mesh, rows_.projected.sum, v); });
   }
   /// Receives the motion of nodes of other ranks that the particles of own blocks read; of projected nodes it has arrived.
   void take_motion([[maybe_unused]] Model<D>& m, [[maybe_unused]] const SweepParts& parts)

@@ -2,35 +2,11 @@
 // Between the particles of strips and the vertices of their cells, for kernels whose weights are barycentric coordinates: four particles at a
 // time.
 #include "solver/model/model.hpp"
+#include "solver/transfer/contributions.hpp"
 #include "solver/transfer/kernel_rows.hpp"
 #include "solver/transfer/strip_scratch.hpp"
 
 namespace talus {
-
-/// What a particle adds to each vertex of its cell, times the barycentric coordinate, in this order: momentum, m A if `affine`, mass,
-/// V sigma, forces of loads if `loaded`, then for CellMoments, if `moments`, m v and m B_j B_k.
-template <int D, bool affine, bool loaded, bool moments>
-struct Contribution {
-  static constexpr int field = D, mass = field + (affine ? D * D : 0), tension = mass + 1, load = tension + Symmetric<D>::size,
-                       momentum = load + (loaded ? D : 0), products = momentum + D,
-                       size = moments ? products + CellMoments<D>::products : momentum, padded_size = padded(size);
-};
-/// Sums over the particles of a cell of their contributions to each vertex.
-template <int D, class Of>
-struct CornerSums {
-  alignas(64) Real of[D + 1][Of::padded_size];
-};
-
-/// to[i] += from[i] for n numbers at any addresses.
-template <int n>
-[[gnu::always_inline]] inline void add_numbers(const Real* from, Real* to) noexcept
-{
-  int i = 0;
-  for (; i + pack_size <= n; i += pack_size)
-    store_loose(to + i, load_loose(to + i) + load_loose(from + i));
-  for (; i < n; ++i)
-    to[i] += from[i];
-}
 
 /// The centres of the linear shape functions of a cell relative to its origin [m].
 template <int D, Kernel<D> K>
@@ -340,11 +316,10 @@ class VertexStrips {
   void add(const StripColumns<D>& columns, std::size_t n, Index block)
   {
     if (m_.problem.transfer.uses_musl())
-      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces,
-                                                of_.extension.any());
+      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces, of_.extension.any());
     else
       deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces,
-                                                of_.extension.any());
+                                           of_.extension.any());
   }
   /// Velocities of the particles and their new positions.
   template <bool increments>

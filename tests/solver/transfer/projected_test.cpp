@@ -173,8 +173,7 @@ TYPED_TEST(ProjectedIn, SingleParticlesExtendNothing)
   Index cell = 0;
   while ((centroid(m.problem.mesh, cell) - Vec<D>::Constant(0.5)).norm() > 0.15)
     ++cell;
-  add_body<D>(m, "particle", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10,
-              [&](const Vec<D>& x) { return x == centroid(m.problem.mesh, cell); });
+  add_body<D>(m, "particle", rubber(1e4, 0.3, 1000), D == 2 ? 6 : 10, [&](const Vec<D>& x) { return x == centroid(m.problem.mesh, cell); });
   m.state.particles.volume0.assign(m.state.particles.volume0.size(), 0.1 * m.problem.mesh.volume(cell));
   make_ready(m);
   sum_on_nodes(m);
