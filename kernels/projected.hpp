@@ -50,7 +50,7 @@ class Projected {
   /// Whether bodies of different materials have gradients of their own at nodes between them.
   bool separates_materials() const noexcept { return separates_; }
   /// Whether gradients at surfaces that cut cells take extended velocities.
-  bool extends() const noexcept { return extends_; }
+  bool extends_surfaces() const noexcept { return extends_; }
   const NodeOperators<D>& node_operators() const noexcept { return node_part_; }
   /// Nodes without positive weights that are exact for linear fields, ascending; they are treated as corners.
   std::span<const Index> nodes_as_corners() const noexcept { return as_corners_; }

@@ -45,10 +45,11 @@ struct SourceMoments {
   }
 };
 
-/// Nodes filled less than `low` are extended wholly, those filled more than `high` not at all.
-constexpr Real fill_low = 0.2, fill_high = 0.4;
+/// Nodes that are filled less are extended wholly.
+constexpr Real poorly_filled = 0.2;
 /// The least second moment of the sources, weighted by their filling squared, over h^2 and all nodes within three rings: below `low`, as
-/// around a single particle and in a film, there is no row; above `high` it counts wholly.
+/// around a single particle and in a film, there is no row; above `high` it counts wholly.  From a plane prototype with 37 nodes around, where
+/// the limits of the sum were 0.2 and 0.8.
 constexpr Real spread_low = 0.0054, spread_high = 0.0216;
 
 }  // namespace
@@ -64,7 +65,7 @@ ExtensionRow<D> extension_row(Real fill, Real size, std::span<const ExtensionSou
 {
   ExtensionRow<D> row;
   row.size = size;
-  const Real by_fill = smooth_step(fill, fill_low, fill_high), length = outwards.norm();
+  const Real by_fill = smooth_step(fill, poorly_filled, well_filled), length = outwards.norm();
   if (by_fill >= 1 || !(length > 0))
     return row;
   SourceMoments<D> weights, fills;

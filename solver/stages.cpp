@@ -82,7 +82,7 @@ void begin_stage(Model<D>& m, const Stage& stage, Index number)
                    .ramp_time = stage.ramp,
                    .ramp_shape = stage.ramp_shape,
                    .elastic = stage.elastic,
-                   .seeks_rest = stage.residual || stage.damping > 0};
+                   .seeks_rest = stage.seeks_rest()};
   m.state.boundary.begin_stage(stage.residual.has_value(), m.state.clock.time);
   // Under a stress of the start all of gravity acts, however it grows afterwards.
   const Real time = m.state.clock.time, ramp = stage.start_stress.empty() ? m.state.stage.ramp(time) : 1;

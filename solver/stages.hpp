@@ -26,6 +26,8 @@ struct Stage {
   std::vector<Index> start_stress_bodies{};  ///< that begin with it, by their numbers; none: all
   bool reset_displacement = false;
   SourceLocation where;
+  /// Whether it ends in equilibrium, or is damped.
+  bool seeks_rest() const noexcept { return residual || damping > 0; }
 };
 
 struct StepLimits {

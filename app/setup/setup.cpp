@@ -212,15 +212,16 @@ void check_outputs(const Scene& scene, const Mesh<D>& mesh, const Vec<D>& gravit
       }
 }
 
-/// Extended surfaces do not rest under a weight along them.
+/// Where surfaces are extended, what lies beside them does not rest under its weight.
 void warn_of_creeping_surfaces(const Scene& scene, const std::vector<Stage>& stages, std::vector<std::string>& warnings)
 {
-  const bool extends = scene.kernel == "projected" && scene.projected && scene.projected->surfaces == AtSurfaces::extended;
-  if (extends && std::ranges::any_of(stages, [](const Stage& stage) { return stage.residual || stage.damping > 0; }))
-    warnings.emplace_back(
-        "projected: surfaces: extended: material beside a free surface creeps along it under its weight, so a stage that seeks rest may "
-        "not "
-        "find it; the option is for bodies that bend and swing: leave it out for ground");
+  if (scene.kernel != "projected" || !scene.projected || scene.projected->surfaces != AtSurfaces::extended)
+    return;
+  if (const auto stage = std::ranges::find_if(stages, &Stage::seeks_rest); stage != stages.end())
+    warnings.push_back(
+        fmt::format("{}: stage \"{}\" seeks rest and may not find it: with `projected: {{surfaces: extended}}` material beside a "
+                    "free surface creeps along it under its weight; leave the key out",
+                    to_string(stage->where), stage->name));
 }
 
 }  // namespace

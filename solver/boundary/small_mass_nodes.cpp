@@ -4,25 +4,6 @@ namespace talus {
 
 namespace {
 
-/// Parts of the rows of the nodes that `sends` marks.  Rows of other nodes are not changed.
-template <class Parts>
-struct OfMarked {
-  Parts parts;
-  const std::vector<std::uint8_t>& sends;
-  template <class Row>
-  bool is_there(const Row&, Index node) const noexcept
-  {
-    return sends[static_cast<std::size_t>(node)] != 0;
-  }
-  template <class Row>
-  static void clear(const Row&) noexcept
-  {}
-};
-template <class Parts>
-OfMarked(Parts, const std::vector<std::uint8_t>&) -> OfMarked<Parts>;
-
-constexpr auto itself = [](auto& row) { return std::tie(row); };
-
 template <int D>
 bool takes_part(const NodeSum<D>& sum, const Nodes<D>& nodes) noexcept
 {

@@ -47,6 +47,14 @@ struct Whole {
     sum += row;
   }
 };
+/// Selects the velocity only.
+struct VelocityAlone : Whole {
+  template <class Row>
+  static auto parts(Row& row) noexcept
+  {
+    return std::tie(row.v);
+  }
+};
 /// Selects the momentum only.
 struct MomentumAlone {
   template <class Sum>
@@ -70,6 +78,26 @@ struct MomentumAlone {
     sum.add_momentum(row);
   }
 };
+
+/// Selects `parts` of the rows that `sends` marks.  Rows of other nodes are not changed.
+template <class Parts>
+struct OfMarked {
+  Parts parts;
+  const std::vector<std::uint8_t>& sends;
+  template <class Row>
+  bool is_there(const Row&, Index row) const noexcept
+  {
+    return sends[static_cast<std::size_t>(row)] != 0;
+  }
+  template <class Row>
+  static void clear(const Row&) noexcept
+  {}
+};
+template <class Parts>
+OfMarked(Parts, const std::vector<std::uint8_t>&) -> OfMarked<Parts>;
+
+/// The parts of a row that is a number or a vector.
+inline constexpr auto itself = [](auto& row) { return std::tie(row); };
 
 /// Selects whole numbers or vectors.
 struct Numbers {

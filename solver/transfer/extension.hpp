@@ -50,7 +50,7 @@ class Extension {
     last_.swap(candidates_);
     candidates_.clear(), extended_.clear();
     const auto may_extend = [&](Index n) {
-      return own.has(n) && nodes.bound[static_cast<std::size_t>(n)] == 0 && fill_[static_cast<std::size_t>(n)] < 1 &&
+      return own.has(n) && nodes.bound[static_cast<std::size_t>(n)] == 0 && fill_[static_cast<std::size_t>(n)] < well_filled &&
              std::ranges::any_of(mesh.ring_of_node()[n], [&](Index m) { return fill_[static_cast<std::size_t>(m)] > 0; });
     };
     nodes.in_use.for_each_ascending([&](Index n) {
@@ -117,8 +117,8 @@ class Extension {
       const auto i = static_cast<std::size_t>(n);
       velocity_[i] = motion[i].v + nodes_[i].row.tangential(u);
     });
-    near.send(velocity_, OfExtended{extends_});
-    near.take(velocity_, OfExtended{extends_});
+    near.send(velocity_, OfMarked{itself, extends_});
+    near.take(velocity_, OfMarked{itself, extends_});
   }
   /// The velocity of node n for gradients, where v is its own [m/s].
   const Vec<D>& velocity(Index n, const Vec<D>& v) const noexcept
@@ -140,46 +140,11 @@ class Extension {
     ExtensionRow<D> row;
     Vec<D> force = Vec<D>::Zero();
   };
-  /// Selects the rows of extended nodes.
-  struct OfExtended {
-    std::vector<std::uint8_t>& extends;
-    template <class Row>
-    static auto parts(Row& row) noexcept
-    {
-      if constexpr (requires { row.force; })
-        return std::tie(row.row.normal, row.row.own, row.row.value, row.row.slope, row.row.size, row.force);
-      else
-        return std::tie(row);
-    }
-    template <class Row>
-    bool is_there(const Row&, Index n) const noexcept
-    {
-      return extends[static_cast<std::size_t>(n)] != 0;
-    }
-    template <class Row>
-    static void clear(Row& row) noexcept
-    {
-      if constexpr (requires { row.force; })
-        row = {};
-    }
-  };
-  struct VelocityAlone {
-    template <class Row>
-    static auto parts(Row& row) noexcept
-    {
-      return std::tie(row.v);
-    }
-    template <class Row>
-    static bool is_there(const Row& row, Index) noexcept
-    {
-      return row.is_seen();
-    }
-    template <class Row>
-    static void clear(Row& row) noexcept
-    {
-      row = Row{};
-    }
-  };
+  /// What the owners of sources need of an extended node.
+  static auto row_and_force(auto& node) noexcept
+  {
+    return std::tie(node.row.normal, node.row.own, node.row.value, node.row.slope, node.row.size, node.force);
+  }
 
   template <class Volume>
   void find_fills(const NodesInUse& in_use, HaloExchange& near, Volume&& volume)
@@ -231,8 +196,12 @@ class Extension {
   }
   void exchange_rows_of_ghosts(const Mesh<D>& mesh, HaloExchange& near)
   {
-    near.send(nodes_, OfExtended{extends_});
-    near.take(nodes_, OfExtended{extends_});
+    for (const NeighbourRank& border : near.borders())
+      for (const Index n : border.in)
+        nodes_[static_cast<std::size_t>(n)] = {};
+    const OfMarked rows{[](auto& node) { return row_and_force(node); }, extends_};
+    near.send(nodes_, rows);
+    near.take(nodes_, rows);
     for (const NeighbourRank& border : near.borders())
       for (const Index n : border.in) {
         const auto i = static_cast<std::size_t>(n);

@@ -54,7 +54,7 @@ class TransferOf final : public Transfer<D> {
       rows_.ghosts.sums = copy(MessageTag::sums, both(around_own(1), read));
       rows_.ghosts.motion = copy(MessageTag::motion, moving);
       rows_.ghosts.felt = copy(MessageTag::felt, around_own(2));
-      if (rows_.kernel.extends())
+      if (rows_.kernel.extends_surfaces())
         rows_.ghosts.near = copy(MessageTag::near, both(around_own(Extension<D>::rings), moving));
       rows_.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
       rows_.projected.find_late(problem.mesh, problem.own);
@@ -79,7 +79,7 @@ class TransferOf final : public Transfer<D> {
     }
     if constexpr (Rows::projects) {
       rows_.interfaces.begin(m.problem.mesh, m.state.materials, rows_.kernel.separates_materials());
-      if (rows_.kernel.extends())
+      if (rows_.kernel.extends_surfaces())
         rows_.extension.begin(m.problem.mesh);
     }
     for_each_reading_block(

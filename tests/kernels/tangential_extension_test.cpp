@@ -18,9 +18,9 @@ class TangentialExtensionIn : public ::testing::Test {};
 using Dimensions = ::testing::Types<Dimension<2>, Dimension<3>>;
 TYPED_TEST_SUITE(TangentialExtensionIn, Dimensions);
 
-/// Sources below a node at the origin and the node itself, whose filling is given; filled at random, or all alike.
+/// Sources below a node at the origin, filled by 0.3 to 1 times `scale`, and the node itself.
 template <int D>
-std::vector<ExtensionSource<D>> half_space(Real own_fill, Real fill)
+std::vector<ExtensionSource<D>> half_space(Real own_fill, Real scale = 1)
 {
   std::mt19937 random(3);
   std::uniform_real_distribution<Real> number(0, 1);
@@ -30,7 +30,7 @@ std::vector<ExtensionSource<D>> half_space(Real own_fill, Real fill)
     for (int d = 0; d < D; ++d)
       arm[d] = 6 * number(random) - 3;
     arm[D - 1] = -0.3 - std::abs(arm[D - 1]);
-    sources.push_back({arm, fill < 1 ? fill : 0.3 + 0.7 * number(random)});
+    sources.push_back({arm, scale * (0.3 + 0.7 * number(random))});
   }
   return sources;
 }
@@ -50,7 +50,7 @@ TYPED_TEST(TangentialExtensionIn, KeepsLinearFields)
   constexpr int D = TypeParam::D;
   const Mat<D> slope = Mat<D>::Random();
   for (const Real own : {0.0, 0.1, 0.3}) {
-    const auto sources = half_space<D>(own, 1);
+    const auto sources = half_space<D>(own);
     const auto row = extension_row<D>(own, 1.2, sources, sources.size(), Vec<D>::Ones());
     ASSERT_TRUE(row.extends());
     const Vec<D> u = extended<D>(row, sources, [&](const Vec<D>& x) { return Vec<D>(slope * x + Vec<D>::Ones()); });
@@ -61,7 +61,7 @@ TYPED_TEST(TangentialExtensionIn, KeepsLinearFields)
 TYPED_TEST(TangentialExtensionIn, ContinuesAlongTheSurfaceOnly)
 {
   constexpr int D = TypeParam::D;
-  const auto sources = half_space<D>(0, 1);
+  const auto sources = half_space<D>(0);
   const auto row = extension_row<D>(0, 1, sources, sources.size(), 3 * Vec<D>::Unit(D - 1));
   // inside all move by 1, the node itself by 5
   const Vec<D> u = extended<D>(row, sources, [](const Vec<D>& x) { return Vec<D>((x.isZero(0) ? 5 : 1) * Vec<D>::Ones()); });
@@ -76,10 +76,10 @@ TYPED_TEST(TangentialExtensionIn, LeavesNodesThatAreFilledOrHaveNoInside)
   const auto row = [&](Real own, const std::vector<ExtensionSource<D>>& sources, const Vec<D>& outwards) {
     return extension_row<D>(own, 1, sources, sources.size(), outwards);
   };
-  EXPECT_FALSE(row(0.5, half_space<D>(0.5, 1), up).extends());
+  EXPECT_FALSE(row(0.5, half_space<D>(0.5), up).extends());
   EXPECT_FALSE(row(0.1, half_space<D>(0.1, 0.02), up).extends()) << "next to nothing around";
-  EXPECT_FALSE(row(0.1, half_space<D>(0.1, 1), Vec<D>::Zero()).extends()) << "no surface";
-  auto flat = half_space<D>(0.1, 1);
+  EXPECT_FALSE(row(0.1, half_space<D>(0.1), Vec<D>::Zero()).extends()) << "no surface";
+  auto flat = half_space<D>(0.1);
   for (auto& source : flat)
     source.arm[D - 1] *= 0.02;
   EXPECT_FALSE(row(0.1, flat, up).extends()) << "a film";
