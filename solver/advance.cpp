@@ -28,7 +28,16 @@ template <int D>
 void apply_nodal_loads(Model<D>& m)
 {
   const Real time = m.state.clock.time;
-  apply(m.problem.loads, time, m.state.stage.ramp(time), m.problem.mesh, m.problem.own, std::span(m.work.nodes.sum), m.work.sums.on_mesh);
+  for (VelocityField<D>& field : m.work.fields)
+    apply(m.problem.loads, time, m.state.stage.ramp(time), m.problem.mesh, m.problem.own, std::span(field.nodes.sum), m.work.sums.on_mesh);
+}
+
+/// Gives mass, momentum and force of nodes of small mass to their hosts.
+template <int D>
+void lump_small_masses(Model<D>& m)
+{
+  for (VelocityField<D>& field : m.work.fields)
+    field.small_mass_nodes.lump(m.problem.mesh, m.problem.own, field.nodes);
 }
 
 /// Integrates v <- v + (lag + dt/2) (f/m + g).
@@ -36,15 +45,26 @@ template <int D>
 void integrate_momentum(Model<D>& m, Real dt)
 {
   const Clock& clock = m.state.clock;
-  integrate(m.problem.loads.gravity(clock.time, m.state.stage.ramp(clock.time)), clock.lag + dt / 2, m.work.nodes);
+  for (VelocityField<D>& field : m.work.fields)
+    integrate(m.problem.loads.gravity(clock.time, m.state.stage.ramp(clock.time)), clock.lag + dt / 2, field.nodes);
 }
 
 /// Applies dashpots, then prescribed velocities, planes and friction.
 template <int D>
 void apply_boundary_conditions(Model<D>& m, const Kick& kick, Real dt)
 {
-  m.state.boundary.apply_dashpots(kick.to, dt, *m.problem.ranks, m.work.nodes);
-  m.state.boundary.apply(kick, m.work.nodes, m.work.sums.at_nodes);
+  for (VelocityField<D>& field : m.work.fields) {
+    m.state.boundary.apply_dashpots(kick.to, dt, *m.problem.ranks, field.nodes);
+    m.state.boundary.apply(kick, field.nodes, m.work.sums.at_nodes);
+  }
+}
+
+/// Exchanges impulses where bodies with velocity fields of their own touch.
+template <int D>
+void apply_contacts(Model<D>& m, const Kick& kick)
+{
+  m.work.contact.find(m.problem.mesh, m.problem.own, *m.work.strips, m.work.fields);
+  m.work.contact.act(kick, m.state.boundary, m.work.fields, m.work.sums.at_nodes);
 }
 
 /// Applies local damping in stages that seek equilibrium, from the net acceleration that acts on particles.
@@ -53,17 +73,20 @@ void apply_local_damping(Model<D>& m)
 {
   if (!m.state.stage.seeks_rest)
     return;
-  find_net_acceleration(m.work.nodes);
+  for (VelocityField<D>& field : m.work.fields)
+    find_net_acceleration(field.nodes);
   m.transfer->filter_acceleration(m);
   if (m.state.stage.damping > 0)
-    damp(m.state.stage.damping, m.work.nodes);
+    for (VelocityField<D>& field : m.work.fields)
+      damp(m.state.stage.damping, field.nodes);
 }
 
 /// Moves nodes of small mass with their hosts; then the motion of all nodes is known.
 template <int D>
 void extrapolate_to_small_masses(Model<D>& m, const Kick& kick)
 {
-  m.work.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, m.work.nodes.motion, m.work.sums.beyond_nodes);
+  for (VelocityField<D>& field : m.work.fields)
+    field.small_mass_nodes.extrapolate(m.problem.mesh, m.problem.own, kick, m.state.boundary, field.nodes.motion, m.work.sums.beyond_nodes);
   m.transfer->send_motion(m);
 }
 
@@ -74,11 +97,15 @@ void record_node_sums(Model<D>& m)
   Problem<D>& problem = m.problem;
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
-  const std::span<const IndexRange> blocks = work.nodes.in_use.own();
   const Real time = state.clock.time;
-  add_ranges(blocks, work.sums.nodes, [&](Index n) { return node_work(state.stage.damping, problem.mesh, work.nodes, n); });
-  add_ranges(blocks, work.sums.balance, [&](Index n) { return balance_at(state.stage.seeks_rest, work.nodes, n); });
-  add_work(problem.loads, time, state.stage.ramp(time), problem.own, work.nodes, work.sums.work_on_mesh);
+  for (const VelocityField<D>& field : work.fields) {
+    const Nodes<D>& nodes = field.nodes;
+    const std::span<const IndexRange> blocks = nodes.in_use.own();
+    add_ranges(blocks, work.sums.nodes, [&](Index n) { return node_work(state.stage.damping, problem.mesh, nodes, n); });
+    add_ranges(blocks, work.sums.balance, [&](Index n) { return balance_at(state.stage.seeks_rest, nodes, n); });
+    add_work(problem.loads, time, state.stage.ramp(time), problem.own, nodes, work.sums.work_on_mesh);
+  }
+  work.contact.add_sums(problem.mesh, work.fields, work.sums.contacts);
 }
 
 /// Conducts heat within each body whose law has temperature.
@@ -151,8 +178,11 @@ void update_balances(Model<D>& m)
   Workspace<D>& work = m.work;
   StepSums<D>& sums = work.sums;
   problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
-                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed());
+                     sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed(),
+                     std::span(sums.contacts));
   state.boundary.keep_impulses();
+  for (std::size_t law = 0; law < state.contacts.size(); ++law)
+    state.contacts[law] += sums.contacts[law].value();
   std::array<Real, 3> extremes{state.crossing, -state.monitor.speed, -sums.largest_set_back};
   std::int64_t errors = work.errors.word();
   problem.ranks->least(extremes, errors);
@@ -160,7 +190,7 @@ void update_balances(Model<D>& m)
   state.crossing = extremes[0];
   state.monitor.speed = -extremes[1];
   state.mass.largest_set_back = std::max(state.mass.largest_set_back, -extremes[2]);
-  add_step(sums, work.nodes.gravity, work.nodes.kick, state.mass, state.momentum, state.energy);
+  add_step(sums, work.fields.front().nodes.gravity, work.fields.front().nodes.kick, state.mass, state.momentum, state.energy);
   state.timings.particle_steps += sums.particles.value();
   state.residual = unbalanced(sums.balance.value(), (sums.on_particles.value() + sums.on_mesh.value()).size);
 }
@@ -197,9 +227,10 @@ void make_step(Model<D>& m, Real dt)
   watch.lap(state.timings.scatter);
   transfer.assemble_nodes(m);  //  4
   apply_nodal_loads(m);
-  work.small_mass_nodes.lump(problem.mesh, problem.own, work.nodes);  //  5
-  integrate_momentum(m, dt);                                          //  6
-  apply_boundary_conditions(m, kick, dt);                             //  7
+  lump_small_masses(m);                    //  5
+  integrate_momentum(m, dt);               //  6
+  apply_boundary_conditions(m, kick, dt);  //  7
+  apply_contacts(m, kick);
   apply_local_damping(m);
   extrapolate_to_small_masses(m, kick);  //  8
   record_node_sums(m);

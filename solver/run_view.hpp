@@ -16,7 +16,7 @@ struct RunView {
   /// order.blocks and order.key() always hold.
   const State<D>& state;
   const CellOrder& order;  ///< order of the particles of `state`
-  const Nodes<D>& nodes;
+  std::span<const VelocityField<D>> fields;
   std::string_view stage_name;
   std::int64_t migrated;          ///< number of particles that moved between this rank and others so far
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
@@ -32,7 +32,7 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
   return {.problem = m.problem,
           .state = m.state,
           .order = m.work.order,
-          .nodes = m.work.nodes,
+          .fields = m.work.fields,
           .stage_name = stage.name,
           .migrated = m.work.migration.moved(),
           .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own),

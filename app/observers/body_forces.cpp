@@ -51,8 +51,8 @@ void BodyForces<D>::see(const RunView<D>& view, RunEvent event)
 template <int D>
 void BodyForces<D>::add_step(const RunView<D>& view, const std::vector<BodySums<D>>& now)
 {
-  const Vec<D> gravity = view.nodes.gravity;
-  const Real kick = view.nodes.kick;
+  const Vec<D> gravity = view.fields.front().nodes.gravity;
+  const Real kick = view.fields.front().nodes.kick;
   constexpr Real rounding = 1e-12;  // of the sum, whose order changes with the cells of particles
   const auto lost = [&](std::size_t b) { return std::abs(now[b].mass - sums_[b].mass) > rounding * sums_[b].mass; };
   std::size_t losers = 0;

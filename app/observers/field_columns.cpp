@@ -106,7 +106,7 @@ Column particle_column(const State<D>& state, std::span<const Index> rows, std::
 template <int D>
 Column node_column(const RunView<D>& view, std::string_view name)
 {
-  std::vector<Index> rows(view.nodes.sum.size());
+  std::vector<Index> rows(view.fields.front().nodes.sum.size());
   std::iota(rows.begin(), rows.end(), Index{0});
   std::optional<Column> column = column_of_table<D>(node_fields(), name, view, rows);
   return column ? *std::move(column) : (no_such_field(name), Column{});

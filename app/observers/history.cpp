@@ -64,6 +64,11 @@ struct ReactionNow {
   Vec<D> reaction;  ///< reaction [N]
 };
 template <int D>
+struct ContactNow {
+  Vec<D> force;         ///< on the first body [N]
+  Real friction, loss;  ///< [J]
+};
+template <int D>
 struct PointNow {
   Vec<D> x, u, v;  ///< position [m], displacement [m], velocity [m/s]
   Sym3 stress;     ///< stress [Pa]
@@ -154,6 +159,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
   add(run_columns(), "");
   for (const BoundaryCondition<D>& wall : start.state.boundary.conditions())
     add(reaction_columns(), wall.name);
+  for (const ContactLaw& contact : start.problem.contacts.laws)
+    add(contact_columns(), contact.name);
   for (const PointSpec& point : spec.points)
     add(point_columns(), point.name);
   for (const FrontSpec& one : spec.fronts)
@@ -173,6 +180,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
   start.problem.ranks->together([&] { file_.emplace(file, columns(spec_, start)); });
   state_.impulse.assign(start.state.boundary.conditions().size(), Vec<D>::Zero());
   state_.angular.assign(start.state.boundary.conditions().size(), Vec3::Zero());
+  state_.contact.assign(start.state.contacts.size(), Vec<D>::Zero());
   state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
     state_.followed.push_back(nearest_particle(point, start));
@@ -197,6 +205,12 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
     const Vec<D>& impulse = view.state.boundary.conditions()[w].impulse;
     const Vec<D> reaction = elapsed > 0 ? Vec<D>((impulse - state_.impulse[w]) / elapsed) : Vec<D>(Vec<D>::Zero());
     put_all<D>(reaction_columns(), ReactionNow<D>{reaction}, row);
+  }
+  for (std::size_t k = 0; k < state_.contact.size(); ++k) {
+    const ContactSums<D>& contact = view.state.contacts[k];
+    const Vec<D> force = elapsed > 0 ? Vec<D>((contact.impulse - state_.contact[k]) / elapsed) : Vec<D>(Vec<D>::Zero());
+    put_all<D>(contact_columns(), ContactNow<D>{force, 0 - contact.friction, 0 - contact.pressure}, row);
+    state_.contact[k] = contact.impulse;
   }
   add_points(view, row);
   for (const FrontSpec& spec : spec_.fronts)
@@ -246,7 +260,8 @@ void HistoryWriter<D>::add_wall(const RunView<D>& view, const WallSpec& spec, Re
   for (std::size_t i = 0; i < on_nodes.node.size(); ++i) {
     const Index n = on_nodes.node[i];
     const bool counted = view.problem.subdomain.alone() || view.problem.subdomain.owns_node(n);
-    if (counted && view.nodes.active[static_cast<std::size_t>(n)] != 0)
+    const auto is_active = [&](const VelocityField<D>& field) { return field.nodes.active[static_cast<std::size_t>(n)] != 0; };
+    if (counted && std::ranges::any_of(view.fields, is_active))
       sum.add({on_nodes.area[i], on_nodes.measure[i] * view.problem.mesh.node(n), on_nodes.measure[i]});
   }
   view.problem.ranks->sum(sum);

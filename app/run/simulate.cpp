@@ -353,7 +353,9 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   cost.mesh_bytes = static_cast<std::int64_t>(whole.nodes().size_bytes() + whole.cells().size_bytes()) +
                     whole.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(whole.cells_of_node().item) +
                     bytes(whole.ring_of_node().item);
-  cost.node_bytes = bytes(m.work.nodes.sum) + bytes(m.work.nodes.motion) + m.transfer->bytes();
+  cost.node_bytes = m.transfer->bytes();
+  for (const VelocityField<D>& field : m.work.fields)
+    cost.node_bytes += bytes(field.nodes.sum) + bytes(field.nodes.motion);
   cost.shared_nodes = find_shared_nodes<D>(whole, m.state.particles, m.state.bodies, [&m](Index c, std::vector<Index>& nodes) {
     m.transfer->add_nodes_of_cell(m.problem.mesh, c, nodes);
   });

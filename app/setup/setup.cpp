@@ -7,6 +7,7 @@
 #include "app/observers/history.hpp"
 #include "app/observers/runout.hpp"
 #include "app/setup/boundaries_of_scene.hpp"
+#include "app/setup/contacts_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
@@ -240,13 +241,15 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.origin = std::move(seeds.origin);
   setup.state.clock.lag = seeds.lag;
   setup.state.energy.largest_before = seeds.largest_before;
-  warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, ranks, setup.warnings);
   const CellOccupancy<D> has_particles(mesh, setup.state.particles, setup.state.bodies, ranks, [](const std::string&) { return true; });
   const CellOccupancy<D> at_start(mesh, setup.state.particles, setup.state.bodies, ranks,
                                   [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; });
   const std::string first_stage = scene.stages.empty() ? "" : changes_of(scene.stages.front()).label;
   add_boundaries(scene, mesh, at_start, ranks, first_stage, true, errors, setup, setup.state.boundary);
   add_loads(scene, mesh, has_particles, at_start, ranks, errors, setup);
+  setup.conditions.contacts = contacts_of(scene, setup.state.bodies, errors, setup.warnings);
+  warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
+                      setup.warnings);
   set_stages(scene, errors, setup);
   warn_of_creeping_surfaces(scene, setup.stages, setup.warnings);
   setup.conditions.water = water_of(

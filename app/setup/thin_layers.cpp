@@ -9,16 +9,20 @@
 
 namespace talus {
 
+namespace {
+
+/// The same for the bodies of one velocity field.
 template <int D>
-void warn_of_thin_layers(const Scene& scene, const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies,
-                         const std::vector<Material>& materials, Communicator& ranks, std::vector<std::string>& warnings)
+void warn_of_field(std::size_t field, const Scene& scene, const Mesh<D>& mesh, const Particles<D>& particles,
+                   const std::vector<Body>& bodies, const std::vector<Material>& materials, const Contacts& contacts, Communicator& ranks,
+                   std::vector<std::string>& warnings)
 {
   std::map<Index, CellOccupancy<D>> of_kind;
-  const auto kind_of = [&](const std::string& name) {
-    const auto body = std::ranges::find(bodies, name, &Body::name);
-    return materials[static_cast<std::size_t>(body - bodies.begin())].kind;
+  const auto number = [&](const std::string& name) { return std::ranges::find(bodies, name, &Body::name) - bodies.begin(); };
+  const auto kind_of = [&](const std::string& name) { return materials[static_cast<std::size_t>(number(name))].kind; };
+  const auto at_start = [&](const std::string& name) {
+    return presence_of(name, scene.stages).from == 0 && contacts.field_of(static_cast<Index>(number(name))) == field;
   };
-  const auto at_start = [&](const std::string& name) { return presence_of(name, scene.stages).from == 0; };
   for (const Body& body : bodies)
     if (const Index kind = kind_of(body.name); at_start(body.name) && !of_kind.contains(kind))
       of_kind.try_emplace(kind, mesh, particles, bodies, ranks,
@@ -47,9 +51,20 @@ void warn_of_thin_layers(const Scene& scene, const Mesh<D>& mesh, const Particle
   }
 }
 
+}  // namespace
+
+template <int D>
+void warn_of_thin_layers(const Scene& scene, const Mesh<D>& mesh, const Particles<D>& particles, const std::vector<Body>& bodies,
+                         const std::vector<Material>& materials, const Contacts& contacts, Communicator& ranks,
+                         std::vector<std::string>& warnings)
+{
+  for (std::size_t field = 0; field < static_cast<std::size_t>(contacts.n_fields); ++field)
+    warn_of_field(field, scene, mesh, particles, bodies, materials, contacts, ranks, warnings);
+}
+
 template void warn_of_thin_layers(const Scene&, const Mesh<2>&, const Particles<2>&, const std::vector<Body>&, const std::vector<Material>&,
-                                  Communicator&, std::vector<std::string>&);
+                                  const Contacts&, Communicator&, std::vector<std::string>&);
 template void warn_of_thin_layers(const Scene&, const Mesh<3>&, const Particles<3>&, const std::vector<Body>&, const std::vector<Material>&,
-                                  Communicator&, std::vector<std::string>&);
+                                  const Contacts&, Communicator&, std::vector<std::string>&);
 
 }  // namespace talus

@@ -26,7 +26,8 @@ constexpr auto run_columns()
       quantity<number>("kinetic", "J", "kinetic energy", [](const auto& now) { return now.energy.kinetic; }),
       quantity<number>("strain", "J", "strain energy", [](const auto& now) { return now.energy.strain; }),
       quantity<number>("plastic", "J", "energy that laws have dissipated", [](const auto& now) { return now.energy.plastic; }),
-      quantity<number>("friction", "J", "energy lost by friction at walls", [](const auto& now) { return now.energy.friction; }),
+      quantity<number>("friction", "J", "energy lost by friction at walls and between bodies in contact",
+                       [](const auto& now) { return now.energy.friction; }),
       quantity<number>("damping", "J", "energy taken by the damping of stages", [](const auto& now) { return now.energy.damping; }),
       quantity<number>("carried_away", "J", "kinetic energy of what was deleted", [](const auto& now) { return now.energy.carried_away; }),
       quantity<number>("gravity_work", "J", "work of gravity", [](const auto& now) { return now.energy.gravity; }),
@@ -46,6 +47,18 @@ constexpr auto reaction_columns()
   using enum QuantityKind;
   return std::tuple{quantity<vector>("reaction_{}_", "N", "mean force of the wall on the bodies since the row before",
                                      [](const auto& wall) { return wall.reaction; })};
+}
+
+/// Columns of each contact, named by its two bodies.
+constexpr auto contact_columns()
+{
+  using enum QuantityKind;
+  return std::tuple{quantity<vector>("contact_{}_", "N", "mean force on the first body since the row before",
+                                     [](const auto& contact) { return contact.force; }),
+                    quantity<number>("contact_friction_{}", "J", "energy lost by friction between the bodies",
+                                     [](const auto& contact) { return contact.friction; }),
+                    quantity<number>("contact_loss_{}", "J", "energy lost where the bodies meet, a part of transfer_loss",
+                                     [](const auto& contact) { return contact.loss; })};
 }
 
 constexpr auto point_columns()

@@ -43,24 +43,47 @@ constexpr auto particle_fields()
                        [](const auto& state, auto p) { return embed(state.particles.L[p]); })};
 }
 
+/// The sum of of(nodes) over the velocity fields of a RunView.
+template <class Run, class F>
+auto sum_over_fields(const Run& run, F&& of)
+{
+  auto sum = of(run.fields.front().nodes);
+  for (const auto& field : run.fields.subspan(1))
+    sum += of(field.nodes);
+  return sum;
+}
+
 /// Fields of outputs.mesh, with the values of the last step.  The function of each is called with a RunView and a row of its nodes.
 constexpr auto node_fields()
 {
   using enum QuantityKind;
-  return std::tuple{quantity<number>("mass", "kg", "mass", [](const auto& run, auto n) { return run.nodes.sum[n].mass; }),
-                    quantity<vector>("velocity", "m/s", "velocity", [](const auto& run, auto n) { return run.nodes.motion[n].v; }),
-                    quantity<vector>("force", "N", "internal force and loads other than gravity",
-                                     [](const auto& run, auto n) { return run.nodes.sum[n].force; }),
-                    // The change of momentum not due to forces and gravity; nodes with a boundary condition are not damped.
-                    quantity<vector>("reaction", "N", "force of all walls on the node", [](const auto& run, auto n) {
-                      const auto& sum = run.nodes.sum[n];
-                      auto force = sum.force;
-                      if (run.nodes.active[n] == 0 || run.nodes.bound[n] == 0 || run.nodes.kick == 0)
-                        force.setZero();
-                      else
-                        force = sum.mass * (run.nodes.motion[n].change / run.nodes.kick - run.nodes.gravity) - sum.force;
-                      return force;
-                    })};
+  return std::tuple{
+      quantity<number>("mass", "kg", "mass",
+                       [](const auto& run, auto n) { return sum_over_fields(run, [&](const auto& nodes) { return nodes.sum[n].mass; }); }),
+      // Bodies in contact have velocities of their own: the mean, weighted by mass.
+      quantity<vector>("velocity", "m/s", "velocity",
+                       [](const auto& run, auto n) {
+                         auto v = run.fields.front().nodes.motion[n].v;
+                         const auto mass = sum_over_fields(run, [&](const auto& nodes) { return nodes.sum[n].mass; });
+                         if (run.fields.size() > 1 && mass > 0)
+                           v = sum_over_fields(run, [&](const auto& nodes) { return (nodes.sum[n].mass * nodes.motion[n].v).eval(); }) /
+                               mass;
+                         return v;
+                       }),
+      quantity<vector>("force", "N", "internal force and loads other than gravity",
+                       [](const auto& run, auto n) { return sum_over_fields(run, [&](const auto& nodes) { return nodes.sum[n].force; }); }),
+      // The change of momentum not due to forces and gravity; nodes with a boundary condition are not damped.
+      quantity<vector>("reaction", "N", "force of all walls on the node", [](const auto& run, auto n) {
+        return sum_over_fields(run, [&](const auto& nodes) {
+          const auto& sum = nodes.sum[n];
+          auto force = sum.force;
+          if (nodes.active[n] == 0 || nodes.bound[n] == 0 || nodes.kick == 0)
+            force.setZero();
+          else
+            force = sum.mass * (nodes.motion[n].change / nodes.kick - nodes.gravity) - sum.force;
+          return force;
+        });
+      })};
 }
 
 }  // namespace talus

@@ -12,6 +12,7 @@
 #include "core/fields.hpp"
 #include "core/particle_column.hpp"
 #include "io/scene/scene_bodies.hpp"
+#include "io/scene/scene_contacts.hpp"
 #include "io/scene/scene_loads.hpp"
 #include "io/scene/scene_mesh.hpp"
 #include "io/scene/scene_output.hpp"
@@ -63,6 +64,7 @@ struct Scene {
   std::optional<InitialSpec> initial;
   std::optional<WaterSpec> water;
   std::vector<LoadSpec> loads;
+  std::vector<ContactSpec> contacts;
   std::vector<BoundaryOptions> boundaries;
   std::vector<StageSpec> stages;
   OutputSpec outputs;
@@ -91,6 +93,8 @@ struct Scene {
         group("initial", &Scene::initial, "bodies that begin as another run left them"),
         group("water", &Scene::water, "pore pressure below a water table; default none"),
         optional_list("loads", &Scene::loads, "forces"),
+        optional_list("contacts", &Scene::contacts,
+                      "bodies that touch, slide and part, each with velocities of its own; without, all bodies stick to each other"),
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
         optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
         optional("outputs", &Scene::outputs, any, "-", "what is written"),

@@ -18,6 +18,7 @@ class Rules : private SceneRuleBase {
     append(broken_mesh_rules(scene_));
     time();
     materials_and_bodies();
+    contacts();
     loads_and_boundaries();
     append(broken_output_rules(scene_));
     append(broken_stage_rules(scene_));
@@ -150,6 +151,30 @@ class Rules : private SceneRuleBase {
     different_bodies("undrained", water.undrained);
     if (std::none_of(scene_.loads.begin(), scene_.loads.end(), [](const LoadSpec& l) { return std::holds_alternative<GravitySpec>(l); }))
       add("water", "water has no weight without a load of type gravity");
+  }
+
+  void contacts()
+  {
+    const auto known = names(scene_.bodies);
+    for (std::size_t i = 0; i < scene_.contacts.size(); ++i) {
+      const ContactSpec& contact = scene_.contacts[i];
+      for (std::size_t k = 0; k < contact.between.size(); ++k)
+        known_word(fmt::format("contacts[{}].between[{}]", i, k), "body", contact.between[k], known);
+      for (std::size_t j = 0; j < i; ++j)
+        if (std::ranges::is_permutation(contact.between, scene_.contacts[j].between))
+          add(fmt::format("contacts[{}].between", i),
+              fmt::format("contacts[{}] is between \"{}\" already", j, fmt::join(contact.between, "\" and \"")));
+    }
+    if (scene_.contacts.empty())
+      return;
+    for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+      if (has_dashpots(scene_.boundaries[i]))
+        add(fmt::format("boundaries[{}]", i),
+            "absorbing boundaries hold one velocity field, and with contacts there are several: leave one out");
+    for (std::size_t i = 0; i < scene_.loads.size(); ++i)
+      if (const auto* load = std::get_if<TractionSpec>(&scene_.loads[i]); load != nullptr && load->carried_by == Carrier::mesh)
+        add(fmt::format("loads[{}].carried_by", i),
+            "what the mesh carries acts on no body in particular: with contacts let particles carry it");
   }
 
   void initial(const InitialSpec& initial)

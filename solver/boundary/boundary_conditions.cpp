@@ -222,11 +222,13 @@ void BoundaryConditions<D>::push(const NodeRule& rule, const Kick& kick, Real ma
 template <int D>
 void BoundaryConditions<D>::apply(const Kick& kick, Nodes<D>& nodes, ExactSums<BoundaryWork>& work)
 {
-  for (NodeRule& rule : rules_) {
+  nodes.slides.resize(nodes.sum.size());
+  for (const NodeRule& rule : rules_) {
     const auto n = static_cast<std::size_t>(rule.node);
-    rule.sliding = false;
+    bool slides = false;
     if (nodes.active[n])
-      push(rule, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, rule.sliding, work);
+      push(rule, kick, nodes.sum[n].mass, nodes.motion[n].v, nodes.motion[n].change, slides, work);
+    nodes.slides[n] = slides ? 1 : 0;
   }
   if (phase_.begun)
     dashpots_.for_each_impulse(nodes, [&](const DashpotImpulse<D>& by) {
@@ -297,11 +299,12 @@ Vec<D> BoundaryConditions<D>::constrained(const NodeRule& rule, Real time, const
 }
 
 template <int D>
-void BoundaryConditions<D>::hold(Real time, std::span<NodeMotion<D>> remapped) const
+void BoundaryConditions<D>::hold(Real time, std::span<const std::uint8_t> slides, std::span<NodeMotion<D>> remapped) const
 {
   for (const NodeRule& rule : rules_) {
-    NodeMotion<D>& row = remapped[static_cast<std::size_t>(rule.node)];
-    row.v = rule.sliding ? row.change : constrained(rule, time, row.v);
+    const auto n = static_cast<std::size_t>(rule.node);
+    NodeMotion<D>& row = remapped[n];
+    row.v = slides[n] != 0 ? row.change : constrained(rule, time, row.v);
   }
 }
 

@@ -43,7 +43,7 @@ class BoundaryConditions {
   /// by apply(), which knows the resulting velocity.  Collective.
   void apply_dashpots(Real mid, Real dt, Communicator& ranks, Nodes<D>& nodes);
 
-  /// Makes the new velocities of active nodes obey the conditions.  The work done is added to `work`.
+  /// Makes the new velocities of active nodes obey the conditions, and marks those that slide.  The work done is added to `work`.
   void apply(const Kick& kick, Nodes<D>& nodes, ExactSums<BoundaryWork>& work);
   /// Applies the conditions to projected nodes, whose values combine those of several nodes; `sums` has their mass and tells which ones
   /// particles use.
@@ -55,8 +55,8 @@ class BoundaryConditions {
   std::span<ExactSums<Impulse>> pushed() noexcept { return pushed_; }
   void keep_impulses();
   /// Applies the kinematic part only, to remapped velocities (rows: remapped velocity in `v`, velocity of the step in `change`).  A node
-  /// that slides keeps the velocity of the step: friction acted on it, and a strain from any other velocity would create energy.
-  void hold(Real time, std::span<NodeMotion<D>> remapped) const;
+  /// that `slides` keeps the velocity of the step: friction acted on it, and a strain from any other velocity would create energy.
+  void hold(Real time, std::span<const std::uint8_t> slides, std::span<NodeMotion<D>> remapped) const;
   /// The kinematic part for one node.
   Vec<D> held(Index node, Real time, const Vec<D>& v) const;
 
@@ -90,8 +90,7 @@ class BoundaryConditions {
     Index holder = none;           ///< condition that prescribes all components
     std::vector<Plane> two_sided;  ///< with orthonormal normals
     std::vector<Plane> one_sided;
-    bool sliding = false;  ///< whether the last apply() found it pressed against a wall with friction
-    bool counted = true;   ///< false on ranks with a copy of the node
+    bool counted = true;  ///< false on ranks with a copy of the node
   };
   class PushedNode;
   NodeRule& rule(const Mesh<D>& mesh, Index node);

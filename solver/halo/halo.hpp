@@ -139,16 +139,16 @@ void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, H
   copies.take(sum, What{});
 }
 
-/// Calls f(block) for the own blocks and sends their rows.
-template <class What, int D, class Sum, class F>
-void for_each_own_block(BlockRows<D, Sum>& blocks, Halo<Sum>& halo, F&& f)
+/// Calls f(block) for the own blocks, and send_rows() once those are done whose rows other ranks wait for.
+template <class Sum, class F, class SendRows>
+void for_each_own_block(const Halo<Sum>& halo, F&& f, SendRows&& send_rows)
 {
   for (const bool outer : {true, false}) {  // one loop, compiled once
     const std::span<const Index> list = outer ? halo.outer_blocks() : halo.inner_blocks();
     if (!list.empty())
       parallel_for_uneven(static_cast<Index>(list.size()), [&](Index i) { f(list[static_cast<std::size_t>(i)]); });
     if (outer)
-      halo.template send_rows<What>(blocks);
+      send_rows();
   }
 }
 

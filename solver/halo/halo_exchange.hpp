@@ -21,7 +21,10 @@ enum class MessageTag : int {
   small_mass_nodes = 6,
   hosts = 7,
   cells = 8,
-  near = 9
+  near = 9,
+  contact_nodes = 10,
+  contact_cells = 11,
+  contact_reach = 12
 };
 
 /// Selects the parts of a row to be sent: the whole row.

@@ -12,10 +12,20 @@ void Model<D>::join(Communicator& others, Subdomain part)
   problem.ranks = &others;
   problem.subdomain = std::move(part);
   problem.own = own_nodes(problem.mesh, problem.subdomain);
-  work.nodes.in_use.prepare(problem.mesh, problem.own);
   work.migration = Migration<D>(others, problem.subdomain);
-  work.small_mass_nodes = SmallMassNodes<D>(others, problem.mesh, problem.subdomain, problem.own);
+  work.fields.clear();
+  add_field();
   transfer->join(problem);
+}
+
+template <int D>
+void Model<D>::add_field()
+{
+  VelocityField<D>& field = work.fields.emplace_back();
+  field.nodes = Nodes<D>(problem.mesh.n_nodes());
+  field.nodes.in_use.prepare(problem.mesh, problem.own);
+  if (!problem.subdomain.alone())
+    field.small_mass_nodes = SmallMassNodes<D>(*problem.ranks, problem.mesh, problem.subdomain, problem.own);
 }
 
 template <int D>
@@ -55,9 +65,11 @@ void bind_boundary_conditions(Model<D>& m)
   State<D>& state = m.state;
   Workspace<D>& work = m.work;
   state.boundary.finalize();
-  work.nodes.bound.resize(work.nodes.sum.size());
-  for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
-    work.nodes.bound[static_cast<std::size_t>(node)] = state.boundary.binds(node) ? 1 : 0;
+  for (VelocityField<D>& field : work.fields) {
+    field.nodes.bound.resize(field.nodes.sum.size());
+    for (Index node = 0; node < problem.mesh.n_nodes(); ++node)
+      field.nodes.bound[static_cast<std::size_t>(node)] = state.boundary.binds(node) ? 1 : 0;
+  }
   problem.exits.closed.assign(static_cast<std::size_t>(problem.mesh.n_cells()), 0);
   for (const Facet facet : state.boundary.closed_facets(problem.mesh))
     problem.exits.closed[static_cast<std::size_t>(facet.cell)] |= static_cast<std::uint8_t>(1 << facet.local);
@@ -85,12 +97,21 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
   const bool alone = problem.subdomain.alone();
   if (any_material([](const Material& material) { return material.law().heat().has_value(); }))
     alone ? work.heat.emplace(problem.mesh) : work.heat.emplace(*problem.ranks, problem.mesh, problem.subdomain);
-  transfer.prepare(problem.transfer);
+  while (static_cast<Index>(work.fields.size()) < problem.contacts.n_fields)
+    m.add_field();
+  transfer.prepare(problem);
+  work.contact.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.contacts);
+  work.sums.contacts.resize(problem.contacts.laws.size());
+  state.contacts.resize(problem.contacts.laws.size());
   work.carriers = TrackedIds(ids_of(problem.loads.on_particles));
   bind_boundary_conditions(m);
   const LeastShares least = transfer.least_shares();
-  work.nodes.least_share_of_gross = least.of_gross;
-  work.nodes.least_share = least.of_particles;
+  for (VelocityField<D>& field : work.fields) {
+    field.nodes.least_share_of_gross = least.of_gross;
+    field.nodes.least_share = least.of_particles;
+    if (problem.transfer.uses_musl())
+      field.nodes.remapped.resize(field.nodes.motion.size());
+  }
   update_rows(m);
   state.mass.start = totals(m).mass;
 }
@@ -126,7 +147,8 @@ void find_averaged_bodies(Model<D>& m)
     if (!materials[static_cast<std::size_t>(body)].averages_volume)
       continue;
     const auto same = std::find_if(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(used), [&](const AveragedBodies<D>& one) {
-      return group(body) != none && group(one.bodies.front()) == group(body);
+      return group(body) != none && group(one.bodies.front()) == group(body) &&
+             m.problem.contacts.field_of(one.bodies.front()) == m.problem.contacts.field_of(body);
     });
     if (same != all.begin() + static_cast<std::ptrdiff_t>(used)) {
       same->bodies.push_back(body);

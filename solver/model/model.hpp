@@ -17,13 +17,11 @@ struct Model {
   std::unique_ptr<Transfer<D>> transfer;
 
   /// A model of one rank without particles.
-  Model(Mesh<D> mesh, std::unique_ptr<Transfer<D>> of_kernel)
-      : problem(std::move(mesh)), work(problem.mesh.n_nodes()), transfer(std::move(of_kernel))
-  {
-    work.nodes.in_use.prepare(problem.mesh, problem.own);
-  }
+  Model(Mesh<D> mesh, std::unique_ptr<Transfer<D>> of_kernel) : problem(std::move(mesh)), transfer(std::move(of_kernel)) { add_field(); }
   /// Turns the model of a single rank into that of one of several ranks, whose mesh is their part of a larger one.  Collective.
   void join(Communicator& others, Subdomain part);
+  /// Adds nodes for a velocity field.  Collective.
+  void add_field();
   Index n_bodies() const noexcept { return static_cast<Index>(state.bodies.size()); }
 };
 

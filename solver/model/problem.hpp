@@ -6,6 +6,7 @@
 #include "core/particles.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/part.hpp"
+#include "solver/contact/contacts.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/loads/water.hpp"
 #include "solver/options/limit_options.hpp"
@@ -30,6 +31,7 @@ struct SceneConditions {
   Loads<D> loads;
   Water water;
   Exits exits;
+  Contacts contacts;
   RunLimits limits;
 };
 

@@ -105,17 +105,18 @@ struct State {
   Real residual = 0;  ///< unbalanced force of the nodes over the loads in the last step [-]
   Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is proportional to it
   BoundaryConditions<D> boundary;
+  std::vector<ContactSums<D>> contacts;  ///< impulse and work of each law of contact since the start of the run
   std::vector<Body> bodies;
   std::vector<Material> materials;  ///< one for each body, with the same rows
   Particles<D> particles;
 
   static constexpr auto parts()
   {
-    return std::tuple{saved("clock", &State::clock),        saved("stage", &State::stage),       saved("energy", &State::energy),
-                      saved("mass", &State::mass),          saved("momentum", &State::momentum), saved("watched", &State::monitor),
-                      saved("timings", &State::timings),    saved("residual", &State::residual), saved("crossing", &State::crossing),
-                      saved("walls", &State::boundary),     saved("bodies", &State::bodies),     saved("laws", &State::materials),
-                      saved("particles", &State::particles)};
+    return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),        saved("energy", &State::energy),
+                      saved("mass", &State::mass),       saved("momentum", &State::momentum),  saved("watched", &State::monitor),
+                      saved("timings", &State::timings), saved("residual", &State::residual),  saved("crossing", &State::crossing),
+                      saved("walls", &State::boundary),  saved("contacts", &State::contacts),  saved("bodies", &State::bodies),
+                      saved("laws", &State::materials),  saved("particles", &State::particles)};
   }
 };
 

@@ -41,8 +41,8 @@ class Transfer {
 
   /// Adapts to the part of the mesh on one of several ranks.  Collective.
   virtual void join(const Problem<D>& problem) = 0;
-  /// Allocates what depends on the options of the run; to be called once, before the first step.
-  virtual void prepare(const TransferOptions& options) = 0;
+  /// Allocates what depends on the options of the run and its number of velocity fields; to be called before the first step.  Collective.
+  virtual void prepare(const Problem<D>& problem) = 0;
 
   /// Whether strips are to hold the gradients of particles; otherwise find_gradients() computes them again.
   virtual bool keeps_gradients() const = 0;

@@ -5,7 +5,8 @@
 
 #include "core/particle_errors.hpp"
 #include "materials/interface/stress_strip.hpp"
-#include "solver/boundary/small_mass_nodes.hpp"
+#include "solver/boundary/velocity_field.hpp"
+#include "solver/contact/contact_nodes.hpp"
 #include "solver/loads/loads.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/nodes.hpp"
@@ -25,23 +26,15 @@ struct Workspace {
   Migration<D> migration;
   ParticleErrors errors;
 
-  Nodes<D> nodes;
-  SmallMassNodes<D> small_mass_nodes;
-  StepSums<D> sums;  ///< sums of the present step
+  std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact
+  ContactNodes<D> contact;               ///< nodes at which two fields touch
+  StepSums<D> sums;                      ///< sums of the present step
   // Sums over the particles of each body in each block.
   std::vector<StressSums> stress_sums;
   std::vector<ParticleLoadSums<D>> load_sums;  ///< used if loads act on particles
 
   std::vector<AveragedBodies<D>> averaged;  ///< bodies that average their volumes, while particles are in strips
   std::optional<HeatSums<D>> heat;          ///< used if a body conducts heat
-
-  explicit Workspace(Index n_nodes)
-  {
-    nodes.sum.resize(static_cast<std::size_t>(n_nodes));
-    nodes.motion.resize(nodes.sum.size());
-    nodes.active.resize(nodes.sum.size());
-    nodes.in_use = NodesInUse(n_nodes);
-  }
 };
 
 }  // namespace talus

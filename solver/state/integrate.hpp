@@ -85,12 +85,12 @@ NodeWork<D> node_work(Real damping, const Mesh<D>& mesh, const Nodes<D>& nodes, 
 
 /// The work [J] of forces in the part of the new velocity that the remap removes.  Forces act on the mean of old and new velocity, and
 /// bodies strain by remapped velocities, which are the old ones of the next step; so half of the work of forces in the removed part
-/// corresponds to no strain.  `remapped`: remapped velocities in `v`, those of the step in `change`.
+/// corresponds to no strain.
 template <int D>
-Real remap_work(const Nodes<D>& nodes, const std::vector<NodeMotion<D>>& remapped, Index n)
+Real remap_work(const Nodes<D>& nodes, Index n)
 {
   const auto i = static_cast<std::size_t>(n);
-  return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(remapped[i].change - remapped[i].v) : 0;
+  return nodes.active[i] ? 0.5 * nodes.kick * nodes.sum[i].force.dot(nodes.remapped[i].change - nodes.remapped[i].v) : 0;
 }
 
 /// Adds the energies at one node.  In stages that seek equilibrium the net force is the one in `felt`.

@@ -15,10 +15,11 @@ struct EnergyLedger {
   Real gravity{};   ///< work of gravity
   Real loads{};     ///< work of tractions and pressures
   Real walls{};     ///< work of boundary conditions other than friction: of prescribed motions and dashpots
-  Real friction{};  ///< work of friction, <= 0
+  Real friction{};  ///< work of friction at walls and between bodies, <= 0
   Real waves{};     ///< energy of waves incident on absorbing boundaries; a part of the work of walls, given for reference
   Real damping{};   ///< work of local damping, <= 0
-  Real arrival{};   ///< kinetic energy lost where a boundary gives mass its motion, <= 0; part of the result of transfer()
+  /// Kinetic energy lost where a boundary gives mass its motion, and where nodes of two bodies meet, <= 0; part of the result of transfer().
+  Real arrival{};
   /// Change of the nodes' kinetic energy within the steps without arrival, and work of boundaries on nodes of small mass and linear shape
   /// functions.
   Real nodes{};

@@ -126,15 +126,19 @@ template <int D>
 struct Nodes {
   std::vector<NodeSum<D>> sum;
   std::vector<NodeMotion<D>> motion;
-  std::vector<std::uint8_t> active;  ///< nodes with enough mass for a motion of their own
+  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
+  std::vector<std::uint8_t> active;     ///< nodes with enough mass for a motion of their own
   /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
   std::vector<std::uint8_t> bound;
-  std::vector<Vec<D>> felt;         ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
-  Vec<D> gravity = Vec<D>::Zero();  ///< gravity in the present step [m/s^2]
-  Real kick{};                      ///< time over which forces act, from the old velocities to the new ones [s]
-  NodesInUse in_use{0};
+  std::vector<std::uint8_t> slides;  ///< nodes that boundary conditions press against a wall with friction, and that slide
+  std::vector<Vec<D>> felt;          ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
+  Vec<D> gravity = Vec<D>::Zero();   ///< gravity in the present step [m/s^2]
+  Real kick{};                       ///< time over which forces act, from the old velocities to the new ones [s]
+  NodesInUse in_use;
   Real least_share{};           ///< limit of mass relative to the lightest particle around: nodes with less are nodes of small mass
   Real least_share_of_gross{};  ///< limit of mass relative to `gross`
+
+  explicit Nodes(Index n_nodes = 0) : sum(static_cast<std::size_t>(n_nodes)), motion(sum.size()), active(sum.size()), in_use(n_nodes) {}
 };
 
 }  // namespace talus

@@ -6,6 +6,26 @@
 
 namespace talus {
 
+/// Sums over the nodes at which two velocity fields touch.
+template <int D>
+struct ContactSums {
+  Vec<D> impulse = Vec<D>::Zero();  ///< on the first field [N s]
+  Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
+  Real
+      pressure{};  ///< work of impulses along the normal on both fields [J], as force times the mean of old and new velocity: what impacts lose
+  Real friction{};  ///< work of impulses across it [J], <= 0
+  ContactSums& operator+=(const ContactSums& other) noexcept
+  {
+    impulse += other.impulse, angular += other.angular, pressure += other.pressure, friction += other.friction;
+    return *this;
+  }
+  static constexpr auto fields()
+  {
+    return std::tuple{saved("impulse", &ContactSums::impulse), saved("angular", &ContactSums::angular),
+                      saved("pressure", &ContactSums::pressure), saved("friction", &ContactSums::friction)};
+  }
+};
+
 template <int D>
 struct StepSums {
   ExactSums<RemovedParticles<D>> removed;
@@ -19,6 +39,7 @@ struct StepSums {
   ExactSums<Real> work_on_mesh, work_on_particles, internal;  ///< of loads, and stress power times dt [J]
   ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
   ExactSums<Real> particles;                                  ///< number of particles
+  std::vector<ExactSums<ContactSums<D>>> contacts;            ///< by law of contact
   /// Digits in use of these sums and of the impulses of boundary conditions, kept from step to step.
   Digits digits;
   void clear() noexcept
@@ -27,6 +48,8 @@ struct StepSums {
     removed.clear(), on_particles.clear(), on_mesh.clear(), at_nodes.clear(), beyond_nodes.clear();
     nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), remap.clear();
     particles.clear();
+    for (ExactSums<ContactSums<D>>& one : contacts)
+      one.clear();
   }
 };
 
@@ -39,6 +62,9 @@ void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLed
   const NodeWork<D> nodes = sums.nodes.value();
   const BoundaryWork boundary = sums.at_nodes.value(), beyond = sums.beyond_nodes.value();
   const ForceAndMoment<D> tractions = sums.on_particles.value() + sums.on_mesh.value();
+  ContactSums<D> contact;
+  for (const ExactSums<ContactSums<D>>& one : sums.contacts)
+    contact += one.value();
   mass.on_nodes = nodes.mass;
   momentum.loads += ForceAndMoment<D>::of(kick * nodes.mass * gravity, kick * moment<D>(nodes.first_moment, gravity)) + kick * tractions;
   momentum.damping += nodes.damped;
@@ -46,10 +72,10 @@ void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLed
   energy.gravity += nodes.gravity;
   energy.damping += nodes.damping;
   energy.walls += boundary.moved + beyond.moved;
-  energy.arrival += boundary.arrival + beyond.arrival;
-  energy.friction += boundary.friction + beyond.friction;
+  energy.arrival += boundary.arrival + beyond.arrival + contact.pressure;
+  energy.friction += boundary.friction + beyond.friction + contact.friction;
   energy.waves += boundary.waves;
-  energy.nodes += nodes.kinetic_after - nodes.kinetic_before - boundary.arrival + beyond.friction + beyond.moved;
+  energy.nodes += nodes.kinetic_after - nodes.kinetic_before - boundary.arrival - contact.pressure + beyond.friction + beyond.moved;
   energy.remap += sums.remap.value();
   energy.loads += sums.work_on_mesh.value() + sums.work_on_particles.value();
   energy.internal += sums.internal.value();

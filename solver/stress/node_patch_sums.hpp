@@ -122,14 +122,15 @@ class NodePatchSums {
   /// Adds the rows of all blocks and ranks.  Collective.
   void assemble()
   {
-    for_each_own_block<Whole>(blocks_, halo_, [](Index) {});
+    halo_.template send_rows<Whole>(blocks_);
     add_rows();
   }
   /// All of it.
   template <class Add>
   void gather(const ParticleStrips<D>& strips, std::span<const Index> bodies, Add&& add)
   {
-    for_each_own_block<Whole>(blocks_, halo_, [&](Index block) { sum_block(strips, bodies, block, add); });
+    for_each_own_block(
+        halo_, [&](Index block) { sum_block(strips, bodies, block, add); }, [&] { halo_.template send_rows<Whole>(blocks_); });
     add_rows();
   }
 

@@ -88,11 +88,11 @@ class DirectStrips {
   static constexpr bool keeps_gradients = true;
   static constexpr int quantities = 0;
 
-  DirectStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
+  DirectStrips(const Model<D>& m, StripScratch<D>& scratch) : m_(m), scratch_(scratch) {}
 
-  void take(Index) const noexcept {}  ///< all bodies alike
+  void take(KernelRows<D, K>& of, Index) noexcept { of_ = &of; }  ///< all bodies of a field alike
   void open(CellFrame<D>&) const noexcept {}
-  void clear(Index) const noexcept {}
+  static void clear(KernelRows<D, K>&, const Model<D>&, Index) noexcept {}
   void find_gradients(const StripColumn<Vec<D>>&, bool, StripColumns<D>&) const noexcept {}
 
   void move(StripColumns<D>& columns, bool, Real dt, Real pic) noexcept
@@ -122,17 +122,17 @@ class DirectStrips {
   template <bool affine, bool loaded>
   void add(const StripColumns<D>& columns, Index block)
   {
-    deposit_directly<affine, loaded>(of_.kernel, m_.problem.mesh, columns, scratch_, block, of_.blocks, at_);
+    deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, scratch_, block, of_->blocks, at_);
   }
   /// Opens the cell of a run with the motion of its nodes, and calls f(i, count) for its packs, with their weights.
   void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const std::vector<NodeMotion<D>>& motion, auto&& f) noexcept
   {
-    of_.kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
+    of_->kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
     at_.motion.read(motion, at_.cell.nodes, at_.cell.padded_size);
     for (std::size_t i = run.begin; i < run.end; i += pack_size) {
       scratch_.ahead.next();
       Pack x[D];
-      at_.place(of_.kernel, places, i, run.count(i), scratch_.stays.data(), x);
+      at_.place(of_->kernel, places, i, run.count(i), scratch_.stays.data(), x);
       f(i, run.count(i));
     }
   }
@@ -146,7 +146,7 @@ class DirectStrips {
   void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs)
-      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count) {
+      for_each_pack(run, columns.x, nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<increments, true>(count);
         store_gradient(i, count, seen, columns.L);
         find_apic_field(columns, i, count, columns.L);
@@ -158,7 +158,7 @@ class DirectStrips {
   void move_with_remapped_gradient(const StripColumns<D>& columns, Real dt) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs)
-      for_each_pack(run, columns.x, of_.remapped, [&](std::size_t i, int count) {
+      for_each_pack(run, columns.x, nodes_of(m_, *of_).remapped, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<true, true>(count);
         store_gradient(i, count, seen, columns.L);
         store_place(columns, i, count, seen.change, dt);
@@ -169,7 +169,7 @@ class DirectStrips {
   {
     for (const CellRun<D>& run : scratch_.runs) {
       at_.sums.clear(K::max_nodes);
-      for_each_pack(run, columns.x, m_.work.nodes.motion, [&](std::size_t i, int count) {
+      for_each_pack(run, columns.x, nodes_of(m_, *of_).motion, [&](std::size_t i, int count) {
         const Interpolated<D> seen = see<increments, affine>(count);
         if constexpr (affine) {
           store_gradient(i, count, seen, columns.C);
@@ -178,7 +178,7 @@ class DirectStrips {
         store_velocity<increments>(columns, i, count, seen, pic);
         deposit<affine, false, false>(columns, i, count, scratch_.stays.data(), at_.cell, at_.weights, Tension<D>{}, at_.sums);
       });
-      at_.sums.add_to(of_.blocks.rows(block), of_.blocks.slots(run.frame->cell), NodeSum<D>::unseen);
+      at_.sums.add_to(of_->blocks.rows(block), of_->blocks.slots(run.frame->cell), NodeSum<D>::unseen);
     }
   }
 
@@ -226,7 +226,7 @@ class DirectStrips {
   }
 
   const Model<D>& m_;
-  KernelRows<D, K>& of_;
+  KernelRows<D, K>* of_ = nullptr;
   StripScratch<D>& scratch_;
   DirectCell<D, K> at_;
 };

@@ -43,18 +43,23 @@ class Interfaces {
  public:
   /// Whether there are several groups.
   bool any() const noexcept { return groups_ > 1; }
-  /// Sets the groups by the materials of the bodies, one group of all unless they are to be `separate`, and makes room for their sums.
-  void begin(const Mesh<D>& mesh, const std::vector<Material>& materials, bool separate)
+  /// Sets the groups by the materials of the bodies for which is_of_field(body) holds, one group of all unless they are to be `separate`,
+  /// and makes room for their sums.
+  template <class IsOfField>
+  void begin(const Mesh<D>& mesh, const std::vector<Material>& materials, IsOfField&& is_of_field, bool separate)
   {
-    group_of_body_.clear();
+    group_of_body_.assign(materials.size(), 0);
     std::vector<Index> kinds;
-    for (const Material& material : separate ? std::span<const Material>(materials) : std::span<const Material>()) {
+    for (std::size_t body = 0; body < materials.size(); ++body) {
+      if (!separate || !is_of_field(static_cast<Index>(body)))
+        continue;
+      const Material& material = materials[body];
       const auto same = std::ranges::find(kinds, material.kind);
       if (material.kind == none || same == kinds.end()) {
-        group_of_body_.push_back(kinds.size());
+        group_of_body_[body] = kinds.size();
         kinds.push_back(material.kind);
       } else {
-        group_of_body_.push_back(static_cast<std::size_t>(same - kinds.begin()));
+        group_of_body_[body] = static_cast<std::size_t>(same - kinds.begin());
       }
     }
     groups_ = kinds.size();

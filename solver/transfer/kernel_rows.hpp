@@ -1,5 +1,5 @@
 #pragma once
-// Data of the transfer of one kernel for a whole run: the kernel, the rows of blocks, and the data between these and the nodes.
+// Data of the transfer of one kernel for a velocity field: the rows of blocks, and the data between these and the nodes.
 #include <type_traits>
 #include <vector>
 
@@ -27,20 +27,21 @@ struct KernelRows {
   /// What the particles of a block add to.
   using Sum = std::conditional_t<projects, ProjectedNodeSum<D>, NodeSum<D>>;
 
-  K kernel;
+  const K& kernel;
+  std::size_t field;  ///< its number
   BlockRows<D, Sum> blocks;
   Halo<Sum> halo;
   GhostNodes ghosts;
-  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
-  Rows<CellMoments<D>> moments;         ///< MUSL, if weights are barycentric coordinates: of each cell
+  Rows<CellMoments<D>> moments;  ///< MUSL, if weights are barycentric coordinates: of each cell
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
   Interfaces<D> interfaces;
   Extension<D> extension;
   std::vector<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
-  KernelRows(const Mesh<D>& mesh, const Options<K>& options)
-      : kernel(make_kernel<K>(mesh, options)),
+  KernelRows(const Mesh<D>& mesh, const K& of_kernel, std::size_t number)
+      : kernel(of_kernel),
+        field(number),
         blocks(make_block_rows<Sum>(mesh, [&](Index c) { return kernel.stencil(mesh, c); })),
         halo(blocks.size())
   {
@@ -54,12 +55,16 @@ struct KernelRows {
   std::int64_t bytes() const
   {
     const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
-    std::int64_t bytes = of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) +
-                         of(blocks.slot) + static_cast<std::int64_t>(interfaces.bytes() + extension.bytes());
-    if constexpr (projects)
-      bytes += static_cast<std::int64_t>(kernel.node_operators().size_bytes());
-    return bytes;
+    return of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot) +
+           static_cast<std::int64_t>(interfaces.bytes() + extension.bytes());
   }
 };
+
+/// The nodes of the velocity field that the rows belong to.
+template <class OfModel, int D, Kernel<D> K>
+auto& nodes_of(OfModel& m, const KernelRows<D, K>& of) noexcept
+{
+  return m.work.fields[of.field].nodes;
+}
 
 }  // namespace talus

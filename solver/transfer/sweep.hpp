@@ -26,8 +26,9 @@ class BlockSweep {
  public:
   static constexpr bool keeps_gradients = Through::keeps_gradients;
 
-  BlockSweep(Model<D>& m, KernelRows<D, K>& of, Index block)
-      : m_(m), of_(of), block_(block), strips_(*m.work.strips), scratch_(scratch_of_thread()), through_(m, of, scratch_)
+  /// `fields`: the rows of all velocity fields.
+  BlockSweep(Model<D>& m, std::span<KernelRows<D, K>> fields, Index block)
+      : m_(m), fields_(fields), block_(block), strips_(*m.work.strips), scratch_(scratch_of_thread()), through_(m, scratch_)
   {}
 
   /// Sums the particles as they are, before the first step after they came into strips.
@@ -95,19 +96,24 @@ class BlockSweep {
   /// Clears the rows of the block and the moments of its cells, unless they are clear because it had no particles and has none.
   void clear_sums(bool are_in_order)
   {
-    bool occupied = false;
-    for (Index body = 0; body < m_.n_bodies(); ++body) {
-      const std::size_t key = strips_.key(body, block_);
-      occupied |= (are_in_order ? strips_.size(key) : strips_.size_in_order(key)) > 0;
+    for (KernelRows<D, K>& of : fields_) {
+      bool occupied = false;
+      for (Index body = 0; body < m_.n_bodies(); ++body)
+        if (m_.problem.contacts.field_of(body) == of.field) {
+          const std::size_t key = strips_.key(body, block_);
+          occupied |= (are_in_order ? strips_.size(key) : strips_.size_in_order(key)) > 0;
+        }
+      std::uint8_t& was = of.blocks.occupied[static_cast<std::size_t>(block_)];
+      if (occupied || was != 0) {
+        const auto rows = of.blocks.rows(block_);
+        std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
+        Through::clear(of, m_, block_);
+      }
+      was = occupied ? 1 : 0;
     }
-    std::uint8_t& was = of_.blocks.occupied[static_cast<std::size_t>(block_)];
-    if (occupied || was != 0) {
-      const auto rows = of_.blocks.rows(block_);
-      std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
-      through_.clear(block_);
-    }
-    was = occupied ? 1 : 0;
   }
+  KernelRows<D, K>& rows_of(Index body) const noexcept { return fields_[m_.problem.contacts.field_of(body)]; }
+  void take(Index body) noexcept { through_.take(rows_of(body), body); }
 
   /// Calls f(key, number, columns) for the strips that have particles, in order or put in order, with their cells opened.
   template <class F>
@@ -134,7 +140,7 @@ class BlockSweep {
   void open_cells(std::size_t key, Index number)
   {
     const Strip& strip = strips_.strips(key)[static_cast<std::size_t>(number)];
-    through_.take(strips_.body(key));
+    take(strips_.body(key));
     begin_runs(static_cast<std::size_t>(strip.n));
     std::size_t begin = 0;
     for (Index c = 0; c < strip_cells; ++c) {
@@ -156,8 +162,8 @@ class BlockSweep {
   {
     if (arriving.empty())
       return;
-    through_.take(body);
-    of_.blocks.occupied[static_cast<std::size_t>(block_)] = 1;
+    take(body);
+    rows_of(body).blocks.occupied[static_cast<std::size_t>(block_)] = 1;
     const StripColumns<D> columns = copy(arriving);
     begin_runs(arriving.size());
     for (std::size_t i = 0; i < arriving.size();) {
@@ -301,7 +307,7 @@ class BlockSweep {
   }
 
   Model<D>& m_;
-  KernelRows<D, K>& of_;
+  std::span<KernelRows<D, K>> fields_;
   Index block_;
   ParticleStrips<D>& strips_;
   StripScratch<D>& scratch_;

@@ -30,117 +30,114 @@ template <int D, Kernel<D> K>
 class TransferOf final : public Transfer<D> {
  public:
   using Rows = KernelRows<D, K>;
-  TransferOf(const Mesh<D>& mesh, const Options<K>& options) : rows_(mesh, options) {}
+  TransferOf(const Mesh<D>& mesh, const Options<K>& options) : kernel_(make_kernel<K>(mesh, options))
+  {
+    fields_.emplace_back(mesh, kernel_, 0);
+  }
 
-  Rows& rows() noexcept { return rows_; }
-  const Rows& rows() const noexcept { return rows_; }
+  std::span<Rows> fields() noexcept { return fields_; }
+  Rows& rows() noexcept { return fields_.front(); }
+  const Rows& rows() const noexcept { return fields_.front(); }
 
   void join(const Problem<D>& problem) override
   {
-    Communicator& ranks = *problem.ranks;
-    rows_.halo = Halo(ranks, problem.mesh, problem.subdomain, rows_.blocks);
-    const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
-      return copies_of_nodes(ranks, problem.subdomain, topic, wanted);
-    };
-    const std::vector<std::uint8_t> read = nodes_read(problem.subdomain, rows_.blocks);
-    if constexpr (Rows::projects) {
-      const auto both = [](std::vector<std::uint8_t> marked, const std::vector<std::uint8_t>& others) {
-        for (std::size_t n = 0; n < marked.size(); ++n)
-          marked[n] |= others[n];
-        return marked;
-      };
-      const auto around_own = [&](int rings) { return spread_by_rings(problem.mesh, problem.own.owned, rings); };
-      const std::vector<std::uint8_t> moving = spread_by_rings(problem.mesh, read, 1);
-      rows_.ghosts.sums = copy(MessageTag::sums, both(around_own(1), read));
-      rows_.ghosts.motion = copy(MessageTag::motion, moving);
-      rows_.ghosts.felt = copy(MessageTag::felt, around_own(2));
-      if (rows_.kernel.extends_surfaces())
-        rows_.ghosts.near = copy(MessageTag::near, both(around_own(Extension<D>::rings), moving));
-      rows_.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
-      rows_.projected.find_late(problem.mesh, problem.own);
-    } else {
-      rows_.ghosts.motion = copy(MessageTag::motion, read);
+    for (Rows& of : fields_)
+      join(problem, of);
+  }
+
+  void prepare(const Problem<D>& problem) override
+  {
+    while (fields_.size() < static_cast<std::size_t>(problem.contacts.n_fields)) {
+      Rows& of = fields_.emplace_back(problem.mesh, kernel_, fields_.size());
+      if (!problem.subdomain.alone())
+        join(problem, of);
     }
   }
 
-  void prepare(const TransferOptions& options) override
-  {
-    if (options.uses_musl())
-      rows_.remapped.resize(static_cast<std::size_t>(rows_.blocks.rows_of_node.size()));
-  }
-
-  bool keeps_gradients() const override { return BlockSweep<D, K>::keeps_gradients; }
+  bool keeps_gradients() const override { return Sweep::keeps_gradients; }
 
   void sum_strips(Model<D>& m) override
   {
-    if (WeighsVertices<K, D> && m.problem.transfer.uses_musl()) {
-      rows_.gradient_of_remapped.resize(rows_.projected.motion.size());
-      rows_.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
-    }
-    if constexpr (Rows::projects) {
-      rows_.interfaces.begin(m.problem.mesh, m.state.materials, rows_.kernel.separates_materials());
-      if (rows_.kernel.extends_surfaces())
-        rows_.extension.begin(m.problem.mesh);
+    for (Rows& of : fields_) {
+      if (WeighsVertices<K, D> && m.problem.transfer.uses_musl()) {
+        of.gradient_of_remapped.resize(of.projected.motion.size());
+        of.moments.resize(static_cast<std::size_t>(m.problem.mesh.n_cells()));
+      }
+      if constexpr (Rows::projects) {
+        const auto is_of_field = [&](Index body) { return m.problem.contacts.field_of(body) == of.field; };
+        of.interfaces.begin(m.problem.mesh, m.state.materials, is_of_field, kernel_.separates_materials());
+        if (kernel_.extends_surfaces())
+          of.extension.begin(m.problem.mesh);
+      }
     }
     for_each_reading_block(
-        rows_.halo, [] {}, [&](Index b) { BlockSweep<D, K>(m, rows_, b).sum(); });
+        rows().halo, [] {}, [&](Index b) { Sweep(m, fields_, b).sum(); });
   }
 
   void find_gradients(Model<D>& m, std::size_t key, Index strip, StripColumns<D>& columns) override
   {
-    BlockSweep<D, K>(m, rows_, m.work.strips->first_cell(key, 0) / block_cells).find_gradients_again(key, strip, columns);
+    Sweep(m, fields_, m.work.strips->first_cell(key, 0) / block_cells).find_gradients_again(key, strip, columns);
   }
 
   void particles_to_nodes(Model<D>& m) override
   {
-    for_each_own_block<Whole>(rows_.blocks, rows_.halo, [&](Index b) { BlockSweep<D, K>(m, rows_, b).add_arrivals(); });
+    for_each_own_block(
+        rows().halo, [&](Index b) { Sweep(m, fields_, b).add_arrivals(); }, [&] { send_rows<Whole>(); });
   }
 
   void assemble_nodes(Model<D>& m) override
   {
-    Nodes<D>& nodes = m.work.nodes;
-    const auto find_nodes = [&] { nodes.in_use.find(rows_.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
-    if constexpr (Rows::projects) {
-      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, find_nodes);
-      rows_.interfaces.find_rows(m.problem.mesh, nodes.in_use, rows_.ghosts.cells);
-      project_sums(rows_.kernel.node_operators(), rows_.interfaces, m.problem.mesh, m.problem.own, rows_.projected.sum, nodes.in_use,
-                   nodes.sum);
-      extend_forces(m);
-    } else {
-      assemble<Whole>(rows_.blocks, m.problem.own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
+    for (Rows& of : fields_) {
+      Nodes<D>& nodes = nodes_of(m, of);
+      const auto find_nodes = [&] { nodes.in_use.find(of.blocks.occupied, !m.problem.loads.on_mesh.empty()); };
+      if constexpr (Rows::projects) {
+        assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, find_nodes);
+        of.interfaces.find_rows(m.problem.mesh, nodes.in_use, of.ghosts.cells);
+        project_sums(kernel_.node_operators(), of.interfaces, m.problem.mesh, m.problem.own, of.projected.sum, nodes.in_use, nodes.sum);
+        extend_forces(m, of);
+      } else {
+        assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
+      }
     }
   }
 
   void filter_acceleration([[maybe_unused]] Model<D>& m) override
   {
-    if constexpr (Rows::projects) {
-      std::vector<Vec<D>>& felt = m.work.nodes.felt;
-      rows_.ghosts.felt.send(felt, Numbers{});
-      talus::filter_acceleration(
-          rows_.kernel.node_operators(), m.problem.own, m.work.nodes.in_use, [&] { rows_.ghosts.felt.take(felt, Numbers{}); },
-          rows_.projected, felt);
-    }
+    if constexpr (Rows::projects)
+      for (Rows& of : fields_) {
+        std::vector<Vec<D>>& felt = nodes_of(m, of).felt;
+        of.ghosts.felt.send(felt, Numbers{});
+        talus::filter_acceleration(
+            kernel_.node_operators(), m.problem.own, nodes_of(m, of).in_use, [&] { of.ghosts.felt.take(felt, Numbers{}); }, of.projected,
+            felt);
+      }
   }
 
-  void send_motion(Model<D>& m) override { rows_.ghosts.motion.send(m.work.nodes.motion, Whole{}); }
+  void send_motion(Model<D>& m) override
+  {
+    for (Rows& of : fields_)
+      of.ghosts.motion.send(nodes_of(m, of).motion, Whole{});
+  }
 
   void nodes_to_particles(Model<D>& m, const Kick& kick, Real dt, const BetweenParts& between) override
   {
     const Real pic = m.problem.transfer.pic_share(dt, m.state.crossing, m.state.stage.seeks_rest);
     const bool musl = m.problem.transfer.uses_musl();
-    project_to_particles(m, kick);
+    for (Rows& of : fields_)
+      project_to_particles(m, of, kick);
     if (musl)
       find_remapped_gradient(m, kick.to, pic);
     if constexpr (Rows::projects)
-      rows_.interfaces.find_gradients(m.problem.mesh, rows_.extension, musl ? rows_.remapped : m.work.nodes.motion);
+      for (Rows& of : fields_)
+        of.interfaces.find_gradients(m.problem.mesh, of.extension, musl ? nodes_of(m, of).remapped : nodes_of(m, of).motion);
     m.work.strips->drop_loaded_gradients();
     const auto sweep = [&](const SweepParts& parts) {
       for_each_reading_block(
-          rows_.halo, [&] { take_motion(m, parts); },
+          rows().halo, [&] { take_motion(m, parts); },
           [&](Index b) {
             if (!parts.moves && parts.updates)
               between.before_stress_of_block(b);
-            BlockSweep<D, K>(m, rows_, b).advance(parts, dt, pic);
+            Sweep(m, fields_, b).advance(parts, dt, pic);
             if (parts.moves && !parts.updates)
               between.after_motion(b);
           });
@@ -159,15 +156,15 @@ class TransferOf final : public Transfer<D> {
 
   LeastShares least_shares() const override
   {
-    return {.of_particles = rows_.kernel.claims().non_negative ? least_share : least_share_of_signed_weights,
+    return {.of_particles = kernel_.claims().non_negative ? least_share : least_share_of_signed_weights,
             .of_gross = Rows::projects ? least_share_of_hats : least_share_of_cells};
   }
 
   void add_nodes_of_cell(const Mesh<D>& mesh, Index cell, std::vector<Index>& nodes) const override
   {
-    for (const Index n : rows_.kernel.stencil(mesh, cell))
+    for (const Index n : kernel_.stencil(mesh, cell))
       if constexpr (Rows::projects)
-        rows_.kernel.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
+        kernel_.node_operators().for_each_in_row(n, [&](Index v, Real S, const Vec<D>&) {
           if (S != 0)
             nodes.push_back(v);
         });
@@ -177,97 +174,157 @@ class TransferOf final : public Transfer<D> {
 
   std::int64_t nodes_as_corners([[maybe_unused]] const OwnNodes& own) const override
   {
-    if constexpr (requires { rows_.kernel.nodes_as_corners(); })
-      return std::ranges::count_if(rows_.kernel.nodes_as_corners(), [&](Index n) { return own.has(n); });
+    if constexpr (requires { kernel_.nodes_as_corners(); })
+      return std::ranges::count_if(kernel_.nodes_as_corners(), [&](Index n) { return own.has(n); });
     else
       return 0;
   }
 
-  std::int64_t bytes() const override { return rows_.bytes(); }
+  std::int64_t bytes() const override
+  {
+    std::int64_t bytes = 0;
+    for (const Rows& of : fields_)
+      bytes += of.bytes();
+    if constexpr (Rows::projects)
+      bytes += static_cast<std::int64_t>(kernel_.node_operators().size_bytes());
+    return bytes;
+  }
 
   /// Makes the motion that particles read from that of the nodes: a copy, or projected nodes, on which boundary conditions act once more
   /// where their values combine those of several nodes.
-  void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] const Kick& kick)
+  void project_to_particles([[maybe_unused]] Model<D>& m, [[maybe_unused]] Rows& of, [[maybe_unused]] const Kick& kick)
   {
     if constexpr (Rows::projects) {
-      rows_.extension.find_velocities(m.problem.own, rows_.ghosts.near, m.work.nodes.motion);
+      Nodes<D>& nodes = nodes_of(m, of);
+      of.extension.find_velocities(m.problem.own, of.ghosts.near, nodes.motion);
       project_motion(
-          rows_.kernel.node_operators(), rows_.extension, m.work.nodes.in_use, m.work.nodes.motion,
-          [&] { rows_.ghosts.motion.take(m.work.nodes.motion, Whole{}); }, rows_.projected);
-      m.state.boundary.apply(kick, rows_.projected.sum, rows_.projected.motion, m.work.sums.beyond_nodes);
+          kernel_.node_operators(), of.extension, nodes.in_use, nodes.motion, [&] { of.ghosts.motion.take(nodes.motion, Whole{}); },
+          of.projected);
+      m.state.boundary.apply(kick, of.projected.sum, of.projected.motion, m.work.sums.beyond_nodes);
     }
   }
 
  private:
-  /// Finds the tangential extension at surfaces that cut cells, and moves the forces of the stress with it.
-  void extend_forces(Model<D>& m) requires Rows::projects
+  using Sweep = BlockSweep<D, K>;
+
+  /// Makes the exchanges with other ranks.  Collective.
+  static void join(const Problem<D>& problem, Rows& of)
   {
-    if (!rows_.extension.any())
+    Communicator& ranks = *problem.ranks;
+    of.halo = Halo(ranks, problem.mesh, problem.subdomain, of.blocks);
+    const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
+      return copies_of_nodes(ranks, problem.subdomain, topic, wanted);
+    };
+    const std::vector<std::uint8_t> read = nodes_read(problem.subdomain, of.blocks);
+    if constexpr (Rows::projects) {
+      const auto both = [](std::vector<std::uint8_t> marked, const std::vector<std::uint8_t>& others) {
+        for (std::size_t n = 0; n < marked.size(); ++n)
+          marked[n] |= others[n];
+        return marked;
+      };
+      const auto around_own = [&](int rings) { return spread_by_rings(problem.mesh, problem.own.owned, rings); };
+      const std::vector<std::uint8_t> moving = spread_by_rings(problem.mesh, read, 1);
+      of.ghosts.sums = copy(MessageTag::sums, both(around_own(1), read));
+      of.ghosts.motion = copy(MessageTag::motion, moving);
+      of.ghosts.felt = copy(MessageTag::felt, around_own(2));
+      if (of.kernel.extends_surfaces())
+        of.ghosts.near = copy(MessageTag::near, both(around_own(Extension<D>::rings), moving));
+      of.ghosts.cells = copies_of_cells(ranks, problem.subdomain, MessageTag::cells, problem.mesh.n_cells());
+      of.projected.find_late(problem.mesh, problem.own);
+    } else {
+      of.ghosts.motion = copy(MessageTag::motion, read);
+    }
+  }
+
+  /// Sends the rows of outer blocks to the owners of their nodes.
+  template <class What>
+  void send_rows()
+  {
+    for (Rows& of : fields_)
+      of.halo.template send_rows<What>(of.blocks);
+  }
+
+  /// Finds the tangential extension at surfaces that cut cells, and moves the forces of the stress with it.
+  void extend_forces(Model<D>& m, Rows& of) requires Rows::projects
+  {
+    if (!of.extension.any())
       return;
-    const NodeOperators<D>& operators = rows_.kernel.node_operators();
-    Nodes<D>& nodes = m.work.nodes;
-    rows_.extension.find_rows(m.problem.mesh, operators, m.problem.own, nodes, rows_.ghosts.near,
-                              [&](Index n) { return rows_.projected.sum[static_cast<std::size_t>(n)].volume; });
-    rows_.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, rows_.ghosts.near, nodes.sum,
-                                [&](Index v) { return stress_force(operators, rows_.interfaces, m.problem.mesh, rows_.projected.sum, v); });
+    const NodeOperators<D>& operators = kernel_.node_operators();
+    Nodes<D>& nodes = nodes_of(m, of);
+    of.extension.find_rows(m.problem.mesh, operators, m.problem.own, nodes, of.ghosts.near,
+                           [&](Index n) { return of.projected.sum[static_cast<std::size_t>(n)].volume; });
+    of.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, of.ghosts.near, nodes.sum,
+                             [&](Index v) { return stress_force(operators, of.interfaces, m.problem.mesh, of.projected.sum, v); });
   }
   /// Receives the motion of nodes of other ranks that the particles of own blocks read; of projected nodes it has arrived.
   void take_motion([[maybe_unused]] Model<D>& m, [[maybe_unused]] const SweepParts& parts)
   {
     if constexpr (!Rows::projects)
       if (parts.moves)
-        rows_.ghosts.motion.take(m.problem.transfer.uses_musl() ? rows_.remapped : m.work.nodes.motion, Whole{});
+        for (Rows& of : fields_)
+          of.ghosts.motion.take(m.problem.transfer.uses_musl() ? nodes_of(m, of).remapped : nodes_of(m, of).motion, Whole{});
   }
 
   /// MUSL: velocities of the nodes from the momentum of the new velocities of the particles, and what the gradients of these need.
   void find_remapped_gradient(Model<D>& m, Real mid, Real pic)
   {
     if constexpr (!Rows::projects)  // blocks that use nodes of other ranks have rows for them, to be sent first
-      rows_.ghosts.motion.take(m.work.nodes.motion, Whole{});
-    for_each_own_block<MomentumAlone>(rows_.blocks, rows_.halo, [&](Index b) {
+      for (Rows& of : fields_)
+        of.ghosts.motion.take(nodes_of(m, of).motion, Whole{});
+    const auto add_momentum = [&](Index b) {
       if constexpr (WeighsVertices<K, D>)
-        add_new_momentum(m, rows_, b, m.problem.transfer.increments() ? pic : 1);
+        for (Rows& of : fields_)
+          add_new_momentum(m, of, b, m.problem.transfer.increments() ? pic : 1);
       else
-        BlockSweep<D, K>(m, rows_, b).return_momentum(pic);
-    });
-    find_remapped_velocity(m, mid);
-    if constexpr (Rows::projects) {
-      rows_.extension.find_velocities(m.problem.own, rows_.ghosts.near, rows_.remapped);
-      project_gradient(
-          rows_.kernel.node_operators(), rows_.extension, m.work.nodes.in_use, rows_.remapped,
-          [&] { rows_.ghosts.motion.take(rows_.remapped, Whole{}); }, rows_.projected, rows_.gradient_of_remapped);
-    }
+        Sweep(m, fields_, b).return_momentum(pic);
+    };
+    for_each_own_block(rows().halo, add_momentum, [&] { send_rows<MomentumAlone>(); });
+    for (Rows& of : fields_)
+      find_remapped_velocity(m, of, mid);
+    m.work.contact.hold(mid, m.state.boundary, m.work.fields);
+    for (Rows& of : fields_)
+      send_remapped_velocity(m, of, mid);
+    if constexpr (Rows::projects)
+      for (Rows& of : fields_) {
+        Nodes<D>& nodes = nodes_of(m, of);
+        of.extension.find_velocities(m.problem.own, of.ghosts.near, nodes.remapped);
+        project_gradient(
+            kernel_.node_operators(), of.extension, nodes.in_use, nodes.remapped, [&] { of.ghosts.motion.take(nodes.remapped, Whole{}); },
+            of.projected, of.gradient_of_remapped);
+      }
   }
 
   /// MUSL: puts the momentum of the new particle velocities, which is in the rows of blocks, on the nodes, under the boundary conditions.
-  void find_remapped_velocity(Model<D>& m, Real mid)
+  void find_remapped_velocity(Model<D>& m, Rows& of, Real mid)
   {
-    Problem<D>& problem = m.problem;
-    State<D>& state = m.state;
-    Workspace<D>& work = m.work;
-    const Mesh<D>& mesh = problem.mesh;
-    const OwnNodes& own = problem.own;
-    Nodes<D>& nodes = work.nodes;
-    std::vector<NodeMotion<D>>& remapped = rows_.remapped;
+    const Mesh<D>& mesh = m.problem.mesh;
+    const OwnNodes& own = m.problem.own;
+    Nodes<D>& nodes = nodes_of(m, of);
     if constexpr (Rows::projects) {
-      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, nodes.in_use, rows_.projected.sum, [] {});
-      project_momentum(rows_.kernel.node_operators(), mesh, own, rows_.projected.sum, nodes.in_use, nodes.sum);
+      assemble<MomentumAlone>(of.blocks, own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, [] {});
+      project_momentum(kernel_.node_operators(), mesh, own, of.projected.sum, nodes.in_use, nodes.sum);
     } else {
-      assemble<MomentumAlone>(rows_.blocks, own, rows_.halo, rows_.ghosts.sums, nodes.in_use, nodes.sum, [] {});
+      assemble<MomentumAlone>(of.blocks, own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, [] {});
     }
-    work.small_mass_nodes.lump_momentum(mesh, own, nodes);
+    m.work.fields[of.field].small_mass_nodes.lump_momentum(mesh, own, nodes);
     nodes.in_use.for_each([&](Index n) {
       const auto i = static_cast<std::size_t>(n);
       const Vec<D> v = nodes.active[i] ? Vec<D>(nodes.sum[i].momentum / nodes.sum[i].mass) : Vec<D>(Vec<D>::Zero());
-      remapped[i] = {v, nodes.motion[i].v};
+      nodes.remapped[i] = {v, nodes.motion[i].v};
     });
-    state.boundary.hold(mid, remapped);
-    work.small_mass_nodes.extrapolate_velocity(mesh, own, state.boundary, mid, remapped);
-    rows_.ghosts.motion.send(remapped, Whole{});
-    add_ranges(nodes.in_use.own(), work.sums.remap, [&](Index n) { return remap_work(nodes, remapped, n); });
+    m.state.boundary.hold(mid, nodes.slides, nodes.remapped);
+  }
+  /// Moves nodes of small mass with their hosts, and starts to send the remapped velocities to other ranks.
+  void send_remapped_velocity(Model<D>& m, Rows& of, Real mid)
+  {
+    Nodes<D>& nodes = nodes_of(m, of);
+    m.work.fields[of.field].small_mass_nodes.extrapolate_velocity(m.problem.mesh, m.problem.own, m.state.boundary, mid, nodes.remapped);
+    of.ghosts.motion.send(nodes.remapped, Whole{});
+    add_ranges(nodes.in_use.own(), m.work.sums.remap, [&](Index n) { return remap_work(nodes, n); });
   }
 
-  Rows rows_;
+  K kernel_;
+  std::vector<Rows> fields_;
 };
 
 template <class K, int D>

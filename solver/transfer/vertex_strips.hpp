@@ -47,11 +47,11 @@ class VertexMotion {
         gradient.setZero();
       for (std::size_t a = 0; a <= D; ++a) {
         const auto n = static_cast<std::size_t>(nodes[a]);
-        const NodeMotion<D>& motion = m.work.nodes.motion[n];
+        const NodeMotion<D>& motion = nodes_of(m, of).motion[n];
         v[a] = &motion.v, change[a] = &motion.change, L[a] = &of_cell_[0], strain[a] = &of_cell_[musl ? 1 : 0];
         of_cell_[0] += motion.v * gradients[a].transpose();
         if (musl)
-          of_cell_[1] += of.remapped[n].v * gradients[a].transpose();
+          of_cell_[1] += nodes_of(m, of).remapped[n].v * gradients[a].transpose();
       }
     }
   }
@@ -273,25 +273,24 @@ class VertexStrips {
   static constexpr bool keeps_gradients = false;
   static constexpr int quantities = Contribution<D, true, true, true>::padded_size;
 
-  VertexStrips(const Model<D>& m, KernelRows<D, K>& of, StripScratch<D>& scratch) : m_(m), of_(of), scratch_(scratch) {}
+  VertexStrips(const Model<D>& m, StripScratch<D>& scratch) : m_(m), scratch_(scratch) {}
 
-  void open(CellFrame<D>& frame) const noexcept { frame.arms = arms_of(m_.problem.mesh, of_, frame.cell, frame.origin); }
-  /// Says of which body the particles are that come next.
-  void take(Index body) noexcept { body_ = body; }
-  /// Clears what is summed apart from the rows of the block.
-  void clear(Index block) noexcept
+  void open(CellFrame<D>& frame) const noexcept { frame.arms = arms_of(m_.problem.mesh, *of_, frame.cell, frame.origin); }
+  /// Says of which body the particles are that come next, and which rows are those of its velocity field.
+  void take(KernelRows<D, K>& of, Index body) noexcept { of_ = &of, body_ = body; }
+  /// Clears what is summed apart from the rows of a block.
+  static void clear(KernelRows<D, K>& of, const Model<D>& m, Index block) noexcept
   {
-    const Index first = block * block_cells, last = std::min(first + block_cells, m_.problem.mesh.n_cells());
-    of_.interfaces.clear(first, last);
-    if (!m_.problem.transfer.uses_musl())
-      return;
-    std::fill(of_.moments.begin() + first, of_.moments.begin() + last, CellMoments<D>{});
+    const Index first = block * block_cells, last = std::min(first + block_cells, m.problem.mesh.n_cells());
+    of.interfaces.clear(first, last);
+    if (m.problem.transfer.uses_musl())
+      std::fill(of.moments.begin() + first, of.moments.begin() + last, CellMoments<D>{});
   }
   /// Sets L and, if asked for and different, C of the columns to velocity gradients at positions x in the cells of the open strip.
   void find_gradients(const StripColumn<Vec<D>>& x, bool with_affine, StripColumns<D>& columns) noexcept
   {
     with_affine = with_affine && m_.work.strips->layout().has_affine();
-    read_gradients(m_, of_, body_, x, with_affine, scratch_);
+    read_gradients(m_, *of_, body_, x, with_affine, scratch_);
     columns.L = scratch_.L;
     if (with_affine)
       columns.C = scratch_.C;
@@ -316,17 +315,18 @@ class VertexStrips {
   void add(const StripColumns<D>& columns, std::size_t n, Index block)
   {
     if (m_.problem.transfer.uses_musl())
-      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces, of_.extension.any());
+      deposit_strip<affine, loaded, true>(columns, n, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
+                                          of_->extension.any());
     else
-      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_.blocks, of_.moments, body_, of_.interfaces,
-                                           of_.extension.any());
+      deposit_strip<affine, loaded, false>(columns, n, scratch_, block, of_->blocks, of_->moments, body_, of_->interfaces,
+                                           of_->extension.any());
   }
   /// Velocities of the particles and their new positions.
   template <bool increments>
   void move(const StripColumns<D>& columns, Real dt, Real pic) noexcept
   {
     for (const CellRun<D>& run : scratch_.runs) {
-      const VertexMotion<D, K> motion(m_, of_, none, run.frame->cell);
+      const VertexMotion<D, K> motion(m_, *of_, none, run.frame->cell);
       for (std::size_t i = run.begin; i < run.end; i += pack_size) {
         scratch_.ahead.next();
         const VecOf<D> x = columns.x.load(i);
@@ -357,7 +357,7 @@ class VertexStrips {
   }
 
   const Model<D>& m_;
-  KernelRows<D, K>& of_;
+  KernelRows<D, K>* of_ = nullptr;
   StripScratch<D>& scratch_;
   Index body_ = none;
 };

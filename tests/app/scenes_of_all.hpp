@@ -210,6 +210,13 @@ inline std::vector<SceneCase> scenes_of_all()
   SceneParts two_by_tpic = two_materials;
   two_by_tpic.more = "transfer: {scheme: tpic}\n";
   all.push_back({"two_materials_tpic", two_by_tpic});
+  SceneParts contacts = two_materials;
+  contacts.more = "contacts:\n  - {between: [low, high], friction: 0.3, cohesion: 100}\n  - {between: [right, low], friction: 0.1}\n"
+                  "  - {between: [high, right]}\n";
+  all.push_back({"contacts", contacts});
+  SceneParts contacts_tied = two_materials;
+  contacts_tied.more = "kernel: umls\ncontacts:\n  - {between: [high, low], friction: 0.3}\n  - {between: [right, low], tied: true}\n";
+  all.push_back({"contacts_umls", contacts_tied});
   SceneParts extended = two_materials;
   extended.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended", extended});
@@ -234,6 +241,8 @@ inline std::vector<SceneCase> scenes_of_all()
   two_in_3d.law = two_materials.law;
   two_in_3d.bodies += "  - {name: high, material: other, shape: {type: box, low: [0, 1, 0], high: [1.4, 1.4, 1]}, particles_per_cell: 4}\n";
   all.push_back({"two_materials_solid", two_in_3d});
+  two_in_3d.more = "kernel: linear\ncontacts: [{between: [low, high], friction: 0.3}]\n";
+  all.push_back({"contacts_solid", two_in_3d});
   two_in_3d.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended_solid", two_in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";

@@ -99,7 +99,7 @@ void update_all_stress(Model<D>& m, Real dt)
   begin_sweeps(m);
   m.work.stress_sums.assign(m.work.strips->keys(), {});
   for (Index block = 0; block < m.work.strips->blocks(); ++block)
-    BlockSweep<D, K>(m, transfer_of<K>(m).rows(), block).advance({.updates = true}, dt, 0);
+    BlockSweep<D, K>(m, transfer_of<K>(m).fields(), block).advance({.updates = true}, dt, 0);
   end_sweeps(m);
 }
 

@@ -24,8 +24,8 @@ TEST(PlasticWork, IsThatOfTheBodiesAsked)
   state.particles.volume0.set(1, 2), state.particles.volume0.set(2, 3);
   CellOrder order;
   order.row = {0, 1, 2}, order.first = {0, 1, 3}, order.blocks = 1;
-  const Nodes<2> nodes;
-  const RunView<2> view{problem, state, order, nodes, "the only", 0, 0};
+  const std::vector<VelocityField<2>> fields;
+  const RunView<2> view{problem, state, order, fields, "the only", 0, 0};
   EXPECT_EQ(plastic_work(view, {1, 2}), 10 * 2 + 1000 * 3);
   EXPECT_EQ(plastic_work(view), 10 * 2 + 1000 * 3 + 7e6);
 }

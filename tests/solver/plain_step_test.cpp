@@ -90,7 +90,7 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
   auto m = any_ball<TypeParam>();
   sum_on_nodes(m);
   using Mass = Eigen::Matrix<Real, 1, 1>;
-  const std::size_t n = m.work.nodes.sum.size();
+  const std::size_t n = m.work.fields[0].nodes.sum.size();
   std::vector<Mass> mass(n, Mass::Zero()), summed_mass(n);
   std::vector<Vec<D>> momentum(n, Vec<D>::Zero()), force = momentum, summed_momentum(n), summed_force(n);
   Vec<D> read_at;
@@ -104,9 +104,9 @@ TYPED_TEST(PlainFormulas, GiveTheMassMomentumAndForceOfNodes)
         force[v] -= m.state.particles.volume[p] * sigma * G;
       });
   for (std::size_t v = 0; v < n; ++v) {
-    summed_mass[v][0] = m.work.nodes.sum[v].mass;
-    summed_momentum[v] = m.work.nodes.sum[v].momentum;
-    summed_force[v] = m.work.nodes.sum[v].force;
+    summed_mass[v][0] = m.work.fields[0].nodes.sum[v].mass;
+    summed_momentum[v] = m.work.fields[0].nodes.sum[v].momentum;
+    summed_force[v] = m.work.fields[0].nodes.sum[v].force;
   }
   EXPECT_LT(difference(summed_mass, mass), rounding_of_sums);
   EXPECT_LT(difference(summed_momentum, momentum), rounding_of_sums);
@@ -121,7 +121,7 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticles)
     m.problem.transfer.scheme = scheme;
     sum_on_nodes(m);
     Dice dice;
-    for (auto& node : m.work.nodes.motion)
+    for (auto& node : m.work.fields[0].nodes.motion)
       node = {.v = dice.any<Vec<D>>(), .change = dice.any<Vec<D>>()};
     const std::size_t n = m.state.particles.id.size();
     const Real dt = 0.25;
@@ -133,7 +133,7 @@ TYPED_TEST(PlainFormulas, GiveTheVelocityGradientAndMoveOfParticles)
     for_each_weight<typename TypeParam::K>(
         m, [](std::size_t, const Vec<D>&) {},
         [&](std::size_t p, std::size_t node, Real w, const Vec<D>& G) {
-          const NodeMotion<D>& motion = m.work.nodes.motion[node];
+          const NodeMotion<D>& motion = m.work.fields[0].nodes.motion[node];
           v[p] += w * (scheme == Scheme::flip ? motion.change : motion.v);
           x[p] += dt * w * motion.v;
           L[p] += motion.v * G.transpose();

@@ -116,7 +116,7 @@ Real bytes_moved(const RunView<D>& view)
 {
   constexpr std::array<std::string_view, 5> constants{"id", "cell", "mass", "volume0", "start"};
   const auto bytes = [](const auto& column) { return static_cast<Real>(column.size() * sizeof(column[0])); };
-  const Real of_nodes = 2 * (bytes(view.nodes.sum) + bytes(view.nodes.motion));
+  const Real of_nodes = 2 * (bytes(view.fields.front().nodes.sum) + bytes(view.fields.front().nodes.motion));
   if (view.strips != nullptr)
     return (static_cast<Real>(view.strips->bytes_moved()) + of_nodes) / static_cast<Real>(view.strips->size());
   Real total = of_nodes;

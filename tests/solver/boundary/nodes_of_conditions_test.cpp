@@ -108,7 +108,7 @@ TEST(NodesAtWalls, FrictionRubsByItsCoefficientTimesTheImpulse)
   // it rubs now, so that what is remapped is replaced by the step's own
   const std::size_t n = square.node({0.5, 0});
   square.nodes.motion[n] = {{5, 6}, {7, 8}};
-  square.walls.hold(0, square.nodes.motion);
+  square.walls.hold(0, square.nodes.slides, square.nodes.motion);
   expect_near(square.nodes.motion[n].v, {7, 8});
 }
 
@@ -125,10 +125,10 @@ TEST(NodesAtWalls, FrictionSticksExactlyAndLetsGo)
   // it does not rub any more: held back from going in, not from leaving
   const std::size_t n = square.node({0.5, 0});
   square.nodes.motion[n] = {{5, -6}, {7, 8}};
-  square.walls.hold(0, square.nodes.motion);
+  square.walls.hold(0, square.nodes.slides, square.nodes.motion);
   expect_near(square.nodes.motion[n].v, {5, 0});
   square.nodes.motion[n] = {{5, 6}, {7, 8}};
-  square.walls.hold(0, square.nodes.motion);
+  square.walls.hold(0, square.nodes.slides, square.nodes.motion);
   expect_near(square.nodes.motion[n].v, {5, 6});
 }
 

@@ -124,15 +124,15 @@ TYPED_TEST(NodesInUseUnder, ChangeNoBit)
   ASSERT_EQ(near.state.clock.step, all.state.clock.step);
   ASSERT_GT(near.state.clock.step, 50);
   EXPECT_GT(near.state.particles.x[0][0], 0.5) << "it must have left the blocks in which it began";
-  EXPECT_LT(visited(near.work.nodes.in_use).size(), visited(all.work.nodes.in_use).size());
+  EXPECT_LT(visited(near.work.fields[0].nodes.in_use).size(), visited(all.work.fields[0].nodes.in_use).size());
   for (std::size_t p = 0; p < near.state.particles.id.size(); ++p) {
     EXPECT_EQ(near.state.particles.x[p], all.state.particles.x[p]);
     EXPECT_EQ(near.state.particles.v[p], all.state.particles.v[p]);
     EXPECT_EQ(near.state.particles.stress[p], all.state.particles.stress[p]);
   }
   EXPECT_EQ(near.state.momentum.on_nodes, all.state.momentum.on_nodes);
-  for (std::size_t n = 0; n < near.work.nodes.motion.size(); ++n)
-    EXPECT_EQ(near.work.nodes.motion[n].v, all.work.nodes.motion[n].v) << n;
+  for (std::size_t n = 0; n < near.work.fields[0].nodes.motion.size(); ++n)
+    EXPECT_EQ(near.work.fields[0].nodes.motion[n].v, all.work.fields[0].nodes.motion[n].v) << n;
 }
 
 }  // namespace

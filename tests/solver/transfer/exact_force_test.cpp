@@ -55,7 +55,7 @@ TYPED_TEST(ExactForceIn, IsMinusTheStressOfParticlesOnTheSlopesOfTheValues)
   constexpr int D = TypeParam::D;
   auto m = stressed_block<D>(UmlsGradient::exact_force);
   const Umls<D>& kernel = transfer_of<Umls<D>>(m).rows().kernel;
-  std::vector<Vec<D>> expected(m.work.nodes.sum.size(), Vec<D>::Zero());
+  std::vector<Vec<D>> expected(m.work.fields[0].nodes.sum.size(), Vec<D>::Zero());
   typename Umls<D>::Cell cell;
   Weights<D, Umls<D>::max_nodes> weights;
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
@@ -72,7 +72,7 @@ TYPED_TEST(ExactForceIn, IsMinusTheStressOfParticlesOnTheSlopesOfTheValues)
   }
   Real largest = 0;
   for (std::size_t n = 0; n < expected.size(); ++n) {
-    EXPECT_LE((m.work.nodes.sum[n].force - expected[n]).norm(), 1e-14 * scale(m)) << "node " << n;
+    EXPECT_LE((m.work.fields[0].nodes.sum[n].force - expected[n]).norm(), 1e-14 * scale(m)) << "node " << n;
     largest = std::max(largest, expected[n].norm());
   }
   EXPECT_GT(largest, 1e-4 * scale(m));
@@ -89,8 +89,8 @@ TYPED_TEST(ExactForceIn, SumsToZeroAndDoesTheWorkOfLinearMotionsOnly)
     Vec<D> total = Vec<D>::Zero();
     Real linear = 0, power = 0, stress_power = 0;
     for (Index n = 0; n < m.problem.mesh.n_nodes(); ++n) {
-      const Vec<D>& f = m.work.nodes.sum[static_cast<std::size_t>(n)].force;
-      NodeMotion<D>& node = m.work.nodes.motion[static_cast<std::size_t>(n)];
+      const Vec<D>& f = m.work.fields[0].nodes.sum[static_cast<std::size_t>(n)].force;
+      NodeMotion<D>& node = m.work.fields[0].nodes.motion[static_cast<std::size_t>(n)];
       total += f;
       linear += f.dot(A * m.problem.mesh.node(n));
       for (int d = 0; d < D; ++d)

@@ -51,7 +51,7 @@ void read_random_motion(Model<D>& m)
 {
   std::mt19937 random(2);
   std::uniform_real_distribution<Real> number(-1, 1);
-  for (auto& node : m.work.nodes.motion)
+  for (auto& node : m.work.fields[0].nodes.motion)
     for (int d = 0; d < D; ++d)
       node.change[d] = node.v[d] = number(random);
 }
@@ -81,8 +81,8 @@ void forces_do_the_work_that_strains_the_particles(bool of_two_materials, AtSurf
   EXPECT_EQ(transfer_of<Projected<D>>(m).rows().interfaces.mixed_nodes() > 10, of_two_materials);
   EXPECT_EQ(transfer_of<Projected<D>>(m).rows().extension.extended().size() > 10, surfaces == AtSurfaces::extended);
   Real power = 0, stress_power = 0, size = 0;
-  for (std::size_t n = 0; n < m.work.nodes.sum.size(); ++n)
-    power += m.work.nodes.sum[n].force.dot(m.work.nodes.motion[n].v);
+  for (std::size_t n = 0; n < m.work.fields[0].nodes.sum.size(); ++n)
+    power += m.work.fields[0].nodes.sum[n].force.dot(m.work.fields[0].nodes.motion[n].v);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     const Mat<D> sigma = unpack(m.state.particles.stress[p]).template topLeftCorner<D, D>();
     stress_power += m.state.particles.volume[p] * sigma.cwiseProduct(m.state.particles.L[p]).sum();
@@ -108,8 +108,8 @@ TYPED_TEST(ProjectedIn, MomentumIsScatteredByTheTransposeOfTheGather)
   m.state.particles.v.assign(m.state.particles.v.size(), Vec<TypeParam::D>::Zero());
   read_nodes(m, 0);  // flip: the increment, which is the velocity here
   Real nodes = 0, particles = 0, size = 0;
-  for (std::size_t n = 0; n < m.work.nodes.sum.size(); ++n)
-    nodes += m.work.nodes.sum[n].momentum.dot(m.work.nodes.motion[n].v);
+  for (std::size_t n = 0; n < m.work.fields[0].nodes.sum.size(); ++n)
+    nodes += m.work.fields[0].nodes.sum[n].momentum.dot(m.work.fields[0].nodes.motion[n].v);
   for (std::size_t p = 0; p < m.state.particles.id.size(); ++p) {
     particles += m.state.particles.mass[p] * v[p].dot(m.state.particles.v[p]);
     size += m.state.particles.mass[p] * v[p].norm() * m.state.particles.v[p].norm();
@@ -126,7 +126,7 @@ TYPED_TEST(ProjectedIn, LinearMotionsAreStrainedExactlyUpToTheSurface)
     auto m = ball<TypeParam>(of_two_materials, surfaces);
     sum_and_read(m, [&](Model<D>& of) {
       for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n)
-        of.work.nodes.motion[static_cast<std::size_t>(n)].v = A * of.problem.mesh.node(n) + Vec<D>::Ones();
+        of.work.fields[0].nodes.motion[static_cast<std::size_t>(n)].v = A * of.problem.mesh.node(n) + Vec<D>::Ones();
     });
     for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)
       ASSERT_LT((m.state.particles.L[p] - A).norm(), 1e-12);
@@ -146,7 +146,7 @@ TYPED_TEST(ProjectedIn, NodesBesideASurfaceContinueTheMotionAlongIt)
     sum_and_read(m, [](Model<D>& of) {
       for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n) {
         const Vec<D>& x = of.problem.mesh.node(n);
-        of.work.nodes.motion[static_cast<std::size_t>(n)].v = (x[D - 1] > 0.5 + 1e-9 ? 7 : x[D - 1]) * Vec<D>::Ones();
+        of.work.fields[0].nodes.motion[static_cast<std::size_t>(n)].v = (x[D - 1] > 0.5 + 1e-9 ? 7 : x[D - 1]) * Vec<D>::Ones();
       }
     });
     const auto& extension = transfer_of<Projected<D>>(m).rows().extension;
@@ -215,7 +215,8 @@ TYPED_TEST(ProjectedIn, AMotionOfOneMaterialDoesNotStrainTheOther)
   make_ready(m);
   sum_and_read(m, [](Model<D>& of) {
     for (Index n = 0; n < of.problem.mesh.n_nodes(); ++n)
-      of.work.nodes.motion[static_cast<std::size_t>(n)].v = (of.problem.mesh.node(n)[D - 1] > 0.5 + 1e-9 ? 1 : 0) * Vec<D>::UnitX();
+      of.work.fields[0].nodes.motion[static_cast<std::size_t>(n)].v =
+          (of.problem.mesh.node(n)[D - 1] > 0.5 + 1e-9 ? 1 : 0) * Vec<D>::UnitX();
   });
   Real most = 0;
   for (std::size_t p = 0; p < m.state.particles.L.size(); ++p)

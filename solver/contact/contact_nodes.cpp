@@ -1,0 +1,436 @@
+#include "solver/contact/contact_nodes.hpp"
+
+#include <limits>
+
+namespace talus {
+
+namespace {
+
+/// Where one body has a corner and the other is flat, its filling changes less, and the flat one says which way the surface faces.
+constexpr int power_of_steepness = 6;
+/// A filling that changes by less than this over the size of a node says nothing about the direction of a surface.
+constexpr Real least_change = 1e-3;
+/// Sweeps over the contacts of nodes at which more than two fields may touch.
+constexpr int sweeps_over_laws = 8;
+
+/// Particles reach from minus to plus infinity where there are none.
+constexpr Real beyond = std::numeric_limits<Real>::infinity();
+
+/// Selects the nodes that particles reach.
+struct Reached {
+  template <class Row>
+  static auto parts(Row& row) noexcept
+  {
+    return std::tie(row.first, row.second);
+  }
+  template <class Row>
+  static bool is_there(const Row& row, Index) noexcept
+  {
+    return row.first > -beyond || row.second < beyond;
+  }
+  template <class Row>
+  static void clear(Row& row) noexcept
+  {
+    row = {-beyond, beyond};
+  }
+};
+
+template <int D>
+std::size_t local_number(const Mesh<D>& mesh, Index cell, Index node) noexcept
+{
+  const auto& nodes = mesh.cell(cell);
+  return static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+}
+
+/// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
+template <int D>
+Real half_width(const Mat3& F, Real volume0, const Vec<D>& along) noexcept
+{
+  const Mat<D> part = F.template topLeftCorner<D, D>();
+  const Real side = D == 2 ? std::sqrt(volume0) : std::cbrt(volume0);
+  return 0.5 * side * (part.transpose() * along).norm();
+}
+
+/// A mass at a node in an exchange of impulses.
+template <int D>
+struct Side {
+  const BoundaryConditions<D>& conditions;
+  Index node;
+  Real time;
+  Real mass;
+  Vec<D> v;
+  /// How much an impulse along a unit vector changes the velocity along it, per impulse [1/kg]; `push` is a change of velocity of that
+  /// direction and of the size expected.  Boundary conditions hold what they hold.
+  Real per_impulse(const Vec<D>& push) const
+  {
+    if (!conditions.binds(node))
+      return 1 / mass;
+    const Vec<D> change = conditions.held(node, time, v + push) - v;
+    return std::max(Real{0}, change.dot(push) / push.squaredNorm()) / mass;
+  }
+};
+
+/// What two masses exchange that move towards each other: impulses on the first one.
+template <int D>
+struct Exchange {
+  Vec<D> pressed = Vec<D>::Zero(), rubbed = Vec<D>::Zero();
+  bool sticks = false;
+};
+
+/// `limit(pressure impulse)` is the largest tangential impulse.
+template <int D, class Limit>
+Exchange<D> exchange(Side<D> first, Side<D> second, const Vec<D>& normal, Limit&& limit)
+{
+  Exchange<D> result;
+  const Real approach = (first.v - second.v).dot(normal);
+  if (!(approach > 0))
+    return result;
+  const Real response = first.per_impulse(-approach * normal) + second.per_impulse(approach * normal);
+  if (!(response > 0))
+    return result;
+  const Real pressure = approach / response;
+  result.pressed = -pressure * normal;
+  const Vec<D> relative = first.v - second.v, sliding = relative - approach * normal;
+  const Real speed = sliding.norm(), most = limit(pressure);
+  if (!(speed > 0) || !(most > 0)) {
+    result.sticks = most > 0;
+    return result;
+  }
+  const Real along = first.per_impulse(-sliding) + second.per_impulse(sliding);
+  const Real wanted = along > 0 ? speed / along : 0;
+  result.sticks = wanted <= most;
+  result.rubbed = -std::min(wanted, most) / speed * sliding;
+  return result;
+}
+
+}  // namespace
+
+template <int D>
+void ContactNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const Contacts& contacts)
+{
+  if (contacts.laws.empty())
+    return;
+  contacts_ = contacts;
+  const auto n_nodes = static_cast<std::size_t>(mesh.n_nodes());
+  const std::size_t n_laws = contacts.laws.size(), n_fields = static_cast<std::size_t>(contacts.n_fields);
+  candidate_.assign(n_laws, std::vector<std::uint8_t>(n_nodes, 0));
+  normal_.assign(n_laws, std::vector<Vec<D>>(n_nodes, Vec<D>::Zero()));
+  reach_.assign(n_laws, std::vector<Reach>(n_nodes, Reach{-beyond, beyond}));
+  volumes_.assign(n_fields, std::vector<CellVolumes>(static_cast<std::size_t>(mesh.n_cells())));
+  fill_.assign(n_fields, std::vector<Real>(n_nodes, 0));
+  hats_.assign(n_nodes, 0);
+  for (Index c = 0; c < mesh.n_cells(); ++c)
+    for (const Index n : mesh.cell(c))
+      hats_[static_cast<std::size_t>(n)] += mesh.volume(c) / (D + 1);
+  is_marked_.assign(static_cast<std::size_t>(mesh.n_cells()), 0);
+  bodies_.assign(n_fields, {});
+  for (std::size_t body = 0; body < contacts.field_of_body.size(); ++body)
+    bodies_[contacts.field_of(static_cast<Index>(body))].push_back(static_cast<Index>(body));
+  if (subdomain.alone())
+    return;
+  copies_ = copies_of_nodes(ranks, subdomain, MessageTag::contact_nodes, std::vector<std::uint8_t>(n_nodes, 1));
+  cells_ = copies_of_cells(ranks, subdomain, MessageTag::contact_cells, mesh.n_cells());
+  std::vector<NeighbourRank> borders;
+  staged_.clear();
+  for (const NeighbourRank& border : copies_.borders()) {
+    NeighbourRank& back = borders.emplace_back(NeighbourRank{border.rank, border.in, {}});
+    for (const Index n : border.out) {
+      back.in.push_back(static_cast<Index>(staged_.size()));
+      staged_.push_back(n);
+    }
+  }
+  back_ = HaloExchange(ranks, MessageTag::contact_reach, std::move(borders));
+  reach_of_others_.assign(staged_.size(), Reach{-beyond, beyond});
+}
+
+template <int D>
+void ContactNodes<D>::find_candidates(const OwnNodes& own, std::span<const VelocityField<D>> fields)
+{
+  nodes_.clear();
+  for (std::size_t l = 0; l < contacts_.laws.size(); ++l) {
+    const Nodes<D>& first = fields[static_cast<std::size_t>(contacts_.laws[l].first)].nodes;
+    const Nodes<D>& second = fields[static_cast<std::size_t>(contacts_.laws[l].second)].nodes;
+    std::vector<std::uint8_t>& candidate = candidate_[l];
+    std::fill(candidate.begin(), candidate.end(), std::uint8_t{0});
+    first.in_use.for_each_ascending([&](Index n) {
+      const auto i = static_cast<std::size_t>(n);
+      if (own.has(n) && first.active[i] != 0 && second.active[i] != 0) {
+        candidate[i] = 1;
+        nodes_.push_back({.node = n, .law = static_cast<Index>(l)});
+      }
+    });
+    copies_.send(candidate, OfMarked{itself, candidate});
+    copies_.take(candidate, OfMarked{itself, candidate});
+  }
+}
+
+// Gradients of fillings are averaged over one ring around a candidate and reach one more, so fillings are needed within two.
+template <int D>
+void ContactNodes<D>::mark_cells(const Mesh<D>& mesh)
+{
+  ring_.assign(hats_.size(), 0);
+  near_nodes_.clear();
+  for (const auto& candidate : candidate_)
+    for (std::size_t n = 0; n < candidate.size(); ++n)
+      if (candidate[n] != 0 && std::exchange(ring_[n], std::uint8_t{1}) == 0)
+        near_nodes_.push_back(static_cast<Index>(n));
+  n_candidates_ = near_nodes_.size();
+  std::size_t front = 0;
+  for (std::uint8_t ring = 2; ring <= 3; ++ring)
+    for (const std::size_t last = near_nodes_.size(); front < last; ++front)
+      for (const Index m : mesh.ring_of_node()[near_nodes_[front]])
+        if (ring_[static_cast<std::size_t>(m)] == 0) {
+          ring_[static_cast<std::size_t>(m)] = ring;
+          near_nodes_.push_back(m);
+        }
+  for (const Index c : marked_) {
+    is_marked_[static_cast<std::size_t>(c)] = 0;
+    for (auto& of_field : volumes_)
+      of_field[static_cast<std::size_t>(c)] = {};
+  }
+  marked_.clear();
+  for (const Index n : near_nodes_)
+    for (const Index c : mesh.cells_of_node()[n])
+      if (std::exchange(is_marked_[static_cast<std::size_t>(c)], std::uint8_t{1}) == 0)
+        marked_.push_back(c);
+}
+
+template <int D>
+template <class F>
+void ContactNodes<D>::for_each_particle_of(const ParticleStrips<D>& strips, std::size_t field, Index cell, F&& f) const
+{
+  const Index block = cell / block_cells, strip = cell % block_cells / strip_cells, c = cell % strip_cells;
+  for (const Index body : bodies_[field]) {
+    const std::span<const Strip> all = strips.strips(strips.key(body, block));
+    if (all.empty())
+      continue;
+    const Strip& one = all[to_size(strip)];
+    const Index count = one.count[to_size(c)];
+    if (count == 0)
+      continue;
+    const Index begin = std::accumulate(one.count.begin(), one.count.begin() + c, Index{0});
+    const StripColumns<D> columns = strips.columns(one);
+    for (Index i = begin; i < begin + count; ++i)
+      f(columns, to_size(i));
+  }
+}
+
+template <int D>
+void ContactNodes<D>::sum_volumes(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
+{
+  parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
+    const Index cell = marked_[static_cast<std::size_t>(k)];
+    for (std::size_t f = 0; f < volumes_.size(); ++f) {
+      Corners& sum = volumes_[f][static_cast<std::size_t>(cell)].of;
+      for_each_particle_of(strips, f, cell, [&](const StripColumns<D>& columns, std::size_t p) {
+        const std::array<Real, D + 1> share = mesh.barycentric(cell, columns.x.of(p));
+        for (std::size_t a = 0; a <= D; ++a)
+          sum[a] += share[a] * columns.volume.of(p);
+      });
+    }
+  });
+  for (auto& of_field : volumes_) {
+    cells_.send(of_field, Whole{});
+    cells_.take(of_field, Whole{});
+  }
+}
+
+template <int D>
+void ContactNodes<D>::find_normals(const Mesh<D>& mesh)
+{
+  parallel_for(static_cast<Index>(near_nodes_.size()), [&](Index k) {
+    const Index n = near_nodes_[static_cast<std::size_t>(k)];
+    for (std::size_t f = 0; f < fill_.size(); ++f) {
+      Real volume = 0;
+      for (const Index c : mesh.cells_of_node()[n])
+        volume += volumes_[f][static_cast<std::size_t>(c)].of[local_number(mesh, c, n)];
+      fill_[f][static_cast<std::size_t>(n)] = volume / hats_[static_cast<std::size_t>(n)];
+    }
+  });
+  for (std::size_t l = 0; l < contacts_.laws.size(); ++l)
+    find_normals_of(mesh, l);
+  for (std::size_t l = 0; l < normal_.size(); ++l) {
+    copies_.send(normal_[l], OfMarked{itself, candidate_[l]});
+    copies_.take(normal_[l], OfMarked{itself, candidate_[l]});
+  }
+}
+
+template <int D>
+void ContactNodes<D>::find_normals_of(const Mesh<D>& mesh, std::size_t l)
+{
+  const ContactLaw& law = contacts_.laws[l];
+  const std::vector<Real>&fill_1 = fill_[static_cast<std::size_t>(law.first)], &fill_2 = fill_[static_cast<std::size_t>(law.second)];
+  gradients_.resize(hats_.size());
+  parallel_for(static_cast<Index>(near_nodes_.size()), [&](Index k) {
+    const Index n = near_nodes_[static_cast<std::size_t>(k)];
+    NodeGradients& sum = gradients_[static_cast<std::size_t>(n)] = {};
+    for (const Index c : mesh.cells_of_node()[n]) {
+      Real first = 0, second = 0;
+      Vec<D> of_first = Vec<D>::Zero(), of_second = Vec<D>::Zero();
+      for (std::size_t a = 0; a <= D; ++a) {
+        const auto m = static_cast<std::size_t>(mesh.cell(c)[a]);
+        first += fill_1[m], second += fill_2[m];
+        of_first += fill_1[m] * mesh.gradients(c)[a];
+        of_second += fill_2[m] * mesh.gradients(c)[a];
+      }
+      const Real weight = mesh.volume(c) * first * second;
+      sum.weight += weight;
+      sum.first += weight * of_first, sum.second += weight * of_second;
+    }
+  });
+  for (ContactNode<D>& at : nodes_) {
+    if (at.law != static_cast<Index>(l))
+      continue;
+    NodeGradients sum;
+    for (const Index n : mesh.ring_of_node()[at.node]) {
+      const NodeGradients& of_node = gradients_[static_cast<std::size_t>(n)];
+      sum.weight += of_node.weight;
+      sum.first += of_node.first, sum.second += of_node.second;
+    }
+    if (!(sum.weight > 0))
+      continue;
+    const Vec<D> first = sum.first / sum.weight, second = sum.second / sum.weight;
+    const Real of_first = std::pow(first.norm(), power_of_steepness), of_second = std::pow(second.norm(), power_of_steepness);
+    const Vec<D> mean = (of_second * second - of_first * first) / std::max(of_first + of_second, std::numeric_limits<Real>::min());
+    const Real size = mean.norm();
+    if (size * mesh.node_size(at.node) > least_change)
+      at.normal = mean / size;
+    normal_[l][static_cast<std::size_t>(at.node)] = at.normal;
+  }
+}
+
+template <int D>
+void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
+{
+  for (std::size_t l = 0; l < reach_.size(); ++l) {
+    const ContactLaw& law = contacts_.laws[l];
+    parallel_for_uneven(static_cast<Index>(n_candidates_), [&](Index k) {
+      const Index n = near_nodes_[static_cast<std::size_t>(k)];
+      Reach& reach = reach_[l][static_cast<std::size_t>(n)] = {-beyond, beyond};
+      const Vec<D> normal = normal_[l][static_cast<std::size_t>(n)];
+      if (candidate_[l][static_cast<std::size_t>(n)] == 0 || normal.isZero(0))
+        return;
+      thread_local std::vector<Index> cells;
+      cells.clear();
+      for (const Index m : mesh.ring_of_node()[n])
+        cells.insert(cells.end(), mesh.cells_of_node()[m].begin(), mesh.cells_of_node()[m].end());
+      std::ranges::sort(cells);
+      cells.erase(std::ranges::unique(cells).begin(), cells.end());
+      const auto place = [&](const StripColumns<D>& columns, std::size_t p) { return normal.dot(columns.x.of(p) - mesh.node(n)); };
+      const auto half = [&](const StripColumns<D>& columns, std::size_t p) {
+        return half_width<D>(columns.F.of(p), columns.volume0.of(p), normal);
+      };
+      for (const Index c : cells) {
+        for_each_particle_of(strips, static_cast<std::size_t>(law.first), c, [&](const StripColumns<D>& columns, std::size_t p) {
+          reach.first = std::max(reach.first, place(columns, p) + half(columns, p));
+        });
+        for_each_particle_of(strips, static_cast<std::size_t>(law.second), c, [&](const StripColumns<D>& columns, std::size_t p) {
+          reach.second = std::min(reach.second, place(columns, p) - half(columns, p));
+        });
+      }
+    });
+    back_.send(reach_[l], Reached{});
+    back_.take(reach_of_others_, Reached{});
+    for (std::size_t k = 0; k < staged_.size(); ++k) {
+      Reach& reach = reach_[l][static_cast<std::size_t>(staged_[k])];
+      reach.first = std::max(reach.first, reach_of_others_[k].first);
+      reach.second = std::min(reach.second, reach_of_others_[k].second);
+    }
+  }
+  for (ContactNode<D>& at : nodes_) {
+    const Reach& reach = reach_[static_cast<std::size_t>(at.law)][static_cast<std::size_t>(at.node)];
+    at.touches = reach.first >= reach.second;
+  }
+}
+
+template <int D>
+void ContactNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips,
+                           std::span<const VelocityField<D>> fields)
+{
+  if (!any())
+    return;
+  find_candidates(own, fields);
+  mark_cells(mesh);
+  sum_volumes(mesh, strips);
+  find_normals(mesh);
+  find_reach(mesh, strips);
+}
+
+template <int D>
+void ContactNodes<D>::act(const Kick& kick, BoundaryConditions<D>& conditions, std::span<VelocityField<D>> fields,
+                          ExactSums<BoundaryWork>& work)
+{
+  if (!any())
+    return;
+  for (int sweep = 0; sweep < (contacts_.laws.size() > 1 ? sweeps_over_laws : 1); ++sweep)
+    for (ContactNode<D>& at : nodes_) {
+      if (!at.touches)
+        continue;
+      const ContactLaw& law = contacts_.laws[static_cast<std::size_t>(at.law)];
+      const auto n = static_cast<std::size_t>(at.node);
+      const auto side = [&](Index field) {
+        const Nodes<D>& nodes = fields[static_cast<std::size_t>(field)].nodes;
+        return Side<D>{conditions, at.node, kick.to, nodes.sum[n].mass, nodes.motion[n].v};
+      };
+      const auto limit = [&](Real pressure) { return law.friction * pressure + law.cohesion * at.area * kick.length(); };
+      const Exchange<D> by = exchange(side(law.first), side(law.second), at.normal, limit);
+      if (by.pressed.isZero(0))
+        continue;
+      at.pressed += by.pressed, at.rubbed += by.rubbed, at.sticks = by.sticks;
+      const auto push = [&](Index field, const Vec<D>& impulse) {
+        Nodes<D>& nodes = fields[static_cast<std::size_t>(field)].nodes;
+        const Vec<D> change = impulse / nodes.sum[n].mass;
+        nodes.motion[n].v += change, nodes.motion[n].change += change;
+        conditions.apply(at.node, kick, nodes.sum[n].mass, nodes.motion[n], work);
+      };
+      const Vec<D> impulse = by.pressed + by.rubbed;
+      push(law.first, impulse);
+      push(law.second, -impulse);
+    }
+}
+
+template <int D>
+void ContactNodes<D>::hold(Real time, const BoundaryConditions<D>& conditions, std::span<VelocityField<D>> fields) const
+{
+  for (const ContactNode<D>& at : nodes_) {
+    if (at.pressed.isZero(0))
+      continue;
+    const ContactLaw& law = contacts_.laws[static_cast<std::size_t>(at.law)];
+    const auto n = static_cast<std::size_t>(at.node);
+    Nodes<D>&first = fields[static_cast<std::size_t>(law.first)].nodes, &second = fields[static_cast<std::size_t>(law.second)].nodes;
+    NodeMotion<D>&v_first = first.remapped[n], &v_second = second.remapped[n];
+    if (!at.sticks && !at.rubbed.isZero(0)) {
+      v_first.v = v_first.change, v_second.v = v_second.change;
+      continue;
+    }
+    const auto side = [&](const Nodes<D>& nodes) { return Side<D>{conditions, at.node, time, nodes.sum[n].mass, nodes.remapped[n].v}; };
+    const auto all_or_nothing = [&](Real) { return at.sticks ? beyond : 0; };
+    const Exchange<D> by = exchange(side(first), side(second), at.normal, all_or_nothing);
+    const Vec<D> impulse = by.pressed + by.rubbed;
+    v_first.v = conditions.held(at.node, time, v_first.v + impulse / first.sum[n].mass);
+    v_second.v = conditions.held(at.node, time, v_second.v - impulse / second.sum[n].mass);
+  }
+}
+
+template <int D>
+void ContactNodes<D>::add_sums(const Mesh<D>& mesh, std::span<const VelocityField<D>> fields,
+                               std::span<ExactSums<ContactSums<D>>> sums) const
+{
+  for (const ContactNode<D>& at : nodes_) {
+    if (at.pressed.isZero(0))
+      continue;
+    const ContactLaw& law = contacts_.laws[static_cast<std::size_t>(at.law)];
+    const auto mean_velocity = [&](Index field) -> Vec<D> {
+      const NodeMotion<D>& motion = fields[static_cast<std::size_t>(field)].nodes.motion[static_cast<std::size_t>(at.node)];
+      return motion.v - 0.5 * motion.change;
+    };
+    const Vec<D> relative = mean_velocity(law.first) - mean_velocity(law.second), impulse = at.pressed + at.rubbed;
+    sums[static_cast<std::size_t>(at.law)].add(
+        {impulse, moment<D>(mesh.node(at.node), impulse), at.pressed.dot(relative), at.rubbed.dot(relative)});
+  }
+}
+
+template class ContactNodes<2>;
+template class ContactNodes<3>;
+
+}  // namespace talus

@@ -1,0 +1,146 @@
+// Two blocks with velocity fields of their own: where they touch, what they exchange, and what they do not.
+#include <gtest/gtest.h>
+
+#include "tests/solver/blocks_of_particles.hpp"
+
+namespace talus::testing::contact_nodes_test {
+namespace {
+
+template <int N, template <int> class K>
+struct Kind {
+  static constexpr int D = N;
+  using Kernel = K<N>;
+};
+template <class S>
+class ContactIn : public ::testing::Test {};
+using Kinds = ::testing::Types<Kind<2, Projected>, Kind<2, Umls>, Kind<2, Linear>, Kind<3, Projected>, Kind<3, Linear>>;
+TYPED_TEST_SUITE(ContactIn, Kinds);
+
+/// Two blocks, one above the other with so many empty layers of cells between them; each moves with a velocity of its own.
+template <class S>
+Model<S::D> blocks(const Vec<S::D>& v_low, const Vec<S::D>& v_high, const ContactLaw& law, int empty_layers = 0)
+{
+  constexpr int D = S::D;
+  constexpr Index n = D == 2 ? 12 : 8;
+  auto m = make_model<typename S::Kernel>(unit_box<D>(n, 0));
+  m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
+  const Real h = 1.0 / n, middle = 0.5, top = middle + empty_layers * h;
+  const auto within = [&](const Vec<D>& x) { return (x.template head<D - 1>().array() - 0.5).abs().maxCoeff() < 0.3; };
+  add_body<D>(
+      m, "low", rubber(1e4, 0.3, 1000), 4, [&](const Vec<D>& x) { return within(x) && x[D - 1] > 0.2 && x[D - 1] < middle; },
+      [&](const Vec<D>&) { return v_low; });
+  add_body<D>(
+      m, "high", rubber(1e4, 0.3, 2000), 4, [&](const Vec<D>& x) { return within(x) && x[D - 1] > top && x[D - 1] < top + 0.3; },
+      [&](const Vec<D>&) { return v_high; });
+  m.problem.contacts = {.field_of_body = {0, 1}, .n_fields = 2, .laws = {law}};
+  m.problem.contacts.laws[0].second = 1;
+  make_ready(m);
+  return m;
+}
+
+ContactLaw rubbing(Real friction, Real cohesion = 0)
+{
+  ContactLaw law;
+  law.friction = friction, law.cohesion = cohesion;
+  return law;
+}
+
+template <int D>
+Vec<D> along(int axis, Real size)
+{
+  return size * Vec<D>::Unit(axis);
+}
+
+TYPED_TEST(ContactIn, BlocksThatMeetExchangeOppositeImpulses)
+{
+  constexpr int D = TypeParam::D;
+  auto m = blocks<TypeParam>(along<D>(D - 1, 1), along<D>(D - 1, -1), rubbing(0));
+  const Vec<D> before = totals(m).momentum;
+  for (int step = 0; step < 5; ++step)
+    advance(m, 1e-5);
+  EXPECT_LT((totals(m).momentum - before).norm(), 1e-12 * totals(m).mass);
+  EXPECT_LT(m.state.contacts[0].impulse[D - 1], 0);
+  EXPECT_LT(m.state.contacts[0].pressure, 0);
+  EXPECT_NEAR(m.state.contacts[0].impulse[0], 0, 0.2 * std::abs(m.state.contacts[0].impulse[D - 1]));
+}
+
+TYPED_TEST(ContactIn, NormalsPointFromTheFirstBodyToTheSecond)
+{
+  constexpr int D = TypeParam::D;
+  auto m = blocks<TypeParam>(along<D>(D - 1, 1), along<D>(D - 1, -1), rubbing(0));
+  make_step(m, 1e-6);
+  int inside = 0;
+  for (const ContactNode<D>& at : m.work.contact.nodes()) {
+    const Vec<D>& x = m.problem.mesh.node(at.node);
+    if (std::abs(x[D - 1] - 0.5) > 0.01 || (x.template head<D - 1>().array() - 0.5).abs().maxCoeff() > 0.1)
+      continue;
+    EXPECT_TRUE(at.touches);
+    EXPECT_GT(at.normal[D - 1], 0.99) << at.normal.transpose();
+    EXPECT_NEAR(at.normal.norm(), 1, 1e-12);
+    ++inside;
+  }
+  EXPECT_GE(inside, 1);
+  end_sweeps(m);
+}
+
+TYPED_TEST(ContactIn, BlocksThatPartDoNotAttractEachOther)
+{
+  constexpr int D = TypeParam::D;
+  auto m = blocks<TypeParam>(along<D>(D - 1, -1), along<D>(D - 1, 1), rubbing(0.5, 1e3));
+  for (int step = 0; step < 5; ++step)
+    advance(m, 1e-5);
+  EXPECT_EQ(m.state.contacts[0].impulse, (Vec<D>(Vec<D>::Zero())));
+  for (std::size_t p = 0; p < m.state.particles.id.size(); ++p)
+    EXPECT_NEAR(std::abs(m.state.particles.v[p][D - 1]), 1, 1e-9);
+}
+
+// A cell between them: both have mass at the nodes between, with kernels wider than a cell, and feel nothing.
+TYPED_TEST(ContactIn, BlocksDoNotFeelEachOtherAcrossAGap)
+{
+  constexpr int D = TypeParam::D;
+  auto m = blocks<TypeParam>(along<D>(D - 1, 1), along<D>(D - 1, -1), rubbing(0), 1);
+  make_step(m, 1e-6);
+  EXPECT_EQ(m.work.contact.nodes().empty(), (std::is_same_v<typename TypeParam::Kernel, Linear<D>>));
+  for (const ContactNode<D>& at : m.work.contact.nodes())
+    EXPECT_FALSE(at.touches);
+  end_sweeps(m);
+  EXPECT_EQ(m.state.contacts[0].impulse, (Vec<D>(Vec<D>::Zero())));
+}
+
+TYPED_TEST(ContactIn, FrictionIsItsCoefficientTimesThePressure)
+{
+  constexpr int D = TypeParam::D;
+  auto m = blocks<TypeParam>(along<D>(D - 1, 0.1) + along<D>(0, 1), along<D>(D - 1, -0.1), rubbing(0.25));
+  make_step(m, 1e-6);
+  Real pressed = 0;
+  for (const ContactNode<D>& at : m.work.contact.nodes()) {
+    EXPECT_NEAR(at.rubbed.norm(), at.sticks ? at.rubbed.norm() : 0.25 * at.pressed.norm(), 1e-12 * at.pressed.norm());
+    EXPECT_LE(at.rubbed.norm(), 0.25 * at.pressed.norm() * (1 + 1e-12));
+    EXPECT_LE(at.rubbed[0], 1e-15);
+    pressed += at.pressed.norm();
+  }
+  EXPECT_GT(pressed, 0);
+  end_sweeps(m);
+  EXPECT_LT(m.state.contacts[0].friction, 0);
+}
+
+TYPED_TEST(ContactIn, RoughBlocksStick)
+{
+  constexpr int D = TypeParam::D;
+  auto m = blocks<TypeParam>(along<D>(D - 1, 1) + along<D>(0, 0.1), along<D>(D - 1, -1), rubbing(10));
+  make_step(m, 1e-6);
+  int sticking = 0;
+  for (const ContactNode<D>& at : m.work.contact.nodes()) {
+    if (at.pressed.isZero(0))
+      continue;
+    EXPECT_TRUE(at.sticks);
+    const auto n = static_cast<std::size_t>(at.node);
+    EXPECT_LT((m.work.fields[0].nodes.motion[n].v - m.work.fields[1].nodes.motion[n].v).norm(), 1e-12);
+    ++sticking;
+  }
+  EXPECT_GT(sticking, 3);
+  end_sweeps(m);
+}
+
+}  // namespace
+}  // namespace talus::testing::contact_nodes_test
