@@ -316,18 +316,19 @@ void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& s
         cells.insert(cells.end(), mesh.cells_of_node()[m].begin(), mesh.cells_of_node()[m].end());
       std::ranges::sort(cells);
       cells.erase(std::ranges::unique(cells).begin(), cells.end());
-      const auto place = [&](const StripColumns<D>& columns, std::size_t p) { return normal.dot(columns.x.of(p) - mesh.node(n)); };
-      const auto half = [&](const StripColumns<D>& columns, std::size_t p) {
-        return half_width<D>(columns.F.of(p), columns.volume0.of(p), normal);
+      // Calls reach_of(distance along the normal, half width) for the particles beside the node.
+      const auto for_each_beside = [&](Index field, auto&& reach_of) {
+        const Real beside = mesh.node_size(n) / 2;
+        for (const Index c : cells)
+          for_each_particle_of(strips, static_cast<std::size_t>(field), c, [&](const StripColumns<D>& columns, std::size_t p) {
+            const Vec<D> arm = columns.x.of(p) - mesh.node(n);
+            const Real along = normal.dot(arm);
+            if (arm.squaredNorm() - along * along <= beside * beside)
+              reach_of(along, half_width<D>(columns.F.of(p), columns.volume0.of(p), normal));
+          });
       };
-      for (const Index c : cells) {
-        for_each_particle_of(strips, static_cast<std::size_t>(law.first), c, [&](const StripColumns<D>& columns, std::size_t p) {
-          reach.first = std::max(reach.first, place(columns, p) + half(columns, p));
-        });
-        for_each_particle_of(strips, static_cast<std::size_t>(law.second), c, [&](const StripColumns<D>& columns, std::size_t p) {
-          reach.second = std::min(reach.second, place(columns, p) - half(columns, p));
-        });
-      }
+      for_each_beside(law.first, [&](Real along, Real half) { reach.first = std::max(reach.first, along + half); });
+      for_each_beside(law.second, [&](Real along, Real half) { reach.second = std::min(reach.second, along - half); });
     });
     back_.send(reach_[l], Reached{});
     back_.take(reach_of_others_, Reached{});

@@ -74,7 +74,7 @@ struct SmallRun {
   Problem<2> problem{Mesh<2>(box<2>({0, 0}, {1, 1}, {2, 2}))};
   State<2> state{};
   CellOrder order;
-  Nodes<2> nodes;
+  std::vector<VelocityField<2>> fields = std::vector<VelocityField<2>>(1);
   OutputSpec outputs = small_outputs();
   std::vector<Stage> stages = small_stages();
   Recorder<2> recorder{run_folder(), outputs, stages, true, ""};
@@ -106,7 +106,7 @@ struct SmallRun {
     state.boundary.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, held);
   }
   void sort() { sort_by_cell(state.particles.cell, state.particles.id, state.bodies, problem.mesh.n_cells(), order); }
-  RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }
+  RunView<2> view() const { return {problem, state, order, fields, "the only", 0, 0}; }
 };
 
 /// As a run goes on.

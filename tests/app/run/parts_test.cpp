@@ -143,7 +143,7 @@ struct RowOfFour {
   Problem<2> problem{Mesh<2>(box<2>(Vec<2>::Zero(), Vec<2>::Ones(), {1, 1}))};
   State<2> state;
   CellOrder order;
-  Nodes<2> nodes;
+  std::vector<VelocityField<2>> fields = std::vector<VelocityField<2>>(1);
 
   RowOfFour()
   {
@@ -157,7 +157,7 @@ struct RowOfFour {
       state.materials.push_back(make_material(law_example<NeoHookean>(), body.begin, body.end, body.name));
     order.row = {0, 1, 2, 3}, order.first = {0, 2, 4}, order.blocks = 1;
   }
-  RunView<2> view() const { return {problem, state, order, nodes, "the only", 0, 0}; }
+  RunView<2> view() const { return {problem, state, order, fields, "the only", 0, 0}; }
 };
 
 TEST(Front, IsTheCoordinateThatAShareOfTheMassDoesNotPass)
