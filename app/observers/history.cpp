@@ -160,7 +160,7 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
   for (const BoundaryCondition<D>& wall : start.state.boundary.conditions())
     add(reaction_columns(), wall.name);
   for (const ContactLaw& contact : start.problem.contacts.laws)
-    add(contact_columns(), contact.name);
+    add(contact_columns(), contact.name());
   for (const PointSpec& point : spec.points)
     add(point_columns(), point.name);
   for (const FrontSpec& one : spec.fronts)

@@ -359,6 +359,9 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
   cost.shared_nodes = find_shared_nodes<D>(whole, m.state.particles, m.state.bodies, [&m](Index c, std::vector<Index>& nodes) {
     m.transfer->add_nodes_of_cell(m.problem.mesh, c, nodes);
   });
+  std::erase_if(cost.shared_nodes, [&m](const SharedNodes& pair) {
+    return m.problem.contacts.field_of(pair.first) != m.problem.contacts.field_of(pair.second);
+  });
   cost.nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own);
   cost.files = file_sizes(view_of(m, first_stage), scene.outputs);
   return cost;

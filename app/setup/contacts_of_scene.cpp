@@ -6,6 +6,8 @@
 #include <map>
 #include <numeric>
 
+#include "solver/particles/staged_bodies.hpp"
+
 namespace talus {
 
 namespace {
@@ -77,12 +79,14 @@ Contacts contacts_of(const Scene& scene, const std::vector<Body>& bodies, SceneE
     for (const auto& [first_b, b] : field) {
       if (a >= b)
         continue;
-      ContactLaw law{.first = a, .second = b, .name = bodies[first_a].name + "_" + bodies[first_b].name};
+      ContactLaw law;
+      law.first = a, law.second = b;
+      law.first_body = bodies[first_a].name, law.second_body = bodies[first_b].name;
       if (const auto found = given.find({a, b}); found != given.end()) {
         const ContactSpec& contact = *found->second;
         law.friction = contact.friction, law.cohesion = contact.cohesion;
         const bool turned = contacts.field_of_body[number(contact.between[0])] != a;
-        law.name = contact.between[turned ? 1 : 0] + "_" + contact.between[turned ? 0 : 1];
+        law.first_body = contact.between[turned ? 1 : 0], law.second_body = contact.between[turned ? 0 : 1];
       } else {
         warnings.push_back(
             fmt::format("{}: no contact says what acts between \"{}\" and \"{}\": where they touch, they slide without friction",
@@ -94,5 +98,39 @@ Contacts contacts_of(const Scene& scene, const std::vector<Body>& bodies, SceneE
     contacts.field_of_body.clear();
   return contacts;
 }
+
+std::string describe(const ContactLaw& law)
+{
+  std::string text = fmt::format("contact of \"{}\" and \"{}\": friction {:.6g}", law.first_body, law.second_body, law.friction);
+  if (law.cohesion > 0)
+    text += fmt::format(", cohesion {:.6g} Pa", law.cohesion);
+  return text;
+}
+
+template <int D>
+void check_overlaps(const Scene& scene, const Mesh<D>& mesh, const Setup<D>& setup, Communicator& ranks, SceneErrorCollector& errors)
+{
+  const State<D>& state = setup.state;
+  CellOrder order;
+  for (const ContactSpec& contact : scene.contacts) {
+    const auto at_start = [&](const std::string& body) { return presence_of(body, scene.stages).from == 0; };
+    if (contact.tied || !std::ranges::all_of(contact.between, at_start))
+      continue;
+    if (order.row.empty())
+      sort_by_cell(state.particles.cell, state.particles.id, state.bodies, mesh.n_cells(), order);
+    const auto volume = [&](const std::string& name) {
+      return volume_in_cells(mesh, state.particles, order, [&](Index b) { return state.bodies[static_cast<std::size_t>(b)].name == name; });
+    };
+    const auto first = volume(contact.between[0]), second = volume(contact.between[1]);
+    if (const Overlap<D> taken = overlap<D>(mesh, first, second, ranks); taken.share() > most_overlap)
+      errors.add(contact.where, "between",
+                 fmt::format("\"{}\" overlaps \"{}\" at the start: {}; move one of them, or cut it out of the other by a shape of type "
+                             "difference",
+                             contact.between[1], contact.between[0], describe(taken)));
+  }
+}
+
+template void check_overlaps(const Scene&, const Mesh<2>&, const Setup<2>&, Communicator&, SceneErrorCollector&);
+template void check_overlaps(const Scene&, const Mesh<3>&, const Setup<3>&, Communicator&, SceneErrorCollector&);
 
 }  // namespace talus

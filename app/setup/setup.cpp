@@ -248,6 +248,8 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   add_boundaries(scene, mesh, at_start, ranks, first_stage, true, errors, setup, setup.state.boundary);
   add_loads(scene, mesh, has_particles, at_start, ranks, errors, setup);
   setup.conditions.contacts = contacts_of(scene, setup.state.bodies, errors, setup.warnings);
+  for (const ContactLaw& law : setup.conditions.contacts.laws)
+    setup.notes.push_back(describe(law));
   warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
                       setup.warnings);
   set_stages(scene, errors, setup);
@@ -259,6 +261,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
     warn_if_dry(mesh, ranks, setup);
   check_laws(scene, errors);
   check_room(scene, mesh, setup, ranks, errors);
+  check_overlaps(scene, mesh, setup, ranks, errors);
   check_outputs<D>(scene, mesh, setup.conditions.loads.gravity.acceleration, errors);
   ranks.agree(Communicator::caught([&] { errors.throw_if_any(); }));
 

@@ -9,10 +9,11 @@ namespace talus {
 
 /// What acts between two velocity fields.  Bodies that touch do not penetrate each other and do not attract each other.
 struct ContactLaw {
-  Index first = 0, second = 0;  ///< numbers of the fields, ascending
-  Real friction = 0;            ///< Coulomb's coefficient [-]
-  Real cohesion = 0;            ///< shear stress that the contact carries without pressure [Pa]
-  std::string name;             ///< in outputs
+  Index first = 0, second = 0;                                         ///< numbers of the fields, ascending
+  Real friction = 0;                                                   ///< Coulomb's coefficient [-]
+  Real cohesion = 0;                                                   ///< shear stress that the contact carries without pressure [Pa]
+  std::string first_body, second_body;                                 ///< that stand for the fields
+  std::string name() const { return first_body + "_" + second_body; }  ///< in outputs
 };
 
 /// Bodies share one velocity field unless a contact puts them apart.

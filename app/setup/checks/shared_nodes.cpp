@@ -166,6 +166,14 @@ bool meet(const Scene& scene, const std::string& a, const std::string& b)
   return one.from < other.until && other.from < one.until;
 }
 
+/// Whether they have velocities of their own, so that cells may be cut where they touch.
+bool are_in_contact(const Scene& scene, const std::string& a, const std::string& b)
+{
+  return std::ranges::any_of(scene.contacts, [&](const ContactSpec& contact) {
+    return !contact.tied && (contact.between == std::vector{a, b} || contact.between == std::vector{b, a});
+  });
+}
+
 }  // namespace
 
 void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, std::span<const Index> cell, Index n_cells,
@@ -186,7 +194,8 @@ void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, s
     }
     ranks.sum(shared);  // no cell is filled by two ranks
     for (std::size_t other = 0; other < b; ++other)
-      if (shared[other] > 0 && meet(scene, bodies[other].name, bodies[b].name) && ++pairs <= most)
+      if (shared[other] > 0 && meet(scene, bodies[other].name, bodies[b].name) &&
+          !are_in_contact(scene, bodies[other].name, bodies[b].name) && ++pairs <= most)
         warnings.push_back(fmt::format("{}: bodies \"{}\" and \"{}\" share {} cell{} at the start{}", to_string(bodies[b].where),
                                        bodies[other].name, bodies[b].name, shared[other], shared[other] == 1 ? "" : "s",
                                        material_of_body(scene, bodies[other].name) == material_of_body(scene, bodies[b].name)

@@ -37,7 +37,7 @@ std::vector<std::string> warnings_of(const std::vector<SharedNodes>& pairs, cons
 /// One line about all pairs that touch, or nothing.
 std::string contacts_in_words(const std::vector<SharedNodes>& pairs, const std::vector<Body>& bodies);
 
-/// Cells that hold particles of two bodies at once: material there is counted twice, unless the shapes only touch.  A line for each pair, of ten at
+/// Cells that hold particles of two bodies at once: material there is counted twice, unless the shapes only touch.  Bodies in contact are left out (check_overlaps()).  A line for each pair, of ten at
 /// most and then their number: a list of thousands is of no use.  cell: of each particle; every rank has to ask.
 void warn_of_shared_cells(const Scene& scene, const std::vector<Body>& bodies, std::span<const Index> cell, Index n_cells,
                           Communicator& ranks, std::vector<std::string>& warnings);
