@@ -35,6 +35,7 @@ CASES = [
     "rigid_motion",
     "sliding_block",
     "colliding_disks",
+    "contact",
     "cantilever",
     "slope_failure_2d",
     "slope_failure_3d",

@@ -8,6 +8,8 @@ namespace {
 
 /// Where one body has a corner and the other is flat, its filling changes less, and the flat one says which way the surface faces.
 constexpr int power_of_steepness = 6;
+/// Share of a neighbour in the surface at a node, relative to the node itself: impulses act on all nodes that rows of operators reach.
+constexpr Real weight_of_neighbour = 0.5;
 /// A filling that changes by less than this over the size of a node says nothing about the direction of a surface.
 constexpr Real least_change = 1e-3;
 /// Sweeps over the contacts of nodes at which more than two fields may touch.
@@ -40,6 +42,16 @@ std::size_t local_number(const Mesh<D>& mesh, Index cell, Index node) noexcept
 {
   const auto& nodes = mesh.cell(cell);
   return static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
+}
+
+/// The surface between two fields in a cell, per volume [1/m], from the gradients of their fillings: where they meet, one ends as the other
+/// begins.
+template <int D>
+Real surface_in_cell(const Vec<D>& first, const Vec<D>& second)
+{
+  const Vec<D> difference = second - first;
+  const Real size = difference.norm();
+  return size > 0 ? std::max(Real{0}, std::min(second.dot(difference), -first.dot(difference)) / size) : 0;
 }
 
 /// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
@@ -276,7 +288,13 @@ void ContactNodes<D>::find_normals_of(const Mesh<D>& mesh, std::size_t l)
       const Real weight = mesh.volume(c) * first * second;
       sum.weight += weight;
       sum.first += weight * of_first, sum.second += weight * of_second;
+      sum.area += mesh.volume(c) / (D + 1) * surface_in_cell<D>(of_first, of_second);
     }
+    Real weights = 0;  // the candidates around the node share its surface
+    for (const Index m : mesh.ring_of_node()[n])
+      if (candidate_[l][static_cast<std::size_t>(m)] != 0)
+        weights += m == n ? 1 : weight_of_neighbour;
+    sum.area = weights > 0 ? sum.area / weights : 0;
   });
   for (ContactNode<D>& at : nodes_) {
     if (at.law != static_cast<Index>(l))
@@ -284,9 +302,11 @@ void ContactNodes<D>::find_normals_of(const Mesh<D>& mesh, std::size_t l)
     NodeGradients sum;
     for (const Index n : mesh.ring_of_node()[at.node]) {
       const NodeGradients& of_node = gradients_[static_cast<std::size_t>(n)];
+      sum.area += (n == at.node ? 1 : weight_of_neighbour) * of_node.area;
       sum.weight += of_node.weight;
       sum.first += of_node.first, sum.second += of_node.second;
     }
+    at.area = sum.area;
     if (!(sum.weight > 0))
       continue;
     const Vec<D> first = sum.first / sum.weight, second = sum.second / sum.weight;

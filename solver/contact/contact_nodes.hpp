@@ -73,6 +73,7 @@ class ContactNodes {
   /// Sums over the cells around a node, weighted by volume and the fillings of both fields: gradients of these fillings.
   struct NodeGradients {
     Real weight = 0;
+    Real area = 0;  ///< of the surface between the fields at the node, as a share of each candidate around [m^(D-1)]
     Vec<D> first = Vec<D>::Zero(), second = Vec<D>::Zero();
   };
   /// How far the particles of both fields reach along a normal, from the node [m].

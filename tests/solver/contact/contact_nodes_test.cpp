@@ -25,7 +25,7 @@ Model<S::D> blocks(const Vec<S::D>& v_low, const Vec<S::D>& v_high, const Contac
   auto m = make_model<typename S::Kernel>(unit_box<D>(n, 0));
   m.problem.transfer = {.scheme = Scheme::flip, .musl = false, .pic_damping_time = {}, .pic_damping_crossings = {}};
   const Real h = 1.0 / n, middle = 0.5, top = middle + empty_layers * h;
-  const auto within = [&](const Vec<D>& x) { return (x.template head<D - 1>().array() - 0.5).abs().maxCoeff() < 0.3; };
+  const auto within = [&](const Vec<D>& x) { return (x.template head<D - 1>().array() - 0.5).abs().maxCoeff() < 0.25; };
   add_body<D>(
       m, "low", rubber(1e4, 0.3, 1000), 4, [&](const Vec<D>& x) { return within(x) && x[D - 1] > 0.2 && x[D - 1] < middle; },
       [&](const Vec<D>&) { return v_low; });
@@ -122,6 +122,27 @@ TYPED_TEST(ContactIn, FrictionIsItsCoefficientTimesThePressure)
   EXPECT_GT(pressed, 0);
   end_sweeps(m);
   EXPECT_LT(m.state.contacts[0].friction, 0);
+}
+
+// Without friction, cohesion carries its part of the surface of each node, and these are the surface between the blocks.
+TYPED_TEST(ContactIn, CohesionActsOnTheSurfaceBetweenTheBlocks)
+{
+  constexpr int D = TypeParam::D;
+  constexpr Real cohesion = 10, dt = 1e-6;
+  auto m = blocks<TypeParam>(along<D>(D - 1, 0.1) + along<D>(0, 1), along<D>(D - 1, -0.1), rubbing(0, cohesion));
+  constexpr Real cell = D == 2 ? 1.0 / 12 : 1.0 / 8;
+  const Real face = std::pow(0.5, D - 1), without_rim = std::pow(0.5 - cell / 2, D - 1);  // a quarter of a cell on each side
+  make_step(m, dt);
+  Real area = 0, rubbed = 0;
+  for (const ContactNode<D>& at : m.work.contact.nodes()) {
+    area += at.area;
+    rubbed += at.rubbed.norm();
+    EXPECT_LE(at.rubbed.norm(), cohesion * at.area * dt * (1 + 1e-12));
+  }
+  EXPECT_GT(area, without_rim);
+  EXPECT_LT(area, face * 1.02);
+  EXPECT_GT(rubbed, 0.3 * cohesion * face * dt / 2);
+  end_sweeps(m);
 }
 
 TYPED_TEST(ContactIn, RoughBlocksStick)

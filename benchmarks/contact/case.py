@@ -1,0 +1,80 @@
+"""Bodies with velocity fields of their own: a disk that rolls or slides down an inclined body, and two disks that collide."""
+import numpy as np
+
+import lab as tools
+
+CASE = "contact"
+INCLINES = {"rolls, friction 0.3, 30 degrees": (0.3, 30), "slides, friction 0.1, 30 degrees": (0.1, 30), "slides, friction 0.3, 60 degrees": (0.3, 60)}
+SIZES = {0.1: "quick", 0.05: "quick", 0.025: "full"}  # 5, 10 and 20 cells over the radius
+PLACES = {0.0: "quick", -0.03: "full", -0.06: "full"}  # m, left end of the room: gmsh then makes other meshes
+DISKS = {0.05: "quick", 0.025: "quick", 0.0125: "full"}
+
+
+def acceleration(friction, degrees, data):
+    """Of a rigid disk down the plane [m/s^2]."""
+    angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
+    if np.tan(angle) < 3 * friction:
+        return gravity * np.sin(angle) / 1.5
+    return gravity * (np.sin(angle) - friction * np.cos(angle))
+
+
+def incline(lab, name, size, place, data):
+    """Starts a run down a plane."""
+    friction, degrees = INCLINES[name]
+    angle, gravity = np.radians(degrees), data["gravity [m/s^2]"]
+    settings = {"contacts[0].friction": friction, "loads[0].acceleration": [float(gravity * np.sin(angle)), float(-gravity * np.cos(angle))],
+                "mesh.size": size, "mesh.regions[0].shape.low": [place, -0.5]}
+    return lab.run(f"{CASE}/scene.yaml", tools.label(f"{name}_{size}_{-place}"), settings)
+
+
+def way(run, data):
+    """How far the middle of the disk has come [m]."""
+    return run.history["middle_x"] - data["start [m]"]
+
+
+def judge_incline(name, size, place, run, data):
+    """The way at the end, relative to that of a rigid disk."""
+    time = run.history["time"][-1]
+    exact = acceleration(*INCLINES[name], data) * time**2 / 2
+    where = "" if place == 0 else f", mesh from {place} m"
+    return tools.Result(CASE, f"way, {name}, cells of {size} m{where}", "m", float(way(run, data)[-1]), "within", data["slack"][str(size)], float(exact), data["source"], run)
+
+
+def judge_disks(size, run, data):
+    """When the disks touch, and the speed at which their centres part over that at which they met."""
+    history = run.history
+    force = np.hypot(history["contact_left_right_x"], history["contact_left_right_y"])
+    first = float(history["time"][np.argmax(force > 0.02 * force.max())])
+    speed = history["momentum_left_x"] + history["momentum_left_y"]
+    criterion = ("near", data["early [s]"]) if size < 0.02 else ("reported", None)
+    rebound = ("within", data["restitution slack"]) if size < 0.02 else ("reported", None)
+    return [tools.Result(CASE, f"disks touch, cells of {size} m", "s", first, *criterion, data["contact [s]"], data["contact source"], run),
+            tools.Result(CASE, f"restitution of the centres, cells of {size} m", "-", float(-speed[-1] / speed[0]), *rebound, data["restitution"],
+                         data["disk source"], run)]
+
+
+def draw(figure, runs, data):
+    """Ways over time: closed forms as lines, runs as marks."""
+    axis = figure.subplots()
+    for colour, name in enumerate(INCLINES):
+        time = runs[name, 0.05, 0.0].history["time"]
+        axis.plot(time, acceleration(*INCLINES[name], data) * time**2 / 2, color=f"C{colour}", label=f"closed form, {name}")
+        for mark, size in zip(("+", "o"), (0.1, 0.05)):
+            history = runs[name, size, 0.0]
+            axis.plot(history.history["time"][::10], way(history, data)[::10], mark, color=f"C{colour}", fillstyle="none",
+                      label=f"talus, cells of {size} m" if colour == 0 else None)
+    axis.set(xlabel="time [s]", ylabel="way of the middle of the disk [m]")
+    axis.legend(fontsize=6)
+
+
+def evaluate(lab):
+    """Results of disks on planes and of colliding disks."""
+    data = tools.reference(CASE)
+    runs = {(name, size, place): incline(lab, name, size, place, data) for name in INCLINES for size in SIZES for place in PLACES
+            if lab.level == "full" or {SIZES[size], PLACES[place]} == {"quick"}}
+    disks = {size: lab.run(f"{CASE}/scene_disks.yaml", f"disks_{size}", {"mesh.size": size}) for size, level in DISKS.items() if lab.level == "full" or level == "quick"}
+    results = [judge_incline(name, size, place, run, data) for (name, size, place), run in runs.items()]
+    for size, run in disks.items():
+        results += judge_disks(size, run, data)
+    lab.figure(CASE, "verification_contact", lambda figure: draw(figure, runs, data), caption="Way of a disk down an inclined body.")
+    return results
