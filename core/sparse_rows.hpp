@@ -8,10 +8,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/huge_page_allocator.hpp"
+
 namespace talus {
 
 /// An allocator of zeroed memory that constructs nothing in a new array: the system gives memory to a page when it is first written, so rows
-/// that are never written take none.  Rows begin at a multiple of their alignment.
+/// that are never written take none.  Large pages are requested for arrays that fill some, see LargePages.  Rows begin at a multiple of their
+/// alignment.
 template <class T>
 struct ZeroedPages {
   using value_type = T;
@@ -26,6 +29,8 @@ struct ZeroedPages {
     void* const memory = ::mmap(nullptr, n * sizeof(T), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (memory == MAP_FAILED)
       throw std::bad_alloc();
+    if (LargePages<std::byte>::fills_some(n * sizeof(T)))
+      ::madvise(memory, n * sizeof(T), MADV_HUGEPAGE);  // a request only: the result does not matter
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t n) noexcept { ::munmap(memory, n * sizeof(T)); }

@@ -37,7 +37,7 @@ Model<3> in_a_room(Index cells)
 
 TEST(UnusedNodes, TakeNoMemory)
 {
-  const Model<3> m = in_a_room(24);
+  const Model<3> m = in_a_room(20);
   const auto& rows = dynamic_cast<const TransferOf<3, Projected<3>>&>(*m.transfer).rows();
   const auto share = [](const auto& array) {
     const Pages pages = pages_of(array);
@@ -45,14 +45,14 @@ TEST(UnusedNodes, TakeNoMemory)
     EXPECT_GT(pages.resident, 0U) << "it is not used at all";
     return static_cast<Real>(pages.resident) / static_cast<Real>(pages.all);
   };
-  constexpr Real most = 0.15;  // the body fills 1/216 of the room, and uses nodes two rings around its blocks of cells
+  constexpr Real most = 0.2;  // the body fills 1/125 of the room, and uses nodes two rings around its blocks of cells
   EXPECT_LT(share(m.work.nodes.sum), most);
   EXPECT_LT(share(m.work.nodes.motion), most);
   EXPECT_LT(share(rows.projected.sum), most);
   EXPECT_LT(share(rows.projected.motion), most);
   EXPECT_LT(share(rows.remapped), most);
   EXPECT_LT(share(rows.gradient_of_remapped), most);
-  EXPECT_LT(share(rows.moments), most);
+  EXPECT_LT(share(rows.moments), 0.35) << "ten large pages, if the system grants them";
   EXPECT_LT(share(rows.blocks.row), most);
 }
 
