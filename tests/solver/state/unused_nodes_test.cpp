@@ -46,11 +46,11 @@ TEST(UnusedNodes, TakeNoMemory)
     return static_cast<Real>(pages.resident) / static_cast<Real>(pages.all);
   };
   constexpr Real most = 0.2;  // the body fills 1/125 of the room, and uses nodes two rings around its blocks of cells
-  EXPECT_LT(share(m.work.nodes.sum), most);
-  EXPECT_LT(share(m.work.nodes.motion), most);
+  EXPECT_LT(share(m.work.fields[0].nodes.sum), most);
+  EXPECT_LT(share(m.work.fields[0].nodes.motion), most);
   EXPECT_LT(share(rows.projected.sum), most);
   EXPECT_LT(share(rows.projected.motion), most);
-  EXPECT_LT(share(rows.remapped), most);
+  EXPECT_LT(share(m.work.fields[0].nodes.remapped), most);
   EXPECT_LT(share(rows.gradient_of_remapped), most);
   EXPECT_LT(share(rows.moments), 0.35) << "ten large pages, if the system grants them";
   EXPECT_LT(share(rows.blocks.row), most);
