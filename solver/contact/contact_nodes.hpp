@@ -110,7 +110,4 @@ class ContactNodes {
   std::vector<std::vector<Index>> bodies_;  ///< of each field
 };
 
-extern template class ContactNodes<2>;
-extern template class ContactNodes<3>;
-
 }  // namespace talus

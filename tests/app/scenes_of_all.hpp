@@ -211,8 +211,9 @@ inline std::vector<SceneCase> scenes_of_all()
   two_by_tpic.more = "transfer: {scheme: tpic}\n";
   all.push_back({"two_materials_tpic", two_by_tpic});
   SceneParts contacts = two_materials;
-  contacts.more = "contacts:\n  - {between: [low, high], friction: 0.3, cohesion: 100}\n  - {between: [right, low], friction: 0.1}\n"
-                  "  - {between: [high, right]}\n";
+  contacts.more =
+      "contacts:\n  - {between: [low, high], friction: 0.3, cohesion: 100}\n  - {between: [right, low], friction: 0.1}\n"
+      "  - {between: [high, right]}\n";
   all.push_back({"contacts", contacts});
   SceneParts contacts_tied = two_materials;
   contacts_tied.more = "kernel: umls\ncontacts:\n  - {between: [high, low], friction: 0.3}\n  - {between: [right, low], tied: true}\n";

@@ -1,0 +1,148 @@
+#include <limits>
+
+#include "solver/contact/contact_nodes.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Sweeps over the contacts of nodes at which more than two fields may touch.
+constexpr int sweeps_over_laws = 8;
+
+/// A mass at a node in an exchange of impulses.
+template <int D>
+struct Side {
+  const BoundaryConditions<D>& conditions;
+  Index node;
+  Real time;
+  Real mass;
+  Vec<D> v;
+  /// How much an impulse along a unit vector changes the velocity along it, per impulse [1/kg]; `push` is a change of velocity of that
+  /// direction and of the size expected.  Boundary conditions hold what they hold.
+  Real per_impulse(const Vec<D>& push) const
+  {
+    if (!conditions.binds(node))
+      return 1 / mass;
+    const Vec<D> change = conditions.held(node, time, v + push) - v;
+    return std::max(Real{0}, change.dot(push) / push.squaredNorm()) / mass;
+  }
+};
+
+/// What two masses exchange that move towards each other: impulses on the first one.
+template <int D>
+struct Exchange {
+  Vec<D> pressed = Vec<D>::Zero(), rubbed = Vec<D>::Zero();
+  bool sticks = false;
+};
+
+/// `limit(pressure impulse)` is the largest tangential impulse.
+template <int D, class Limit>
+Exchange<D> exchange(Side<D> first, Side<D> second, const Vec<D>& normal, Limit&& limit)
+{
+  Exchange<D> result;
+  const Real approach = (first.v - second.v).dot(normal);
+  if (!(approach > 0))
+    return result;
+  const Real response = first.per_impulse(-approach * normal) + second.per_impulse(approach * normal);
+  if (!(response > 0))
+    return result;
+  const Real pressure = approach / response;
+  result.pressed = -pressure * normal;
+  const Vec<D> relative = first.v - second.v, sliding = relative - approach * normal;
+  const Real speed = sliding.norm(), most = limit(pressure);
+  if (!(speed > 0) || !(most > 0)) {
+    result.sticks = most > 0;
+    return result;
+  }
+  const Real along = first.per_impulse(-sliding) + second.per_impulse(sliding);
+  const Real wanted = along > 0 ? speed / along : 0;
+  result.sticks = wanted <= most;
+  result.rubbed = -std::min(wanted, most) / speed * sliding;
+  return result;
+}
+
+}  // namespace
+
+template <int D>
+void ContactNodes<D>::act(const Kick& kick, BoundaryConditions<D>& conditions, std::span<VelocityField<D>> fields,
+                          ExactSums<BoundaryWork>& work)
+{
+  if (!any())
+    return;
+  for (int sweep = 0; sweep < (contacts_.laws.size() > 1 ? sweeps_over_laws : 1); ++sweep)
+    for (ContactNode<D>& at : nodes_) {
+      if (!at.touches)
+        continue;
+      const ContactLaw& law = contacts_.laws[static_cast<std::size_t>(at.law)];
+      const auto n = static_cast<std::size_t>(at.node);
+      const auto side = [&](Index field) {
+        const Nodes<D>& nodes = fields[static_cast<std::size_t>(field)].nodes;
+        return Side<D>{conditions, at.node, kick.to, nodes.sum[n].mass, nodes.motion[n].v};
+      };
+      const auto limit = [&](Real pressure) { return law.friction * pressure + law.cohesion * at.area * kick.length(); };
+      const Exchange<D> by = exchange(side(law.first), side(law.second), at.normal, limit);
+      if (by.pressed.isZero(0))
+        continue;
+      at.pressed += by.pressed, at.rubbed += by.rubbed, at.sticks = by.sticks;
+      const auto push = [&](Index field, const Vec<D>& impulse) {
+        Nodes<D>& nodes = fields[static_cast<std::size_t>(field)].nodes;
+        const Vec<D> change = impulse / nodes.sum[n].mass;
+        nodes.motion[n].v += change, nodes.motion[n].change += change;
+        conditions.apply(at.node, kick, nodes.sum[n].mass, nodes.motion[n], work);
+      };
+      const Vec<D> impulse = by.pressed + by.rubbed;
+      push(law.first, impulse);
+      push(law.second, -impulse);
+    }
+}
+
+template <int D>
+void ContactNodes<D>::hold(Real time, const BoundaryConditions<D>& conditions, std::span<VelocityField<D>> fields) const
+{
+  for (const ContactNode<D>& at : nodes_) {
+    if (at.pressed.isZero(0))
+      continue;
+    const ContactLaw& law = contacts_.laws[static_cast<std::size_t>(at.law)];
+    const auto n = static_cast<std::size_t>(at.node);
+    Nodes<D>&first = fields[static_cast<std::size_t>(law.first)].nodes, &second = fields[static_cast<std::size_t>(law.second)].nodes;
+    NodeMotion<D>&v_first = first.remapped[n], &v_second = second.remapped[n];
+    if (!at.sticks && !at.rubbed.isZero(0)) {
+      v_first.v = v_first.change, v_second.v = v_second.change;
+      continue;
+    }
+    const auto side = [&](const Nodes<D>& nodes) { return Side<D>{conditions, at.node, time, nodes.sum[n].mass, nodes.remapped[n].v}; };
+    const auto all_or_nothing = [&](Real) { return at.sticks ? std::numeric_limits<Real>::infinity() : 0; };
+    const Exchange<D> by = exchange(side(first), side(second), at.normal, all_or_nothing);
+    const Vec<D> impulse = by.pressed + by.rubbed;
+    v_first.v = conditions.held(at.node, time, v_first.v + impulse / first.sum[n].mass);
+    v_second.v = conditions.held(at.node, time, v_second.v - impulse / second.sum[n].mass);
+  }
+}
+
+template <int D>
+void ContactNodes<D>::add_sums(const Mesh<D>& mesh, std::span<const VelocityField<D>> fields,
+                               std::span<ExactSums<ContactSums<D>>> sums) const
+{
+  for (const ContactNode<D>& at : nodes_) {
+    if (at.pressed.isZero(0))
+      continue;
+    const ContactLaw& law = contacts_.laws[static_cast<std::size_t>(at.law)];
+    const auto mean_velocity = [&](Index field) -> Vec<D> {
+      const NodeMotion<D>& motion = fields[static_cast<std::size_t>(field)].nodes.motion[static_cast<std::size_t>(at.node)];
+      return motion.v - 0.5 * motion.change;
+    };
+    const Vec<D> relative = mean_velocity(law.first) - mean_velocity(law.second), impulse = at.pressed + at.rubbed;
+    sums[static_cast<std::size_t>(at.law)].add(
+        {impulse, moment<D>(mesh.node(at.node), impulse), at.pressed.dot(relative), at.rubbed.dot(relative)});
+  }
+}
+
+#define TALUS_INSTANTIATE(D)                                                                                                      \
+  template void ContactNodes<D>::act(const Kick&, BoundaryConditions<D>&, std::span<VelocityField<D>>, ExactSums<BoundaryWork>&); \
+  template void ContactNodes<D>::hold(Real, const BoundaryConditions<D>&, std::span<VelocityField<D>>) const;                     \
+  template void ContactNodes<D>::add_sums(const Mesh<D>&, std::span<const VelocityField<D>>, std::span<ExactSums<ContactSums<D>>>) const;
+TALUS_INSTANTIATE(2)
+TALUS_INSTANTIATE(3)
+#undef TALUS_INSTANTIATE
+
+}  // namespace talus
