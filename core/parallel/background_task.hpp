@@ -3,7 +3,6 @@
 #include <atomic>
 #include <exception>
 #include <functional>
-#include <future>
 #include <thread>
 #include <utility>
 
@@ -25,22 +24,15 @@ class BackgroundTask {
   void start(std::function<void()> work)
   {
     wait();
-    promise_ = {};
-    result_ = promise_.get_future().share();
     work_ = std::move(work);
     done_ = false;
     const auto run = [this]() noexcept {
-      std::exception_ptr error;
       try {
         work_();
       } catch (...) {
-        error = std::current_exception();
+        error_ = std::current_exception();
       }
       work_ = nullptr;  // releases what it holds
-      if (error)
-        promise_.set_exception(error);
-      else
-        promise_.set_value();
       done_ = true;
     };
     try {
@@ -60,12 +52,9 @@ class BackgroundTask {
   void wait()
   {
     join();
-    if (const std::shared_future<void> result = std::exchange(result_, {}); result.valid())
-      result.get();
+    if (error_)
+      std::rethrow_exception(std::exchange(error_, nullptr));
   }
-
-  /// The end of the work, for which other threads can wait too: get() throws its exception.  Not valid without work since wait().
-  const std::shared_future<void>& result() const noexcept { return result_; }
 
  private:
   void join() noexcept
@@ -75,8 +64,7 @@ class BackgroundTask {
   }
 
   std::function<void()> work_;
-  std::promise<void> promise_;
-  std::shared_future<void> result_;
+  std::exception_ptr error_;
   std::atomic<bool> done_ = true;
   std::thread thread_;
 };

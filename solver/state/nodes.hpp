@@ -6,7 +6,6 @@
 #include <tuple>
 #include <vector>
 
-#include "core/sparse_rows.hpp"
 #include "core/types.hpp"
 #include "kernels/symmetric.hpp"
 #include "solver/state/nodes_in_use.hpp"
@@ -37,8 +36,7 @@ struct alignas(64) NodeSum {
     return std::tie(sum.momentum);
   }
   static constexpr float unseen = std::numeric_limits<float>::infinity();
-  /// Whether particles have been added: not to a cleared sum, nor to one that has never been written, whose bytes are zero (SparseRows).
-  bool is_seen() const noexcept { return lightest < unseen && lightest > 0; }
+  bool is_seen() const noexcept { return lightest < unseen; }
   NodeSum& operator+=(const NodeSum& other) noexcept
   {
     mass += other.mass;
@@ -126,10 +124,10 @@ struct Kick {
 
 template <int D>
 struct Nodes {
-  SparseRows<NodeSum<D>> sum;
-  SparseRows<NodeMotion<D>> motion;
-  SparseRows<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
-  std::vector<std::uint8_t> active;    ///< nodes with enough mass for a motion of their own
+  std::vector<NodeSum<D>> sum;
+  std::vector<NodeMotion<D>> motion;
+  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
+  std::vector<std::uint8_t> active;     ///< nodes with enough mass for a motion of their own
   /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
   std::vector<std::uint8_t> bound;
   std::vector<std::uint8_t> slides;  ///< nodes that boundary conditions press against a wall with friction, and that slide

@@ -107,8 +107,7 @@ class NodePatchSums {
   void sum_block(const ParticleStrips<D>& strips, std::span<const Index> bodies, Index block, Add&& add)
   {
     const auto rows = blocks_.rows(block);
-    if (blocks_.occupied[static_cast<std::size_t>(block)] != 0)  // those of other blocks are clear
-      std::fill(rows.begin(), rows.end(), Row{});
+    std::fill(rows.begin(), rows.end(), Row{});
     bool occupied = false;
     for_each_cell_of(strips, bodies, block, [&](Index c, auto&& runs) {
       CornerPacks<K> corners{};
@@ -157,7 +156,7 @@ class NodePatchSums {
   NodesInUse in_use_;
   Halo<Row> halo_;
   HaloExchange copies_;
-  SparseRows<Row> of_node_;
+  std::vector<Row> of_node_;
 };
 
 }  // namespace talus

@@ -240,7 +240,7 @@ void add_volume(const StripColumn<Real>& volume, const CellRun<D>& run, const St
 /// their cells and to the sums of its group; find_shares() has been called.
 template <bool affine, bool loaded, bool with_moments, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
-                                  BlockRows<D, Row>& blocks, SparseRows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
+                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
                                   bool with_volume) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments>;
