@@ -281,7 +281,7 @@ void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& s
       for (const Index m : mesh.ring_of_node()[n])
         cells.insert(cells.end(), mesh.cells_of_node()[m].begin(), mesh.cells_of_node()[m].end());
       std::ranges::sort(cells);
-      cells.erase(std::ranges::unique(cells).begin(), cells.end());
+      cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
       // Calls reach_of(distance along the normal, half width) for the particles beside the node.
       const auto for_each_beside = [&](Index field, auto&& reach_of) {
         const Real beside = mesh.node_size(n) / 2;
