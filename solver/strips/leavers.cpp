@@ -2,16 +2,17 @@
 
 #include <algorithm>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 namespace talus {
 
 template <int D>
-void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripColumns<D>& from, Index i, Index cell)
+void ParticleStrips<D>::add_leaver(std::size_t key, Index number, const StripColumns<D>& from, Index i, Index cell, Index to_cell)
 {
   BlockOfStrips& block = block_[key];
   const Strip& strip = block.strips[to_size(number)];
-  block.leaving.all.push_back({number, i, cell});
+  block.leaving.all.push_back({number, i, cell, to_cell});
   std::vector<Real>& numbers = block.leaving.numbers;
   const std::size_t first = numbers.size();
   numbers.resize(first + record_width(key));
@@ -36,7 +37,7 @@ void ParticleStrips<D>::find_cells(const Mesh<D>& mesh, const Locator<D>& locato
     for (int d = 0; d < D; ++d)
       x[d] = record[layout_.step_arrays().x + d];
     Leavers::Leaver& leaver = leavers.all[i];
-    leaver.to = locator(mesh, x, leaver.cell).value_or(none);  // also nothing for a position that is not finite
+    leaver.to = locator(mesh, x, leaver.to).value_or(none);  // also nothing for a position that is not finite
     leaver.is_summed = leaver.to != none && leaver.to / block_cells == leaver.cell / block_cells;
     if (leaver.is_summed)
       arrivals_within.push_back({leaver.to, StripIds::id_of(record[layout_.step_arrays().id]), record, true});
@@ -128,17 +129,29 @@ void ParticleStrips<D>::sort_arrivals()
     arrivals_[block.first_arrival + block.arrivals++] = arrival;
   }
   parallel_for_uneven(static_cast<Index>(block_.size()), [&](Index k) {
-    const auto here = std::span(arrivals_).subspan(block_[to_size(k)].first_arrival, block_[to_size(k)].arrivals);
+    BlockOfStrips& block = block_[to_size(k)];
+    const auto here = std::span(arrivals_).subspan(block.first_arrival, block.arrivals);
     std::ranges::sort(here, [](const Arrival& a, const Arrival& b) { return a.cell != b.cell ? a.cell < b.cell : a.id < b.id; });
+    block.first_left.fill(0), block.first_coming.fill(0);
+    for (const Leavers::Leaver& leaver : block.left.all)
+      ++block.first_left[to_size(leaver.strip) + 1];
+    for (const Arrival& arrival : here)
+      ++block.first_coming[to_size(arrival.cell % block_cells / strip_cells) + 1];
+    std::partial_sum(block.first_left.begin(), block.first_left.end(), block.first_left.begin());
+    std::partial_sum(block.first_coming.begin(), block.first_coming.end(), block.first_coming.begin());
   });
+  first_memory_.assign(to_size(blocks_), {});
+  for (std::size_t key = block_.size(); key-- > 0;)
+    if (const std::vector<Strip>& strips = block_[key].strips; !strips.empty())
+      first_memory_[key % to_size(blocks_)] = memory(key, strips.front());
 }
 
-template void ParticleStrips<2>::add_leaver(std::size_t, Index, const StripColumns<2>&, Index, Index);
+template void ParticleStrips<2>::add_leaver(std::size_t, Index, const StripColumns<2>&, Index, Index, Index);
 template void ParticleStrips<2>::find_cells(const Mesh<2>&, const Locator<2>&, std::size_t, std::vector<Arrival>&);
 template void ParticleStrips<2>::take_exits(const Mesh<2>&, const Locator<2>&, const Exits&, const std::vector<Material>&, const SetForces&,
                                             StepSums<2>&, ParticleErrors&);
 template void ParticleStrips<2>::send_leavers(const Subdomain&, Migration<2>&);
-template void ParticleStrips<3>::add_leaver(std::size_t, Index, const StripColumns<3>&, Index, Index);
+template void ParticleStrips<3>::add_leaver(std::size_t, Index, const StripColumns<3>&, Index, Index, Index);
 template void ParticleStrips<3>::find_cells(const Mesh<3>&, const Locator<3>&, std::size_t, std::vector<Arrival>&);
 template void ParticleStrips<3>::take_exits(const Mesh<3>&, const Locator<3>&, const Exits&, const std::vector<Material>&, const SetForces&,
                                             StepSums<3>&, ParticleErrors&);

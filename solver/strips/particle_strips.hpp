@@ -1,11 +1,13 @@
 #pragma once
 // All particles of a rank in strips.
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/huge_page_allocator.hpp"
+#include "core/parallel/threads.hpp"
 #include "materials/interface/material.hpp"
 #include "mesh/locate.hpp"
 #include "mesh/part.hpp"
@@ -13,6 +15,7 @@
 #include "solver/particles/removal.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/sums.hpp"
+#include "solver/strips/rearrangement.hpp"
 #include "solver/strips/strip.hpp"
 
 namespace talus {
@@ -71,7 +74,8 @@ class ParticleStrips {
   {
     return {strip.numbers, static_cast<std::size_t>(strip.room) * strip_width(key)};
   }
-  /// The memory of the next strip of the block, of this body or the next; empty if there is none.  Strips of other blocks may be changing.
+  /// The memory of the strip that a thread visits next: of the block, of this body or the next, then of the block that it probably takes
+  /// next, as it was before the blocks were visited; empty if there is none.  Strips of other blocks may be changing.
   std::span<const Real> memory_of_next(std::size_t key, Index strip) const noexcept
   {
     const std::size_t next = to_size(strip) + 1, of_next_body = key + to_size(blocks_);
@@ -79,7 +83,8 @@ class ParticleStrips {
       return memory(key, block_[key].strips[next]);
     if (of_next_body < block_.size() && !block_[of_next_body].strips.empty())
       return memory(of_next_body, block_[of_next_body].strips.front());
-    return {};
+    const std::size_t of_next_block = key % to_size(blocks_) + to_size(threads());
+    return of_next_block < first_memory_.size() ? first_memory_[of_next_block] : std::span<const Real>();
   }
   /// The first cell of a strip.
   Index first_cell(std::size_t key, Index strip) const noexcept
@@ -87,9 +92,9 @@ class ParticleStrips {
     return static_cast<Index>(key % static_cast<std::size_t>(blocks_)) * block_cells + strip * strip_cells;
   }
 
-  /// Lists particle i of a strip, in this cell, as one that leaves; to be called in the order of strips and positions.  `columns` are those
-  /// of the strip, with gradients.
-  void add_leaver(std::size_t key, Index strip, const StripColumns<D>& columns, Index i, Index cell);
+  /// Lists particle i of a strip, in this cell, as one that leaves, probably to cell `to`; to be called in the order of strips and
+  /// positions.  `columns` are those of the strip, with gradients.
+  void add_leaver(std::size_t key, Index strip, const StripColumns<D>& columns, Index i, Index cell, Index to);
   /// Finds the new cells of the particles of a key that leave, once all are listed, and lists those that stay in the block.
   void find_cells(const Mesh<D>& mesh, const Locator<D>& locator, std::size_t key, std::vector<Arrival>& within);
   /// The particles of a key, and how many they will be once its strips are in order.
@@ -118,8 +123,19 @@ class ParticleStrips {
     Leavers leaving;  ///< since the last call of send_leavers()
     Leavers left;     ///< those before, whose places order() gives to others
     std::size_t first_arrival = 0, arrivals = 0;
+    /// The first of those that have left each strip, and the first that come, in their order; one more at the end.
+    std::array<Index, strips_in_block + 1> first_left{}, first_coming{};
   };
-  struct Run;
+  static std::span<const Leavers::Leaver> left(const BlockOfStrips& block, Index strip) noexcept
+  {
+    const auto s = to_size(strip);
+    return std::span(block.left.all).subspan(to_size(block.first_left[s]), to_size(block.first_left[s + 1] - block.first_left[s]));
+  }
+  std::span<const Arrival> coming(const BlockOfStrips& block, Index strip) const noexcept
+  {
+    const auto s = to_size(strip), first = block.first_arrival + to_size(block.first_coming[s]);
+    return std::span(arrivals_).subspan(first, to_size(block.first_coming[s + 1] - block.first_coming[s]));
+  }
 
   std::size_t key_of(Index body, Index cell) const noexcept { return key(body, cell / block_cells); }
   /// Numbers of a record: those of the layout, gradients, those of the law.
@@ -132,7 +148,6 @@ class ParticleStrips {
   Index first_of_law() const noexcept { return layout_.width() + layout_.kept_gradients(); }
   void set_gradients(Real* first, std::size_t stride, StripColumns<D>& columns) const noexcept;
   void grow(Strip& strip, Index n, std::size_t width);
-  static void move_runs(std::span<const Run> runs, Real* array, Index number) noexcept;
   void sort_arrivals();
 
   StripLayout layout_;
@@ -143,6 +158,7 @@ class ParticleStrips {
   Rows<Real> loaded_gradients_;
   std::unique_ptr<StripMemory> pool_ = std::make_unique<StripMemory>();  ///< of those that have grown
 
+  std::vector<std::span<const Real>> first_memory_;        ///< of the first strip of each block, before the last call of send_leavers()
   std::vector<std::pair<std::size_t, Arrival>> unsorted_;  ///< with their keys
   std::vector<Arrival> arrivals_;
 };

@@ -166,7 +166,7 @@ struct Leavers {
   struct Leaver {
     Index strip, position;   ///< where it is in its block
     Index cell;              ///< where it is
-    Index to = none;         ///< its new cell; `none`: not found yet, or it is deleted
+    Index to = none;         ///< its new cell, at first the cell in which to look for it; `none`: not found, or it is deleted
     bool is_summed = false;  ///< it goes to a cell of the same block, whose sums contain it already
   };
   std::vector<Leaver> all;  ///< in the order of strips and positions

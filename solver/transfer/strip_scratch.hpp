@@ -55,7 +55,8 @@ struct CellRun {
   int count(std::size_t i) const noexcept { return static_cast<int>(std::min<std::size_t>(pack_size, end - i)); }
 };
 
-/// Prefetches the memory of a strip in small parts, while another one is computed: too many outstanding requests stall a core.
+/// Prefetches the memory of a strip in small parts, while another one is computed: too many outstanding requests stall a core.  It goes to
+/// the second cache: the first one holds little more than the strip that is computed.
 class PrefetchAhead {
  public:
   void begin(std::span<const Real> memory, std::size_t calls) noexcept
@@ -66,7 +67,7 @@ class PrefetchAhead {
   void next() noexcept
   {
     for (const std::size_t last = std::min(at_ + part_, memory_.size()); at_ < last; at_ += numbers_in_line)
-      __builtin_prefetch(memory_.data() + at_, 1, 2);
+      __builtin_prefetch(memory_.data() + at_, 0, 2);  // a request to write, 1, would fill the first cache
   }
 
  private:

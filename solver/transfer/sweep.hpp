@@ -281,12 +281,22 @@ class BlockSweep {
     for (const Index i : scratch_.left) {
       while (static_cast<std::size_t>(i) >= run->end)
         ++run;
-      strips_.add_leaver(key, number, columns, i, run->frame->cell);
+      strips_.add_leaver(key, number, columns, i, run->frame->cell, probable_cell(run->frame->cell, static_cast<std::size_t>(i)));
       scratch_.stays[static_cast<std::size_t>(i)] = 0;
       for (Real* const share : scratch_.share)
         share[i] = 0;
     }
     through_.add(columns, n, block_);
+  }
+
+  /// The cell behind the facet that particle i of a cell has crossed; the same cell if it has crossed none, or one of the boundary.
+  Index probable_cell(Index cell, std::size_t i) const noexcept
+  {
+    const auto lowest = std::min_element(scratch_.share, scratch_.share + D + 1, [&](const Real* a, const Real* b) { return a[i] < b[i]; });
+    if (!((*lowest)[i] < 0))
+      return cell;
+    const Index other = m_.problem.mesh.neighbours(cell)[lowest - scratch_.share];
+    return other == none ? cell : other;
   }
 
   /// Particles that come, side by side.
