@@ -155,7 +155,12 @@ class Simulation {
   RunView<D> view()
   {
     RunView<D> all = view_of(*model_, stage_at_hand());
-    all.fetch_particles = [this] { copy_to_columns(*model_); };
+    all.fetch_particles = [this] {
+      if (model_->work.strips && model_->state.particles.id.empty())
+        callbacks_.before_copy();
+      copy_to_columns(*model_);
+    };
+    all.take_copy = [this] { return take_copy(*model_); };
     return all;
   }
 
