@@ -82,8 +82,10 @@ bool Checkpoints<D>::due(const Clock& clock) const
 template <int D>
 void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
 {
+  StopWatch watch;
   if (task_.is_done())  // so that a failure ends the run soon
     finish();
+  watch.lap(seconds_);
   if (!at_)
     at_ = view.state.clock;
   std::string reason = StopRequests::received();
@@ -99,11 +101,10 @@ void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
     return;
   if (what == stop)
     reason = view.problem.ranks->first(reason);
-  begin(view, recorder);
   if (reason.empty())
-    return;
+    return begin(view, recorder);
+  write(view, recorder);
   recorder.finish_frame();
-  finish();
   throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, view.state.clock.step + 1,
                             view.state.clock.time, last_.file.string()));
 }
@@ -114,22 +115,26 @@ void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, Recorder<D>& recor
   if (view.state.stage.number + 1 != n_stages)
     return;
   if (spec_.at_end)
-    begin(view, recorder);
+    return write(view, recorder);
+  StopWatch watch;
   finish();
+  watch.lap(seconds_);
 }
 
 template <int D>
 void Checkpoints<D>::write(const RunView<D>& view, Recorder<D>& recorder)
 {
   begin(view, recorder);
+  StopWatch watch;
   finish();
+  watch.lap(seconds_);
 }
 
 template <int D>
 void Checkpoints<D>::begin(const RunView<D>& view, Recorder<D>& recorder)
 {
-  finish();
   StopWatch watch;
+  finish();
   const Clock& clock = view.state.clock;
   const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(clock.step);
   Communicator& ranks = *view.problem.ranks;
@@ -178,12 +183,10 @@ void Checkpoints<D>::finish()
 {
   if (!pending_)
     return;
-  StopWatch watch;
   const Written written = *std::exchange(pending_, std::nullopt);
   task_.wait();
   last_ = written;
   when_ = Watch::now();
-  watch.lap(seconds_);
 }
 
 template class Checkpoints<2>;

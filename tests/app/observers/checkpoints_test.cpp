@@ -29,7 +29,7 @@ struct Steps {
   Problem<2> problem{Mesh<2>(box<2>({0, 0}, {1, 1}, {2, 2}))};
   State<2> state{};
   CellOrder order;
-  Nodes<2> nodes;
+  std::vector<VelocityField<2>> fields;
 
   Steps()
   {
@@ -45,7 +45,7 @@ struct Steps {
     });
     state.boundary.add({.name = "floor", .kind = Fixed<2>{}}, problem.mesh, std::vector<Index>{0, 1});
   }
-  RunView<2> in_columns() const { return {problem, state, order, nodes, "the only", 0, 0}; }
+  RunView<2> in_columns() const { return {problem, state, order, fields, "the only", 0, 0}; }
   RunView<2> in_strips() const
   {
     RunView<2> view = in_columns();
