@@ -7,9 +7,10 @@ namespace talus {
 
 namespace {
 
-// Static memory, because the name may be needed when memory has run out.
-std::array<char, 512> call_name{};
-volatile std::sig_atomic_t call_length = 0;
+// Static memory, because the name may be needed when memory has run out; of each thread, because files are written beside the steps and the
+// handler of a fault runs on the thread that has it.
+thread_local std::array<char, 512> call_name{};
+thread_local volatile std::sig_atomic_t call_length = 0;
 
 }  // namespace
 

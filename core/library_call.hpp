@@ -5,7 +5,7 @@
 
 namespace talus {
 
-/// Sets the text of library_at_work() while it lives.  Of nested calls the inner one is reported until it ends, then none.
+/// Sets the text of library_at_work() on this thread while it lives.  Of nested calls the inner one is reported until it ends, then none.
 class LibraryCall {
  public:
   /// Takes for example "HDF5", "writing" and a file name.  A long name is truncated.
@@ -15,7 +15,7 @@ class LibraryCall {
   LibraryCall& operator=(const LibraryCall&) = delete;
 };
 
-/// For example "HDF5, writing out/checkpoints/step_000000100.h5"; empty outside of libraries.  Safe in a signal handler.
+/// The call of this thread, for example "HDF5, writing out/checkpoints/step_000000100.h5"; empty outside of libraries.  Safe in a signal handler.
 std::string_view library_at_work() noexcept;
 
 }  // namespace talus

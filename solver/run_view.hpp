@@ -24,6 +24,9 @@ struct RunView {
   std::span<const ParticleLoadSums<D>> loads = {};
   const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
   std::function<void()> fetch_particles = [] {};  ///< to be called before particles are read during a stage
+  /// The particles for a reader of its own, see take_copy(Model): those of `state` are there after fetch_particles() only, again.  Nothing
+  /// if they can be read in `state` only.
+  std::function<std::optional<ParticleCopy<D>>()> take_copy = [] { return std::optional<ParticleCopy<D>>(); };
 };
 
 template <int D>

@@ -36,14 +36,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::string> names_of(const std::vector<fs::path>& files)
-{
-  std::vector<std::string> names;
-  for (const fs::path& file : files)
-    names.push_back(file.filename().string());
-  return names;
-}
-
 /// How a run that does not continue in its folder treats existing files.
 Replacing replacing(const RunOptions& options) { return {options.force, options.resume ? std::nullopt : std::optional(options.scene)}; }
 
@@ -112,6 +104,7 @@ class Run {
     };
     if (from_)
       callbacks.take_over = [&](State<D>& state) { taken = from_->take_over(state, recorder, limits); };
+    callbacks.before_copy = [&] { checkpoints.finish(); };
     callbacks.kernel_made = [&](Real seconds) { phases_.kernel = seconds, phases_.build -= seconds; };
     // Only now: errors of the kernel, lack of memory and unreadable input are found before existing results are replaced.
     callbacks.ready = [&](const RunView<D>& view) {
@@ -126,11 +119,15 @@ class Run {
         go_on(view, taken, recorder);
       watch_.lap(phases_.build);
     };
+    const auto settle = [&] {  // the first message is the relevant one
+      static_cast<void>(Communicator::caught([&] { recorder.finish_frame(); }));
+      static_cast<void>(Communicator::caught([&] { checkpoints.finish(); }));
+    };
     const auto failed = [&](const char* what, const std::string& way_back = {}) {
       std::string message = what;
       if (!began_)
         return message;
-      static_cast<void>(Communicator::caught([&] { recorder.finish_frame(); }));  // the first message is the relevant one
+      settle();
       if (!recorder.last_output().empty())
         message += "; last good output " + recorder.last_output();
       if (!checkpoints.last().empty())
@@ -152,6 +149,7 @@ class Run {
       finish(recorder, checkpoints, RunStatus::stopped, message);
       throw Stopped(message);
     } catch (const RunError& e) {
+      settle();
       throw RunError(failed(e.what(), way_back(checkpoints, recorder.last_seen().clock.step)));
     } catch (const EnvironmentError& e) {
       throw EnvironmentError(failed(e.what()));
@@ -270,8 +268,7 @@ class Run {
       std::vector<fs::path> aside;
       world().together([&] { aside = set_aside_newer(folder_, taken); });
       if (!aside.empty())
-        news.push_back(fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}",
-                                   taken.filename().string(), fmt::join(names_of(aside), ", ")));
+        news.push_back(tell_set_aside(taken, aside));
       const auto missing = recorder.resume(view);
       news.insert(news.end(), missing.begin(), missing.end());
     } else {

@@ -1,6 +1,7 @@
 #include "app/commands/run_messages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdio>
 
@@ -27,6 +28,15 @@ std::vector<std::string> tell_changes(Real time, std::string_view stage, const S
       say(stdout, "{}\n", line);
   std::fflush(stdout);
   return lines;
+}
+
+std::string tell_set_aside(const std::filesystem::path& taken, const std::vector<std::filesystem::path>& aside)
+{
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : aside)
+    names.push_back(file.filename().string());
+  return fmt::format("newer checkpoints than {} are of another way of the run, or damaged, and were renamed: {}", taken.filename().string(),
+                     fmt::join(names, ", "));
 }
 
 void say_rebalanced(const Rebalanced& by)

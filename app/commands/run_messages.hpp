@@ -1,5 +1,6 @@
 #pragma once
 // Messages of a run on the terminal.
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,9 @@ namespace talus {
 /// `quiet`.
 std::vector<std::string> tell_changes(Real time, std::string_view stage, const StageReport& news, bool quiet,
                                       std::vector<std::string>& warnings);
+
+/// The warning about checkpoints that were renamed, because they are newer than the one that the run resumes from.
+std::string tell_set_aside(const std::filesystem::path& taken, const std::vector<std::filesystem::path>& aside);
 
 /// Prints a redistribution, on the root.
 void say_rebalanced(const Rebalanced& by);

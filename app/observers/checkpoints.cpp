@@ -1,3 +1,4 @@
+// Reading of checkpoints; they are written in write_checkpoints.cpp.
 #include "app/observers/checkpoints.hpp"
 
 #include <fmt/format.h>
@@ -6,32 +7,17 @@
 #include <cstdio>
 
 #include "app/observers/checkpoint_files.hpp"
+#include "app/observers/checkpoint_layout.hpp"
 #include "app/observers/rank_slices.hpp"
 #include "app/observers/results.hpp"
 #include "app/observers/validate_state.hpp"
-#include "core/stop_watch.hpp"
 #include "io/checkpoint/serialize.hpp"
-#include "io/files/atomic_file.hpp"
-#include "io/files/manifest.hpp"
-#include "io/system/signals.hpp"
 
 namespace talus {
 
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The version of the format; it increases with every change of the contents.
-constexpr std::int64_t written_format = 8;
-
-std::string history_of(std::size_t body) { return below("laws/history", body); }
-
-/// The rows of a body among the rows of a file: `here` counts from the row `rows.first` of the file.
-Slice rows_of_body(const Body& in_file, const Body& here, const Slice& rows)
-{
-  const std::int64_t first = here.size() > 0 ? rows.first + here.begin - in_file.begin : 0;
-  return {first, in_file.size(), rows.piece, in_file.begin % rows.piece};
-}
 
 /// Restricts the bodies to the rows [first, end) of the file, which then count from 0.
 void take_slice(std::int64_t first, std::int64_t end, std::vector<Body>& bodies)
@@ -70,11 +56,6 @@ void must(bool holds, const char* what)
   if (!holds)
     throw EnvironmentError(fmt::format("its {} do not fit the scene", what));
 }
-
-/// Parts of a state whose rows are written as arrays instead of fields.
-template <class Part>
-constexpr bool is_of_particles =
-    std::is_same_v<Part, Particles<2>> || std::is_same_v<Part, Particles<3>> || std::is_same_v<Part, std::vector<Material>>;
 
 /// Checks the length of a list against set-up before its items are replaced, because some members of items are not stored.
 void check_count(const ArrayReader& arrays, const std::string& list, std::size_t n, const char* what)
@@ -149,101 +130,6 @@ void refuse_if_any(const std::vector<std::string>& faults)
 
 }  // namespace
 
-template <int D>
-Checkpoints<D>::Checkpoints(fs::path folder, const CheckpointSpec& spec, RunIdentity identity, std::optional<std::int64_t> until)
-    : folder_(std::move(folder)), spec_(spec), identity_(std::move(identity)), until_(until)
-{}
-
-template <int D>
-bool Checkpoints<D>::due(const Clock& clock) const
-{
-  const auto passed = [](Real from, Real to, Real every) { return std::floor(to / every) > std::floor(from / every); };
-  return (spec_.steps && clock.step / *spec_.steps > at_->step / *spec_.steps) ||
-         (spec_.every && passed(at_->time, clock.time, *spec_.every)) ||
-         std::chrono::duration<Real>(Watch::now() - when_).count() >= spec_.wall_time;
-}
-
-template <int D>
-void Checkpoints<D>::see(const RunView<D>& view, Recorder<D>& recorder)
-{
-  if (!at_)
-    at_ = view.state.clock;
-  std::string reason = StopRequests::received();
-  if (!reason.empty())
-    reason = "by " + reason;
-  else if (until_ && view.state.clock.step >= *until_)
-    reason = "as asked";
-  // Signals and clocks differ between ranks, so the ranks agree on the largest of these.
-  enum : std::int64_t { go_on, write_one, stop };
-  const std::int64_t wish = !reason.empty() ? stop : view.problem.ranks->is_root() && due(view.state.clock) ? write_one : go_on;
-  const std::int64_t what = view.problem.ranks->max(wish);
-  if (what == go_on)
-    return;
-  if (what == stop)
-    reason = view.problem.ranks->first(reason);
-  write(view, recorder);
-  if (!reason.empty())
-    throw Stopped(fmt::format("stopped {} before step {}, t = {:.6g} s; checkpoint {}", reason, view.state.clock.step + 1,
-                              view.state.clock.time, last_.string()));
-}
-
-template <int D>
-void Checkpoints<D>::see_end_of_stage(const RunView<D>& view, Recorder<D>& recorder, Index n_stages)
-{
-  if (spec_.at_end && view.state.stage.number + 1 == n_stages)
-    write(view, recorder);
-}
-
-template <int D>
-void Checkpoints<D>::write(const RunView<D>& view, Recorder<D>& recorder)
-{
-  StopWatch watch;
-  view.fetch_particles();
-  const fs::path file = folder_ / checkpoint_folder / name_of_checkpoint(view.state.clock.step);
-  view.problem.ranks->together([&] {
-    require_results(folder_);
-    recorder.flush();  // files named in the checkpoint must be on the disk before it
-  });
-  on_slices(view, [&](const State<D>& slice, const std::vector<Body>& bodies, const Slice& rows) {
-    std::vector<SharedArray> arrays;
-    share_columns("particles", slice.particles, rows, arrays);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-      share_history(history_of(b), slice.materials[b], rows_of_body(bodies[b], slice.bodies[b], rows), arrays);
-    write_arrays(*view.problem.ranks, file, arrays, [&](ArrayWriter& rest) {
-      save(rest, "format", written_format);
-      save(rest, "run", identity_);
-      for_each_part(slice, [&](const std::string& name, const auto& part) {
-        using Part = std::decay_t<decltype(part)>;
-        if constexpr (std::is_same_v<Part, std::vector<Body>>)
-          save(rest, name, bodies);
-        else if constexpr (!is_of_particles<Part>)
-          save(rest, name, part);
-      });
-      for (std::size_t b = 0; b < bodies.size(); ++b)
-        save(rest, below("laws/name", b), std::string(slice.materials[b].law().name()));
-      save(rest, "recorder", recorder);
-    });
-  });
-  last_ = file;
-  at_ = view.state.clock;
-  when_ = Watch::now();
-  if (view.problem.ranks->is_root())
-    remove_older();
-  watch.lap(seconds_);
-}
-
-/// Removes checkpoints beyond the number that the scene keeps.
-template <int D>
-void Checkpoints<D>::remove_older() const
-{
-  const auto all = checkpoints_in(folder_ / checkpoint_folder);
-  const auto manifest = Manifest::of(folder_);
-  std::error_code stays;  // a file that cannot be removed does not end the run
-  for (std::size_t i = static_cast<std::size_t>(spec_.keep); i < all.size(); ++i)
-    if (!manifest || manifest->proves((fs::path(checkpoint_folder) / all[i].filename()).string()))
-      fs::remove(all[i], stays);
-}
-
 namespace {
 
 /// The results folder of a checkpoint, if it lies in one.
@@ -280,9 +166,9 @@ CheckpointList::CheckpointList(const fs::path& at)
       std::int64_t written_in = 0;
       load(arrays, "format", written_in);
       load(arrays, "run/version", identity_.version);
-      if (written_in != written_format)
+      if (written_in != checkpoint_format)
         throw EnvironmentError(fmt::format("{} was written by version {} in format {}; this program knows format {}", file.string(),
-                                           identity_.version, written_in, written_format));
+                                           identity_.version, written_in, checkpoint_format));
       load(arrays, "run", identity_);
       load(arrays, "clock", clock_);
       load(arrays, "stage", stage_);
@@ -381,8 +267,6 @@ CheckpointList::Read CheckpointList::read(KeptBodies<D>& saved) const
   });
 }
 
-template class Checkpoints<2>;
-template class Checkpoints<3>;
 template fs::path CheckpointList::take_over<2>(State<2>&, Recorder<2>&, const StateLimits&) const;
 template fs::path CheckpointList::take_over<3>(State<3>&, Recorder<3>&, const StateLimits&) const;
 template CheckpointList::Read CheckpointList::read<2>(KeptBodies<2>&) const;

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "app/observers/recorder.hpp"
+#include "core/parallel/background_task.hpp"
 #include "io/checkpoint/array_file.hpp"
 #include "solver/model/model.hpp"
 
@@ -34,6 +35,9 @@ struct RunIdentity {
   }
 };
 
+/// A run of one rank writes one checkpoint at a time on a thread of its own, while the next steps run: a copy of the particles, which stay in
+/// their strips, and of everything else that is saved.  Several ranks write a checkpoint together before the next step, because only their
+/// main threads may send messages.  Either way a file appears under its name when it is complete, and the bytes are the same.
 template <int D>
 class Checkpoints {
  public:
@@ -41,32 +45,42 @@ class Checkpoints {
   Checkpoints(std::filesystem::path folder, const CheckpointSpec& spec, RunIdentity identity,
               std::optional<std::int64_t> until = std::nullopt);
 
-  /// To be called before each step: writes a checkpoint if it is due.  Throws Stopped after writing one because of a signal, or after
-  /// `until` steps; EnvironmentError if it could not be written, with older ones unchanged.
+  /// To be called before each step: writes a checkpoint, or begins to, if it is due.  Throws Stopped after writing one because of a signal,
+  /// or after `until` steps; EnvironmentError if this one or the one before could not be written, with older ones unchanged.
   void see(const RunView<D>& view, Recorder<D>& recorder);
-  /// To be called after a stage, when the recorder has its result: writes a checkpoint at the end of the run if the scene requests it.
+  /// To be called after a stage, when the recorder has its result: writes a checkpoint at the end of the run if the scene requests it, and
+  /// returns when all are on the disk at the end of the run.
   void see_end_of_stage(const RunView<D>& view, Recorder<D>& recorder, Index n_stages);
   /// Writes a checkpoint.  Throws EnvironmentError.
   void write(const RunView<D>& view, Recorder<D>& recorder);
-  /// The last checkpoint written, empty if there is none, and its number of steps.
-  const std::filesystem::path& last() const noexcept { return last_; }
-  std::optional<std::int64_t> last_step() const noexcept { return last_.empty() ? std::nullopt : std::optional(at_->step); }
-  /// Wall time of all that were written [s].
+  /// Returns when the checkpoint that is being written is on the disk.  Throws EnvironmentError if it could not be written.
+  void finish();
+  /// The last checkpoint on the disk, empty if there is none, and its number of steps.  Not the one that finish() would wait for.
+  const std::filesystem::path& last() const noexcept { return last_.file; }
+  std::optional<std::int64_t> last_step() const noexcept { return last_.file.empty() ? std::nullopt : std::optional(last_.step); }
+  bool is_pending() const noexcept { return pending_.has_value(); }
+  /// Wall time that all of them took of the steps [s].
   Real seconds() const noexcept { return seconds_; }
 
  private:
   using Watch = std::chrono::steady_clock;
+  struct Written {
+    std::filesystem::path file;
+    std::int64_t step = 0;
+  };
   bool due(const Clock& clock) const;
-  void remove_older() const;
+  void begin(const RunView<D>& view, Recorder<D>& recorder);
 
   std::filesystem::path folder_;
   CheckpointSpec spec_;
   RunIdentity identity_;
   std::optional<std::int64_t> until_;
-  std::filesystem::path last_;
-  std::optional<Clock> at_;  // time of the last one, or of the first call
-  Watch::time_point when_ = Watch::now();
+  Written last_;
+  std::optional<Written> pending_;         // begun, until finish()
+  std::optional<Clock> at_;                // time of the last one, or of the first call
+  Watch::time_point when_ = Watch::now();  // end of the last one
   Real seconds_ = 0;
+  BackgroundTask task_;  // last: its destructor waits while the others exist
 };
 
 /// The sizes of a state of this scene.

@@ -25,6 +25,8 @@ class FrameOutput {
   /// Returns when the frame is on the disk.  Throws EnvironmentError with the name of the file if it could not be written; files before it
   /// have been.
   void wait();
+  /// The end of the frame that is being written, for which other threads can wait; not valid if there is none.
+  const std::shared_future<void>& result() const noexcept { return task_.result(); }
   /// The files on the disk of the last frame, after wait() or an exception of it.
   const std::vector<std::string>& written() const noexcept { return written_; }
 

@@ -54,7 +54,7 @@ class HistoryWriter {
   /// Points of this body now track the nearest particle.
   void follow_anew(const std::string& body, const RunView<D>& now);
   void append(const RunView<D>& view, const BalanceHistory<D>& accounts, const BodyForces<D>& forces);
-  void flush() const { file_->flush(); }                          ///< on the root
+  const HistoryFile& table() const noexcept { return *file_; }    ///< on the root
   Real last_time() const noexcept { return file_->last_time(); }  ///< time of the last row in the file [s], on the root
   static std::vector<CsvColumn> columns(const HistoryOutputSpec& spec, const RunView<D>& start);
 

@@ -144,6 +144,7 @@ void Recorder<D>::go_on(const RunView<D>& view)
   if (outputs_.history)
     history_.emplace(folder_ / "history.csv", *outputs_.history, view, history_state_);
   runout_.go_on(view);
+  last_output_ = newest_output_;
   progress_.resume(done_before_ + view.state.clock.time - stage_start_, view.state.timings.particle_steps);
 }
 
@@ -194,6 +195,7 @@ void Recorder<D>::begin_again(const RunView<D>& view)
   go_on(view);
   elsewhere_ = {static_cast<std::int64_t>(files_.size()), particle_files_, mesh_files_, view.state.clock.time};
   last_output_.clear();
+  newest_output_.clear();
   name_lists();
 }
 
@@ -236,12 +238,19 @@ void Recorder<D>::finish_frame()
 }
 
 template <int D>
-void Recorder<D>::flush()
+std::function<void()> Recorder<D>::flush() const
 {
-  finish_frame();
+  std::vector<const HistoryFile*> tables;
   if (history_)
-    history_->flush();
-  runout_.flush();
+    tables.push_back(&history_->table());
+  if (runout_.table() != nullptr)
+    tables.push_back(runout_.table());
+  return [frame = frames_.result(), tables] {
+    if (frame.valid())
+      frame.get();
+    for (const HistoryFile* const table : tables)
+      table->flush();
+  };
 }
 
 template <int D>
@@ -342,6 +351,7 @@ void Recorder<D>::write_frame(const RunView<D>& view, bool particles, bool mesh)
   if (particles) {
     frame.particles = particles_of_frame(view, outputs_, particle_file(particle_files_++));
     frame_.push_back(frame.particles->file.filename().string());
+    newest_output_ = frame_.back();
     particle_time_ = frame.time;
   }
   if (mesh) {

@@ -60,8 +60,9 @@ class Recorder {
   void begin_again(const RunView<D>& view);
   /// Returns when the frame that is being written is on the disk.  Throws EnvironmentError if it could not be written.
   void finish_frame();
-  /// Returns when everything written is on the disk, the frame included.
-  void flush();
+  /// A function that returns when everything that is written by now is on the disk, the frame included.  Any thread may call it while the
+  /// recorder exists.  It throws EnvironmentError.  On the root.
+  std::function<void()> flush() const;
   void stage_done(const StageResult& result) { stages_.push_back(result); }
   /// Records the changes by a stage before it begins, one line each.
   void changed(const std::vector<std::string>& lines) { changes_.insert(changes_.end(), lines.begin(), lines.end()); }
@@ -99,7 +100,7 @@ class Recorder {
                       saved("changes", &Recorder::changes_),
                       saved("files", &Recorder::files_),
                       saved("elsewhere", &Recorder::elsewhere_),
-                      saved("last_output", &Recorder::last_output_),
+                      saved("last_output", &Recorder::newest_output_),
                       saved("bodies", &Recorder::bodies_),
                       saved("runout", &Recorder::runout_),
                       saved("output_seconds", &Recorder::output_seconds_),
@@ -143,7 +144,8 @@ class Recorder {
   std::vector<std::string> changes_;
   std::vector<std::string> files_;
   FilesOfEarlierRun elsewhere_;
-  std::string last_output_;         // relative to the folder
+  std::string last_output_;         // on the disk, relative to the folder
+  std::string newest_output_;       // the same once the frame that is being written is on the disk, as it is when a checkpoint appears
   std::vector<std::string> frame_;  // files of the frame that is being written
   bool frame_has_particles_ = false;
   std::vector<BodySummary> bodies_;

@@ -184,13 +184,6 @@ bool Runout<D>::drop_later() const
 }
 
 template <int D>
-void Runout<D>::flush() const
-{
-  if (file_)
-    file_->flush();
-}
-
-template <int D>
 void Runout<D>::count_on_cells(const std::vector<MovedParticle<D>>& moved, Real since_start)
 {
   const Real area = plan_.grid.area();

@@ -29,7 +29,8 @@ class Runout {
   void go_on(const RunView<D>& view);
   /// On the root: removes frames that are later than the state; returns whether runout.csv is complete.
   bool drop_later() const;
-  void flush() const;
+  /// runout.csv, on the root; nullptr before begin().
+  const HistoryFile* table() const noexcept { return file_ ? &*file_ : nullptr; }
   /// Numbers for the summary; empty before the first sample.
   std::vector<NamedValue> numbers() const;
 

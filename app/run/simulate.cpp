@@ -155,7 +155,12 @@ class Simulation {
   RunView<D> view()
   {
     RunView<D> all = view_of(*model_, stage_at_hand());
-    all.fetch_particles = [this] { copy_to_columns(*model_); };
+    all.fetch_particles = [this] {
+      if (model_->work.strips && model_->state.particles.id.empty())
+        callbacks_.before_copy();
+      copy_to_columns(*model_);
+    };
+    all.take_copy = [this] { return take_copy(*model_); };
     return all;
   }
 
@@ -348,14 +353,12 @@ Estimate estimate(const Scene& scene, Mesh<D> mesh, Setup<D> setup)
     cost.particle_bytes += static_cast<std::int64_t>(material.history.bytes());
   begin_sweeps(m);  // columns are there where particles are read, beside the strips
   cost.particle_bytes += static_cast<std::int64_t>(m.work.strips->bytes());
+  cost.node_bytes = m.transfer->bytes(m);
   end_sweeps(m);
   const Mesh<D>& whole = m.problem.mesh;
   cost.mesh_bytes = static_cast<std::int64_t>(whole.nodes().size_bytes() + whole.cells().size_bytes()) +
                     whole.n_cells() * static_cast<std::int64_t>((2 + D * (D + 1)) * sizeof(Real)) + bytes(whole.cells_of_node().item) +
                     bytes(whole.ring_of_node().item);
-  cost.node_bytes = m.transfer->bytes();
-  for (const VelocityField<D>& field : m.work.fields)
-    cost.node_bytes += bytes(field.nodes.sum) + bytes(field.nodes.motion);
   cost.shared_nodes = find_shared_nodes<D>(whole, m.state.particles, m.state.bodies, [&m](Index c, std::vector<Index>& nodes) {
     m.transfer->add_nodes_of_cell(m.problem.mesh, c, nodes);
   });

@@ -21,6 +21,8 @@ struct RunCallbacks {
                                                                                         const StageReport&) {};
   /// Called when everything that the run needs exists, before the first step.
   std::function<void(const RunView<D>&)> ready = [](const RunView<D>&) {};
+  /// Called before the particles are copied for an observer, which takes as much memory as the copy of a checkpoint.
+  std::function<void()> before_copy = [] {};
   /// Called with the wall time [s] in which the kernel was set up, before `ready`.
   std::function<void(Real seconds)> kernel_made = [](Real) {};
 };

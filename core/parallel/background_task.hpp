@@ -3,6 +3,7 @@
 #include <atomic>
 #include <exception>
 #include <functional>
+#include <future>
 #include <thread>
 #include <utility>
 
@@ -24,15 +25,22 @@ class BackgroundTask {
   void start(std::function<void()> work)
   {
     wait();
+    promise_ = {};
+    result_ = promise_.get_future().share();
     work_ = std::move(work);
     done_ = false;
     const auto run = [this]() noexcept {
+      std::exception_ptr error;
       try {
         work_();
       } catch (...) {
-        error_ = std::current_exception();
+        error = std::current_exception();
       }
       work_ = nullptr;  // releases what it holds
+      if (error)
+        promise_.set_exception(error);
+      else
+        promise_.set_value();
       done_ = true;
     };
     try {
@@ -52,9 +60,12 @@ class BackgroundTask {
   void wait()
   {
     join();
-    if (error_)
-      std::rethrow_exception(std::exchange(error_, nullptr));
+    if (const std::shared_future<void> result = std::exchange(result_, {}); result.valid())
+      result.get();
   }
+
+  /// The end of the work, for which other threads can wait too: get() throws its exception.  Not valid without work since wait().
+  const std::shared_future<void>& result() const noexcept { return result_; }
 
  private:
   void join() noexcept
@@ -64,7 +75,8 @@ class BackgroundTask {
   }
 
   std::function<void()> work_;
-  std::exception_ptr error_;
+  std::promise<void> promise_;
+  std::shared_future<void> result_;
   std::atomic<bool> done_ = true;
   std::thread thread_;
 };

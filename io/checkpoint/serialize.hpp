@@ -33,9 +33,9 @@ using Stored = std::conditional_t<std::is_enum_v<T> || std::is_same_v<T, bool>, 
 inline std::string below(const std::string& path, std::string_view key) { return path + "/" + std::string(key); }
 inline std::string below(const std::string& path, std::size_t i) { return path + "/" + std::to_string(i); }
 
-/// Writes a value below `path`.  EnvironmentError.
-template <class T>
-void save(ArrayWriter& file, const std::string& path, const T& value)
+/// Writes a value below `path`.  Writer: ArrayWriter or KeptArrays.  EnvironmentError.
+template <class Writer, class T>
+void save(Writer& file, const std::string& path, const T& value)
 {
   if constexpr (HasFields<T>) {
     for_each_field<T>([&](const auto& field) { save(file, below(path, field.key), value.*field.member); });

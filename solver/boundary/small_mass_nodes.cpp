@@ -107,7 +107,7 @@ struct NodeAndHosts {
 };
 template <int D>
 struct NodesAndHosts {
-  std::vector<NodeSum<D>>& sum;
+  SparseRows<NodeSum<D>>& sum;
   std::vector<Real>& weight;
   std::vector<std::uint8_t>& ring;
   NodeAndHosts<D> operator[](std::size_t n) const noexcept { return {sum[n], weight[n], ring[n]}; }
@@ -175,7 +175,7 @@ void SmallMassNodes<D>::give_to_hosts(const Mesh<D>& mesh, const OwnNodes& own, 
 
 template <int D>
 void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions,
-                                    std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work)
+                                    SparseRows<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work)
 {
   send_from_hosts(motion, OfMarked{[](auto& row) { return NodeMotion<D>::parts(row); }, may_host_});
   for (const SmallMassNode& small_mass_node : small_) {
@@ -193,7 +193,7 @@ void SmallMassNodes<D>::extrapolate(const Mesh<D>& mesh, const OwnNodes& own, co
 
 template <int D>
 void SmallMassNodes<D>::extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid,
-                                             std::vector<NodeMotion<D>>& motion)
+                                             SparseRows<NodeMotion<D>>& motion)
 {
   send_from_hosts(motion, OfMarked{[](auto& row) { return std::tie(row.v); }, may_host_});
   for (const SmallMassNode& small_mass_node : small_) {

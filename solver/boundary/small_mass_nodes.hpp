@@ -28,10 +28,10 @@ class SmallMassNodes {
   /// Sets the motion of the nodes of small mass: the mean motion of their hosts, under the boundary conditions, which act on the mass of
   /// the node itself.  Their work is added to `work`.
   void extrapolate(const Mesh<D>& mesh, const OwnNodes& own, const Kick& kick, BoundaryConditions<D>& conditions,
-                   std::vector<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work);
+                   SparseRows<NodeMotion<D>>& motion, ExactSums<BoundaryWork>& work);
   /// Sets the velocity `v` only, without work.
   void extrapolate_velocity(const Mesh<D>& mesh, const OwnNodes& own, const BoundaryConditions<D>& conditions, Real mid,
-                            std::vector<NodeMotion<D>>& motion);
+                            SparseRows<NodeMotion<D>>& motion);
   Index size() const noexcept { return static_cast<Index>(small_.size()); }
 
  private:

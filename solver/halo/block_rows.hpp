@@ -17,7 +17,7 @@ struct BlockRows {
   Csr rows_of_node;                 ///< rows of each node, ascending
   std::vector<Index> block_of_row;
   std::vector<std::uint8_t> occupied;  ///< whether each block contains particles in this step
-  std::vector<Sum> row;
+  SparseRows<Sum> row;
 
   Index size() const noexcept { return static_cast<Index>(occupied.size()); }
   std::span<Sum> rows(Index b) noexcept

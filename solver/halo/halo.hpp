@@ -119,7 +119,7 @@ std::vector<std::uint8_t> nodes_read(const Subdomain& subdomain, const BlockRows
 /// empty.  Nodes that are not in use are left out; on_arrival() is called once the rows of other ranks have arrived.
 template <class What, int D, class Sum, class OnArrival>
 void assemble(BlockRows<D, Sum>& blocks, const OwnNodes& own, Halo<Sum>& halo, HaloExchange& copies, const NodesInUse& in_use,
-              std::vector<Sum>& sum, OnArrival&& on_arrival)
+              SparseRows<Sum>& sum, OnArrival&& on_arrival)
 {
   halo.template take_rows<What>(blocks);
   on_arrival();

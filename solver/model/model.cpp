@@ -194,6 +194,22 @@ void drop_copy(Model<D>& m)
 }
 
 template <int D>
+std::optional<ParticleCopy<D>> take_copy(Model<D>& m)
+{
+  if (!m.work.strips)
+    return std::nullopt;
+  copy_to_columns(m);
+  ParticleCopy<D> copy{m.state.bodies, {}, std::exchange(m.state.particles, {})};
+  for (Material& material : m.state.materials) {
+    Material& taken = copy.materials.emplace_back(material.without_particles());
+    taken.begin = material.begin, taken.end = material.end;
+    taken.history = std::exchange(material.history, HistoryRows(material.history.width()));
+  }
+  m.work.order.row = {};
+  return copy;
+}
+
+template <int D>
 void end_sweeps(Model<D>& m)
 {
   if (!m.work.strips)
@@ -223,6 +239,7 @@ Totals<D> totals(const Model<D>& m)
   template void end_sweeps(Model<D>&);                                                   \
   template void copy_to_columns(Model<D>&);                                              \
   template void drop_copy(Model<D>&);                                                    \
+  template std::optional<ParticleCopy<D>> take_copy(Model<D>&);                          \
   template Totals<D> totals(const Model<D>&);
 TALUS_INSTANTIATE(2)
 TALUS_INSTANTIATE(3)

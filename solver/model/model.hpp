@@ -58,6 +58,17 @@ template <int D>
 void copy_to_columns(Model<D>& m);
 template <int D>
 void drop_copy(Model<D>& m);
+/// Particles that later steps do not change.
+template <int D>
+struct ParticleCopy {
+  std::vector<Body> bodies;
+  std::vector<Material> materials;
+  Particles<D> particles;
+};
+/// Takes the copy in the columns out of the model, after making it if there is none; the strips keep the particles.  Nothing where the
+/// particles are in their columns only.
+template <int D>
+std::optional<ParticleCopy<D>> take_copy(Model<D>& m);
 /// The number of particles on this rank, wherever they are.
 template <int D>
 Index n_particles(const Model<D>& m) noexcept

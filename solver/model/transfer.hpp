@@ -69,8 +69,9 @@ class Transfer {
   virtual void add_nodes_of_cell(const Mesh<D>& mesh, Index cell, std::vector<Index>& nodes) const = 0;
   /// The number of nodes of this rank that are treated as corners because no positive weights are exact for linear fields there.
   virtual std::int64_t nodes_as_corners(const OwnNodes& own) const = 0;
-  /// The memory of the transfer [B].
-  virtual std::int64_t bytes() const = 0;
+  /// The memory of the nodes and of the transfer [B]: of rows of nodes and cells, those near the particles.  To be called after
+  /// begin_sweeps().
+  virtual std::int64_t bytes(const Model<D>& m) const = 0;
 };
 
 }  // namespace talus

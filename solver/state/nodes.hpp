@@ -2,10 +2,10 @@
 // Nodal rows: sums over particles, and the motion that particles read.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <vector>
 
+#include "core/sparse_rows.hpp"
 #include "core/types.hpp"
 #include "kernels/symmetric.hpp"
 #include "solver/state/nodes_in_use.hpp"
@@ -16,7 +16,7 @@ namespace talus {
 template <int D>
 struct alignas(64) NodeSum {
   Real mass{};              ///< [kg]
-  float lightest = unseen;  ///< mass of the lightest particle whose stencil contains the node [kg]
+  float lightest = unseen;  ///< mass of the lightest particle whose stencil contains the node [kg]; 0 without particles
   /// Reference for `mass` [kg]: sum over cells of |mass from the cell|, or the mean mass of the linear shape functions around.
   float gross{};
   Vec<D> force = Vec<D>::Zero();     ///< internal force and loads, without gravity [N]
@@ -35,12 +35,18 @@ struct alignas(64) NodeSum {
   {
     return std::tie(sum.momentum);
   }
-  static constexpr float unseen = std::numeric_limits<float>::infinity();
-  bool is_seen() const noexcept { return lightest < unseen; }
+  static constexpr float unseen = 0;  // all of an empty sum is zero, as in rows that have never been written (SparseRows)
+  bool is_seen() const noexcept { return lightest != unseen; }
+  /// Counts the lightest of other particles; there may be none, `unseen`.
+  void see_particles(float lightest_of_them) noexcept
+  {
+    if (lightest_of_them != unseen && (lightest == unseen || lightest_of_them < lightest))
+      lightest = lightest_of_them;
+  }
   NodeSum& operator+=(const NodeSum& other) noexcept
   {
     mass += other.mass;
-    lightest = std::min(lightest, other.lightest);
+    see_particles(other.lightest);
     gross += other.gross;
     momentum += other.momentum;
     force += other.force;
@@ -124,10 +130,10 @@ struct Kick {
 
 template <int D>
 struct Nodes {
-  std::vector<NodeSum<D>> sum;
-  std::vector<NodeMotion<D>> motion;
-  std::vector<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
-  std::vector<std::uint8_t> active;     ///< nodes with enough mass for a motion of their own
+  SparseRows<NodeSum<D>> sum;
+  SparseRows<NodeMotion<D>> motion;
+  SparseRows<NodeMotion<D>> remapped;  ///< MUSL: remapped velocity in `v`, velocity of the step in `change`
+  std::vector<std::uint8_t> active;    ///< nodes with enough mass for a motion of their own
   /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
   std::vector<std::uint8_t> bound;
   std::vector<std::uint8_t> slides;  ///< nodes that boundary conditions press against a wall with friction, and that slide

@@ -75,6 +75,8 @@ class NodesInUse {
       list();
   }
 
+  /// The number of nodes in use, rounded up to whole chunks.
+  Index size() const noexcept { return std::min(n_nodes_, static_cast<Index>(visited_.size()) * chunk); }
   /// Calls f(node) for all nodes in use, in parallel; f must not write data that another node reads.
   template <class F>
   void for_each(F&& f) const

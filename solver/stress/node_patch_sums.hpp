@@ -107,7 +107,8 @@ class NodePatchSums {
   void sum_block(const ParticleStrips<D>& strips, std::span<const Index> bodies, Index block, Add&& add)
   {
     const auto rows = blocks_.rows(block);
-    std::fill(rows.begin(), rows.end(), Row{});
+    if (blocks_.occupied[static_cast<std::size_t>(block)] != 0)  // those of other blocks are clear
+      std::fill(rows.begin(), rows.end(), Row{});
     bool occupied = false;
     for_each_cell_of(strips, bodies, block, [&](Index c, auto&& runs) {
       CornerPacks<K> corners{};
@@ -156,7 +157,7 @@ class NodePatchSums {
   NodesInUse in_use_;
   Halo<Row> halo_;
   HaloExchange copies_;
-  std::vector<Row> of_node_;
+  SparseRows<Row> of_node_;
 };
 
 }  // namespace talus

@@ -28,7 +28,7 @@ struct CellSums {
     for (std::size_t a = 0; a < slots.size(); ++a) {
       Sum& row = rows[slots[a]];
       row.mass += mass[a];
-      row.lightest = std::min(row.lightest, lightest);
+      row.see_particles(lightest);
       row.gross += static_cast<float>(std::abs(mass[a]));
       for (int i = 0; i < D; ++i) {
         row.momentum[i] += momentum[i][a];

@@ -125,7 +125,7 @@ class DirectStrips {
     deposit_directly<affine, loaded>(of_->kernel, m_.problem.mesh, columns, scratch_, block, of_->blocks, at_);
   }
   /// Opens the cell of a run with the motion of its nodes, and calls f(i, count) for its packs, with their weights.
-  void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const std::vector<NodeMotion<D>>& motion, auto&& f) noexcept
+  void for_each_pack(const CellRun<D>& run, const StripColumn<Vec<D>>& places, const SparseRows<NodeMotion<D>>& motion, auto&& f) noexcept
   {
     of_->kernel.open(m_.problem.mesh, run.frame->cell, at_.cell);
     at_.motion.read(motion, at_.cell.nodes, at_.cell.padded_size);

@@ -74,7 +74,7 @@ class Extension {
 
   /// Moves forces of the stress from extended nodes to their sources; stress_force(v) is -sum_n Z_n D_nv [N].
   template <class Force>
-  void move_forces(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use, HaloExchange& near, std::vector<NodeSum<D>>& sum,
+  void move_forces(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use, HaloExchange& near, SparseRows<NodeSum<D>>& sum,
                    Force&& stress_force)
   {
     parallel_for(static_cast<Index>(extended_.size()), [&](Index k) {
@@ -97,7 +97,7 @@ class Extension {
   }
 
   /// Finds the velocities of extended nodes for gradients of this motion.
-  void find_velocities(const OwnNodes& own, HaloExchange& near, std::vector<NodeMotion<D>>& motion)
+  void find_velocities(const OwnNodes& own, HaloExchange& near, SparseRows<NodeMotion<D>>& motion)
   {
     if (!any())
       return;

@@ -64,7 +64,9 @@ class Interfaces {
     }
     groups_ = kinds.size();
     place_.assign(static_cast<std::size_t>(any() ? mesh.n_nodes() : 0), none);
-    cells_.assign(any() ? groups_ : 0, std::vector<CellGroupSum<D>>(static_cast<std::size_t>(mesh.n_cells())));
+    cells_.clear();
+    for (std::size_t group = 0; any() && group < groups_; ++group)
+      cells_.emplace_back(static_cast<std::size_t>(mesh.n_cells()));
     mixed_.clear();
   }
 
@@ -120,7 +122,7 @@ class Interfaces {
     return force;
   }
   /// Computes the velocity gradients of the groups at mixed nodes.
-  void find_gradients(const Mesh<D>& mesh, const Extension<D>& extension, const std::vector<NodeMotion<D>>& nodes)
+  void find_gradients(const Mesh<D>& mesh, const Extension<D>& extension, const SparseRows<NodeMotion<D>>& nodes)
   {
     parallel_for(static_cast<Index>(mixed_.size()), [&](Index k) {
       const auto i = static_cast<std::size_t>(k);
@@ -141,12 +143,9 @@ class Interfaces {
                      group_of_body_[static_cast<std::size_t>(body)]];
   }
   std::size_t mixed_nodes() const noexcept { return mixed_.size(); }
-  std::size_t bytes() const noexcept
-  {
-    const std::size_t cells = cells_.empty() ? 0 : cells_.size() * cells_.front().size() * sizeof(CellGroupSum<D>);
-    return cells + place_.size() * sizeof(Index) + rows_.size() * sizeof(Vec<D>) + tension_.size() * sizeof(Symmetric<D>) +
-           gradient_.size() * sizeof(Mat<D>);
-  }
+  /// The memory of the sums of all cells [B], and of all else.
+  std::size_t bytes_of_cells() const noexcept { return cells_.empty() ? 0 : cells_.size() * bytes_of_all(cells_.front()); }
+  std::size_t bytes_of_nodes() const noexcept { return bytes_of_all(place_, rows_, tension_, gradient_); }
 
  private:
   static std::size_t vertex_of(const Mesh<D>& mesh, Index cell, Index n) noexcept
@@ -184,8 +183,8 @@ class Interfaces {
 
   std::size_t groups_ = 0;
   std::vector<std::size_t> group_of_body_;
-  std::vector<std::vector<CellGroupSum<D>>> cells_;  ///< by group and cell
-  std::vector<Index> mixed_, place_;                 ///< mixed nodes, ascending; of each node where it is among them, or `none`
+  std::vector<SparseRows<CellGroupSum<D>>> cells_;  ///< by group and cell
+  std::vector<Index> mixed_, place_;                ///< mixed nodes, ascending; of each node where it is among them, or `none`
   std::vector<std::size_t> first_row_;
   std::vector<Vec<D>> rows_;           ///< of each mixed node, by group
   std::vector<Symmetric<D>> tension_;  ///< of each mixed node, by group

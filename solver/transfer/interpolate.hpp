@@ -18,7 +18,7 @@ struct CellMotion {
   alignas(64) Real change[D][N];
 
   template <class Motion>
-  void read(const std::vector<Motion>& motion, std::span<const Index> nodes, int padded_size) noexcept
+  void read(const SparseRows<Motion>& motion, std::span<const Index> nodes, int padded_size) noexcept
   {
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       const Motion& row = motion[static_cast<std::size_t>(nodes[a])];

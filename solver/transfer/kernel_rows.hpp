@@ -32,12 +32,12 @@ struct KernelRows {
   BlockRows<D, Sum> blocks;
   Halo<Sum> halo;
   GhostNodes ghosts;
-  Rows<CellMoments<D>> moments;  ///< MUSL, if weights are barycentric coordinates: of each cell
+  SparseRows<CellMoments<D>> moments;  ///< MUSL, if weights are barycentric coordinates: of each cell
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
   Interfaces<D> interfaces;
   Extension<D> extension;
-  std::vector<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
+  SparseRows<Mat<D>> gradient_of_remapped;  ///< MUSL: gradient of the remapped velocities on each linear shape function [1/s]
 
   KernelRows(const Mesh<D>& mesh, const K& of_kernel, std::size_t number)
       : kernel(of_kernel),
@@ -51,12 +51,13 @@ struct KernelRows {
     }
   }
 
-  /// The memory [B], without that of the halo.
-  std::int64_t bytes() const
+  /// The memory [B], without that of the halo, where these shares of the nodes are in use and of the blocks hold particles.
+  std::int64_t bytes(Real of_nodes, Real of_blocks) const
   {
-    const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
-    return of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot) +
-           static_cast<std::int64_t>(interfaces.bytes() + extension.bytes());
+    const Real in_use = of_nodes * static_cast<Real>(bytes_of_all(gradient_of_remapped, projected.sum, projected.motion)) +
+                        of_blocks * static_cast<Real>(bytes_of_all(moments, blocks.row) + interfaces.bytes_of_cells());
+    return static_cast<std::int64_t>(in_use) +
+           static_cast<std::int64_t>(bytes_of_all(blocks.slot) + interfaces.bytes_of_nodes() + extension.bytes());
   }
 };
 

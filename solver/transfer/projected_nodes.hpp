@@ -11,8 +11,8 @@ namespace talus {
 
 template <int D>
 struct ProjectedNodes {
-  std::vector<ProjectedNodeSum<D>> sum;
-  std::vector<ProjectedNodeMotion<D>> motion;
+  SparseRows<ProjectedNodeSum<D>> sum;
+  SparseRows<ProjectedNodeMotion<D>> motion;
   std::vector<std::uint8_t> late;  ///< several ranks: linear shape functions that use nodes of other ranks
   void find_late(const Mesh<D>& mesh, const OwnNodes& own)
   {
@@ -31,7 +31,7 @@ struct ProjectedNodes {
 /// mass of a node is the mean mass of the linear shape functions around.  At nodes between materials Z_n D_nv is the sum over these.
 template <int D>
 void project_sums(const NodeOperators<D>& operators, const Interfaces<D>& interfaces, const Mesh<D>& mesh, const OwnNodes& own,
-                  const std::vector<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, std::vector<NodeSum<D>>& sum)
+                  const SparseRows<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, SparseRows<NodeSum<D>>& sum)
 {
   in_use.for_each([&](Index v) {
     NodeSum<D>& total = sum[static_cast<std::size_t>(v)] = {};
@@ -46,7 +46,7 @@ void project_sums(const NodeOperators<D>& operators, const Interfaces<D>& interf
       if (!projected_node.is_seen())
         return;
       total.mass += S * projected_node.mass;
-      total.lightest = std::min(total.lightest, projected_node.lightest);
+      total.see_particles(projected_node.lightest);
       total.momentum += S * projected_node.momentum_about(mesh.node(v) - operators.centre(n));
       total.force += S * projected_node.force;
       total.force -= interfaces.is_mixed(n) ? interfaces.pull(mesh, n, v) : projected_node.tension * gradient;
@@ -58,7 +58,7 @@ void project_sums(const NodeOperators<D>& operators, const Interfaces<D>& interf
 /// The force of the stress on node v, -sum_n Z_n D_nv [N].
 template <int D>
 Vec<D> stress_force(const NodeOperators<D>& operators, const Interfaces<D>& interfaces, const Mesh<D>& mesh,
-                    const std::vector<ProjectedNodeSum<D>>& projected, Index v)
+                    const SparseRows<ProjectedNodeSum<D>>& projected, Index v)
 {
   Vec<D> force = Vec<D>::Zero();
   operators.for_each_in_column(v, [&](Index n, Real, const Vec<D>& gradient) {
@@ -72,7 +72,7 @@ Vec<D> stress_force(const NodeOperators<D>& operators, const Interfaces<D>& inte
 /// The momentum only.
 template <int D>
 void project_momentum(const NodeOperators<D>& operators, const Mesh<D>& mesh, const OwnNodes& own,
-                      const std::vector<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, std::vector<NodeSum<D>>& sum)
+                      const SparseRows<ProjectedNodeSum<D>>& projected, const NodesInUse& in_use, SparseRows<NodeSum<D>>& sum)
 {
   in_use.for_each([&](Index v) {
     if (!own.has(v))
@@ -136,7 +136,7 @@ void filter_acceleration(const NodeOperators<D>& operators, const OwnNodes& own,
 /// arrive() receives the motion of nodes of other ranks.
 template <int D, class Arrive>
 void project_motion(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use,
-                    const std::vector<NodeMotion<D>>& nodes, Arrive&& arrive, ProjectedNodes<D>& projected)
+                    const SparseRows<NodeMotion<D>>& nodes, Arrive&& arrive, ProjectedNodes<D>& projected)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>& row) {
     ProjectedNodeMotion<D> projected_node;
@@ -153,8 +153,8 @@ void project_motion(const NodeOperators<D>& operators, const Extension<D>& exten
 /// Gradients of the remapped velocities on the linear shape functions that particles use.
 template <int D, class Arrive>
 void project_gradient(const NodeOperators<D>& operators, const Extension<D>& extension, const NodesInUse& in_use,
-                      const std::vector<NodeMotion<D>>& remapped, Arrive&& arrive, ProjectedNodes<D>& projected,
-                      std::vector<Mat<D>>& gradients)
+                      const SparseRows<NodeMotion<D>>& remapped, Arrive&& arrive, ProjectedNodes<D>& projected,
+                      SparseRows<Mat<D>>& gradients)
 {
   for_each_seen_hat(in_use, projected, arrive, [&](Index n, ProjectedNodeMotion<D>&) {
     Mat<D> L = Mat<D>::Zero();

@@ -180,11 +180,18 @@ class TransferOf final : public Transfer<D> {
       return 0;
   }
 
-  std::int64_t bytes() const override
+  std::int64_t bytes(const Model<D>& m) const override
   {
     std::int64_t bytes = 0;
-    for (const Rows& of : fields_)
-      bytes += of.bytes();
+    for (const Rows& of : fields_) {
+      const Nodes<D>& nodes = nodes_of(m, of);
+      NodesInUse in_use = nodes.in_use;
+      in_use.find(of.blocks.occupied, !m.problem.loads.on_mesh.empty());
+      const Real of_nodes = static_cast<Real>(in_use.size()) / static_cast<Real>(m.problem.mesh.n_nodes());
+      const Real of_blocks = static_cast<Real>(std::ranges::count(of.blocks.occupied, 1)) / static_cast<Real>(of.blocks.size());
+      bytes += of.bytes(of_nodes, of_blocks) +
+               static_cast<std::int64_t>(of_nodes * static_cast<Real>(bytes_of_all(nodes.sum, nodes.motion, nodes.remapped)));
+    }
     if constexpr (Rows::projects)
       bytes += static_cast<std::int64_t>(kernel_.node_operators().size_bytes());
     return bytes;

@@ -191,7 +191,7 @@ void add_to(const CornerSums<D, Of>& sums, const CellFrame<D>& frame, std::span<
   for (std::size_t a = 0; a <= D; ++a) {
     Row& row = rows[slots[a]];
     const Real* const of = sums.of[a];
-    row.lightest = std::min(row.lightest, lightest);
+    row.see_particles(lightest);
     row.momentum += Eigen::Map<const Vec<D>>(of);
     if constexpr (affine)
       for (int j = 0; j < D; ++j)
@@ -240,7 +240,7 @@ void add_volume(const StripColumn<Real>& volume, const CellRun<D>& run, const St
 /// their cells and to the sums of its group; find_shares() has been called.
 template <bool affine, bool loaded, bool with_moments, int D, class Row>
 TALUS_ONE_COPY void deposit_strip(const StripColumns<D>& columns, std::size_t n, StripScratch<D>& scratch, Index block,
-                                  BlockRows<D, Row>& blocks, Rows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
+                                  BlockRows<D, Row>& blocks, SparseRows<CellMoments<D>>& moments, Index body, Interfaces<D>& interfaces,
                                   bool with_volume) noexcept
 {
   using Of = Contribution<D, affine, loaded, with_moments>;

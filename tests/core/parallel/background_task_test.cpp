@@ -59,6 +59,23 @@ TEST(BackgroundTask, AnExceptionIsThrownOnceByTheNextCall)
   EXPECT_FALSE(done);
 }
 
+TEST(BackgroundTask, OthersCanWaitForItsEndAndItsException)
+{
+  BackgroundTask task;
+  EXPECT_FALSE(task.result().valid());
+  std::promise<void> go_on;
+  task.start([&] {
+    go_on.get_future().wait();
+    throw std::runtime_error("the disk is full");
+  });
+  auto other = std::async(std::launch::async, [end = task.result()] { end.get(); });
+  EXPECT_EQ(other.wait_for(std::chrono::milliseconds(20)), std::future_status::timeout);
+  go_on.set_value();
+  EXPECT_THROW(other.get(), std::runtime_error);
+  EXPECT_THROW(task.wait(), std::runtime_error);
+  EXPECT_FALSE(task.result().valid());
+}
+
 TEST(BackgroundTask, TheDestructorWaitsAndReleasesTheWork)
 {
   const auto held = std::make_shared<int>(0);

@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "core/parallel/communicator.hpp"
 #include "io/checkpoint/array_file.hpp"
+#include "io/checkpoint/kept_arrays.hpp"
 #include "io/files/atomic_file.hpp"
 #include "tests/io/bytes.hpp"
 #include "tests/io/checkpoint/small_array_file.hpp"
@@ -246,6 +247,20 @@ TEST(ArrayFile, SameCallsMakeTheSameBytes)
   write_small(folder / "a.h5");
   write_small(folder / "b.h5");
   EXPECT_EQ(bytes_of(folder / "a.h5"), bytes_of(folder / "b.h5"));
+}
+
+TEST(ArrayFile, ArraysThatWereKeptMakeTheSameBytes)
+{
+  const ScratchFolder folder;
+  write_small(folder / "at_once.h5");
+  KeptArrays kept;
+  write_small_to(kept);
+  for (const char* const name : {"kept.h5", "again.h5"}) {
+    ArrayWriter writer(folder / name);
+    kept.write_to(writer);
+    writer.close();
+    EXPECT_TRUE(read_whole(folder / name) == read_whole(folder / "at_once.h5")) << name;
+  }
 }
 
 TEST(ArrayFile, SeveralFilesAreOpenAtOnce)

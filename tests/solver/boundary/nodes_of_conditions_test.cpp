@@ -204,8 +204,8 @@ TEST(NodesAtWalls, HatsAndSlavesArePushedWithTheirOwnMass)
   square.hold("x_min", PrescribedVelocity<2>{{Vec<2>(3, 1)}});
   square.walls.finalize();
   const std::size_t n = square.node({0, 0.5}), unseen = square.node({0, 1});
-  std::vector<ProjectedNodeSum<2>> sums(square.nodes.sum.size());
-  std::vector<ProjectedNodeMotion<2>> projected(sums.size());
+  SparseRows<ProjectedNodeSum<2>> sums(square.nodes.sum.size());
+  SparseRows<ProjectedNodeMotion<2>> projected(sums.size());
   sums[n].mass = 5, sums[n].lightest = 1;
   projected[n].v = {1, 1};
   square.walls.apply(Square::kick, sums, projected, square.work);

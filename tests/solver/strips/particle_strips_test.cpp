@@ -74,6 +74,28 @@ TEST(ParticleStrips, GiveBackEveryNumber)
   EXPECT_EQ(differences(particles_by_id(m), before), none_differ);
 }
 
+TEST(ParticleStrips, ACopyIsThatOfTheColumnsAndLaterStepsDoNotChangeIt)
+{
+  auto m = swirl<3>({.scheme = Scheme::aflip}), other = swirl<3>({.scheme = Scheme::aflip});
+  EXPECT_FALSE(take_copy(m)) << "the particles are in their columns only";
+  for (int step = 0; step < 3; ++step)
+    make_step(m, dt), make_step(other, dt);
+  auto copy = take_copy(m);
+  ASSERT_TRUE(copy);
+  EXPECT_EQ(m.state.particles.size(), 0);
+  EXPECT_EQ(m.state.materials[1].history.size(), 0);
+  make_step(m, dt);
+  copy_to_columns(other);
+  const auto then = particles_by_id(other);
+  drop_copy(other);
+  make_step(other, dt);
+  end_sweeps(m), end_sweeps(other);
+  EXPECT_EQ(differences(particles_by_id(m), particles_by_id(other)), none_differ) << "the steps go on as without a copy";
+  EXPECT_NE(differences(then, particles_by_id(other)), none_differ);
+  m.state.bodies = std::move(copy->bodies), m.state.materials = std::move(copy->materials), m.state.particles = std::move(copy->particles);
+  EXPECT_EQ(differences(particles_by_id(m), then), none_differ);
+}
+
 TEST(ParticleStrips, AStripGrowsWithItsParticles)
 {
   // All particles run into one corner of the box.

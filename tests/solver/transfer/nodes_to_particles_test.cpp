@@ -54,7 +54,7 @@ TEST(ReadBack, TheFieldOfApicLeavesNoMoment)
   const K kernel(mesh);
   std::mt19937 random(7);
   std::uniform_real_distribution<Real> number(-1, 1);
-  std::vector<NodeMotion<2>> rows(static_cast<std::size_t>(mesh.n_nodes()));
+  SparseRows<NodeMotion<2>> rows(static_cast<std::size_t>(mesh.n_nodes()));
   for (auto& row : rows)
     row.v = {number(random), number(random)};
   int inside = 0;
