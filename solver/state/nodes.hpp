@@ -132,6 +132,7 @@ struct Nodes {
   std::vector<std::uint8_t> bound;
   std::vector<std::uint8_t> slides;  ///< nodes that boundary conditions press against a wall with friction, and that slide
   std::vector<Vec<D>> felt;          ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
+  std::vector<Vec<D>> surface_loads;  ///< forces of loads on surfaces that cut cells [N]; empty without such loads
   Vec<D> gravity = Vec<D>::Zero();   ///< gravity in the present step [m/s^2]
   Real kick{};                       ///< time over which forces act, from the old velocities to the new ones [s]
   NodesInUse in_use;

@@ -9,6 +9,7 @@
 #include "solver/transfer/extension.hpp"
 #include "solver/transfer/interfaces.hpp"
 #include "solver/transfer/projected_nodes.hpp"
+#include "solver/transfer/surface_rows.hpp"
 
 namespace talus {
 
@@ -32,6 +33,7 @@ struct KernelRows {
   BlockRows<D, Sum> blocks;
   Halo<Sum> halo;
   GhostNodes ghosts;
+  SurfaceRows<D> surfaces;       ///< loads on surfaces that cut cells
   Rows<CellMoments<D>> moments;  ///< MUSL, if weights are barycentric coordinates: of each cell
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
@@ -56,7 +58,7 @@ struct KernelRows {
   {
     const auto of = [](const auto& column) { return static_cast<std::int64_t>(column.size() * sizeof(column[0])); };
     return of(moments) + of(gradient_of_remapped) + of(projected.sum) + of(projected.motion) + of(blocks.row) + of(blocks.slot) +
-           static_cast<std::int64_t>(interfaces.bytes() + extension.bytes());
+           static_cast<std::int64_t>(interfaces.bytes() + extension.bytes() + surfaces.bytes());
   }
 };
 
