@@ -260,9 +260,9 @@ class TransferOf final : public Transfer<D> {
     Nodes<D>& nodes = nodes_of(m, of);
     of.extension.find_rows(m.problem.mesh, operators, m.problem.own, nodes, of.ghosts.near,
                            [&](Index n) { return of.projected.sum[static_cast<std::size_t>(n)].volume; });
-    of.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, of.ghosts.near, nodes.sum,
-                             [&](Index v) { return stress_force(operators, of.interfaces, m.problem.mesh, of.projected.sum, v); },
-                             nodes.surface_loads);
+    of.extension.move_forces(
+        m.problem.mesh, m.problem.own, nodes.in_use, of.ghosts.near, nodes.sum,
+        [&](Index v) { return stress_force(operators, of.interfaces, m.problem.mesh, of.projected.sum, v); }, nodes.surface_loads);
   }
   /// Adds the forces of loads on surfaces that cut cells.
   void add_surface_loads(Model<D>& m, Rows& of)

@@ -136,7 +136,7 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"surface_loads", surfaces});
   surfaces.more = "projected: {surfaces: extended}\n";
   all.push_back({"surface_loads_extended", surfaces});
-  surfaces.more = "contacts: [{bodies: [low, high], friction: 0.3}]\n";
+  surfaces.more = "contacts: [{between: [low, high], friction: 0.3}]\n";
   all.push_back({"surface_loads_in_contact", surfaces});
   surfaces.more = "kernel: umls\ntransfer: {scheme: aflip}\n";
   all.push_back({"surface_loads_umls", surfaces});

@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-namespace talus::testing::body_sides_test {
+namespace talus::body_sides_test {
 namespace {
 
 using ::testing::ElementsAre;
@@ -91,4 +91,4 @@ TEST(BodySides, OfABoxAreItsFaces)
 }
 
 }  // namespace
-}  // namespace talus::testing::body_sides_test
+}  // namespace talus::body_sides_test
