@@ -32,6 +32,7 @@ CASES = [
     "manufactured_solution",
     "generalized_vortex",
     "patch_test",
+    "loaded_surface",
     "rigid_motion",
     "sliding_block",
     "colliding_disks",

@@ -104,6 +104,8 @@ void record_node_sums(Model<D>& m)
     add_ranges(blocks, work.sums.nodes, [&](Index n) { return node_work(state.stage.damping, problem.mesh, nodes, n); });
     add_ranges(blocks, work.sums.balance, [&](Index n) { return balance_at(state.stage.seeks_rest, nodes, n); });
     add_work(problem.loads, time, state.stage.ramp(time), problem.own, nodes, work.sums.work_on_mesh);
+    if (!problem.loads.on_surfaces.empty())
+      add_ranges(blocks, work.sums.work_on_mesh, [&](Index n) { return surface_work(nodes, n); });
   }
   work.contact.add_sums(problem.mesh, work.fields, work.sums.contacts);
 }

@@ -22,6 +22,7 @@ struct RunView {
   std::int64_t nodes_as_corners;  ///< nodes of this rank that the kernel treats as corners, because no positive weights exist there
   /// Loads that acted on particles in the last step, of each body in each block (CellOrder::key()); empty in scenes without such loads.
   std::span<const ParticleLoadSums<D>> loads = {};
+  std::span<const ExactSums<ForceAndMoment<D>>> on_surfaces = {};  ///< forces in the last step of each load on a surface, of this rank [N]
   const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
   std::function<void()> fetch_particles = [] {};  ///< to be called before particles are read during a stage
   /// The particles for a reader of its own, see take_copy(Model): those of `state` are there after fetch_particles() only, again.  Nothing
@@ -40,6 +41,7 @@ RunView<D> view_of(const Model<D>& m, const Stage& stage)
           .migrated = m.work.migration.moved(),
           .nodes_as_corners = m.transfer->nodes_as_corners(m.problem.own),
           .loads = m.work.load_sums,
+          .on_surfaces = m.work.on_surfaces,
           .strips = m.work.strips ? &*m.work.strips : nullptr};
 }
 

@@ -17,15 +17,19 @@ BodySums<D> sums_of_body(const RunView<D>& view, Index body)
   return sum.value();
 }
 
-/// The loads that acted on the particles of a body in the last step, without those that left the mesh before it [N].  Collective.
+/// The loads that acted on the particles and the surface of a body in the last step, without particles that left the mesh before it [N].
+/// Collective.
 template <int D>
 Vec<D> loads_on_body(const RunView<D>& view, std::size_t body)
 {
-  if (view.loads.empty())
+  if (view.loads.empty() && view.on_surfaces.empty())
     return Vec<D>::Zero();
   ExactSums<ForceAndMoment<D>> sum;
-  for (Index block = 0; block < view.order.blocks; ++block)
+  for (Index block = 0; !view.loads.empty() && block < view.order.blocks; ++block)
     sum.add(view.loads[view.order.key(static_cast<Index>(body), block)].force);
+  for (std::size_t k = 0; k < view.on_surfaces.size(); ++k)
+    if (view.problem.loads.on_surfaces[k].body == static_cast<Index>(body))
+      sum.add(view.on_surfaces[k]);
   view.problem.ranks->sum(sum);
   return sum.value().linear;
 }

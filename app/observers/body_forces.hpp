@@ -20,7 +20,7 @@ struct BodySums {
   }
 };
 
-/// The impulse on a body since the start of the run, without gravity and loads carried by its particles.
+/// The impulse on a body since the start of the run, without gravity and loads carried by its particles or on its surface.
 template <int D>
 struct BodyImpulse {
   Vec<D> given = Vec<D>::Zero();  ///< impulse [N s]
@@ -30,7 +30,7 @@ struct BodyImpulse {
 };
 
 /// Tracks the momentum of every body through each step.  All bodies share one velocity at a node, so there are no explicit contact forces.
-/// The change of the momentum of a body in a step, minus gravity on its mass and the loads on its particles, is the impulse of walls and
+/// The change of the momentum of a body in a step, minus gravity on its mass and the loads on its particles and surface, is that of walls and
 /// other bodies on it:
 ///
 ///     I_b += P_b(new) - P_b(old) + (momentum of its particles that were deleted) - kick (m_b g + f_b)

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "app/setup/expression.hpp"
+#include "app/setup/surface_loads.hpp"
 #include "core/parallel/communicator.hpp"
 
 namespace talus {
@@ -45,9 +46,9 @@ void join(Communicator& ranks, ParticleTraction<D>& load)
 template <int D>
 class LoadBuilder {
  public:
-  LoadBuilder(const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start, Communicator& ranks,
-              SceneErrorCollector& errors, Setup<D>& setup)
-      : mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), errors_(errors), setup_(setup)
+  LoadBuilder(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start,
+              Communicator& ranks, SceneErrorCollector& errors, Setup<D>& setup)
+      : scene_(scene), mesh_(mesh), has_particles_(has_particles), at_start_(at_start), ranks_(ranks), errors_(errors), setup_(setup)
   {}
 
   void operator()(const GravitySpec& spec) { setup_.conditions.loads.gravity = {vector_of<D>(spec.acceleration), spec.table}; }
@@ -80,8 +81,17 @@ class LoadBuilder {
   void operator()(const TractionSpec& spec)
   {
     const auto found = mesh_.facet_set(spec.on);
-    if (!found)
-      return errors_.unknown_group(spec.where, "on", "facet", spec.on, mesh_.facet_set_names());
+    if (!found) {
+      if (const BodySpec* body = body_of_side(scene_, spec.on))
+        return add_surface_load(*body, spec, mesh_, ranks_, errors_, setup_);
+      std::vector<std::string> known = mesh_.facet_set_names();
+      for (std::string& side : sides_of_bodies<D>(scene_))
+        known.push_back(std::move(side));
+      return errors_.unknown_group(spec.where, "on", "facet", spec.on, std::move(known));
+    }
+    if (spec.water_level)
+      return errors_.add(spec.where, "water_level",
+                         fmt::format("\"{}\" is a facet group: water acts on sides of bodies that fill a shape, BODY:SIDE", spec.on));
     const std::vector<Facet> facets = at_start_.orient_facets(*found);
     Real area = 0, loaded = 0;
     for (const Facet& facet : facets) {
@@ -113,6 +123,7 @@ class LoadBuilder {
     return load;
   }
 
+  const Scene& scene_;
   const Mesh<D>& mesh_;
   const CellOccupancy<D>&has_particles_, &at_start_;
   Communicator& ranks_;
@@ -126,7 +137,7 @@ template <int D>
 void add_loads(const Scene& scene, const Mesh<D>& mesh, const CellOccupancy<D>& has_particles, const CellOccupancy<D>& at_start,
                Communicator& ranks, SceneErrorCollector& errors, Setup<D>& setup)
 {
-  LoadBuilder<D> builder(mesh, has_particles, at_start, ranks, errors, setup);
+  LoadBuilder<D> builder(scene, mesh, has_particles, at_start, ranks, errors, setup);
   for (const LoadSpec& load : scene.loads)
     std::visit(builder, load);
 }

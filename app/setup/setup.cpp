@@ -98,6 +98,9 @@ Real driven_speed(const Mesh<D>& mesh, const Setup<D>& setup, Communicator& rank
   };
   std::ranges::for_each(setup.conditions.loads.on_particles, press);
   std::ranges::for_each(setup.conditions.loads.on_mesh, press);
+  for (const SurfaceLoad<D>& load : setup.conditions.loads.on_surfaces)
+    pressure = std::max(pressure, (load.traction.norm() + std::abs(load.pressure) * load.largest_height(mesh.low()[D - 1])) *
+                                      load.table.largest_magnitude());
   if (pressure > 0) {
     Real layer = std::numeric_limits<Real>::infinity();  // [kg/m^2]
     for (Index row = 0; row < setup.state.particles.size(); ++row) {

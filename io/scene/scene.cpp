@@ -58,7 +58,7 @@ void TimeSpec::check(std::vector<std::string>& problems) const
 
 void TractionSpec::check(std::vector<std::string>& problems) const
 {
-  exactly_one("traction or pressure", !traction.empty() + pressure.has_value(), problems);
+  exactly_one("traction, pressure or water_level", !traction.empty() + pressure.has_value() + water_level.has_value(), problems);
 }
 
 void GeostaticSpec::check(std::vector<std::string>& problems) const

@@ -49,24 +49,29 @@ struct BodyForceSpec {
 enum class Carrier : std::uint8_t { particles, mesh };
 constexpr std::array<std::string_view, 2> enum_names(Carrier) { return {"particles", "mesh"}; }
 
-/// A force per area on a facet group: exactly one of traction and pressure.
+/// A force per area on a facet group or a side of a body: exactly one of traction, pressure and water level.
 struct TractionSpec {
   static constexpr std::string_view name = "traction";
   std::string on;
   std::vector<Real> traction;
-  std::optional<Real> pressure;
+  std::optional<Real> pressure, water_level;
+  Real unit_weight = 9810;
   Carrier carried_by = Carrier::particles;
   Table table;
   SourceLocation where;
   static constexpr auto fields()
   {
     return std::tuple{
-        required("on", &TractionSpec::on, any, "-", "facet group"),
+        required("on", &TractionSpec::on, any, "-",
+                 "facet group, or BODY:SIDE, a side of the shape that a body fills, wherever it cuts cells: see sides of bodies"),
         optional("traction", &TractionSpec::traction, any, "Pa", "force per initial area, fixed direction, one number per dimension"),
         optional("pressure", &TractionSpec::pressure, any, "Pa", "pressure normal to the surface as it deforms, positive pushes"),
-        optional_choice(
-            "carried_by", &TractionSpec::carried_by,
-            "particles: the first layer of particles behind the facets carries the load and takes it along; mesh: the facets keep it"),
+        optional("water_level", &TractionSpec::water_level, any, "m",
+                 "instead of a pressure, on a side of a body: that of water outside, unit_weight times the depth below this height"),
+        optional("unit_weight", &TractionSpec::unit_weight, positive, "N/m^3", "of that water"),
+        optional_choice("carried_by", &TractionSpec::carried_by,
+                        "of facets. particles: the first layer of particles behind them carries the load and takes it along; mesh: the "
+                        "facets keep it"),
         optional("table", &TractionSpec::table, any, "-", "factor in time: list of [time, factor]")};
   }
   void check(std::vector<std::string>& problems) const;

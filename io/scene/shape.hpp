@@ -68,8 +68,8 @@ struct Polygon {
         optional("holes", &Polygon::holes, any, "m", "polygons inside that are left out, each a list of corners [x, y]"),
         optional(
             "sides", &Polygon::sides, any, "-",
-            "regions only: names of the sides, the first from the first corner to the second; sides of one name are one. Facets of the "
-            "region on a side are the group REGION:NAME, those at hole number i REGION:hole_i")};
+            "names of the sides, the first from the first corner to the second; sides of one name are one. Facets of a region on a side "
+            "are the group REGION:NAME, those at hole number i REGION:hole_i; loads act on BODY:NAME and BODY:hole_i")};
   }
   void check(std::vector<std::string>& problems) const;
 };

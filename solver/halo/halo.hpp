@@ -65,8 +65,9 @@ class Halo {
   /// The exchange of a single rank: all blocks are inner blocks.
   explicit Halo(Index blocks) : inner_(static_cast<std::size_t>(blocks)) { std::iota(inner_.begin(), inner_.end(), 0); }
   template <int D>
-  Halo(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const BlockRows<D, Sum>& blocks)
-      : messages_(ranks, MessageTag::rows, find_row_borders(ranks, mesh, subdomain, blocks))
+  Halo(Communicator& ranks, const Mesh<D>& mesh, const Subdomain& subdomain, const BlockRows<D, Sum>& blocks,
+       MessageTag topic = MessageTag::rows)
+      : messages_(ranks, topic, find_row_borders(ranks, mesh, subdomain, blocks))
   {
     std::vector<std::uint8_t> outer(static_cast<std::size_t>(blocks.size()), 0);
     for (const NeighbourRank& border : messages_.borders())

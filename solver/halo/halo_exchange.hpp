@@ -24,7 +24,8 @@ enum class MessageTag : int {
   near = 9,
   contact_nodes = 10,
   contact_cells = 11,
-  contact_reach = 12
+  contact_reach = 12,
+  surfaces = 13
 };
 
 /// Selects the parts of a row to be sent: the whole row.

@@ -1,5 +1,6 @@
 #pragma once
-// Loads: gravity at the nodes, body forces depending on position and time, tractions carried by particles or by facets of the mesh.
+// Loads: gravity at the nodes, body forces depending on position and time, tractions carried by particles, by facets of the mesh or by the
+// surface of a body.
 #include <functional>
 #include <span>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/particles.hpp"
 #include "core/time_table.hpp"
 #include "mesh/mesh.hpp"
+#include "solver/loads/surface_load.hpp"
 #include "solver/state/ledger.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/owned_nodes.hpp"
@@ -63,6 +65,7 @@ struct Loads {
   std::vector<BodyForce<D>> of_place;
   std::vector<ParticleTraction<D>> on_particles;
   std::vector<MeshTraction<D>> on_mesh;
+  std::vector<SurfaceLoad<D>> on_surfaces;
   bool any_on_particles() const noexcept { return !of_place.empty() || !on_particles.empty(); }
 };
 

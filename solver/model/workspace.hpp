@@ -31,7 +31,8 @@ struct Workspace {
   StepSums<D> sums;                      ///< sums of the present step
   // Sums over the particles of each body in each block.
   std::vector<StressSums> stress_sums;
-  std::vector<ParticleLoadSums<D>> load_sums;  ///< used if loads act on particles
+  std::vector<ParticleLoadSums<D>> load_sums;             ///< used if loads act on particles
+  std::vector<ExactSums<ForceAndMoment<D>>> on_surfaces;  ///< forces of each load on a surface, of the own nodes [N]
 
   std::vector<AveragedBodies<D>> averaged;  ///< bodies that average their volumes, while particles are in strips
   std::optional<HeatSums<D>> heat;          ///< used if a body conducts heat

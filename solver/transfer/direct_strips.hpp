@@ -81,6 +81,49 @@ TALUS_ONE_COPY void deposit_directly(const K& kernel, const Mesh<D>& mesh, const
   }
 }
 
+/// Adds the virtual stress of a load to the rows of a block, through the weights of the particles of all runs that stay.
+template <int D, Kernel<D> K>
+TALUS_ONE_COPY void add_virtual_stress(const K& kernel, const Mesh<D>& mesh, const SurfaceLoad<D>& load, const StripColumns<D>& columns,
+                                       StripScratch<D>& scratch, Index block, BlockRows<D, SurfaceSum<D>>& blocks,
+                                       DirectCell<D, K>& at) noexcept
+{
+  const std::span<SurfaceSum<D>> rows = blocks.rows(block);
+  for (const CellRun<D>& run : scratch.runs) {
+    kernel.open(mesh, run.frame->cell, at.cell);
+    const std::span<const std::uint16_t> slots = blocks.slots(run.frame->cell);
+    for (std::size_t i = run.begin; i < run.end; i += pack_size) {
+      const int count = run.count(i);
+      Pack x[D];
+      at.place(kernel, columns.x, i, count, scratch.stays.data(), x);
+      for (int lane = 0; lane < count; ++lane) {
+        const std::size_t p = i + static_cast<std::size_t>(lane);
+        if (scratch.stays[p] == 0)
+          continue;
+        NodeWeights<D, K::max_nodes> of;
+        at.weights.spell_out(lane, of);
+        if constexpr (HasSlopesOfValues<K, D>)
+          if (pairs_force_with_slopes<D>(kernel)) {
+            alignas(64) Real slopes[D][K::max_nodes];
+            kernel.slopes_of_values(at.cell, x, lane, at.weights, slopes);
+            for (int d = 0; d < D; ++d)
+              std::copy_n(slopes[d], at.weights.padded_size[lane], of.dw[d]);
+          }
+        const Real volume = columns.volume.of(p);
+        const VirtualStress<D> stress =
+            virtual_stress<D>(load, columns.id[p], columns.F.of(p).template topLeftCorner<D, D>(), columns.volume0.of(p), volume);
+        for (std::size_t a = 0; a < slots.size(); ++a) {
+          SurfaceSum<D>& row = rows[slots[a]];
+          for (int d = 0; d < D; ++d)
+            row.force += stress.tension.col(d) * of.dw[d][a];
+          const Real share = std::abs(of.w[a]) * volume;
+          row.volume += share;
+          row.depth += share * stress.depth;
+        }
+      }
+    }
+  }
+}
+
 /// The particles of one block.  VertexStrips has the same interface.
 template <int D, Kernel<D> K>
 class DirectStrips {
@@ -107,6 +150,10 @@ class DirectStrips {
       columns.applied ? add<true, true>(columns, block) : add<true, false>(columns, block);
     else
       columns.applied ? add<false, true>(columns, block) : add<false, false>(columns, block);
+  }
+  void add_surface_load(const SurfaceLoad<D>& load, const StripColumns<D>& columns, Index block, BlockRows<D, SurfaceSum<D>>& blocks)
+  {
+    add_virtual_stress(of_->kernel, m_.problem.mesh, load, columns, scratch_, block, blocks, at_);
   }
   /// MUSL: new velocities and the affine field; adds their momentum to the rows of the block with the same weights.
   void return_momentum(StripColumns<D>& columns, Real pic, Index block) noexcept

@@ -72,14 +72,17 @@ class Extension {
     std::ranges::copy_if(candidates_, std::back_inserter(extended_), [&](Index n) { return extends_[static_cast<std::size_t>(n)] != 0; });
   }
 
-  /// Moves forces of the stress from extended nodes to their sources; stress_force(v) is -sum_n Z_n D_nv [N].
+  /// Moves forces of the stress from extended nodes to their sources; stress_force(v) is -sum_n Z_n D_nv [N].  So it does with `loads` on
+  /// surfaces [N] by node, which may be empty.
   template <class Force>
   void move_forces(const Mesh<D>& mesh, const OwnNodes& own, const NodesInUse& in_use, HaloExchange& near, SparseRows<NodeSum<D>>& sum,
-                   Force&& stress_force)
+                   Force&& stress_force, SparseRows<Vec<D>>& loads)
   {
     parallel_for(static_cast<Index>(extended_.size()), [&](Index k) {
-      ExtendedNode& node = nodes_[static_cast<std::size_t>(extended_[static_cast<std::size_t>(k)])];
+      const auto n = static_cast<std::size_t>(extended_[static_cast<std::size_t>(k)]);
+      ExtendedNode& node = nodes_[n];
       node.force = node.row.tangential(stress_force(extended_[static_cast<std::size_t>(k)]));
+      node.load = loads.empty() ? Vec<D>(Vec<D>::Zero()) : node.row.tangential(loads[n]);
     });
     if (!near.borders().empty())
       exchange_rows_of_ghosts(mesh, near);
@@ -92,6 +95,11 @@ class Extension {
       for (const Index entry : targets_[target]) {
         const ExtendedNode& node = nodes_[static_cast<std::size_t>(owner_of_entry_[static_cast<std::size_t>(entry)])];
         to.force += share_[static_cast<std::size_t>(entry)] * node.force;
+        if (!loads.empty()) {
+          const Vec<D> moved = share_[static_cast<std::size_t>(entry)] * node.load;
+          to.force += moved;
+          loads[static_cast<std::size_t>(target)] += moved;
+        }
       }
     });
   }
@@ -135,15 +143,15 @@ class Extension {
   }
 
  private:
-  /// The row of a node, and the force of the stress along the surface there [N].
+  /// The row of a node, and the forces of the stress and of loads on the surface along it there [N].
   struct ExtendedNode {
     ExtensionRow<D> row;
-    Vec<D> force = Vec<D>::Zero();
+    Vec<D> force = Vec<D>::Zero(), load = Vec<D>::Zero();
   };
   /// What the owners of sources need of an extended node.
   static auto row_and_force(auto& node) noexcept
   {
-    return std::tie(node.row.normal, node.row.own, node.row.value, node.row.slope, node.row.size, node.force);
+    return std::tie(node.row.normal, node.row.own, node.row.value, node.row.slope, node.row.size, node.force, node.load);
   }
 
   template <class Volume>

@@ -9,6 +9,7 @@
 #include "solver/transfer/extension.hpp"
 #include "solver/transfer/interfaces.hpp"
 #include "solver/transfer/projected_nodes.hpp"
+#include "solver/transfer/surface_rows.hpp"
 
 namespace talus {
 
@@ -32,6 +33,7 @@ struct KernelRows {
   BlockRows<D, Sum> blocks;
   Halo<Sum> halo;
   GhostNodes ghosts;
+  SurfaceRows<D> surfaces;             ///< loads on surfaces that cut cells
   SparseRows<CellMoments<D>> moments;  ///< MUSL, if weights are barycentric coordinates: of each cell
   // Used if the kernel has node operators.
   ProjectedNodes<D> projected;
@@ -57,7 +59,7 @@ struct KernelRows {
     const Real in_use = of_nodes * static_cast<Real>(bytes_of_all(gradient_of_remapped, projected.sum, projected.motion)) +
                         of_blocks * static_cast<Real>(bytes_of_all(moments, blocks.row) + interfaces.bytes_of_cells());
     return static_cast<std::int64_t>(in_use) +
-           static_cast<std::int64_t>(bytes_of_all(blocks.slot) + interfaces.bytes_of_nodes() + extension.bytes());
+           static_cast<std::int64_t>(bytes_of_all(blocks.slot) + interfaces.bytes_of_nodes() + extension.bytes() + surfaces.bytes());
   }
 };
 

@@ -108,6 +108,7 @@ class BlockSweep {
         const auto rows = of.blocks.rows(block_);
         std::fill(rows.begin(), rows.end(), typename KernelRows<D, K>::Sum{});
         Through::clear(of, m_, block_);
+        of.surfaces.clear(block_);
       }
       was = occupied ? 1 : 0;
     }
@@ -174,6 +175,7 @@ class BlockSweep {
     }
     find_shares(columns.x, scratch_);
     through_.add(columns, arriving.size(), block_);
+    add_surface_loads(body, columns);
   }
 
   void begin_runs(std::size_t particles)
@@ -287,6 +289,14 @@ class BlockSweep {
         share[i] = 0;
     }
     through_.add(columns, n, block_);
+    add_surface_loads(strips_.body(key), columns);
+  }
+  /// Adds the virtual stress of particles that stay, of a body on whose surface loads act.
+  void add_surface_loads(Index body, const StripColumns<D>& columns)
+  {
+    for (RowsOfLoad<D>& rows : rows_of(body).surfaces.all())
+      if (const SurfaceLoad<D>& load = m_.problem.loads.on_surfaces[rows.load]; load.body == body)
+        through_.add_surface_load(load, columns, block_, rows.blocks);
   }
 
   /// The cell behind the facet that particle i of a cell has crossed; the same cell if it has crossed none, or one of the boundary.

@@ -69,7 +69,11 @@ class TransferOf final : public Transfer<D> {
         if (kernel_.extends_surfaces())
           of.extension.begin(m.problem.mesh);
       }
+      of.surfaces.begin(
+          m.problem.loads.on_surfaces, [&](Index body) { return m.problem.contacts.field_of(body) == of.field; }, of.blocks,
+          *m.problem.ranks, m.problem.mesh, m.problem.subdomain);
     }
+    m.work.on_surfaces.resize(m.problem.loads.on_surfaces.size());
     for_each_reading_block(
         rows().halo, [] {}, [&](Index b) { Sweep(m, fields_, b).sum(); });
   }
@@ -94,9 +98,11 @@ class TransferOf final : public Transfer<D> {
         assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, of.projected.sum, find_nodes);
         of.interfaces.find_rows(m.problem.mesh, nodes.in_use, of.ghosts.cells);
         project_sums(kernel_.node_operators(), of.interfaces, m.problem.mesh, m.problem.own, of.projected.sum, nodes.in_use, nodes.sum);
+        add_surface_loads(m, of);
         extend_forces(m, of);
       } else {
         assemble<Whole>(of.blocks, m.problem.own, of.halo, of.ghosts.sums, nodes.in_use, nodes.sum, find_nodes);
+        add_surface_loads(m, of);
       }
     }
   }
@@ -219,6 +225,7 @@ class TransferOf final : public Transfer<D> {
   {
     Communicator& ranks = *problem.ranks;
     of.halo = Halo(ranks, problem.mesh, problem.subdomain, of.blocks);
+    of.surfaces = {};  // whose exchange is that of another part
     const auto copy = [&](MessageTag topic, const std::vector<std::uint8_t>& wanted) {
       return copies_of_nodes(ranks, problem.subdomain, topic, wanted);
     };
@@ -260,8 +267,25 @@ class TransferOf final : public Transfer<D> {
     Nodes<D>& nodes = nodes_of(m, of);
     of.extension.find_rows(m.problem.mesh, operators, m.problem.own, nodes, of.ghosts.near,
                            [&](Index n) { return of.projected.sum[static_cast<std::size_t>(n)].volume; });
-    of.extension.move_forces(m.problem.mesh, m.problem.own, nodes.in_use, of.ghosts.near, nodes.sum,
-                             [&](Index v) { return stress_force(operators, of.interfaces, m.problem.mesh, of.projected.sum, v); });
+    of.extension.move_forces(
+        m.problem.mesh, m.problem.own, nodes.in_use, of.ghosts.near, nodes.sum,
+        [&](Index v) { return stress_force(operators, of.interfaces, m.problem.mesh, of.projected.sum, v); }, nodes.surface_loads);
+  }
+  /// Adds the forces of loads on surfaces that cut cells.
+  void add_surface_loads(Model<D>& m, Rows& of)
+  {
+    if (m.problem.loads.on_surfaces.empty())
+      return;
+    Nodes<D>& nodes = nodes_of(m, of);
+    of.surfaces.assemble(of.blocks.occupied, m.problem.own, of.ghosts.sums, nodes.in_use);
+    const NodeOperators<D>* operators = nullptr;
+    if constexpr (Rows::projects)
+      operators = &kernel_.node_operators();
+    const Real time = m.state.clock.time;
+    apply_surface_loads(m.problem.loads.on_surfaces, time, m.state.stage.ramp(time), m.problem.mesh, m.problem.own, operators, of.surfaces,
+                        nodes, m.work.on_surfaces);
+    for (const RowsOfLoad<D>& rows : of.surfaces.all())
+      m.work.sums.on_mesh.add(m.work.on_surfaces[rows.load]);
   }
   /// Receives the motion of nodes of other ranks that the particles of own blocks read; of projected nodes it has arrived.
   void take_motion([[maybe_unused]] Model<D>& m, [[maybe_unused]] const SweepParts& parts)

@@ -309,6 +309,12 @@ class VertexStrips {
     else
       columns.applied ? add<false, true>(columns, n, block) : add<false, false>(columns, n, block);
   }
+  /// Adds the virtual stress of the same particles.
+  void add_surface_load(const SurfaceLoad<D>& load, const StripColumns<D>& columns, Index block,
+                        BlockRows<D, SurfaceSum<D>>& blocks) const noexcept
+  {
+    add_virtual_stress<KernelRows<D, K>::projects>(load, columns, scratch_, block, blocks);
+  }
 
  private:
   template <bool affine, bool loaded>

@@ -120,6 +120,26 @@ inline std::vector<SceneCase> scenes_of_all()
         .loads = "loads:\n  - {type: gravity, acceleration: [0, -9.81], table: [[0, 0], [0.03, 1], [1, 2]]}\n"
                  "  - {type: traction, on: x_max, traction: [-5.0e3, 0], table: [[0, 0], [0.02, 1], [1, 0]]}\n",
         .outputs = ", bodies: [low]"}});
+  SceneParts surfaces{.bodies =
+                          "bodies:\n"
+                          "  - {name: low, material: stuff, shape: {type: box, low: [0.1, 0.1], high: [1.3, 0.9]}, particles_per_cell: 3, "
+                          "velocity: [2, -1]}\n"
+                          "  - {name: high, material: stuff, shape: {type: ring, centre: [1, 1.4], inner_radius: 0.2, radius: 0.5}, "
+                          "particles_per_cell: 4}\n",
+                      .loads =
+                          "loads:\n  - {type: gravity, acceleration: [0, -9.81]}\n"
+                          "  - {type: traction, on: \"low:x_max\", traction: [-5.0e3, 2.0e3], table: [[0, 0], [0.02, 1], [1, 0]]}\n"
+                          "  - {type: traction, on: \"low:x_min\", pressure: 2.0e3}\n"
+                          "  - {type: traction, on: \"high:inner\", pressure: 3.0e3}\n"
+                          "  - {type: traction, on: \"high:boundary\", water_level: 1.6, unit_weight: 9.0e3}\n",
+                      .outputs = ", bodies: [low, high]"};
+  all.push_back({"surface_loads", surfaces});
+  surfaces.more = "projected: {surfaces: extended}\n";
+  all.push_back({"surface_loads_extended", surfaces});
+  surfaces.more = "contacts: [{between: [low, high], friction: 0.3}]\n";
+  all.push_back({"surface_loads_in_contact", surfaces});
+  surfaces.more = "kernel: umls\ntransfer: {scheme: aflip}\n";
+  all.push_back({"surface_loads_umls", surfaces});
   all.push_back(
       {"body_force",
        {.more = "on_exit: delete\n",
@@ -246,6 +266,10 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"contacts_solid", two_in_3d});
   two_in_3d.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended_solid", two_in_3d});
+  SceneParts loaded_in_3d = in_3d;
+  loaded_in_3d.loads =
+      "loads: [{type: traction, on: \"low:x_max\", pressure: 2.0e3}, {type: traction, on: \"low:y_max\", traction: [1.0e3, 0, -500]}]\n";
+  all.push_back({"surface_loads_solid", loaded_in_3d});
   in_3d.more = "kernel: umls\ntransfer: {scheme: apic}\n";
   in_3d.law = SceneParts{}.law;
   all.push_back({"solid_umls", in_3d});

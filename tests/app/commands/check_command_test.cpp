@@ -103,6 +103,57 @@ loads:
     EXPECT_THAT(outcome.err, HasSubstr(line));
 }
 
+TEST_F(Check, NamesWhatIsWrongWithLoadsOnSidesOfBodies)
+{
+  write("wrong.yaml", R"yaml(title: Wrong
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 1], cells: [8, 8]}}
+time: {end: 1}
+materials: [{name: rubber, law: neo_hookean, density: 1, youngs_modulus: 1, poisson_ratio: 0}]
+bodies:
+  - {name: one, material: rubber, region: all}
+  - {name: two, material: rubber, shape: {type: box, low: [0.1, 0.1], high: [0.9, 0.3]}}
+loads:
+  - {type: traction, on: "one:top", pressure: 1}
+  - {type: traction, on: "two:top", pressure: 1}
+  - {type: traction, on: "two:y_max", pressure: 1, carried_by: mesh}
+  - {type: traction, on: "two:boundary", traction: [1, 0]}
+  - {type: traction, on: y_max, water_level: 1}
+  - {type: traction, on: "tow:y_max", pressure: 1}
+)yaml");
+  const Outcome outcome = talus("check wrong.yaml");
+  EXPECT_EQ(outcome.code, 2);
+  for (const char* line :
+       {"wrong.yaml:10:5: error: loads[0].on: body \"one\" fills no shape, so its sides have no names: sides of regions are facet groups",
+        "wrong.yaml:11:5: error: loads[1].on: the shape of body \"two\" has no side \"top\"; it has boundary, x_min, x_max, y_min, y_max",
+        "wrong.yaml:12:5: error: loads[2].carried_by: \"two:y_max\" is a side of a body and moves with it: leave carried_by out",
+        "wrong.yaml:13:5: error: loads[3].traction: a traction needs a side: \"two:boundary\" is the whole surface, on which a pressure "
+        "may act",
+        "wrong.yaml:14:5: error: loads[4].water_level: \"y_max\" is a facet group: water acts on sides of bodies that fill a shape",
+        "wrong.yaml:15:5: error: loads[5].on: the mesh has no facet group \"tow:y_max\" — did you mean \"two:y_max\"?",
+        "6 errors, nothing was run."})
+    EXPECT_THAT(outcome.err, HasSubstr(line));
+}
+
+TEST_F(Check, WarnsWhereABodyIsThinBehindALoadedSide)
+{
+  write("thin.yaml", R"yaml(title: Thin
+dimension: 2
+mesh: {grid: {low: [0, 0], high: [1, 1], cells: [10, 10]}}
+time: {end: 1}
+materials: [{name: rubber, law: neo_hookean, density: 1, youngs_modulus: 1, poisson_ratio: 0}]
+bodies:
+  - {name: plate, material: rubber, shape: {type: box, low: [0.1, 0.1], high: [0.9, 0.35]}}
+loads:
+  - {type: traction, on: "plate:y_max", pressure: 1}
+  - {type: traction, on: "plate:x_max", pressure: 1}
+)yaml");
+  const Outcome outcome = talus("check thin.yaml");
+  EXPECT_EQ(outcome.code, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("warning: thin.yaml:9:5: the body is 2.5 cells deep behind \"plate:y_max\""));
+  EXPECT_THAT(outcome.err, testing::Not(HasSubstr("thin.yaml:10"))) << "8 cells deep";
+}
+
 TEST_F(Check, RefusesAStressFromTheStartForALawThatHasNone)
 {
   write("block.yaml", block_scene("stages: [{type: geostatic, duration: 1, initial_stress: {k0: 0.5}}]\n"));

@@ -202,6 +202,9 @@ TEST(Scene, ReadsLoadsAndBoundaries)
   EXPECT_EQ(weight.carried_by, Carrier::mesh);
   EXPECT_EQ(weight.table(7), 1);
   EXPECT_EQ(std::get<TractionSpec>(s.loads.at(2)).pressure, 500);
+  EXPECT_EQ(std::get<TractionSpec>(s.loads.at(4)).on, "stone:boundary");
+  EXPECT_EQ(std::get<TractionSpec>(s.loads.at(4)).water_level, 2);
+  EXPECT_EQ(std::get<TractionSpec>(s.loads.at(4)).unit_weight, 1.0e4);
   EXPECT_EQ(std::get<FixedOptions>(s.boundaries.at(0)).on, "y_min");
   EXPECT_EQ(std::get<RollerOptions>(s.boundaries.at(1)).on, "x_min");
   EXPECT_THAT(std::get<PrescribedVelocityOptions>(s.boundaries.at(2)).velocity, ElementsAre(0.1, 0));
