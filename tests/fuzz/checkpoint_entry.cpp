@@ -139,14 +139,11 @@ void begin_with(const CheckpointList& checkpoints)
 std::string good_checkpoint()
 {
   SmallRun run;
-  CheckpointSpec every_step;
-  every_step.steps = 1;
-  Checkpoints<2> checkpoints(run_folder(), every_step,
+  Checkpoints<2> checkpoints(run_folder(), {},
                              {"0.1", "commit", "compiler", "build", "scene.yaml", "title: none\n", {"time.end=1"}, false, 1, 2, ""});
   run.recorder.watch(run.view(), RunEvent::stage_begins);
-  checkpoints.see(run.view(), run.recorder);
   ++run.state.clock.step;
-  checkpoints.see(run.view(), run.recorder);
+  checkpoints.write(run.view(), run.recorder);
   const CheckpointList good(checkpoints.last());  // refused, it would be of no use to what follows
   go_on(good);
   begin_with(good);

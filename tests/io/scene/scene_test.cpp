@@ -318,7 +318,7 @@ TEST(Scene, KnowsWhereEverythingWasAskedFor)
   EXPECT_EQ(to_string(s.materials.at(1).where), s.file + ":27:5");
   EXPECT_EQ(s.materials.at(1).where.path, "materials[1] \"rock\"");
   EXPECT_EQ(std::get<FrictionOptions>(s.boundaries.at(3)).where.path, "boundaries[3]");
-  EXPECT_EQ(std::get<FrictionOptions>(s.boundaries.at(3)).where.line, 41);
+  EXPECT_EQ(std::get<FrictionOptions>(s.boundaries.at(3)).where.line, 42);
   EXPECT_EQ(s.outputs.history.value().points.at(0).where.path, "outputs.history.points[0] \"top\"");
 }
 
