@@ -23,8 +23,8 @@ struct RunView {
   /// Loads that acted on particles in the last step, of each body in each block (CellOrder::key()); empty in scenes without such loads.
   std::span<const ParticleLoadSums<D>> loads = {};
   std::span<const ExactSums<ForceAndMoment<D>>> on_surfaces = {};  ///< forces in the last step of each load on a surface, of this rank [N]
-  const ParticleStrips<D>* strips = nullptr;      ///< where the particles are during a stage, if they are in strips
-  std::function<void()> fetch_particles = [] {};  ///< to be called before particles are read during a stage
+  const ParticleStrips<D>* strips = nullptr;                       ///< where the particles are during a stage, if they are in strips
+  std::function<void()> fetch_particles = [] {};                   ///< to be called before particles are read during a stage
   /// The particles for a reader of its own, see take_copy(Model): those of `state` are there after fetch_particles() only, again.  Nothing
   /// if they can be read in `state` only.
   std::function<std::optional<ParticleCopy<D>>()> take_copy = [] { return std::optional<ParticleCopy<D>>(); };

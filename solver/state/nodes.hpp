@@ -136,11 +136,11 @@ struct Nodes {
   std::vector<std::uint8_t> active;    ///< nodes with enough mass for a motion of their own
   /// Nodes with a boundary condition: no local damping, and the net force is known only after the condition has acted.
   std::vector<std::uint8_t> bound;
-  std::vector<std::uint8_t> slides;   ///< nodes that boundary conditions press against a wall with friction, and that slide
-  std::vector<Vec<D>> felt;           ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
+  std::vector<std::uint8_t> slides;  ///< nodes that boundary conditions press against a wall with friction, and that slide
+  std::vector<Vec<D>> felt;          ///< net acceleration that acts on particles [m/s^2], in stages that seek equilibrium
   SparseRows<Vec<D>> surface_loads;  ///< forces of loads on surfaces that cut cells [N]; empty without such loads
-  Vec<D> gravity = Vec<D>::Zero();    ///< gravity in the present step [m/s^2]
-  Real kick{};                        ///< time over which forces act, from the old velocities to the new ones [s]
+  Vec<D> gravity = Vec<D>::Zero();   ///< gravity in the present step [m/s^2]
+  Real kick{};                       ///< time over which forces act, from the old velocities to the new ones [s]
   NodesInUse in_use;
   Real least_share{};           ///< limit of mass relative to the lightest particle around: nodes with less are nodes of small mass
   Real least_share_of_gross{};  ///< limit of mass relative to `gross`
