@@ -3,7 +3,6 @@
 #include <tuple>
 #include <vector>
 
-#include "core/sparse_rows.hpp"
 #include "kernels/node_operators.hpp"
 #include "solver/halo/halo.hpp"
 #include "solver/loads/surface_load.hpp"
