@@ -13,7 +13,12 @@ namespace talus::hdf5 {
 
 namespace fs = std::filesystem;
 
-void keep_quiet() noexcept { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+void keep_quiet() noexcept
+{
+  // What HDF5 does at exit, which our files do not need as they are closed, ends with a fault if an allocation failed in it before.
+  H5dont_atexit();
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
 
 std::string last_words()
 {
