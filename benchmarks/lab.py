@@ -356,3 +356,12 @@ def size_axis(axis, sizes):
     axis.set_xticks(sizes, [f"{size:g}" for size in sizes])
     axis.xaxis.set_minor_locator(matplotlib.ticker.NullLocator())
     axis.set_xlabel("cell size [m]")
+
+
+def draw_pressing_stress(figure, runs, data):
+    """Draws the stress -xx over data["pressure [Pa]"] at the particles, one panel for each of the `runs` by name."""
+    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
+        frame = run.last_frame()
+        dots = axis.scatter(frame["position"][:, 0], frame["position"][:, 1], c=-frame["stress"][:, 0] / data["pressure [Pa]"], s=4, vmin=0.8, vmax=1.2, cmap="coolwarm")
+        axis.set(title=name, aspect="equal", xlabel="x [m]")
+    figure.colorbar(dots, label="pressing stress over the exact one")

@@ -29,7 +29,7 @@ struct BodyImpulse {
   static constexpr auto fields() { return std::tuple{saved("given", &BodyImpulse::given), saved("unknown", &BodyImpulse::unknown)}; }
 };
 
-/// Tracks the momentum of every body through each step.  All bodies share one velocity at a node, so there are no explicit contact forces.
+/// Tracks the momentum of every body through each step.  Bodies of one velocity field share the velocity of a node without a contact force.
 /// The change of the momentum of a body in a step, minus gravity on its mass and the loads on its particles and surface, is that of walls and
 /// other bodies on it:
 ///

@@ -14,7 +14,7 @@ namespace talus {
 /// A flat or round piece of the surface of a shape.
 template <int D>
 struct SidePiece {
-  /// What a particle at x of the undeformed body is told.  The carrier field is zero beside the columns that stand on the piece.
+  /// The side as seen from x in the undeformed body.  The carrier field is zero beside the columns that stand on the piece.
   std::function<NearSide<D>(const Vec<D>& x)> near;
   /// How deep the body is behind the piece, as far as it matters: no deeper than `far` [m].
   std::function<Real(Real far)> thickness;

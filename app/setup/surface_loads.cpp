@@ -23,7 +23,7 @@ Real cell_size(const Mesh<D>& mesh, Index cell)
 constexpr Real cells_of_reach = 5, least_cells = 4;
 /// Share of the depth of a thin body.
 constexpr Real share_of_depth = 0.8;
-/// Cells beyond the reach whose particles are told: their mean depth decides where the load ends.
+/// Cells beyond the reach whose particles keep their depth too: mean depths around nodes decide where the load ends.
 constexpr Real cells_beyond = 3;
 
 /// A particle near a side as ranks send it.

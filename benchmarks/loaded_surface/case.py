@@ -40,15 +40,6 @@ def in_water(data):
     return wrong
 
 
-def draw(figure, runs, data):
-    """Stress along the load over the exact one, of two runs."""
-    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
-        frame = run.last_frame()
-        dots = axis.scatter(frame["position"][:, 0], frame["position"][:, 1], c=-frame["stress"][:, 0] / data["pressure [Pa]"], s=4, vmin=0.8, vmax=1.2, cmap="coolwarm")
-        axis.set(title=name, aspect="equal", xlabel="x [m]")
-    figure.colorbar(dots, label="pressing stress over the exact one")
-
-
 def evaluate(lab):
     """The pressed square with cells of several sizes at three places, its load on sides or facets; the others with one size, or two."""
     data, results = tools.reference(CASE), []
@@ -87,6 +78,6 @@ def evaluate(lab):
         if scene == "water":
             add(f"displacement of the disk, cells of {size} m", float(np.linalg.norm(np.average(run.last_frame()["displacement"], axis=0, weights=run.last_frame()["mass"]))),
                 "reported", None, run, "m")
-    lab.figure(CASE, "verification_loaded_surface", lambda figure: draw(figure, {"load on facets": square["facets", sizes[1]][0], "load on the side": square["side", sizes[1]][0]}, data),
+    lab.figure(CASE, "verification_loaded_surface", lambda figure: tools.draw_pressing_stress(figure, {"load on facets": square["facets", sizes[1]][0], "load on the side": square["side", sizes[1]][0]}, data),
                size=(9.6, 3.2), caption="Square pressed on its right end by a third of its modulus: stress of the particles over the exact one, which is uniform.")
     return results

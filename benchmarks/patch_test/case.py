@@ -70,15 +70,6 @@ def gradient_error(run, index):
     return float(np.sqrt(np.mean(np.sum(wrong**2, axis=(1, 2)))) / np.linalg.norm(exact))
 
 
-def draw(figure, runs, data):
-    """Stress xx over the pressure of two runs."""
-    for axis, (name, run) in zip(figure.subplots(1, len(runs), sharey=True), runs.items()):
-        frame = run.last_frame()
-        dots = axis.scatter(frame["position"][:, 0], frame["position"][:, 1], c=-frame["stress"][:, 0] / data["pressure [Pa]"], s=4, vmin=0.8, vmax=1.2, cmap="coolwarm")
-        axis.set(title=name, aspect="equal", xlabel="x [m]")
-    figure.colorbar(dots, label="pressing stress over the exact one")
-
-
 def evaluate(lab):
     """Static patch tests on three meshes and uniform stretching, each with three kernels; to the last digit, and strongly pressed with `projected`."""
     data, results = tools.reference(CASE), []
@@ -108,6 +99,6 @@ def evaluate(lab):
                                     data["pressed source"], run))
         results.append(tools.Result(CASE, f"the same, without the third next to the load, {kernel}", "-", pressed_error(run, 2 / 3), "reported", None, 0.0,
                                     data["pressed source"], run))
-    lab.figure(CASE, "verification_patch", lambda figure: draw(figure, {kernel: run for (mesh, kernel, count), run in runs.items() if (mesh, count) == ("jittered 20 %", 6)}, data),
+    lab.figure(CASE, "verification_patch", lambda figure: tools.draw_pressing_stress(figure, {kernel: run for (mesh, kernel, count), run in runs.items() if (mesh, count) == ("jittered 20 %", 6)}, data),
                size=(9.6, 3.2), caption="Static patch test on a jittered mesh: stress of the particles over the uniform exact one.")
     return results

@@ -12,7 +12,7 @@
 
 namespace talus {
 
-/// What a particle near a loaded side is told of it when a run is set up, all of the undeformed body.
+/// The loaded side next to a particle, found when a run is set up, all in the undeformed body.
 template <int D>
 struct NearSide {
   Real depth{};                     ///< distance from the side [m]
