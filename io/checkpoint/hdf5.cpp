@@ -13,10 +13,16 @@ namespace talus::hdf5 {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+// What HDF5 does at exit, which our files do not need as they are closed, ends with a fault if an allocation failed in it before.
+// It has to be left out before the first other call of HDF5, which any of its constants is: here, before main().
+[[maybe_unused]] const herr_t nothing_at_exit = H5dont_atexit();
+
+}  // namespace
+
 void keep_quiet() noexcept
 {
-  // What HDF5 does at exit, which our files do not need as they are closed, ends with a fault if an allocation failed in it before.
-  H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
