@@ -1,6 +1,7 @@
 #include "solver/advance.hpp"
 
 #include "core/stop_watch.hpp"
+#include "solver/rigid/rigid_contacts.hpp"
 #include "solver/state/integrate.hpp"
 
 namespace talus {
@@ -67,6 +68,25 @@ void apply_contacts(Model<D>& m, const Kick& kick)
   m.work.contact.act(kick, m.state.boundary, m.work.fields, m.work.sums.at_nodes);
 }
 
+/// Exchanges impulses of rigid bodies with material, then with each other and with walls.
+template <int D>
+void apply_rigid_bodies(Model<D>& m, const Kick& kick, Real dt)
+{
+  const RigidScene<D>& scene = m.problem.rigid;
+  if (scene.bodies.empty())
+    return;
+  State<D>& state = m.state;
+  const std::vector<RigidState<D>> before = state.rigid;
+  begin_step(scene, m.problem.loads.gravity(state.clock.time, state.stage.ramp(state.clock.time)), kick.length(), kick.to, state.rigid);
+  RigidNodes<D>& nodes = m.work.rigid;
+  nodes.find(m.problem.mesh, m.problem.own, *m.work.strips, scene, state.rigid, m.work.fields);
+  nodes.act(kick, m.problem.mesh, *m.problem.ranks, scene, state.boundary, state.rigid, m.work.fields, m.work.sums.at_nodes);
+  std::vector<RigidContact<D>> contacts = find_contacts<D>(scene, state.rigid, dt);
+  act_on_contacts<D>(scene, dt, contacts, state.rigid);
+  if (state.stage.damping > 0)
+    damp<D>(scene, state.stage.damping, before, state.rigid);
+}
+
 /// Applies local damping in stages that seek equilibrium, from the net acceleration that acts on particles.
 template <int D>
 void apply_local_damping(Model<D>& m)
@@ -108,6 +128,7 @@ void record_node_sums(Model<D>& m)
       add_ranges(blocks, work.sums.work_on_mesh, [&](Index n) { return surface_work(nodes, n); });
   }
   work.contact.add_sums(problem.mesh, work.fields, work.sums.contacts);
+  work.rigid.add_sums(problem.mesh, state.rigid, work.fields, work.sums.rigid);
 }
 
 /// Conducts heat within each body whose law has temperature.
@@ -181,10 +202,12 @@ void update_balances(Model<D>& m)
   StepSums<D>& sums = work.sums;
   problem.ranks->sum(sums.digits, sums.removed, sums.on_particles, sums.on_mesh, sums.at_nodes, sums.beyond_nodes, sums.nodes, sums.balance,
                      sums.work_on_mesh, sums.work_on_particles, sums.internal, sums.remap, sums.particles, state.boundary.pushed(),
-                     std::span(sums.contacts));
+                     std::span(sums.contacts), std::span(sums.rigid));
   state.boundary.keep_impulses();
   for (std::size_t law = 0; law < state.contacts.size(); ++law)
     state.contacts[law] += sums.contacts[law].value();
+  for (std::size_t body = 0; body < state.rigid.size(); ++body)
+    state.rigid[body].done += sums.rigid[body].value();
   std::array<Real, 3> extremes{state.crossing, -state.monitor.speed, -sums.largest_set_back};
   std::int64_t errors = work.errors.word();
   problem.ranks->least(extremes, errors);
@@ -233,6 +256,7 @@ void make_step(Model<D>& m, Real dt)
   integrate_momentum(m, dt);               //  6
   apply_boundary_conditions(m, kick, dt);  //  7
   apply_contacts(m, kick);
+  apply_rigid_bodies(m, kick, dt);
   apply_local_damping(m);
   extrapolate_to_small_masses(m, kick);  //  8
   record_node_sums(m);
@@ -240,6 +264,7 @@ void make_step(Model<D>& m, Real dt)
   clear_particle_sums(m);
   transfer.nodes_to_particles(m, kick, dt, between_parts(m, dt));  //  9 to 12, and 2 and 3 of the next step
   record_particle_sums(m);
+  move(problem.rigid, dt, state.rigid);
   update_balances(m);
   watch.lap(state.timings.gather);  // without the stress, whose time particles measure
   state.clock = {.step = state.clock.step + 1, .time = state.clock.time + dt, .dt = dt, .lag = dt / 2};

@@ -115,7 +115,9 @@ Real wanted_step(const Model<D>& m, const StepLimits& limits)
 {
   const Real time = m.state.clock.time, pull = m.problem.loads.gravity(time, m.state.stage.ramp(time)).norm() + m.state.stage.pull;
   const Real of_loads = pull > 0 ? std::sqrt(m.state.stage.altitude / pull) : std::numeric_limits<Real>::infinity();
-  return std::min(limits.cfl * std::min(m.state.crossing, of_loads), limits.longest);
+  const Real rigid = fastest(m.problem.rigid, m.state.rigid);  // what it meets will move as fast
+  const Real of_rigid = rigid > 0 ? m.state.stage.altitude / rigid : std::numeric_limits<Real>::infinity();
+  return std::min(limits.cfl * std::min({m.state.crossing, of_loads, of_rigid}), limits.longest);
 }
 
 /// Calls `watch`, with the particles in their columns unless it copies them itself.
@@ -242,6 +244,8 @@ StageResult finish_stage(Model<D>& m, const Stage& stage, const StepLimits& limi
     m.state.clock.lag = 0;
     for (auto* affine : {&m.state.particles.L, &m.state.particles.C})
       affine->assign(affine->size(), Mat<D>::Zero());
+    for (RigidState<D>& rigid : m.state.rigid)
+      rigid.v.setZero(), rigid.spin.setZero();
   }
   if (stage.reset_displacement && !m.state.particles.x0.empty())
     m.state.particles.x0 = m.state.particles.x;

@@ -332,8 +332,8 @@ class Run {
     summary.files.insert(summary.files.begin(), {"scene.yaml", "mesh.msh", "mesh.vtu"});
     if (summary.origin)
       summary.files.emplace_back(initial_file);
-    for (const char* const table : {"history.csv", "runout.csv"})  // tables that are complete
-      if (fs::exists(folder_ / table))
+    for (const char* const table : {"history.csv", "runout.csv"})  // tables that are complete: after a failure a row may still follow
+      if (status == RunStatus::done && fs::exists(folder_ / table))
         note_result(folder_ / table, folder_ / table);
     write_summary(folder_ / "summary.json", summary);
   }

@@ -105,6 +105,8 @@ MomentumNow<D> BalanceHistory<D>::momentum(const RunView<D>& view) const
   ForceAndMoment<D> in_steps = given.loads + given.damping;
   for (const BoundaryCondition<D>& wall : view.state.boundary.conditions())
     in_steps += ForceAndMoment<D>::of(wall.impulse, wall.angular);
+  for (const RigidState<D>& rigid : view.state.rigid)
+    in_steps += ForceAndMoment<D>::of(rigid.done.impulse, rigid.done.angular);
   MomentumNow<D> now{start_, momentum_of(view), in_steps + given.rest + given.changes + -1 * view.state.mass.carried_away};
   now.forces = given.on_nodes - in_steps.angular;
   now.lost = now.start.angular + now.given.angular + now.forces - now.end.angular;

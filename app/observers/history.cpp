@@ -69,6 +69,13 @@ struct ContactNow {
   Real friction, loss;  ///< [J]
 };
 template <int D>
+struct RigidNow {
+  const RigidState<D>& state;
+  Vec<D> force;             ///< of material on it [N]
+  Vec3 moment;              ///< about its centre [N m]
+  Real kinetic, friction;   ///< [J]
+};
+template <int D>
 struct PointNow {
   Vec<D> x, u, v;  ///< position [m], displacement [m], velocity [m/s]
   Sym3 stress;     ///< stress [Pa]
@@ -161,6 +168,8 @@ std::vector<CsvColumn> HistoryWriter<D>::columns(const HistoryOutputSpec& spec, 
     add(reaction_columns(), wall.name);
   for (const ContactLaw& contact : start.problem.contacts.laws)
     add(contact_columns(), contact.name());
+  for (const RigidBody<D>& rigid : start.problem.rigid.bodies)
+    add(rigid_columns(), rigid.name);
   for (const PointSpec& point : spec.points)
     add(point_columns(), point.name);
   for (const FrontSpec& one : spec.fronts)
@@ -181,6 +190,7 @@ HistoryWriter<D>::HistoryWriter(const std::filesystem::path& file, HistoryOutput
   state_.impulse.assign(start.state.boundary.conditions().size(), Vec<D>::Zero());
   state_.angular.assign(start.state.boundary.conditions().size(), Vec3::Zero());
   state_.contact.assign(start.state.contacts.size(), Vec<D>::Zero());
+  state_.rigid.assign(start.state.rigid.size(), {});
   state_.given.resize(spec_.bodies.size());
   for (const PointSpec& point : spec_.points)
     state_.followed.push_back(nearest_particle(point, start));
@@ -211,6 +221,15 @@ void HistoryWriter<D>::append(const RunView<D>& view, const BalanceHistory<D>& a
     const Vec<D> force = elapsed > 0 ? Vec<D>((contact.impulse - state_.contact[k]) / elapsed) : Vec<D>(Vec<D>::Zero());
     put_all<D>(contact_columns(), ContactNow<D>{force, 0 - contact.friction, 0 - contact.pressure}, row);
     state_.contact[k] = contact.impulse;
+  }
+  for (std::size_t r = 0; r < state_.rigid.size(); ++r) {
+    const RigidState<D>& rigid = view.state.rigid[r];
+    const RigidSums<D>& before = state_.rigid[r];
+    RigidNow<D> now{rigid, Vec<D>::Zero(), Vec3::Zero(), rigid.kinetic(view.problem.rigid.bodies[r]), 0 - rigid.done.friction};
+    if (elapsed > 0)
+      now.force = (before.impulse - rigid.done.impulse) / elapsed, now.moment = (before.torque - rigid.done.torque) / elapsed;
+    put_all<D>(rigid_columns(), now, row);
+    state_.rigid[r] = rigid.done;
   }
   add_points(view, row);
   for (const FrontSpec& spec : spec_.fronts)

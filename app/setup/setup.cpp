@@ -9,6 +9,7 @@
 #include "app/setup/boundaries_of_scene.hpp"
 #include "app/setup/contacts_of_scene.hpp"
 #include "app/setup/loads_of_scene.hpp"
+#include "app/setup/rigid_of_scene.hpp"
 #include "app/setup/seed.hpp"
 #include "app/setup/stages_of_scene.hpp"
 #include "app/setup/thin_layers.hpp"
@@ -253,6 +254,7 @@ Setup<D> set_up(const Scene& scene, const Mesh<D>& mesh, Communicator& ranks)
   setup.conditions.contacts = contacts_of(scene, setup.state.bodies, errors, setup.warnings);
   for (const ContactLaw& law : setup.conditions.contacts.laws)
     setup.notes.push_back(describe(law));
+  add_rigid_bodies(scene, mesh, ranks, errors, setup);
   warn_of_thin_layers(scene, mesh, setup.state.particles, setup.state.bodies, setup.state.materials, setup.conditions.contacts, ranks,
                       setup.warnings);
   set_stages(scene, errors, setup);

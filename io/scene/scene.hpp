@@ -16,6 +16,7 @@
 #include "io/scene/scene_loads.hpp"
 #include "io/scene/scene_mesh.hpp"
 #include "io/scene/scene_output.hpp"
+#include "io/scene/scene_rigid.hpp"
 #include "io/scene/scene_stages.hpp"
 #include "kernels/kernel_options.hpp"
 #include "mesh/conditions/conditions.hpp"
@@ -65,6 +66,7 @@ struct Scene {
   std::optional<WaterSpec> water;
   std::vector<LoadSpec> loads;
   std::vector<ContactSpec> contacts;
+  std::vector<RigidSpec> rigid;
   std::vector<BoundaryOptions> boundaries;
   std::vector<StageSpec> stages;
   OutputSpec outputs;
@@ -95,6 +97,7 @@ struct Scene {
         optional_list("loads", &Scene::loads, "forces"),
         optional_list("contacts", &Scene::contacts,
                       "bodies that touch, slide and part, each with velocities of its own; without, all bodies stick to each other"),
+        optional_list("rigid", &Scene::rigid, "bodies that do not deform, free or with a given motion; they touch material, walls and each other"),
         optional_list("boundaries", &Scene::boundaries, "conditions on the mesh"),
         optional_list("stages", &Scene::stages, "phases of the analysis in order; default one run until time.end"),
         optional("outputs", &Scene::outputs, any, "-", "what is written"),

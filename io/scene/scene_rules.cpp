@@ -19,6 +19,7 @@ class Rules : private SceneRuleBase {
     time();
     materials_and_bodies();
     contacts();
+    append(broken_rigid_rules(scene_));
     loads_and_boundaries();
     append(broken_output_rules(scene_));
     append(broken_stage_rules(scene_));

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "solver/strips/particles_in_cell.hpp"
+
 namespace talus {
 
 namespace {
@@ -154,33 +156,13 @@ void ContactNodes<D>::mark_cells(const Mesh<D>& mesh)
 }
 
 template <int D>
-template <class F>
-void ContactNodes<D>::for_each_particle_of(const ParticleStrips<D>& strips, std::size_t field, Index cell, F&& f) const
-{
-  const Index block = cell / block_cells, strip = cell % block_cells / strip_cells, c = cell % strip_cells;
-  for (const Index body : bodies_[field]) {
-    const std::span<const Strip> all = strips.strips(strips.key(body, block));
-    if (all.empty())
-      continue;
-    const Strip& one = all[to_size(strip)];
-    const Index count = one.count[to_size(c)];
-    if (count == 0)
-      continue;
-    const Index begin = std::accumulate(one.count.begin(), one.count.begin() + c, Index{0});
-    const StripColumns<D> columns = strips.columns(one);
-    for (Index i = begin; i < begin + count; ++i)
-      f(columns, to_size(i));
-  }
-}
-
-template <int D>
 void ContactNodes<D>::sum_volumes(const Mesh<D>& mesh, const ParticleStrips<D>& strips)
 {
   parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
     const Index cell = marked_[static_cast<std::size_t>(k)];
     for (std::size_t f = 0; f < volumes_.size(); ++f) {
       Corners& sum = volumes_[f][static_cast<std::size_t>(cell)].of;
-      for_each_particle_of(strips, f, cell, [&](const StripColumns<D>& columns, std::size_t p) {
+      for_each_particle_in_cell(strips, bodies_[f], cell, [&](const StripColumns<D>& columns, std::size_t p) {
         const std::array<Real, D + 1> share = mesh.barycentric(cell, columns.x.of(p));
         for (std::size_t a = 0; a <= D; ++a)
           sum[a] += share[a] * columns.volume.of(p);
@@ -286,7 +268,7 @@ void ContactNodes<D>::find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& s
       const auto for_each_beside = [&](Index field, auto&& reach_of) {
         const Real beside = mesh.node_size(n) / 2;
         for (const Index c : cells)
-          for_each_particle_of(strips, static_cast<std::size_t>(field), c, [&](const StripColumns<D>& columns, std::size_t p) {
+          for_each_particle_in_cell(strips, bodies_[static_cast<std::size_t>(field)], c, [&](const StripColumns<D>& columns, std::size_t p) {
             const Vec<D> arm = columns.x.of(p) - mesh.node(n);
             const Real along = normal.dot(arm);
             if (arm.squaredNorm() - along * along <= beside * beside)

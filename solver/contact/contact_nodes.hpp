@@ -87,8 +87,6 @@ class ContactNodes {
   void find_normals(const Mesh<D>& mesh);
   void find_normals_of(const Mesh<D>& mesh, std::size_t law);
   void find_reach(const Mesh<D>& mesh, const ParticleStrips<D>& strips);
-  template <class F>
-  void for_each_particle_of(const ParticleStrips<D>& strips, std::size_t field, Index cell, F&& f) const;
 
   Contacts contacts_;
   std::vector<ContactNode<D>> nodes_;  ///< own ones, by law and node

@@ -25,7 +25,10 @@ enum class MessageTag : int {
   contact_nodes = 10,
   contact_cells = 11,
   contact_reach = 12,
-  surfaces = 13
+  surfaces = 13,
+  rigid_nodes = 14,
+  rigid_cells = 15,
+  rigid_gaps = 16
 };
 
 /// Selects the parts of a row to be sent: the whole row.

@@ -103,6 +103,11 @@ void make_ready(Model<D>& m, std::span<const std::vector<Material>> to_come)
   work.contact.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.contacts);
   work.sums.contacts.resize(problem.contacts.laws.size());
   state.contacts.resize(problem.contacts.laws.size());
+  std::vector<std::vector<Index>> bodies_of_field(static_cast<std::size_t>(problem.contacts.n_fields));
+  for (Index body = 0; body < m.n_bodies(); ++body)
+    bodies_of_field[problem.contacts.field_of(body)].push_back(body);
+  work.rigid.begin(problem.mesh, problem.subdomain, *problem.ranks, problem.rigid, bodies_of_field);
+  work.sums.rigid.resize(problem.rigid.bodies.size());
   work.carriers = TrackedIds(ids_of(problem.loads.on_particles));
   bind_boundary_conditions(m);
   const LeastShares least = transfer.least_shares();

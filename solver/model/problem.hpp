@@ -12,6 +12,7 @@
 #include "solver/options/limit_options.hpp"
 #include "solver/options/transfer_options.hpp"
 #include "solver/particles/removal.hpp"
+#include "solver/rigid/rigid_body.hpp"
 #include "solver/state/owned_nodes.hpp"
 
 namespace talus {
@@ -32,6 +33,7 @@ struct SceneConditions {
   Water water;
   Exits exits;
   Contacts contacts;
+  RigidScene<D> rigid;
   RunLimits limits;
 };
 

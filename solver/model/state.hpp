@@ -12,6 +12,7 @@
 #include "core/time_table.hpp"
 #include "materials/interface/material.hpp"
 #include "solver/boundary/boundary_conditions.hpp"
+#include "solver/rigid/rigid_body.hpp"
 #include "solver/state/ledger.hpp"
 
 namespace talus {
@@ -106,6 +107,7 @@ struct State {
   Real crossing = 0;  ///< shortest wave transit time of a cell with particles [s]; the stable step is proportional to it
   BoundaryConditions<D> boundary;
   std::vector<ContactSums<D>> contacts;  ///< impulse and work of each law of contact since the start of the run
+  std::vector<RigidState<D>> rigid;      ///< of each rigid body
   std::vector<Body> bodies;
   std::vector<Material> materials;  ///< one for each body, with the same rows
   Particles<D> particles;
@@ -115,8 +117,8 @@ struct State {
     return std::tuple{saved("clock", &State::clock),     saved("stage", &State::stage),        saved("energy", &State::energy),
                       saved("mass", &State::mass),       saved("momentum", &State::momentum),  saved("watched", &State::monitor),
                       saved("timings", &State::timings), saved("residual", &State::residual),  saved("crossing", &State::crossing),
-                      saved("walls", &State::boundary),  saved("contacts", &State::contacts),  saved("bodies", &State::bodies),
-                      saved("laws", &State::materials),  saved("particles", &State::particles)};
+                      saved("walls", &State::boundary),  saved("contacts", &State::contacts),  saved("rigid", &State::rigid),
+                      saved("bodies", &State::bodies),   saved("laws", &State::materials),  saved("particles", &State::particles)};
   }
 };
 

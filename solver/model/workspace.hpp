@@ -8,6 +8,7 @@
 #include "solver/boundary/velocity_field.hpp"
 #include "solver/contact/contact_nodes.hpp"
 #include "solver/loads/loads.hpp"
+#include "solver/rigid/rigid_nodes.hpp"
 #include "solver/state/cell_order.hpp"
 #include "solver/state/nodes.hpp"
 #include "solver/state/step_sums.hpp"
@@ -28,6 +29,7 @@ struct Workspace {
 
   std::vector<VelocityField<D>> fields;  ///< one, unless bodies are in contact
   ContactNodes<D> contact;               ///< nodes at which two fields touch
+  RigidNodes<D> rigid;                   ///< nodes at which material touches rigid bodies
   StepSums<D> sums;                      ///< sums of the present step
   // Sums over the particles of each body in each block.
   std::vector<StressSums> stress_sums;

@@ -26,6 +26,29 @@ struct ContactSums {
   }
 };
 
+/// Impulses of a rigid body on material, and their work.
+template <int D>
+struct RigidSums {
+  Vec<D> impulse = Vec<D>::Zero();  ///< [N s]
+  Vec3 angular = Vec3::Zero();      ///< its moment about the origin [N m s]
+  Vec3 torque = Vec3::Zero();       ///< its moment about the centre of the body [N m s]
+  Real moved{};                     ///< work of the impulses with the velocity of the body [J]
+  Real arrival{};                   ///< kinetic energy that the material loses where it gets that velocity, <= 0 [J]
+  Real friction{};                  ///< work of tangential impulses in the sliding of the material, <= 0 [J]
+  RigidSums& operator+=(const RigidSums& other) noexcept
+  {
+    impulse += other.impulse, angular += other.angular, torque += other.torque;
+    moved += other.moved, arrival += other.arrival, friction += other.friction;
+    return *this;
+  }
+  static constexpr auto fields()
+  {
+    return std::tuple{saved("impulse", &RigidSums::impulse), saved("angular", &RigidSums::angular),
+                      saved("torque", &RigidSums::torque),   saved("moved", &RigidSums::moved),
+                      saved("arrival", &RigidSums::arrival), saved("friction", &RigidSums::friction)};
+  }
+};
+
 template <int D>
 struct StepSums {
   ExactSums<RemovedParticles<D>> removed;
@@ -40,6 +63,7 @@ struct StepSums {
   ExactSums<Real> remap;                                      ///< see EnergyLedger [J]
   ExactSums<Real> particles;                                  ///< number of particles
   std::vector<ExactSums<ContactSums<D>>> contacts;            ///< by law of contact
+  std::vector<ExactSums<RigidSums<D>>> rigid;                 ///< by rigid body
   /// Digits in use of these sums and of the impulses of boundary conditions, kept from step to step.
   Digits digits;
   void clear() noexcept
@@ -49,6 +73,8 @@ struct StepSums {
     nodes.clear(), balance.clear(), work_on_mesh.clear(), work_on_particles.clear(), internal.clear(), remap.clear();
     particles.clear();
     for (ExactSums<ContactSums<D>>& one : contacts)
+      one.clear();
+    for (ExactSums<RigidSums<D>>& one : rigid)
       one.clear();
   }
 };
@@ -65,17 +91,21 @@ void add_step(const StepSums<D>& sums, const Vec<D>& gravity, Real kick, MassLed
   ContactSums<D> contact;
   for (const ExactSums<ContactSums<D>>& one : sums.contacts)
     contact += one.value();
+  RigidSums<D> rigid;
+  for (const ExactSums<RigidSums<D>>& one : sums.rigid)
+    rigid += one.value();
   mass.on_nodes = nodes.mass;
   momentum.loads += ForceAndMoment<D>::of(kick * nodes.mass * gravity, kick * moment<D>(nodes.first_moment, gravity)) + kick * tractions;
   momentum.damping += nodes.damped;
   momentum.on_nodes += nodes.turned + beyond.turned;
   energy.gravity += nodes.gravity;
   energy.damping += nodes.damping;
-  energy.walls += boundary.moved + beyond.moved;
-  energy.arrival += boundary.arrival + beyond.arrival + contact.pressure;
-  energy.friction += boundary.friction + beyond.friction + contact.friction;
+  energy.walls += boundary.moved + beyond.moved + rigid.moved;
+  energy.arrival += boundary.arrival + beyond.arrival + contact.pressure + rigid.arrival;
+  energy.friction += boundary.friction + beyond.friction + contact.friction + rigid.friction;
   energy.waves += boundary.waves;
-  energy.nodes += nodes.kinetic_after - nodes.kinetic_before - boundary.arrival - contact.pressure + beyond.friction + beyond.moved;
+  energy.nodes += nodes.kinetic_after - nodes.kinetic_before - boundary.arrival - contact.pressure - rigid.arrival + beyond.friction +
+                  beyond.moved;
   energy.remap += sums.remap.value();
   energy.loads += sums.work_on_mesh.value() + sums.work_on_particles.value();
   energy.internal += sums.internal.value();

@@ -1,0 +1,209 @@
+#include "solver/rigid/rigid_nodes.hpp"
+
+#include <limits>
+
+#include "solver/strips/particles_in_cell.hpp"
+
+namespace talus {
+
+namespace {
+
+/// Candidates are nodes nearer than this to a body, in mean edges: particles within two rings may touch it.
+constexpr Real nearness = 3;
+
+constexpr Real nowhere = std::numeric_limits<Real>::infinity();
+
+/// Selects gaps that particles have.
+struct Gaps {
+  static auto parts(auto& gap) noexcept { return std::tie(gap); }
+  static bool is_there(Real gap, Index) noexcept { return gap < nowhere; }
+  static void clear(Real& gap) noexcept { gap = nowhere; }
+};
+
+/// Half the width of a particle along a unit vector [m]: the stretched half side of a cube of its initial volume.
+template <int D>
+Real half_width_along(const Mat3& F, Real volume0, const Vec<D>& along) noexcept
+{
+  const Mat<D> part = F.template topLeftCorner<D, D>();
+  return 0.5 * (D == 2 ? std::sqrt(volume0) : std::cbrt(volume0)) * (part.transpose() * along).norm();
+}
+
+}  // namespace
+
+template <int D>
+void RigidNodes<D>::begin(const Mesh<D>& mesh, const Subdomain& subdomain, Communicator& ranks, const RigidScene<D>& scene,
+                          const std::vector<std::vector<Index>>& bodies_of_field)
+{
+  n_bodies_ = scene.bodies.size();
+  if (!any())
+    return;
+  bodies_of_field_ = bodies_of_field;
+  const auto n_nodes = static_cast<std::size_t>(mesh.n_nodes()), n_cells = static_cast<std::size_t>(mesh.n_cells());
+  candidate_.assign(n_nodes, 0);
+  normal_.assign(n_nodes, Vec<D>::Zero());
+  gap_.assign(n_nodes, nowhere);
+  of_cell_.assign(n_cells, {});
+  place_of_cell_.assign(n_cells, none);
+  if (subdomain.alone())
+    return;
+  copies_ = copies_of_nodes(ranks, subdomain, MessageTag::rigid_nodes, std::vector<std::uint8_t>(n_nodes, 1));
+  cells_ = copies_of_cells(ranks, subdomain, MessageTag::rigid_cells, mesh.n_cells());
+  std::vector<NeighbourRank> borders;
+  staged_.clear();
+  for (const NeighbourRank& border : copies_.borders()) {
+    NeighbourRank& back = borders.emplace_back(NeighbourRank{border.rank, border.in, {}});
+    for (const Index n : border.out) {
+      back.in.push_back(static_cast<Index>(staged_.size()));
+      staged_.push_back(n);
+    }
+  }
+  back_ = HaloExchange(ranks, MessageTag::rigid_gaps, std::move(borders));
+  gap_of_others_.assign(staged_.size(), nowhere);
+}
+
+template <int D>
+void RigidNodes<D>::find_candidates(const Place& at, Index field, const Nodes<D>& nodes)
+{
+  for (const Index n : candidates_)
+    candidate_[static_cast<std::size_t>(n)] = 0;
+  candidates_.clear();
+  nodes.in_use.for_each_ascending([&](Index n) {
+    const auto i = static_cast<std::size_t>(n);
+    if (!at.own.has(n) || nodes.active[i] == 0)
+      return;
+    const Real near = nearness * at.mesh.node_size(n), reach = at.shape.radius() + near;
+    if ((at.mesh.node(n) - at.state.x).squaredNorm() > reach * reach || at.state.distance(at.shape, at.mesh.node(n)).distance > near)
+      return;
+    candidate_[i] = 1;
+    nodes_.push_back({.rigid = at.rigid, .field = field, .node = n});
+  });
+  copies_.send(candidate_, OfMarked{itself, candidate_});
+  copies_.take(candidate_, OfMarked{itself, candidate_});
+  for (std::size_t n = 0; n < candidate_.size(); ++n)
+    if (candidate_[n] != 0)
+      candidates_.push_back(static_cast<Index>(n));
+}
+
+template <int D>
+void RigidNodes<D>::find_probes(const Place& at, Index field)
+{
+  for (const Index c : marked_)
+    of_cell_[static_cast<std::size_t>(c)] = {}, place_of_cell_[static_cast<std::size_t>(c)] = none;
+  marked_.clear();
+  for (const Index n : candidates_)
+    for (const Index m : at.mesh.ring_of_node()[n])
+      for (const Index c : at.mesh.cells_of_node()[m])
+        if (Index& place = place_of_cell_[static_cast<std::size_t>(c)]; place == none) {
+          place = static_cast<Index>(marked_.size());
+          marked_.push_back(c);
+        }
+  if (probes_.size() < marked_.size())
+    probes_.resize(marked_.size());
+  parallel_for(static_cast<Index>(marked_.size()), [&](Index k) {
+    const Index cell = marked_[static_cast<std::size_t>(k)];
+    std::vector<Probe>& probes = probes_[static_cast<std::size_t>(k)];
+    probes.clear();
+    Real near = 0;
+    for (const Index n : at.mesh.cell(cell))
+      near = std::max(near, at.mesh.node_size(n));
+    Vec<D>& sum = of_cell_[static_cast<std::size_t>(cell)].sum;
+    for_each_particle_in_cell(at.strips, bodies_of_field_[static_cast<std::size_t>(field)], cell, [&](const StripColumns<D>& columns, std::size_t p) {
+      const Vec<D> x = columns.x.of(p);
+      const SurfaceDistance<D> to = at.state.distance(at.shape, x);
+      const Real gap = to.distance - half_width_along<D>(columns.F.of(p), columns.volume0.of(p), to.normal);
+      if (gap > near)
+        return;
+      probes.push_back({x, to.normal, gap});
+      sum += columns.volume.of(p) * (1 - gap / near) * to.normal;
+    });
+  });
+  cells_.send(of_cell_, Whole{});
+  cells_.take(of_cell_, Whole{});
+}
+
+template <int D>
+void RigidNodes<D>::find_normals(const Place& at, std::span<RigidNode<D>> found)
+{
+  for (RigidNode<D>& one : found) {
+    thread_local std::vector<Index> cells;
+    cells.clear();
+    for (const Index m : at.mesh.ring_of_node()[one.node])
+      cells.insert(cells.end(), at.mesh.cells_of_node()[m].begin(), at.mesh.cells_of_node()[m].end());
+    std::ranges::sort(cells);
+    cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+    Vec<D> mean = Vec<D>::Zero();
+    for (const Index c : cells)
+      mean += of_cell_[static_cast<std::size_t>(c)].sum;
+    normal_[static_cast<std::size_t>(one.node)].setZero();
+    if (mean.isZero(0))
+      continue;
+    mean.stableNormalize();
+    const Vec<D> nearest = at.state.distance(at.shape, at.mesh.node(one.node)).normal;
+    constexpr Real same_side = 0.5;
+    one.normal = nearest.dot(mean) > same_side ? nearest : mean;
+    normal_[static_cast<std::size_t>(one.node)] = one.normal;
+  }
+  copies_.send(normal_, OfMarked{itself, candidate_});
+  copies_.take(normal_, OfMarked{itself, candidate_});
+}
+
+template <int D>
+void RigidNodes<D>::find_gaps(const Place& at, std::span<RigidNode<D>> found)
+{
+  parallel_for_uneven(static_cast<Index>(candidates_.size()), [&](Index k) {
+    const Index n = candidates_[static_cast<std::size_t>(k)];
+    Real& gap = gap_[static_cast<std::size_t>(n)] = nowhere;
+    const Vec<D> normal = normal_[static_cast<std::size_t>(n)];
+    if (normal.isZero(0))
+      return;
+    const Real beside = at.mesh.node_size(n) / 2;
+    for (const Index m : at.mesh.ring_of_node()[n])
+      for (const Index c : at.mesh.cells_of_node()[m])
+        for (const Probe& probe : probes_[static_cast<std::size_t>(place_of_cell_[static_cast<std::size_t>(c)])]) {
+          const Vec<D> arm = probe.x - at.mesh.node(n);
+          const Real along = normal.dot(arm);
+          if (arm.squaredNorm() - along * along <= beside * beside && probe.normal.dot(normal) > 0)
+            gap = std::min(gap, probe.gap);
+        }
+  });
+  back_.send(gap_, Gaps{});
+  back_.take(gap_of_others_, Gaps{});
+  for (std::size_t k = 0; k < staged_.size(); ++k)
+    if (candidate_[static_cast<std::size_t>(staged_[k])] != 0)
+      gap_[static_cast<std::size_t>(staged_[k])] = std::min(gap_[static_cast<std::size_t>(staged_[k])], gap_of_others_[k]);
+  for (RigidNode<D>& one : found)
+    one.touches = gap_[static_cast<std::size_t>(one.node)] <= 0;
+  for (const Index n : candidates_)
+    gap_[static_cast<std::size_t>(n)] = nowhere;
+}
+
+template <int D>
+void RigidNodes<D>::find(const Mesh<D>& mesh, const OwnNodes& own, const ParticleStrips<D>& strips, const RigidScene<D>& scene,
+                         std::span<const RigidState<D>> states, std::span<const VelocityField<D>> fields)
+{
+  if (!any())
+    return;
+  nodes_.clear();
+  for (std::size_t r = 0; r < scene.bodies.size(); ++r)
+    for (std::size_t f = 0; f < fields.size(); ++f) {
+      const Place at{mesh, own, strips, *scene.bodies[r].shape, states[r], static_cast<Index>(r)};
+      const std::size_t before = nodes_.size();
+      find_candidates(at, static_cast<Index>(f), fields[f].nodes);
+      const std::span<RigidNode<D>> found = std::span(nodes_).subspan(before);
+      find_probes(at, static_cast<Index>(f));
+      find_normals(at, found);
+      find_gaps(at, found);
+    }
+  std::erase_if(nodes_, [](const RigidNode<D>& one) { return !one.touches; });
+}
+
+#define TALUS_INSTANTIATE(D)                                                                                                            \
+  template void RigidNodes<D>::begin(const Mesh<D>&, const Subdomain&, Communicator&, const RigidScene<D>&,                             \
+                                     const std::vector<std::vector<Index>>&);                                                           \
+  template void RigidNodes<D>::find(const Mesh<D>&, const OwnNodes&, const ParticleStrips<D>&, const RigidScene<D>&,                    \
+                                    std::span<const RigidState<D>>, std::span<const VelocityField<D>>);
+TALUS_INSTANTIATE(2)
+TALUS_INSTANTIATE(3)
+#undef TALUS_INSTANTIATE
+
+}  // namespace talus
