@@ -27,6 +27,7 @@ struct Frame {
   Real time = 0;  ///< [s]
   std::optional<ParticleFile> particles;
   std::optional<MeshFile> mesh;
+  std::optional<MeshFile> rigid;  ///< surfaces of rigid bodies, whole on every rank
 };
 
 /// The fields of the particles that the scene wants in a file.  Collective.

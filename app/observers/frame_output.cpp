@@ -5,7 +5,7 @@
 namespace talus {
 
 FrameOutput::FrameOutput(const std::filesystem::path& folder, const std::string& made_by)
-    : made_by_(made_by), particle_series_(folder / "particles.pvd", made_by), mesh_series_(folder / "mesh.pvd", made_by)
+    : made_by_(made_by), particle_series_(folder / "particles.pvd", made_by), mesh_series_(folder / "mesh.pvd", made_by), rigid_series_(folder / "rigid.pvd", made_by)
 {}
 
 void FrameOutput::write(Communicator& ranks, Frame frame)
@@ -34,6 +34,20 @@ void FrameOutput::write_now(Communicator& ranks, const Frame& frame)
     ranks.together([&] { mesh_series_.append(frame.time, part->file); });
     written_.push_back(part->file.filename().string());
   }
+  if (const auto& part = frame.rigid) {
+    ranks.together([&] {
+      Communicator alone;
+      write_mesh(alone, part->file, frame.time, part->mesh, part->columns, {}, made_by_);
+      rigid_series_.append(frame.time, part->file);
+    });
+    written_.push_back(part->file.filename().string());
+  }
+}
+
+void FrameOutput::resume(Real time)
+{
+  for (PvdSeries* const series : {&particle_series_, &mesh_series_, &rigid_series_})
+    series->resume(time);
 }
 
 void FrameOutput::wait()

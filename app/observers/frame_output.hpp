@@ -30,6 +30,8 @@ class FrameOutput {
   /// The files on the disk of the last frame, after wait() or an exception of it.
   const std::vector<std::string>& written() const noexcept { return written_; }
 
+  /// Drops what the lists name after a time [s].
+  void resume(Real time);
   PvdSeries& particle_series() noexcept { return particle_series_; }
   PvdSeries& mesh_series() noexcept { return mesh_series_; }
 
@@ -37,7 +39,7 @@ class FrameOutput {
   void write_now(Communicator& ranks, const Frame& frame);
 
   std::string made_by_;
-  PvdSeries particle_series_, mesh_series_;
+  PvdSeries particle_series_, mesh_series_, rigid_series_;
   std::vector<std::string> written_;
   bool pending_ = false;
   BackgroundTask task_;  // last: its destructor waits while the others exist

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/observers/results.hpp"
+#include "app/observers/rigid_frame.hpp"
 #include "core/print.hpp"
 #include "io/files/manifest.hpp"
 
@@ -100,6 +101,7 @@ void Recorder<D>::open(const RunView<D>& view)
   bytes_per_particle_ = talus::bytes_per_particle(view);
   for (std::size_t b = 0; b < view.state.bodies.size(); ++b)
     bodies_.push_back(summary_of(view, b));
+  has_rigid_ = !view.state.rigid.empty();
   if (outputs_.history) {
     history_.emplace(folder_ / "history.csv", *outputs_.history, view);
     history_state_ = history_->state();
@@ -134,11 +136,14 @@ void Recorder<D>::name_lists()
     files_.push_back("particles.pvd");
   if (outputs_.mesh)
     files_.push_back("mesh.pvd");
+  if (outputs_.particles && has_rigid_)
+    files_.push_back("rigid.pvd");
 }
 
 template <int D>
 void Recorder<D>::go_on(const RunView<D>& view)
 {
+  has_rigid_ = !view.state.rigid.empty();
   traffic_begin_ = view.problem.ranks->traffic(), step_begin_ = view.state.clock.step;
   timings_begin_ = view.state.timings, output_begin_ = output_seconds_;
   if (outputs_.history)
@@ -166,8 +171,7 @@ std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& view)
       missing.push_back(fmt::format("{} is not there any more", (folder_ / file).string()));
   if (history_ && history_time_ > elsewhere_.time && history_->last_time() != history_time_)
     missing.push_back(fmt::format("{} lacks what was there up to t = {:.6g} s", (folder_ / "history.csv").string(), history_time_));
-  frames_.particle_series().resume(view.state.clock.time);
-  frames_.mesh_series().resume(view.state.clock.time);
+  frames_.resume(view.state.clock.time);
   const auto check_series = [&](const PvdSeries& series, int written, const char* name) {
     if (series.size() != static_cast<std::size_t>(written))
       missing.push_back(fmt::format("{} names {} files, {} had been written", (folder_ / name).string(), series.size(), written));
@@ -182,7 +186,7 @@ std::vector<std::string> Recorder<D>::drop_later(const RunView<D>& view)
     set_aside_unless_proved(file);
     return fs::remove(file);
   };
-  for (int n = particle_files_; remove(particle_file(n)); ++n) {
+  for (int n = particle_files_; remove(particle_file(n)) | remove(rigid_file(n)); ++n) {
   }
   for (int n = mesh_files_; remove(mesh_file(n)); ++n) {
   }
@@ -348,6 +352,10 @@ void Recorder<D>::write_frame(const RunView<D>& view, bool particles, bool mesh)
   frame.time = view.state.clock.time;
   frame_.clear();
   frame_has_particles_ = particles;
+  if (particles && has_rigid_) {
+    frame.rigid = rigid_of_frame(view, rigid_file(particle_files_));
+    frame_.push_back(frame.rigid->file.filename().string());
+  }
   if (particles) {
     frame.particles = particles_of_frame(view, outputs_, particle_file(particle_files_++));
     frame_.push_back(frame.particles->file.filename().string());

@@ -118,6 +118,7 @@ class Recorder {
   void write_frame(const RunView<D>& view, bool particles, bool mesh);
   void write_runout(const RunView<D>& view, bool last);
   void name(const std::string& file);
+  std::filesystem::path rigid_file(int n) const { return folder_ / fmt::format("rigid_{:04}.vtu", n); }
   std::filesystem::path particle_file(int n) const { return folder_ / fmt::format("particles_{:04}.vtp", n); }
   std::filesystem::path mesh_file(int n) const { return folder_ / fmt::format("mesh_{:04}.vtu", n); }
 
@@ -132,6 +133,7 @@ class Recorder {
   HistoryState<D> history_state_;  // state of history_ at its last row
   FrameOutput frames_;
   int particle_files_ = 0, mesh_files_ = 0;
+  bool has_rigid_ = false;  // whether the scene has rigid bodies
   Real particle_time_ = -1, mesh_time_ = -1, history_time_ = -1;  // times of the last files or rows [s]
   Real stage_start_ = 0, done_before_ = 0;
   RanksSummary ranks_;

@@ -25,11 +25,12 @@ bool is_map(std::string_view name) noexcept
 
 bool is_written_by_runs(std::string_view name) noexcept
 {
-  static constexpr std::array<std::string_view, 9> names{"summary.json", "history.csv", "runout.csv", "particles.pvd", "mesh.pvd",
+  static constexpr std::array<std::string_view, 10> names{"summary.json", "history.csv", "runout.csv", "particles.pvd", "mesh.pvd", "rigid.pvd",
                                                          "mesh.msh",     "mesh.vtu",    "scene.yaml", initial_file};
   const std::size_t slash = name.find('/');
   if (slash == std::string_view::npos)
-    return std::ranges::find(names, name) != names.end() || is_numbered(name, "particles_", ".vtp") || is_numbered(name, "mesh_", ".vtu");
+    return std::ranges::find(names, name) != names.end() || is_numbered(name, "particles_", ".vtp") || is_numbered(name, "mesh_", ".vtu") ||
+           is_numbered(name, "rigid_", ".vtu");
   const std::string_view folder = name.substr(0, slash), file = name.substr(slash + 1);
   return (folder == checkpoint_folder && is_numbered(file, "step_", ".h5")) || (folder == map_folder && is_map(file)) ||
          (folder == section_folder && file.ends_with(".csv"));

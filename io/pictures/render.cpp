@@ -12,6 +12,7 @@
 #include "io/pictures/render_canvas.hpp"
 #include "io/pictures/render_data.hpp"
 #include "io/pictures/render_outline.hpp"
+#include "io/pictures/render_rigid.hpp"
 #include "io/pictures/render_series.hpp"
 #include "mesh/geometry/spacing.hpp"
 
@@ -116,6 +117,15 @@ try {
   return std::nullopt;
 }
 
+/// The rigid bodies at a time [s]; none if their file is damaged.
+std::optional<StoredMesh> rigid_at(const fs::path& folder, Real time)
+try {
+  return read_rigid(folder, time);
+} catch (const EnvironmentError& damaged) {
+  fmt::print(stderr, "warning: the rigid bodies are left out: {}\n", damaged.what());
+  return std::nullopt;
+}
+
 Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& facts, const Cloud& first, const Cloud& last)
 {
   Picture picture;
@@ -130,6 +140,10 @@ Picture compose(const Settings& settings, FrameSeries& series, const RunFacts& f
   if (const auto frames = chosen(settings.frames, series.size()); frames.size() == 1)
     if (const auto one = series.read(frames[0], cloud_reader(settings)))
       shape.insert(shape.end(), one->x.begin(), one->x.end());
+  for (const Real time : {series.time(0), series.time(series.size() - 1)})
+    if (const auto rigid = rigid_at(settings.folder, time))
+      for (std::size_t n = 0; n < rigid->nodes.size(); n += 3)
+        shape.emplace_back(rigid->nodes.data() + n);
   place_camera(settings, shape, picture);
   if (settings.ground) {
     picture.ground = ground_in(settings.folder, facts.dimension);
@@ -173,6 +187,7 @@ void make_pictures(const Settings& settings, const std::function<void(const fs::
       picture.notes.back() = words_of(*settings.clip) + (cloud->x.empty() ? ": no particle is left" : "");
     }
     picture.time = series.time(frame);
+    picture.rigid = rigid_at(settings.folder, picture.time);
     const fs::path png = picture_path(settings, frame, cloud->label);
     draw(picture, *cloud, png);
     written(png);

@@ -26,6 +26,7 @@
 #include "io/pictures/render_ground.hpp"
 #include "io/pictures/render_legend.hpp"
 #include "io/pictures/render_png.hpp"
+#include "io/pictures/render_rigid.hpp"
 #include "io/pictures/render_sheet.hpp"
 
 namespace talus::render {
@@ -163,6 +164,7 @@ void draw(const Picture& picture, const Cloud& cloud, const fs::path& png)
   add_ground(scene, over, picture);
   add_lines(edges && picture.dimension == 2 ? over : scene, picture, picture.mesh, edges ? Pen{edge_grey, 0.75, 0.9} : Pen{grey, 1.5, 1});
   add_particles(scene, picture, cloud);
+  add_rigid(picture.dimension == 2 ? over : scene, picture);
   add_lines(over, picture, picture.start, {start_colour, 1.5, 1});
   aim(scene, over, picture.camera, panel);
 

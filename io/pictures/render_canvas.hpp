@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "io/output/vtk.hpp"
 #include "io/pictures/render_camera.hpp"
 #include "io/pictures/render_colours.hpp"
 #include "io/pictures/render_data.hpp"
@@ -26,6 +27,7 @@ struct Picture {
   MeshLines mesh_lines{};             ///< kind of these lines: edges are drawn over the particles in 2-D
   Lines start;                        ///< outline drawn over the particles
   std::optional<RigidGround> ground;  ///< the ground of a mesh made from terrain
+  std::optional<StoredMesh> rigid;    ///< surfaces of rigid bodies at the time of the frame
   Vec3 upwards = Vec3::UnitZ();       ///< vertical axis
   std::optional<Plane> clip;          ///< plane by which particles and ground are cut
   std::string title;

@@ -238,6 +238,16 @@ inline std::vector<SceneCase> scenes_of_all()
   SceneParts contacts_tied = two_materials;
   contacts_tied.more = "kernel: umls\ncontacts:\n  - {between: [high, low], friction: 0.3}\n  - {between: [right, low], tied: true}\n";
   all.push_back({"contacts_umls", contacts_tied});
+  SceneParts rigid;
+  rigid.more =
+      "rigid:\n  - {name: disk, shape: {type: sphere, centre: [1.6, 0.32], radius: 0.3}, density: 1500, friction: 0.4, velocity: [-3, 0], "
+      "angular_velocity: [5]}\n"
+      "  - {name: stone, shape: {type: polygon, points: [[1.4, 1.1], [1.9, 1.2], [1.6, 1.5]]}, mass: 200, friction: 0.2, velocity: [-4, -4]}\n"
+      "  - {name: ram, shape: {type: box, low: [0.2, 1.45], high: [1.1, 1.6]}, motion: given, velocity: [0, -6], angular_velocity: [-1], "
+      "table: [[0, 0], [0.02, 1], [1, 0]], friction: 0.3}\n";
+  all.push_back({"rigid", rigid});
+  rigid.more += "contacts: [{between: [low, high], friction: 0.3}]\nkernel: umls\n";
+  all.push_back({"rigid_in_contact_umls", rigid});
   SceneParts extended = two_materials;
   extended.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended", extended});
@@ -266,6 +276,12 @@ inline std::vector<SceneCase> scenes_of_all()
   all.push_back({"contacts_solid", two_in_3d});
   two_in_3d.more = "projected: {surfaces: extended}\n";
   all.push_back({"extended_solid", two_in_3d});
+  SceneParts rigid_in_3d = in_3d;
+  rigid_in_3d.more =
+      "rigid:\n  - {name: ball, shape: {type: sphere, centre: [1.3, 0.5, 0.5], radius: 0.25}, density: 1500, friction: 0.4, velocity: [-4, 0, 0]}\n"
+      "  - {name: drum, shape: {type: cylinder, from: [0.4, 1.2, 0.2], to: [0.6, 1.25, 0.8], radius: 0.15}, mass: 90, friction: 0.2, velocity: "
+      "[3, -3, 0], angular_velocity: [1, 2, 3]}\n";
+  all.push_back({"rigid_solid", rigid_in_3d});
   SceneParts loaded_in_3d = in_3d;
   loaded_in_3d.loads =
       "loads: [{type: traction, on: \"low:x_max\", pressure: 2.0e3}, {type: traction, on: \"low:y_max\", traction: [1.0e3, 0, -500]}]\n";

@@ -1,0 +1,135 @@
+// Distances to surfaces of facets, and what they enclose.
+#include "mesh/geometry/facet_surface.hpp"
+
+#include <gmock/gmock.h>
+
+namespace talus::facet_surface_test {
+namespace {
+
+using ::testing::HasSubstr;
+
+FacetSurface<2> rectangle(Real width, Real height)
+{
+  return {{{0, 0}, {width, 0}, {width, height}, {0, height}}, {{0, 1}, {1, 2}, {2, 3}, {3, 0}}};
+}
+
+/// A box of these edges, with every triangle of corners of its own, as in an STL file.
+FacetSurface<3>::Corners box_corners(const Vec3& size, std::vector<std::array<Index, 3>>& triangles)
+{
+  FacetSurface<3>::Corners corners;
+  for (Index axis = 0; axis < 3; ++axis)
+    for (const Real side : {0.0, 1.0}) {
+      const Index u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const auto corner = [&](Real a, Real b) {
+        Vec3 x = Vec3::Zero();
+        x[axis] = side * size[axis], x[u] = a * size[u], x[v] = b * size[v];
+        return x;
+      };
+      std::vector<Vec3> around{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+      if (side == 0)
+        std::ranges::reverse(around);
+      for (const std::array<std::size_t, 3> triangle : {std::array<std::size_t, 3>{0, 1, 2}, {0, 2, 3}}) {
+        const auto first = static_cast<Index>(corners.size());
+        for (const std::size_t c : triangle)
+          corners.push_back(around[c]);
+        triangles.push_back({first, first + 1, first + 2});
+      }
+    }
+  return corners;
+}
+FacetSurface<3> box(const Vec3& size)
+{
+  std::vector<std::array<Index, 3>> triangles;
+  auto corners = box_corners(size, triangles);
+  return {std::move(corners), std::move(triangles)};
+}
+
+TEST(SurfaceOfSegments, DistancesAreThoseOfARectangle)
+{
+  const FacetSurface<2> surface = rectangle(2, 1);
+  EXPECT_EQ(surface.fault(), "");
+  const auto expect = [&](const Vec<2>& x, Real distance, const Vec<2>& normal) {
+    const auto found = surface.distance(x);
+    EXPECT_NEAR(found.distance, distance, 1e-14) << x.transpose();
+    EXPECT_LT((found.normal - normal).norm(), 1e-12) << x.transpose() << ": " << found.normal.transpose();
+  };
+  expect({1, 1.5}, 0.5, {0, 1});
+  expect({0.2, 0.5}, -0.2, {-1, 0});
+  expect({1, 0.9}, -0.1, {0, 1});
+  expect({2 + 3, 1 + 4}, 5, {0.6, 0.8});
+  expect({-0.3, 0.5}, 0.3, {-1, 0});
+  expect({1, 0}, 0, {0, -1});
+}
+
+TEST(SurfaceOfSegments, EnclosesAreaCentreAndInertia)
+{
+  const auto solid = rectangle(2, 1).solid();
+  EXPECT_NEAR(solid.volume, 2, 1e-14);
+  EXPECT_LT((solid.centre - Vec<2>(1, 0.5)).norm(), 1e-14);
+  EXPECT_NEAR(solid.inertia(2, 2), 2 * (4 + 1) / 12.0, 1e-14);
+}
+
+TEST(SurfaceOfTriangles, DistancesAndInertiaAreThoseOfABox)
+{
+  const Vec3 size(3, 2, 1);
+  const FacetSurface<3> surface = box(size);
+  EXPECT_EQ(surface.fault(), "");
+  EXPECT_EQ(surface.corners().size(), 8u) << "corners at one place are one";
+  const auto solid = surface.solid();
+  EXPECT_NEAR(solid.volume, 6, 1e-13);
+  EXPECT_LT((solid.centre - size / 2).norm(), 1e-13);
+  EXPECT_NEAR(solid.inertia(0, 0), 6 * (4 + 1) / 12.0, 1e-12);
+  EXPECT_NEAR(solid.inertia(1, 1), 6 * (9 + 1) / 12.0, 1e-12);
+  EXPECT_NEAR(solid.inertia(2, 2), 6 * (9 + 4) / 12.0, 1e-12);
+  EXPECT_NEAR(solid.inertia(0, 1), 0, 1e-12);
+  // Against the closed form, on a grid of points that has none on the surface.
+  for (Real x = -0.95; x < 4; x += 0.7)
+    for (Real y = -0.95; y < 3; y += 0.6)
+      for (Real z = -0.95; z < 2; z += 0.35) {
+        const Vec3 at(x, y, z), centred = (at - size / 2).cwiseAbs() - size / 2;
+        const Real exact = centred.cwiseMax(0).norm() + std::min(centred.maxCoeff(), Real{0});
+        EXPECT_NEAR(surface.distance(at).distance, exact, 1e-13) << at.transpose();
+      }
+}
+
+// A nearest point at a corner with unequal facets: the sign from a single facet, or from the plain mean of normals, would be wrong.
+TEST(SurfaceOfTriangles, TheSideIsRightBehindSharpCorners)
+{
+  const FacetSurface<3> spike({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.05, 0.05, 5}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}});
+  ASSERT_EQ(spike.fault(), "");
+  EXPECT_GT(spike.distance({0.05, 0.05, 5.5}).distance, 0);
+  EXPECT_GT(spike.distance({-0.5, 0.3, 5.2}).distance, 0);
+  EXPECT_GT(spike.distance({2, -0.1, -0.1}).distance, 0);
+  EXPECT_LT(spike.distance({0.06, 0.06, 4.5}).distance, 0);
+}
+
+TEST(SurfaceOfTriangles, ThatIsOpenOrInsideOutIsAFault)
+{
+  std::vector<std::array<Index, 3>> triangles;
+  auto corners = box_corners({1, 1, 1}, triangles);
+  std::vector<std::array<Index, 3>> open(triangles.begin(), triangles.end() - 1), turned = triangles, one_turned = triangles;
+  EXPECT_THAT(FacetSurface<3>(corners, open).fault(), HasSubstr("open"));
+  for (auto& triangle : turned)
+    std::swap(triangle[0], triangle[1]);
+  EXPECT_THAT(FacetSurface<3>(corners, turned).fault(), HasSubstr("inside out"));
+  std::swap(one_turned[3][0], one_turned[3][1]);
+  EXPECT_THAT(FacetSurface<3>(corners, one_turned).fault(), HasSubstr("do not all show the same side"));
+}
+
+TEST(SurfaceOfTriangles, SamplesAreNowhereFartherApartThanAsked)
+{
+  const FacetSurface<3> surface = box({1, 1, 1});
+  const auto samples = surface.samples(0.25);
+  for (const Vec3& sample : samples)
+    EXPECT_NEAR(surface.distance(sample).distance, 0, 1e-12);
+  for (const Vec3& sample : samples) {
+    Real nearest = 1;
+    for (const Vec3& other : samples)
+      if (const Real apart = (other - sample).norm(); apart > 0)
+        nearest = std::min(nearest, apart);
+    EXPECT_LE(nearest, 0.25);
+  }
+}
+
+}  // namespace
+}  // namespace talus::facet_surface_test
